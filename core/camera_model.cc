@@ -1,0 +1,273 @@
+#include "core/camera_model.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+// A point closer to the image plane than this is not a landmark any camera here resolves; it also keeps 1/z bounded.
+constexpr double kMinDepthM = 1e-3;
+// tan(89.9 deg): the normalised plane itself ends at 90 degrees off axis.
+constexpr double kMaxRadius = 572.0;
+
+}  // namespace
+
+std::optional<DistortionModel> ParseDistortionModel(std::string_view name) {
+  for (const DistortionModel model : {DistortionModel::kNone, DistortionModel::kRadialTangential,
+                                      DistortionModel::kEquidistant, DistortionModel::kFov}) {
+    if (name == ToString(model)) {
+      return model;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string_view ToString(DistortionModel model) {
+  switch (model) {
+    case DistortionModel::kRadialTangential:
+      return "radial-tangential";
+    case DistortionModel::kEquidistant:
+      return "equidistant";
+    case DistortionModel::kFov:
+      return "fov";
+    case DistortionModel::kNone:
+      break;
+  }
+  return "none";
+}
+
+int CoefficientCount(DistortionModel model) {
+  switch (model) {
+    case DistortionModel::kRadialTangential:
+    case DistortionModel::kEquidistant:
+      return 4;
+    case DistortionModel::kFov:
+      return 1;
+    case DistortionModel::kNone:
+      break;
+  }
+  return 0;
+}
+
+Result<CameraModel> CameraModel::Create(DistortionModel model, const Vector4d& fu_fv_cu_cv,
+                                        const std::vector<double>& coefficients, int width_px, int height_px) {
+  if (!fu_fv_cu_cv.allFinite() || fu_fv_cu_cv[0] <= 0 || fu_fv_cu_cv[1] <= 0) {
+    return Status::Input("intrinsics: expected finite fu, fv, cu, cv with positive focal lengths [px]");
+  }
+  if (width_px <= 0 || height_px <= 0) {
+    return Status::Input("resolution: expected positive width and height [px], found " + std::to_string(width_px) +
+                         " x " + std::to_string(height_px));
+  }
+  const int expected = CoefficientCount(model);
+  if (static_cast<int>(coefficients.size()) != expected) {
+    return Status::Input("distortion_coefficients: model " + std::string(ToString(model)) + " takes " +
+                         std::to_string(expected) + ", found " + std::to_string(coefficients.size()));
+  }
+  CameraModel camera;
+  camera.model_ = model;
+  camera.intrinsics_ = fu_fv_cu_cv;
+  camera.width_px_ = width_px;
+  camera.height_px_ = height_px;
+  for (int i = 0; i < expected; ++i) {
+    if (!std::isfinite(coefficients[static_cast<size_t>(i)])) {
+      return Status::Input("distortion_coefficients: entry " + std::to_string(i + 1) + " is not finite");
+    }
+    camera.coefficients_[i] = coefficients[static_cast<size_t>(i)];
+  }
+  if (model == DistortionModel::kFov && (coefficients[0] <= 1e-6 || coefficients[0] >= std::numbers::pi)) {
+    return Status::Input("distortion_coefficients: fov w must lie in (0, pi), found " +
+                         std::to_string(coefficients[0]));
+  }
+  camera.BoundDomain();
+  return camera;
+}
+
+double CameraModel::RadialDistortion(double radius, double* derivative) const {
+  const Vector4d& k = coefficients_;
+  switch (model_) {
+    case DistortionModel::kRadialTangential: {
+      const double r2 = radius * radius;
+      *derivative = 1 + r2 * (3 * k[0] + 5 * k[1] * r2);
+      return radius * (1 + r2 * (k[0] + k[1] * r2));
+    }
+    case DistortionModel::kEquidistant: {
+      const double t = std::atan(radius);
+      const double t2 = t * t;
+      const double dt = 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
+      *derivative = dt / (1 + radius * radius);
+      return t * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+    }
+    case DistortionModel::kFov: {
+      const double a = 2 * std::tan(0.5 * k[0]);
+      *derivative = a / (k[0] * (1 + a * a * radius * radius));
+      return std::atan(a * radius) / k[0];
+    }
+    case DistortionModel::kNone:
+      break;
+  }
+  *derivative = 1;
+  return radius;
+}
+
+void CameraModel::BoundDomain() {
+  // March outwards in angle until the radial map stops growing; the tangential terms are too small to move the bound.
+  constexpr int kSteps = 2000;
+  const double max_angle = std::atan(kMaxRadius);
+  max_radius_ = 0;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double radius = std::tan(max_angle * i / kSteps);
+    double derivative = 0;
+    RadialDistortion(radius, &derivative);
+    if (derivative <= 1e-6 / (1 + radius * radius)) {
+      break;
+    }
+    max_radius_ = radius;
+  }
+  double unused = 0;
+  max_distorted_radius_ = RadialDistortion(max_radius_, &unused);
+}
+
+bool CameraModel::Distort(const Vector2d& ideal, Vector2d* distorted, Matrix2d* jacobian) const {
+  const double x = ideal.x();
+  const double y = ideal.y();
+  const double r2 = x * x + y * y;
+  if (!(r2 <= max_radius_ * max_radius_)) {
+    return false;
+  }
+  if (model_ == DistortionModel::kNone) {
+    *distorted = ideal;
+    if (jacobian != nullptr) {
+      jacobian->setIdentity();
+    }
+    return true;
+  }
+  const double r = std::sqrt(r2);
+  double derivative = 0;
+  const double r_d = RadialDistortion(r, &derivative);
+  double scale = 0;
+  if (r > 1e-9) {
+    scale = r_d / r;
+  } else {
+    RadialDistortion(0, &scale);
+  }
+  *distorted = scale * ideal;
+  if (jacobian != nullptr) {
+    // d (scale(r) x) / d x = scale I + (r_d' - scale) x x^T / r^2
+    const double radial = r2 > 1e-18 ? (derivative - scale) / r2 : 0.0;
+    *jacobian << scale + radial * x * x, radial * x * y, radial * x * y, scale + radial * y * y;
+  }
+  if (model_ == DistortionModel::kRadialTangential) {
+    const double p1 = coefficients_[2];
+    const double p2 = coefficients_[3];
+    *distorted += Vector2d(2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y);
+    if (jacobian != nullptr) {
+      Matrix2d tangential;
+      tangential << 2 * p1 * y + 6 * p2 * x, 2 * p1 * x + 2 * p2 * y, 2 * p1 * x + 2 * p2 * y, 6 * p1 * y + 2 * p2 * x;
+      *jacobian += tangential;
+    }
+  }
+  return true;
+}
+
+bool CameraModel::Project(const Vector3d& p_C, Vector2d* pixel, Eigen::Matrix<double, 2, 3>* jacobian) const {
+  if (!(p_C.z() > kMinDepthM)) {
+    return false;
+  }
+  const double inverse_z = 1.0 / p_C.z();
+  const Vector2d ideal = p_C.head<2>() * inverse_z;
+  Vector2d distorted;
+  Matrix2d distortion_jacobian;
+  if (!Distort(ideal, &distorted, jacobian != nullptr ? &distortion_jacobian : nullptr)) {
+    return false;
+  }
+  *pixel = intrinsics_.head<2>().cwiseProduct(distorted) + intrinsics_.tail<2>();
+  if (jacobian != nullptr) {
+    Eigen::Matrix<double, 2, 3> perspective;
+    perspective << inverse_z, 0, -ideal.x() * inverse_z, 0, inverse_z, -ideal.y() * inverse_z;
+    *jacobian = intrinsics_.head<2>().asDiagonal() * distortion_jacobian * perspective;
+  }
+  return true;
+}
+
+bool CameraModel::Undistort(const Vector2d& distorted, Vector2d* ideal) const {
+  const double r_d = distorted.norm();
+  if (!(r_d <= max_distorted_radius_)) {
+    return false;
+  }
+  // Newton on the radius alone, bisecting when it leaves the bracket: converges for every one-to-one radial map.
+  double low = 0;
+  double high = max_radius_;
+  double radius = std::min(r_d, max_radius_);
+  for (int i = 0; i < 60; ++i) {
+    double derivative = 0;
+    const double error = RadialDistortion(radius, &derivative) - r_d;
+    if (std::abs(error) < 1e-14) {
+      break;
+    }
+    (error > 0 ? high : low) = radius;
+    const double newton = radius - error / derivative;
+    radius = (newton > low && newton < high) ? newton : 0.5 * (low + high);
+  }
+  Vector2d x = r_d > 1e-12 ? Vector2d(distorted * (radius / r_d)) : Vector2d::Zero();
+  if (r_d <= 1e-12) {
+    double scale = 0;
+    RadialDistortion(0, &scale);
+    x = distorted / scale;
+  }
+  if (model_ != DistortionModel::kRadialTangential) {
+    *ideal = x;
+    return true;
+  }
+  for (int i = 0; i < 20; ++i) {  // Newton with the tangential terms
+    Vector2d predicted;
+    Matrix2d jacobian;
+    if (!Distort(x, &predicted, &jacobian)) {
+      return false;
+    }
+    const Vector2d error = predicted - distorted;
+    if (error.squaredNorm() < 1e-28) {
+      break;
+    }
+    x -= jacobian.inverse() * error;
+  }
+  Vector2d check;
+  if (!Distort(x, &check) || (check - distorted).squaredNorm() > 1e-20) {
+    return false;
+  }
+  *ideal = x;
+  return true;
+}
+
+bool CameraModel::Unproject(const Vector2d& pixel, Vector2d* normalized, Matrix2d* pixel_jacobian) const {
+  if (!pixel.allFinite()) {
+    return false;
+  }
+  const Vector2d distorted = (pixel - intrinsics_.tail<2>()).cwiseQuotient(intrinsics_.head<2>());
+  Vector2d ideal;
+  if (model_ == DistortionModel::kNone) {
+    ideal = distorted;
+    if (!(ideal.norm() <= max_radius_)) {
+      return false;
+    }
+  } else if (!Undistort(distorted, &ideal)) {
+    return false;
+  }
+  if (pixel_jacobian != nullptr) {
+    Vector2d unused;
+    Matrix2d jacobian;
+    if (!Distort(ideal, &unused, &jacobian)) {
+      return false;
+    }
+    *pixel_jacobian = intrinsics_.head<2>().asDiagonal() * jacobian;
+  }
+  *normalized = ideal;
+  return true;
+}
+
+}  // namespace alidade

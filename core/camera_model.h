@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+
+namespace alidade {
+
+/// Lens model between the ideal normalised plane (x, y) = (X/Z, Y/Z) and the distorted one (x_d, y_d); then
+/// u = fu x_d + cu, v = fv y_d + cv. With r^2 = x^2 + y^2:
+///
+///   none               x_d = x
+///   radial-tangential  x_d = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2), likewise y (Brown; OpenCV order
+///                      k1 k2 p1 p2)
+///   equidistant        t = atan(r), x_d = x/r t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8) (Kannala, Brandt 2006)
+///   fov                r_d = atan(2 r tan(w/2)) / w, x_d = x/r r_d (Devernay, Faugeras 2001)
+enum class DistortionModel { kNone, kRadialTangential, kEquidistant, kFov };
+
+[[nodiscard]] std::optional<DistortionModel> ParseDistortionModel(std::string_view name);
+[[nodiscard]] std::string_view ToString(DistortionModel model);
+/// Number of coefficients the model takes.
+[[nodiscard]] int CoefficientCount(DistortionModel model);
+
+/// Pinhole camera with a lens model. Immutable after Create, which bounds the domain in which the distortion is
+/// one-to-one; outside it every call answers false instead of a plausible number.
+class CameraModel {
+ public:
+  /// An ideal camera of focal length 1: pixels are normalised coordinates.
+  CameraModel() = default;
+
+  /// Errors (kInput): non-positive focal length or resolution, wrong number of coefficients, non-finite numbers,
+  /// fov w outside (0, pi).
+  static Result<CameraModel> Create(DistortionModel model, const Eigen::Vector4d& fu_fv_cu_cv,
+                                    const std::vector<double>& coefficients, int width_px, int height_px);
+
+  /// Point in the camera frame [m] -> pixel. jacobian: d pixel / d p_C, 2x3. False when the point is behind the camera
+  /// or outside the lens model's domain; outputs are then untouched. The pixel may lie outside the image.
+  bool Project(const Eigen::Vector3d& p_C, Eigen::Vector2d* pixel,
+               Eigen::Matrix<double, 2, 3>* jacobian = nullptr) const;
+
+  /// Pixel -> normalised plane. pixel_jacobian: d pixel / d normalised at the answer, 2x2 (whitens pixel noise on the
+  /// normalised plane). False when no point of the domain maps to this pixel.
+  bool Unproject(const Eigen::Vector2d& pixel, Eigen::Vector2d* normalized,
+                 Eigen::Matrix2d* pixel_jacobian = nullptr) const;
+
+  /// Ideal -> distorted normalised coordinates, with the 2x2 Jacobian. False outside the domain.
+  bool Distort(const Eigen::Vector2d& ideal, Eigen::Vector2d* distorted, Eigen::Matrix2d* jacobian = nullptr) const;
+
+  [[nodiscard]] bool InImage(const Eigen::Vector2d& pixel, double border_px = 0) const {
+    return pixel.x() >= border_px && pixel.y() >= border_px && pixel.x() <= width_px_ - 1 - border_px &&
+           pixel.y() <= height_px_ - 1 - border_px;
+  }
+
+  [[nodiscard]] DistortionModel model() const { return model_; }
+  [[nodiscard]] const Eigen::Vector4d& intrinsics() const { return intrinsics_; }  ///< fu, fv, cu, cv [px]
+  [[nodiscard]] const Eigen::Vector4d& coefficients() const { return coefficients_; }
+  [[nodiscard]] double mean_focal_px() const { return 0.5 * (intrinsics_[0] + intrinsics_[1]); }
+  [[nodiscard]] int width_px() const { return width_px_; }
+  [[nodiscard]] int height_px() const { return height_px_; }
+  /// Largest radius on the ideal normalised plane for which the lens model is one-to-one.
+  [[nodiscard]] double max_radius() const { return max_radius_; }
+
+ private:
+  bool Undistort(const Eigen::Vector2d& distorted, Eigen::Vector2d* ideal) const;
+  /// Distorted radius r_d(r) of the radial part and its derivative; tangential terms are left out.
+  double RadialDistortion(double radius, double* derivative) const;
+  void BoundDomain();
+
+  DistortionModel model_ = DistortionModel::kNone;
+  Eigen::Vector4d intrinsics_ = Eigen::Vector4d(1, 1, 0, 0);
+  Eigen::Vector4d coefficients_ = Eigen::Vector4d::Zero();
+  int width_px_ = 1;
+  int height_px_ = 1;
+  double max_radius_ = 1e3;
+  double max_distorted_radius_ = 1e3;
+};
+
+}  // namespace alidade

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/measurement_log.h"
+#include "core/navigation_state.h"
+#include "core/status.h"
+
+namespace alidade {
+
+/// What one frame did to an estimator: what was used, refused and why, and how well the innovations fit.
+struct FrameStatistics {
+  int tracks_in = 0;             ///< observations handed over
+  int observations_invalid = 0;  ///< outside the camera model's domain
+  int features_used = 0;         ///< tracks that updated the state
+  int features_gated = 0;        ///< refused by the chi-square gate
+  int features_waiting = 0;      ///< refused by the parallax gate, kept for later
+  int features_degenerate = 0;   ///< depth negative or out of range
+  int satellites_used = 0;
+  int satellites_gated = 0;
+  int iterations = 0;            ///< of the smoother's solver
+  double nis = 0;                ///< normalised innovation squared of the applied rows
+  int nis_dof = 0;               ///< rows applied
+  double propagate_ms = 0;
+  double update_ms = 0;
+};
+
+/// A back end: consumes one measurement log in time order and tells state and covariance after each frame.
+///
+/// Single-threaded and deterministic: equal calls give equal bits (the *_ms statistics aside). Before AddFrame(f) the
+/// caller has added every IMU sample up to and including the first one at or after the frame's IMU time.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+
+  /// Starts (or restarts) at `initial`; its covariance is in the canonical chart. The first frame may carry the same
+  /// stamp. Errors (kInput): not finite, not a rotation, covariance not symmetric positive semi-definite.
+  virtual Status Initialize(const NavEstimate& initial) = 0;
+  /// Buffers a sample. Samples may arrive out of order or twice; a non-finite one is kInput and is dropped.
+  virtual Status AddImu(const ImuSample& sample) = 0;
+  /// Propagates to the frame and updates with its tracks. kInput: the frame was skipped (not after the last one, or no
+  /// IMU reaches it) and the state is as before. kDiverged: the state is lost; Initialize restarts.
+  virtual Status AddFrame(const TrackFrame& frame) = 0;
+
+  /// State after the last accepted frame. Precondition: initialised.
+  [[nodiscard]] virtual NavEstimate Latest() const = 0;
+  [[nodiscard]] virtual bool initialized() const = 0;
+  [[nodiscard]] virtual const FrameStatistics& last_statistics() const = 0;
+};
+
+}  // namespace alidade

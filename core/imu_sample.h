@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/time.h"
+
+namespace alidade {
+
+/// One inertial measurement in the body frame: angular rate [rad/s] and specific force [m/s^2].
+struct ImuSample {
+  TimeNs stamp_ns = 0;
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();
+};
+
+/// Continuous-time noise of an IMU (one axis), EuRoC's sensor.yaml units.
+struct ImuNoise {
+  double gyro_noise_density_radps_sqrthz = 3e-4;
+  double accel_noise_density_mps2_sqrthz = 1e-3;
+  double gyro_random_walk_radps2_sqrthz = 3e-5;
+  double accel_random_walk_mps3_sqrthz = 2e-4;
+};
+
+}  // namespace alidade

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace alidade {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+using Matrix15d = Eigen::Matrix<double, 15, 15>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+using Vector15d = Eigen::Matrix<double, 15, 1>;
+
+/// [v]x, so that Skew(v) * w = v x w.
+[[nodiscard]] inline Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// SO(3). Rotation vectors in radians; formulas of Sola, Deray, Atchuthan, "A micro Lie theory for state
+/// estimation in robotics", 2018, with Taylor series below the angle where the closed form loses digits.
+namespace so3 {
+
+/// Exp: rotation vector -> rotation matrix (Rodrigues).
+[[nodiscard]] Eigen::Matrix3d Exp(const Eigen::Vector3d& phi);
+/// Exp as a unit Hamilton quaternion.
+[[nodiscard]] Eigen::Quaterniond ExpQuaternion(const Eigen::Vector3d& phi);
+/// Log: rotation matrix -> rotation vector, |phi| <= pi. Accurate near 0 and near pi.
+[[nodiscard]] Eigen::Vector3d Log(const Eigen::Matrix3d& rotation);
+/// Left Jacobian: Exp(phi + d) = Exp(J_l(phi) d) Exp(phi) to first order.
+[[nodiscard]] Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& phi);
+/// Right Jacobian: Exp(phi + d) = Exp(phi) Exp(J_r(phi) d) to first order. J_r(phi) = J_l(-phi).
+[[nodiscard]] Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& phi);
+[[nodiscard]] Eigen::Matrix3d LeftJacobianInverse(const Eigen::Vector3d& phi);
+[[nodiscard]] Eigen::Matrix3d RightJacobianInverse(const Eigen::Vector3d& phi);
+/// Gamma_m(phi) = sum_k [phi]x^k / (k + m)!; Gamma_0 = Exp, Gamma_1 = J_l, Gamma_2 and Gamma_3 integrate specific force
+/// over a constant rotation rate (Bloesch et al. 2012, Hartley et al. 2020 appendix). Shape 3x3, m in 0..3.
+[[nodiscard]] Eigen::Matrix3d Gamma(const Eigen::Vector3d& phi, int m);
+/// The rotation matrix nearest to `m` in the Frobenius norm.
+[[nodiscard]] Eigen::Matrix3d Normalize(const Eigen::Matrix3d& m);
+
+}  // namespace so3
+
+/// SE(3), tangent (phi, rho): Exp = [Exp(phi), J_l(phi) rho].
+namespace se3 {
+
+/// 4x4 homogeneous matrix of a tangent vector (phi, rho).
+[[nodiscard]] Eigen::Matrix4d Exp(const Vector6d& xi);
+[[nodiscard]] Vector6d Log(const Eigen::Matrix4d& transform);
+/// 6x6 Jacobians in the order (phi, rho).
+[[nodiscard]] Matrix6d LeftJacobian(const Vector6d& xi);
+[[nodiscard]] Matrix6d RightJacobian(const Vector6d& xi);
+[[nodiscard]] Matrix6d Adjoint(const Eigen::Matrix4d& transform);
+
+}  // namespace se3
+
+/// SE_2(3), extended poses (R, p, v), tangent (phi, rho_p, rho_v); Barrau and Bonnabel, 2017.
+namespace se23 {
+
+using Matrix5d = Eigen::Matrix<double, 5, 5>;
+/// 5x5 matrix [R p v; 0 1 0; 0 0 1] of a tangent vector.
+[[nodiscard]] Matrix5d Exp(const Vector9d& xi);
+[[nodiscard]] Vector9d Log(const Matrix5d& element);
+[[nodiscard]] Matrix9d LeftJacobian(const Vector9d& xi);
+[[nodiscard]] Matrix9d RightJacobian(const Vector9d& xi);
+[[nodiscard]] Matrix9d Adjoint(const Matrix5d& element);
+
+}  // namespace se23
+
+}  // namespace alidade

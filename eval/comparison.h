@@ -1,0 +1,71 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "eval/metrics.h"
+#include "eval/runner.h"
+
+namespace alidade {
+
+/// Time series of one cell, thinned for plotting; all vectors have one entry a kept frame.
+struct CellSeries {
+  std::vector<double> time_s;                    ///< since the first pair
+  std::vector<Eigen::Vector3d> truth_position;
+  std::vector<Eigen::Vector3d> position;         ///< aligned as the plan says
+  std::vector<Vector6d> error;                   ///< (phi [rad], dp [m]) unaligned, canonical chart
+  std::vector<Vector6d> sigma;                   ///< standard deviations of the same
+  std::vector<double> nees_pose;
+  std::vector<double> backend_ms;
+  std::vector<double> features_used;
+};
+
+/// One row of summary.csv: one estimator on one sequence with one seed.
+struct CellResult {
+  std::string estimator;
+  std::string backend;
+  std::string sequence;
+  unsigned seed = 0;
+  std::string status;        ///< ok | diverged | not_initialized | failed: reason in `message`
+  std::string message;
+  std::string input_digest;
+  int frames = 0;
+  double duration_s = 0;
+  double path_m = 0;
+  double rmse_pos_m = 0, rmse_ori_deg = 0;  ///< unaligned
+  double ate_pos_m = 0, ate_ori_deg = 0;
+  std::string align;
+  std::vector<RpeResult> rpe;
+  double nees_pose = 0, nees_ori = 0, nees_pos = 0, coverage_3sigma = 0;
+  double frontend_ms = 0, backend_ms = 0, backend_ms_p95 = 0;
+  double features_per_frame = 0;
+  CellSeries series;
+};
+
+/// A published figure to print beside the measured ones.
+struct ReferenceFigure {
+  std::string source;     ///< "the paper", ...
+  std::string estimator;
+  std::string sequence;
+  std::map<std::string, double> figures;  ///< column of summary.csv -> value
+};
+
+struct Comparison {
+  std::string title;
+  std::vector<CellResult> cells;
+  std::vector<ReferenceFigure> references;
+  std::string command;  ///< how to repeat it
+};
+
+/// Writes summary.csv, aggregate.csv, tables.md, tables.tex into `folder` (contract: "What compare writes").
+Status WriteTables(const Comparison& comparison, const std::string& folder);
+
+/// One self-contained offline page: table, trajectories, errors with 3-sigma bands, NEES with its chi-square band, time
+/// per frame; selectable by estimator, sequence and seed.
+Status WriteReport(const Comparison& comparison, const std::string& path);
+
+/// The table that a person reads on the terminal.
+[[nodiscard]] std::string FormatTable(const Comparison& comparison);
+
+}  // namespace alidade

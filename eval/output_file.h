@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/status.h"
+
+namespace alidade {
+
+/// Writes the whole of `content` to a temporary name beside `path` and renames it: a reader sees a whole file or none.
+/// Creates missing folders. Errors: kOutput naming the path and the system's reason.
+Status WriteFileAtomically(const std::string& path, std::string_view content);
+
+/// Shortest decimal text that reads back to the same double.
+[[nodiscard]] std::string ShortestDouble(double value);
+
+}  // namespace alidade

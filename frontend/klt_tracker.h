@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/measurement_log.h"
+#include "core/status.h"
+
+namespace alidade {
+
+/// What the tracker did to one image.
+struct TrackerStatistics {
+  int tracked = 0;    ///< tracks carried over
+  int lost = 0;       ///< KLT failed, left the image or failed the backward pass
+  int rejected = 0;   ///< refused by the epipolar RANSAC
+  int detected = 0;   ///< new corners
+  double mean_track_length = 0;
+};
+
+/// Pyramidal Lucas-Kanade front end: images in, tracks out. Deterministic. OpenCV stays behind the implementation.
+class KltTracker {
+ public:
+  KltTracker(const FrontendConfig& config, const RigCalibration& rig);
+  ~KltTracker();
+  KltTracker(const KltTracker&) = delete;
+  KltTracker& operator=(const KltTracker&) = delete;
+
+  /// Gyroscope samples up to the next image predict where tracks start.
+  void AddImu(const ImuSample& sample);
+  /// grey: row-major 8-bit image of the camera's resolution (stride == width). Error (kInput): wrong size, stamps not
+  /// increasing.
+  Result<TrackFrame> Track(TimeNs stamp_ns, const unsigned char* grey, int width_px, int height_px);
+
+  [[nodiscard]] const TrackerStatistics& statistics() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Decodes an 8-bit or 16-bit image file to grey. kInput: missing, or does not decode, naming the path.
+struct GreyImage {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<unsigned char> pixels;
+};
+Result<GreyImage> ReadGreyImage(const std::string& path);
+
+}  // namespace alidade
