@@ -1,0 +1,51 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "core/imu_sample.h"
+#include "core/status.h"
+
+namespace alidade {
+
+/// Counts of what an ImuBuffer had to mend; reported in the run's statistics.
+struct ImuBufferStatistics {
+  int accepted = 0;
+  int duplicates = 0;    ///< same stamp twice; the first is kept
+  int out_of_order = 0;  ///< arrived late and sorted in
+  int rejected = 0;      ///< not finite, or older than what was already consumed
+  int gaps = 0;          ///< silences longer than the limit inside a consumed interval
+  double longest_gap_s = 0;
+};
+
+/// Inertial samples sorted by stamp, cut to the intervals that measurements ask for.
+class ImuBuffer {
+ public:
+  explicit ImuBuffer(double max_gap_s) : max_gap_s_(max_gap_s) {}
+
+  /// Sorts the sample in. kInput: a component is not finite, or the sample is older than the last consumed interval.
+  Status Add(const ImuSample& sample);
+
+  /// Samples that cover [from, to]: linearly interpolated at both ends, all measured ones between. kInput: to <= from, or
+  /// the buffer does not reach both ends (the message gives the missing milliseconds). A gap longer than the limit is
+  /// counted and bridged by interpolation.
+  Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* samples);
+
+  /// Forgets samples that no interval starting at or after `stamp_ns` needs.
+  void DropBefore(TimeNs stamp_ns);
+  void Clear() { samples_.clear(); }
+
+  [[nodiscard]] const std::deque<ImuSample>& samples() const { return samples_; }
+  [[nodiscard]] const ImuBufferStatistics& statistics() const { return statistics_; }
+
+ private:
+  double max_gap_s_;
+  TimeNs consumed_before_ns_ = INT64_MIN;
+  std::deque<ImuSample> samples_;
+  ImuBufferStatistics statistics_;
+};
+
+/// Linear interpolation at `stamp_ns` between two samples; a.stamp_ns < b.stamp_ns.
+[[nodiscard]] ImuSample Interpolate(const ImuSample& a, const ImuSample& b, TimeNs stamp_ns);
+
+}  // namespace alidade

@@ -1,0 +1,157 @@
+#include "core/pose_only.h"
+
+#include <cmath>
+#include <vector>
+
+#include "core/check.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// The part of A and b that view i contributes.
+struct DepthRow {
+  Vector3d z;      // homogeneous observation
+  Vector3d ray;    // R_i^T R_b z_b
+  Vector3d shift;  // R_i^T (p_b - p_i)
+  Vector3d a;      // [z]x ray
+  Vector3d b;      // -[z]x shift
+};
+
+DepthRow MakeRow(const Pose& view, const Vector2d& z, const Pose& base_view, const Vector3d& base_ray_W) {
+  DepthRow row;
+  row.z = z.homogeneous();
+  row.ray = view.rotation.transpose() * base_ray_W;
+  row.shift = view.rotation.transpose() * (base_view.translation - view.translation);
+  row.a = row.z.cross(row.ray);
+  row.b = -row.z.cross(row.shift);
+  return row;
+}
+
+bool GivesDepth(int view, int base, int count, DepthViews views) {
+  return view != base && (views == DepthViews::kMulti || view == (base == count - 1 ? 0 : count - 1));
+}
+
+/// d depth / d (phi, dp) of every view and d depth / d z of every view.
+struct DepthDerivative {
+  Eigen::RowVectorXd poses;         // 1 x 6N
+  Eigen::RowVectorXd observations;  // 1 x 2N
+};
+
+DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const Vector2d> z, int base, DepthViews views,
+                                   const PoseOnlyDepth& depth) {
+  const int count = static_cast<int>(T_WC.size());
+  const Pose& base_view = T_WC[static_cast<size_t>(base)];
+  const Vector3d z_b = z[static_cast<size_t>(base)].homogeneous();
+  const Vector3d base_ray_W = base_view.rotation * z_b;
+  DepthDerivative derivative{Eigen::RowVectorXd::Zero(6 * count), Eigen::RowVectorXd::Zero(2 * count)};
+  for (int i = 0; i < count; ++i) {
+    if (!GivesDepth(i, base, count, views)) {
+      continue;
+    }
+    const Pose& view = T_WC[static_cast<size_t>(i)];
+    const DepthRow row = MakeRow(view, z[static_cast<size_t>(i)], base_view, base_ray_W);
+    // dd = [ (b - 2 d A)^T dA + A^T db ] / A^T A, with dA = [z]x dray - [ray]x dz and db = -[z]x dshift + [shift]x dz.
+    const Vector3d weight_a = (row.b - 2 * depth.depth * row.a) / depth.normal;
+    const Vector3d weight_b = row.a / depth.normal;
+    const Eigen::RowVector3d to_ray = weight_a.transpose() * Skew(row.z);
+    const Eigen::RowVector3d to_shift = -weight_b.transpose() * Skew(row.z);
+    const Matrix3d Rt = view.rotation.transpose();
+    derivative.poses.segment<3>(6 * i) += to_ray * Skew(row.ray) + to_shift * Skew(row.shift);
+    derivative.poses.segment<3>(6 * i + 3) -= to_shift * Rt;
+    derivative.poses.segment<3>(6 * base) -= to_ray * Rt * base_view.rotation * Skew(z_b);
+    derivative.poses.segment<3>(6 * base + 3) += to_shift * Rt;
+    const Eigen::RowVector3d to_z = -weight_a.transpose() * Skew(row.ray) + weight_b.transpose() * Skew(row.shift);
+    derivative.observations.segment<2>(2 * i) += to_z.head<2>();
+    derivative.observations.segment<2>(2 * base) += (to_ray * Rt * base_view.rotation).head<2>();
+  }
+  return derivative;
+}
+
+}  // namespace
+
+bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Vector2d> z, int base, DepthViews views,
+                          PoseOnlyDepth* depth) {
+  const int count = static_cast<int>(T_WC.size());
+  CHECK_EQ(z.size(), T_WC.size());
+  CHECK(count >= 2 && base >= 0 && base < count);
+  const Pose& base_view = T_WC[static_cast<size_t>(base)];
+  const Vector3d base_ray_W = base_view.rotation * z[static_cast<size_t>(base)].homogeneous();
+  double normal = 0;
+  double right_side = 0;
+  for (int i = 0; i < count; ++i) {
+    if (GivesDepth(i, base, count, views)) {
+      const DepthRow row = MakeRow(T_WC[static_cast<size_t>(i)], z[static_cast<size_t>(i)], base_view, base_ray_W);
+      normal += row.a.squaredNorm();
+      right_side += row.a.dot(row.b);
+    }
+  }
+  if (!(normal > 1e-24)) {
+    return false;
+  }
+  depth->normal = normal;
+  depth->depth = right_side / normal;
+  depth->p_W = base_view.translation + depth->depth * base_ray_W;
+  return std::isfinite(depth->depth) && depth->p_W.allFinite();
+}
+
+bool PoseOnlyModel::Evaluate(std::span<const Pose> T_WC, std::span<const Vector2d> z, PoseOnlyDepth* depth,
+                             Eigen::VectorXd* residual, DynamicJacobian* jacobian,
+                             DynamicJacobian* noise_jacobian) const {
+  if (!ComputePoseOnlyDepth(T_WC, z, base, views, depth)) {
+    return false;
+  }
+  const int count = static_cast<int>(T_WC.size());
+  residual->resize(2 * count);
+  const Pose& base_view = T_WC[static_cast<size_t>(base)];
+  const Vector3d z_b = z[static_cast<size_t>(base)].homogeneous();
+  const Vector3d base_ray_W = base_view.rotation * z_b;
+  // d p_W over all poses and observations; the landmark moves with the base pose, its ray and the depth.
+  Eigen::Matrix<double, 3, Eigen::Dynamic> point_poses;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> point_observations;
+  const bool differentiate = jacobian != nullptr || noise_jacobian != nullptr;
+  if (differentiate) {
+    const DepthDerivative derivative = DifferentiateDepth(T_WC, z, base, views, *depth);
+    point_poses = base_ray_W * derivative.poses;
+    point_poses.middleCols<3>(6 * base) -= depth->depth * base_view.rotation * Skew(z_b);
+    point_poses.middleCols<3>(6 * base + 3) += Matrix3d::Identity();
+    point_observations = base_ray_W * derivative.observations;
+    point_observations.middleCols<2>(2 * base) += depth->depth * base_view.rotation.leftCols<2>();
+  }
+  if (jacobian != nullptr) {
+    jacobian->resize(2 * count, 6 * count);
+  }
+  if (noise_jacobian != nullptr) {
+    noise_jacobian->resize(2 * count, 2 * count);
+  }
+  for (int k = 0; k < count; ++k) {
+    const Pose& view = T_WC[static_cast<size_t>(k)];
+    const Vector3d p_C = view.rotation.transpose() * (depth->p_W - view.translation);
+    if (!(p_C.z() > 0)) {
+      return false;
+    }
+    const Vector2d predicted = p_C.hnormalized();
+    residual->segment<2>(2 * k) = predicted - z[static_cast<size_t>(k)];
+    if (!differentiate) {
+      continue;
+    }
+    Eigen::Matrix<double, 2, 3> perspective;
+    perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
+    perspective /= p_C.z();
+    const Eigen::Matrix<double, 2, 3> to_point = perspective * view.rotation.transpose();
+    if (jacobian != nullptr) {
+      jacobian->middleRows<2>(2 * k).noalias() = to_point * point_poses;
+      jacobian->block<2, 3>(2 * k, 6 * k) += perspective * Skew(p_C);
+      jacobian->block<2, 3>(2 * k, 6 * k + 3) -= to_point;
+    }
+    if (noise_jacobian != nullptr) {
+      noise_jacobian->middleRows<2>(2 * k).noalias() = to_point * point_observations;
+    }
+  }
+  return true;
+}
+
+}  // namespace alidade

@@ -1,0 +1,47 @@
+#include "core/robust.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace alidade {
+
+double ChiSquareQuantile(int dof, double probability) {
+  CHECK_GT(dof, 0);
+  if (probability >= 1) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return boost::math::quantile(boost::math::chi_squared(dof), probability);
+}
+
+ChiSquareGate::ChiSquareGate(double probability, int max_dof) : probability_(probability) {
+  thresholds_.reserve(static_cast<size_t>(max_dof));
+  for (int dof = 1; dof <= max_dof; ++dof) {
+    thresholds_.push_back(ChiSquareQuantile(dof, probability));
+  }
+}
+
+double ChiSquareGate::Threshold(int dof) const {
+  CHECK_GT(dof, 0);
+  return dof <= static_cast<int>(thresholds_.size()) ? thresholds_[static_cast<size_t>(dof - 1)]
+                                                     : ChiSquareQuantile(dof, probability_);
+}
+
+bool ChiSquareGate::Accepts(double nis, int dof) const { return nis <= Threshold(dof); }
+
+double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm) {
+  switch (kernel) {
+    case RobustKernel::kHuber:
+      return std::min(1.0, scale_sigma / std::sqrt(std::max(squared_norm, 1e-300)));
+    case RobustKernel::kCauchy:
+      return 1.0 / (1.0 + squared_norm / (scale_sigma * scale_sigma));
+    case RobustKernel::kNone:
+      break;
+  }
+  return 1.0;
+}
+
+}  // namespace alidade
