@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace alidade {
+
+/// One feature in two images, on the ideal normalised plane.
+struct BearingPair {
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  Eigen::Vector2d second = Eigen::Vector2d::Zero();
+};
+
+struct EpipolarOptions {
+  double threshold_px = 1.0;  ///< distance to the epipolar line
+  double focal_px = 460.0;    ///< pixels per unit of the normalised plane
+  double dt_s = 0.05;         ///< between the images; bounds what an unknown gyroscope bias can do
+};
+
+/// Which pairs agree with one rigid motion of the camera: those within threshold_px of their epipolar line
+/// and, where the displacement tells, on the side of positive depth. Deterministic: the sampling sequence is
+/// fixed and owned.
+///
+/// With R_21 (p_2 = R_21 p_1 + t, from the gyroscope) two pairs determine the direction of t: with g = R_21
+/// x_1, t . (g x x_2) = 0 for each pair, so t ~ n_a x n_b, n = g x x_2. The best of these starts a
+/// Gauss-Newton refinement of t and of a rotation correction delta, R = Exp(delta) R_21, because a gyroscope
+/// without bias correction is wrong by about kGyroError dt; the correction has this as prior, so low parallax
+/// stays well-posed. Without R_21, or when fewer than half the pairs agree with it, a fundamental matrix by
+/// RANSAC decides instead (Hartley and Zisserman 2004, ch. 11). Fewer than kMinPairs pairs: nothing is
+/// rejected, since nothing can be proved.
+[[nodiscard]] std::vector<bool> FindEpipolarInliers(const std::vector<BearingPair>& pairs,
+                                                    const std::optional<Eigen::Matrix3d>& R_21,
+                                                    const EpipolarOptions& options);
+
+inline constexpr int kMinPairs = 8;
+/// Rate error of an uncorrected consumer gyroscope, one sigma [rad/s].
+inline constexpr double kGyroError = 0.05;
+
+}  // namespace alidade
