@@ -1,5 +1,6 @@
 #include "core/camera_model.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 

@@ -1,0 +1,162 @@
+#include <cmath>
+#include <sstream>
+
+#include "eval/simulator.h"
+
+namespace alidade {
+namespace {
+
+void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Enumeration({"trajectory", "-", "figure8 turns both ways, ellipse one way only"},
+                      &config->trajectory,
+                      {{"figure8", SimTrajectory::kFigureEight}, {"ellipse", SimTrajectory::kEllipse}});
+  visitor.Real({"duration_s", "s", "200 s is the length of the paper's simulation"}, &config->duration_s, 1,
+               1e5);
+  visitor.Real({"length_m", "m", "extent of the path along x"}, &config->length_m, 0.1, 1e5);
+  visitor.Real({"width_m", "m", "extent of the path along y"}, &config->width_m, 0.1, 1e5);
+  visitor.Real({"height_m", "m", "amplitude of the vertical motion, three periods a lap; 0 is planar"},
+               &config->height_m, 0, 1e4);
+  visitor.Real({"path_m", "m", "length of the path travelled in duration_s; sets the speed"}, &config->path_m,
+               0.1, 1e6);
+  visitor.Real(
+      {"rest_s", "s", "at rest before the motion starts, for static initialisation; 0 starts in motion"},
+      &config->rest_s, 0, 1e4);
+  visitor.Real({"rest_ramp_s", "s",
+                "from rest to full speed, four times continuously differentiable; unused without rest"},
+               &config->rest_ramp_s, 0.1, 100);
+  visitor.Real({"wobble_rad", "rad",
+                "amplitude of roll, pitch and half of it in yaw about the path's tangent; excites all axes"},
+               &config->wobble_rad, 0, 0.5);
+  visitor.Real({"wobble_hz", "Hz", "frequency of the roll wobble; pitch and yaw use 0.77 and 0.61 of it"},
+               &config->wobble_hz, 0, 10);
+}
+
+void DescribeImu(SimulatorConfig* config, ConfigVisitor& visitor) {
+  ImuNoise* noise = &config->imu_noise;
+  visitor.Real({"imu_rate_hz", "Hz", "of the paper's simulation"}, &config->imu_rate_hz, 1, 1e4);
+  visitor.Real({"gyro_noise_density", "rad/s/sqrt(Hz)", "white noise; of the paper's simulation"},
+               &noise->gyro_noise_density_radps_sqrthz, 0, 1);
+  visitor.Real({"accel_noise_density", "m/s^2/sqrt(Hz)", "white noise; of the paper's simulation"},
+               &noise->accel_noise_density_mps2_sqrthz, 0, 10);
+  visitor.Real({"gyro_random_walk", "rad/s^2/sqrt(Hz)", "walk of the bias; of the paper's simulation"},
+               &noise->gyro_random_walk_radps2_sqrthz, 0, 1);
+  visitor.Real({"accel_random_walk", "m/s^3/sqrt(Hz)", "walk of the bias; of the paper's simulation"},
+               &noise->accel_random_walk_mps3_sqrthz, 0, 10);
+  visitor.Real({"gravity_mps2", "m/s^2", "magnitude; W has z up"}, &config->gravity_mps2, 0, 30);
+  visitor.Real({"gyro_bias_radps", "rad/s", "standard deviation of the turn-on bias, each axis"},
+               &config->gyro_bias_radps, 0, 1);
+  visitor.Real({"accel_bias_mps2", "m/s^2", "standard deviation of the turn-on bias, each axis"},
+               &config->accel_bias_mps2, 0, 10);
+}
+
+void DescribeCamera(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Real({"camera_rate_hz", "Hz", "of the paper's simulation"}, &config->camera_rate_hz, 0.1, 1e3);
+  visitor.Enumeration({"camera_view", "-",
+                       "forward looks along the motion: little parallax ahead; sideways looks to its left"},
+                      &config->camera_view,
+                      {{"forward", SimCameraView::kForward}, {"sideways", SimCameraView::kSideways}});
+  visitor.Vector3(
+      {"camera_lever_arm_m", "m", "position of the camera in the body frame, x forward y left z up"},
+      &config->camera_lever_arm_m, -10, 10);
+  visitor.Real({"camera_time_offset_s", "s", "t_imu = t_camera + offset; the written calibration knows it"},
+               &config->camera_time_offset_s, -1, 1);
+  visitor.Integer({"width_px", "px", "of the paper's simulation"}, &config->width_px, 16, 20000);
+  visitor.Integer({"height_px", "px", "of the paper's simulation"}, &config->height_px, 16, 20000);
+  visitor.Real({"focal_px", "px", "both axes; the principal point is the image centre"}, &config->focal_px, 1,
+               1e5);
+  visitor.Enumeration({"distortion", "-", "lens model of the written pixels"}, &config->distortion,
+                      {{"none", DistortionModel::kNone},
+                       {"radial-tangential", DistortionModel::kRadialTangential},
+                       {"equidistant", DistortionModel::kEquidistant},
+                       {"fov", DistortionModel::kFov}});
+  constexpr const char* kNames[] = {"distortion_1", "distortion_2", "distortion_3", "distortion_4"};
+  for (int i = 0; i < 4; ++i) {
+    visitor.Real({kNames[i], "-",
+                  "coefficient in the lens model's order (k1 k2 p1 p2 | k1 k2 k3 k4 | w); others must be 0"},
+                 &config->distortion_coefficients[i], -10, 10);
+  }
+}
+
+void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Real({"pixel_noise_px", "px", "standard deviation of each image coordinate of an observation"},
+               &config->pixel_noise_px, 0, 100);
+  visitor.Integer({"max_features", "-", "tracks alive in a frame, at most"}, &config->max_features, 1, 10000);
+  visitor.Real({"mean_track_loss", "-",
+                "probability that a visible track is lost from one frame to the next; shortens tracks"},
+               &config->mean_track_loss, 0, 1);
+  visitor.Real(
+      {"border_px", "px",
+       "a landmark nearer to the image's edge is not seen; keeps the noise from being cut off there"},
+      &config->border_px, 0, 1e3);
+  visitor.Real({"max_range_m", "m", "a landmark farther from the camera is not seen"}, &config->max_range_m,
+               0.1, 1e5);
+  visitor.Real(
+      {"outlier_rate", "-", "fraction of the observations (jump) or of the tracks (drift) that are wrong"},
+      &config->outlier_rate, 0, 1);
+  visitor.Enumeration(
+      {"outlier_kind", "-", "a jump is easy to gate, a drifting track agrees with itself for a while"},
+      &config->outlier_kind, {{"jump", SimOutlierKind::kJump}, {"drift", SimOutlierKind::kDrift}});
+  visitor.Real(
+      {"outlier_px", "px", "mean size of a jump, or mean drift in one second; half to one and a half of it"},
+      &config->outlier_px, 0, 1e4);
+  visitor.Real({"landmark_min_distance_m", "m", "of every landmark to the path"},
+               &config->landmark_min_distance_m, 0.1, 1e4);
+  visitor.Real({"landmark_max_distance_m", "m",
+                "of a landmark to the nearest point of the path; sets the tracks' length"},
+               &config->landmark_max_distance_m, 0.1, 1e4);
+  visitor.Integer({"landmark_count", "-",
+                   "fewer and longer tracks when few: 800 give about 115 tracks a frame of 24 frames each, "
+                   "1500 give 148 of 20"},
+                  &config->landmark_count, 1, 1000000);
+}
+
+std::string Print(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+Status Expect(bool holds, const char* key, double value, const std::string& expected) {
+  return holds ? Status::Ok()
+               : Status::Config(std::string(key) + ": " + Print(value) + "; expected " + expected);
+}
+
+}  // namespace
+
+void SimulatorConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Text({"name", "-", "name of the sequence in tables and paths"}, &name);
+  visitor.Integer({"start_time_s", "s", "stamp of the first sample; not 0, so that a forgotten offset shows"},
+                  &start_time_s, 0, 2000000000);
+  DescribeMotion(this, visitor);
+  DescribeImu(this, visitor);
+  DescribeCamera(this, visitor);
+  DescribeTracks(this, visitor);
+}
+
+Status SimulatorConfig::Validate() const {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(duration_s), "duration_s", duration_s, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(imu_rate_hz), "imu_rate_hz", imu_rate_hz, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(positive(camera_rate_hz), "camera_rate_hz", camera_rate_hz, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(length_m), "length_m", length_m, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(width_m), "width_m", width_m, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(path_m), "path_m", path_m, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(duration_s * imu_rate_hz < 1e8, "duration_s", duration_s, "less than 1e8 IMU samples"));
+  ALIDADE_RETURN_IF_ERROR(Expect(rest_s == 0 || rest_s + rest_ramp_s < duration_s, "rest_s", rest_s,
+                                 "rest_s + rest_ramp_s less than duration_s " + Print(duration_s)));
+  ALIDADE_RETURN_IF_ERROR(Expect(landmark_min_distance_m < landmark_max_distance_m, "landmark_min_distance_m",
+                                 landmark_min_distance_m,
+                                 "less than landmark_max_distance_m " + Print(landmark_max_distance_m)));
+  ALIDADE_RETURN_IF_ERROR(Expect(camera_lever_arm_m.norm() < landmark_min_distance_m, "camera_lever_arm_m",
+                                 camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
+  for (int i = CoefficientCount(distortion); i < 4; ++i) {
+    ALIDADE_RETURN_IF_ERROR(
+        Expect(distortion_coefficients[i] == 0, "distortion coefficient", distortion_coefficients[i],
+               "0 at position " + std::to_string(i + 1) + " of model " + std::string(ToString(distortion))));
+  }
+  return Status::Ok();
+}
+
+}  // namespace alidade
