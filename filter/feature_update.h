@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/landmark_reduction.h"
+#include "core/pose_only.h"
+#include "filter/filter_state.h"
+#include "filter/track_store.h"
+
+namespace alidade {
+
+/// How one track fared in an update.
+enum class TrackOutcome {
+  kReady,       ///< linearised, rows appended
+  kWaiting,     ///< parallax too small yet
+  kDegenerate,  ///< behind a camera, out of the depth range, or no parallax at all
+};
+
+/// Turns tracks into whitened, landmark-free rows over the filter's error: depth by the configured strategy, linearisation,
+/// elimination to 2N-3 rows (core/landmark_reduction.h), chained through extrinsics and error convention.
+class FeatureUpdate {
+ public:
+  FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones);
+
+  void Begin(const FilterState& state);
+  /// Appends the rows of a track that all of its views define.
+  TrackOutcome Append(const FilterState& state, const Track& track);
+
+  /// Rows of one appended track.
+  struct Block {
+    int first = 0;
+    int rows = 0;
+  };
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] int rows() const { return rows_; }
+  /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I).
+  [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> jacobian() { return jacobian_.topLeftCorner(rows_, dimension_); }
+  /// y = measured - predicted.
+  [[nodiscard]] Eigen::Ref<Eigen::VectorXd> innovation() { return innovation_.head(rows_); }
+
+ private:
+  bool GatherViews(const FilterState& state, const Track& track);
+  TrackOutcome Triangulate(Eigen::Vector3d* p_W) const;
+  void Reserve(int additional_rows);
+
+  FilterConfig filter_;
+  VisionConfig vision_;
+  int rows_ = 0;
+  int dimension_ = 0;
+  std::vector<Block> blocks_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::VectorXd innovation_;
+  // Scratch of one track.
+  std::vector<Pose> poses_;
+  std::vector<Eigen::Vector2d> points_;
+  std::vector<NormalizedObservation> observations_;
+  std::vector<int> offsets_;
+  std::vector<const Matrix6d*> chains_;
+  TrackLinearization linearization_;
+  Eigen::MatrixXd track_jacobian_;
+};
+
+}  // namespace alidade

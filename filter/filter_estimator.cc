@@ -1,0 +1,214 @@
+#include "filter/filter_estimator.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <chrono>
+#include <climits>
+#include <cmath>
+#include <string>
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+
+ImuNoise Scale(const ImuNoise& noise, const ImuConfig& config) {
+  return {noise.gyro_noise_density_radps_sqrthz * config.noise_scale,
+          noise.accel_noise_density_mps2_sqrthz * config.noise_scale,
+          noise.gyro_random_walk_radps2_sqrthz * config.random_walk_scale,
+          noise.accel_random_walk_mps3_sqrthz * config.random_walk_scale};
+}
+
+double MillisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibration& rig)
+    : config_(config),
+      rig_(rig),
+      noise_(Scale(rig.imu_noise, config.imu)),
+      gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
+      gate_(config.vision.gate_probability),
+      state_(config.filter.error, rig.T_BC, config.filter.window + 1),
+      update_(config.filter, config.vision, config.filter.window + 1),
+      imu_(config.imu.max_gap_s) {}
+
+Status FilterEstimator::Initialize(const NavEstimate& initial) {
+  ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));
+  tracks_.Clear();
+  imu_.DropBefore(initial.stamp_ns);
+  statistics_ = {};
+  initialized_ = true;
+  return Status::Ok();
+}
+
+Status FilterEstimator::AddImu(const ImuSample& sample) { return imu_.Add(sample); }
+
+Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
+  if (stamp_ns == state_.stamp_ns() && state_.clones().empty()) {
+    return Status::Ok();  // the frame the filter was initialised on
+  }
+  ALIDADE_RETURN_IF_ERROR(imu_.Interval(state_.stamp_ns(), stamp_ns, &interval_));
+  state_.Propagate(interval_, noise_, gravity_W_);
+  imu_.DropBefore(stamp_ns);
+  return Status::Ok();
+}
+
+Status FilterEstimator::AddFrame(const TrackFrame& frame) {
+  if (!initialized_) {
+    return Status::Diverged("filter: not initialised");
+  }
+  statistics_ = {};
+  statistics_.tracks_in = static_cast<int>(frame.observations.size());
+  const auto start = std::chrono::steady_clock::now();
+  ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
+  ++serial_;
+  state_.AddClone(serial_);
+  statistics_.propagate_ms = MillisecondsSince(start);
+  const auto propagated = std::chrono::steady_clock::now();
+  statistics_.observations_invalid =
+      tracks_.AddFrame(rig_.camera, config_.vision.pixel_noise_px, serial_, frame.observations);
+  const int leaving = ChooseLeavingClone();
+  const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
+  UpdateWithDueTracks(leaving_serial);
+  tracks_.RemoveEnded(serial_);
+  if (leaving >= 0) {
+    tracks_.RemoveClone(leaving_serial);
+    state_.RemoveClone(static_cast<size_t>(leaving));
+  }
+  statistics_.update_ms = MillisecondsSince(propagated);
+  if (!state_.AllFinite()) {
+    initialized_ = false;
+    return Status::Diverged("filter: state is not finite after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+  }
+  return Status::Ok();
+}
+
+int FilterEstimator::ChooseLeavingClone() const {
+  const std::vector<Clone>& clones = state_.clones();
+  if (static_cast<int>(clones.size()) <= config_.filter.window) {
+    return -1;
+  }
+  if (config_.filter.clone_policy == ClonePolicy::kOldest) {
+    return 0;
+  }
+  // The newest clones hold views that still wait for their first update: they are not candidates.
+  const size_t candidates = clones.size() - static_cast<size_t>(std::min<int>(config_.filter.min_observations,
+                                                                              static_cast<int>(clones.size()) - 1));
+  size_t best = 0;
+  int best_bases = INT_MAX;
+  for (size_t i = 0; i < candidates; ++i) {
+    int bases = 0;
+    for (const Track& track : tracks_.tracks()) {
+      bases += !track.views.empty() && track.views.front().serial == clones[i].serial ? 1 : 0;
+    }
+    if (bases < best_bases) {
+      best_bases = bases;
+      best = i;
+    }
+  }
+  return static_cast<int>(best);
+}
+
+bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
+  const FilterConfig& filter = config_.filter;
+  const int views = static_cast<int>(track.views.size());
+  if (views < filter.min_observations) {
+    // Leftovers of a track that ends: any two rows per view beyond the landmark's three still inform.
+    const bool ends = track.last_serial != serial_;
+    return ends && filter.flush_lost_tracks && filter.update == UpdateTiming::kImmediate && views >= 3;
+  }
+  switch (filter.update) {
+    case UpdateTiming::kImmediate:
+    case UpdateTiming::kAtL:
+      return true;
+    case UpdateTiming::kDelayedAll:
+      break;
+  }
+  return track.last_serial != serial_ || track.views.front().serial == leaving_serial;
+}
+
+void FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
+  std::vector<Track>& tracks = tracks_.tracks();
+  update_.Begin(state_);
+  appended_.clear();
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (!IsDue(tracks[i], leaving_serial)) {
+      continue;
+    }
+    switch (update_.Append(state_, tracks[i])) {
+      case TrackOutcome::kReady:
+        appended_.push_back(i);
+        break;
+      case TrackOutcome::kWaiting:
+        ++statistics_.features_waiting;
+        break;
+      case TrackOutcome::kDegenerate:
+        ++statistics_.features_degenerate;
+        RetireViews(&tracks[i], false);
+        break;
+    }
+  }
+  if (appended_.empty()) {
+    return;
+  }
+  state_.covariance().Prepare(update_.jacobian());
+  GateBlocks();
+  statistics_.nis = state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_);
+  state_.Correct(correction_);
+  for (size_t block = 0; block < appended_.size(); ++block) {
+    RetireViews(&tracks[appended_[block]], accepted_[block]);
+  }
+}
+
+void FilterEstimator::GateBlocks() {
+  accepted_.assign(appended_.size(), true);
+  Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
+  Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();
+  for (size_t i = 0; i < appended_.size(); ++i) {
+    const FeatureUpdate::Block& block = update_.blocks()[i];
+    auto rows = prepared.middleRows(block.first, block.rows);
+    auto y = innovation.segment(block.first, block.rows);
+    gate_matrix_.noalias() = rows * rows.transpose();
+    gate_matrix_.diagonal().array() += 1.0;
+    const double nis = y.dot(gate_matrix_.llt().solve(y));
+    if (!std::isfinite(nis) || !gate_.Accepts(nis, block.rows)) {
+      accepted_[i] = false;
+      rows.setZero();
+      y.setZero();
+      ++statistics_.features_gated;
+      continue;
+    }
+    // The kernel acts on an observation's two rows; a track's rows share one weight of the same mean square.
+    const double weight = RobustWeight(config_.vision.robust_kernel, config_.vision.robust_scale_sigma,
+                                       2 * nis / block.rows);
+    if (weight < 1) {
+      rows *= std::sqrt(weight);
+      y *= std::sqrt(weight);
+    }
+    ++statistics_.features_used;
+    statistics_.nis_dof += block.rows;
+  }
+}
+
+void FilterEstimator::RetireViews(Track* track, bool used) const {
+  const FilterConfig& filter = config_.filter;
+  if (!used || filter.update != UpdateTiming::kImmediate) {
+    track->views.clear();
+    track->base_rounds = 0;
+    return;
+  }
+  ++track->base_rounds;
+  const bool base_exhausted = filter.base_reuse == BaseReuse::kDisjoint ||
+                              (filter.base_reuse == BaseReuse::kLimit && track->base_rounds >= filter.max_base_rounds);
+  if (base_exhausted) {
+    track->views.clear();
+    track->base_rounds = 0;
+    return;
+  }
+  track->views.resize(1);
+}
+
+}  // namespace alidade

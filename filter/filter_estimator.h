@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "core/estimator.h"
+#include "core/imu_buffer.h"
+#include "core/robust.h"
+#include "filter/feature_update.h"
+#include "filter/filter_state.h"
+#include "filter/track_store.h"
+
+namespace alidade {
+
+/// The filter back end. One frame: propagate, clone, attach observations, choose the clone that will leave, update with
+/// every track that is due (FilterConfig::update), let that clone go.
+class FilterEstimator : public Estimator {
+ public:
+  FilterEstimator(const EstimatorConfig& config, const RigCalibration& rig);
+
+  Status Initialize(const NavEstimate& initial) override;
+  Status AddImu(const ImuSample& sample) override;
+  Status AddFrame(const TrackFrame& frame) override;
+  [[nodiscard]] NavEstimate Latest() const override { return state_.Estimate(); }
+  [[nodiscard]] bool initialized() const override { return initialized_; }
+  [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
+
+  [[nodiscard]] const FilterState& state() const { return state_; }
+
+ private:
+  Status PropagateTo(TimeNs stamp_ns);
+  /// Index of the clone to marginalise after this frame, or -1 while the window is not full.
+  [[nodiscard]] int ChooseLeavingClone() const;
+  /// True when the track's views are to be used in this frame.
+  [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
+  void UpdateWithDueTracks(int leaving_serial);
+  /// Gates every appended track; a refused one has its rows zeroed.
+  void GateBlocks();
+  /// What a track keeps after its views were used (base re-use) or refused.
+  void RetireViews(Track* track, bool used) const;
+
+  EstimatorConfig config_;
+  RigCalibration rig_;
+  ImuNoise noise_;
+  Eigen::Vector3d gravity_W_;
+  ChiSquareGate gate_;
+  FilterState state_;
+  FeatureUpdate update_;
+  TrackStore tracks_;
+  ImuBuffer imu_;
+  FrameStatistics statistics_;
+  bool initialized_ = false;
+  int serial_ = 0;
+  // Scratch kept between frames.
+  std::vector<ImuSample> interval_;
+  std::vector<size_t> appended_;
+  std::vector<bool> accepted_;
+  Eigen::MatrixXd gate_matrix_;
+  Eigen::VectorXd correction_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,76 @@
+#include "filter/track_store.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace alidade {
+
+Track TrackStore::TakeSpare(std::int64_t id) {
+  Track track;
+  if (!spare_.empty()) {
+    track = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  track.id = id;
+  track.views.clear();
+  track.base_rounds = 0;
+  track.last_serial = -1;
+  return track;
+}
+
+int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
+                         const std::vector<TrackObservation>& observations) {
+  int invalid = 0;
+  merged_.clear();
+  size_t next = 0;
+  for (const TrackObservation& seen : observations) {
+    while (next < tracks_.size() && tracks_[next].id < seen.track_id) {
+      merged_.push_back(std::move(tracks_[next++]));
+    }
+    const bool known = next < tracks_.size() && tracks_[next].id == seen.track_id;
+    TrackView view;
+    view.serial = serial;
+    if (!NormalizeObservation(camera, seen.pixel, pixel_noise_px, &view.observation)) {
+      ++invalid;
+      continue;
+    }
+    merged_.push_back(known ? std::move(tracks_[next++]) : TakeSpare(seen.track_id));
+    merged_.back().views.push_back(view);
+    merged_.back().last_serial = serial;
+  }
+  while (next < tracks_.size()) {
+    merged_.push_back(std::move(tracks_[next++]));
+  }
+  tracks_.swap(merged_);
+  return invalid;
+}
+
+void TrackStore::RemoveEnded(int serial) {
+  const auto ended = [serial](const Track& track) { return track.last_serial != serial; };
+  merged_.clear();
+  for (Track& track : tracks_) {
+    (ended(track) ? spare_ : merged_).push_back(std::move(track));
+  }
+  tracks_.swap(merged_);
+}
+
+void TrackStore::RemoveClone(int serial) {
+  for (Track& track : tracks_) {
+    const auto view = std::find_if(track.views.begin(), track.views.end(),
+                                   [serial](const TrackView& v) { return v.serial == serial; });
+    if (view == track.views.end()) {
+      continue;
+    }
+    if (view == track.views.begin()) {
+      track.base_rounds = 0;
+    }
+    track.views.erase(view);
+  }
+}
+
+void TrackStore::Clear() {
+  tracks_.clear();
+  merged_.clear();
+}
+
+}  // namespace alidade

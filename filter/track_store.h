@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/measurement_log.h"
+#include "core/visual_observation.h"
+
+namespace alidade {
+
+/// One view of a track that still waits to be used (or is kept as base).
+struct TrackView {
+  int serial = 0;  ///< of the clone that saw it
+  NormalizedObservation observation;
+};
+
+/// A feature track and what the filter has done with it. views.front() is the base.
+struct Track {
+  std::int64_t id = 0;
+  std::vector<TrackView> views;
+  int base_rounds = 0;   ///< updates the present base has already served
+  int last_serial = -1;  ///< newest frame that saw the track
+};
+
+/// Live tracks sorted by id. Storage of ended tracks is re-used, so that the steady state does not allocate.
+class TrackStore {
+ public:
+  /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's domain.
+  int AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
+               const std::vector<TrackObservation>& observations);
+  /// Removes tracks that have ended (not seen by `serial`) and those without views.
+  void RemoveEnded(int serial);
+  /// Forgets the views of a clone; a base that goes takes its round count with it.
+  void RemoveClone(int serial);
+  void Clear();
+
+  [[nodiscard]] std::vector<Track>& tracks() { return tracks_; }
+  [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
+
+ private:
+  Track TakeSpare(std::int64_t id);
+
+  std::vector<Track> tracks_;
+  std::vector<Track> merged_;
+  std::vector<Track> spare_;
+};
+
+}  // namespace alidade
