@@ -1,0 +1,162 @@
+#include "frontend/initializer.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "core/imu_buffer.h"
+#include "frontend/static_initializer.h"
+#include "frontend/track_motion.h"
+
+namespace alidade {
+namespace {
+
+/// Longest silence inside the samples; an interpolated gap would pass for rest.
+double LongestStep(const std::vector<ImuSample>& samples) {
+  double longest_s = 0;
+  for (size_t i = 1; i < samples.size(); ++i) {
+    longest_s = std::max(longest_s, SecondsBetween(samples[i - 1].stamp_ns, samples[i].stamp_ns));
+  }
+  return longest_s;
+}
+
+}  // namespace
+
+struct Initializer::Implementation {
+  EstimatorConfig config;
+  RigCalibration rig;
+  ImuBuffer imu;
+  std::deque<TrackFrame> frames;  // stamps are IMU time
+  std::string method;
+  std::string report;
+
+  Implementation(const EstimatorConfig& config_in, const RigCalibration& rig_in)
+      : config(config_in), rig(rig_in), imu(config_in.imu.max_gap_s) {}
+
+  void Trim();
+  std::optional<TrackMotion> MotionOverWindow() const;
+  RestAssessment Assess(ImuSpread* spread);
+  Result<NavEstimate> TryStatic(RestAssessment* assessment);
+};
+
+/// Keeps twice the dynamic window, or as many frames as it needs when they are sparse, and the IMU that
+/// reaches back to them.
+void Initializer::Implementation::Trim() {
+  const TimeNs newest = frames.back().stamp_ns;
+  const TimeNs keep_from = newest - SecondsToNs(2 * config.init.dynamic_window_s);
+  const size_t keep = static_cast<size_t>(config.init.dynamic_min_frames);
+  while (frames.size() > keep && frames.front().stamp_ns < keep_from) {
+    frames.pop_front();
+  }
+  const TimeNs static_from = newest - SecondsToNs(config.init.static_window_s);
+  imu.DropBefore(std::min(frames.front().stamp_ns, static_from));
+}
+
+/// Newest frame against the latest one that is a static window older, or the oldest there is; empty without
+/// tracks.
+std::optional<TrackMotion> Initializer::Implementation::MotionOverWindow() const {
+  const TrackFrame& newest = frames.back();
+  const TimeNs wanted = newest.stamp_ns - SecondsToNs(config.init.static_window_s);
+  const TrackFrame* reference = &frames.front();
+  for (const TrackFrame& frame : frames) {
+    if (frame.stamp_ns <= wanted) {
+      reference = &frame;
+    }
+  }
+  if (reference == &newest || (newest.observations.empty() && reference->observations.empty())) {
+    return std::nullopt;
+  }
+  return MeasureTrackMotion(*reference, newest);
+}
+
+RestAssessment Initializer::Implementation::Assess(ImuSpread* spread) {
+  const TimeNs newest = frames.back().stamp_ns;
+  if (imu.samples().empty()) {
+    return {RestVerdict::kTooShort, "no imu sample yet"};
+  }
+  const TimeNs from =
+      std::max(imu.samples().front().stamp_ns, newest - SecondsToNs(config.init.static_window_s));
+  std::vector<ImuSample> samples;
+  if (const Status status = imu.Interval(from, newest, &samples); !status.ok()) {
+    return {RestVerdict::kTooShort, status.message()};
+  }
+  if (const double longest_s = LongestStep(samples); longest_s > config.imu.max_gap_s) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "imu is silent for %.3f s, limit %.3f", longest_s,
+                  config.imu.max_gap_s);
+    return {RestVerdict::kTooShort, text};
+  }
+  *spread = MeasureImuSpread(samples);
+  RestAssessment assessment = AssessRest(config.init, config.imu.gravity_mps2, *spread, MotionOverWindow());
+  const bool has_tracks = !frames.back().observations.empty();
+  const double seen_s = SecondsBetween(frames.front().stamp_ns, newest);
+  if (assessment.verdict == RestVerdict::kAtRest && has_tracks &&
+      seen_s < 0.5 * config.init.static_window_s) {
+    return {RestVerdict::kTooShort, "at rest by the imu; tracks cover too short a time to confirm it"};
+  }
+  return assessment;
+}
+
+Result<NavEstimate> Initializer::Implementation::TryStatic(RestAssessment* assessment) {
+  ImuSpread spread;
+  *assessment = Assess(&spread);
+  if (assessment->verdict != RestVerdict::kAtRest) {
+    return Status::Diverged(assessment->reason);
+  }
+  const NavEstimate estimate =
+      StateAtRest(config.init, config.imu.gravity_mps2, rig.imu_noise, spread, frames.back().stamp_ns);
+  char text[256];
+  std::snprintf(
+      text, sizeof(text),
+      "at rest for %.2f s: gyro spread %.2g rad/s, accelerometer spread %.2g m/s^2, |f| %.4f m/s^2, gyro "
+      "bias (%.4f, %.4f, %.4f) rad/s",
+      spread.duration_s, spread.gyro_std_radps, spread.accel_std_mps2, spread.mean_accel.norm(),
+      spread.mean_gyro.x(), spread.mean_gyro.y(), spread.mean_gyro.z());
+  method = "static";
+  report = text;
+  return estimate;
+}
+
+Initializer::Initializer(const EstimatorConfig& config, const RigCalibration& rig)
+    : implementation_(std::make_unique<Implementation>(config, rig)) {}
+Initializer::~Initializer() = default;
+
+const std::string& Initializer::method() const {
+  return implementation_->method;
+}
+const std::string& Initializer::report() const {
+  return implementation_->report;
+}
+
+void Initializer::AddImu(const ImuSample& sample) {
+  // A sample that is not finite or comes too late is dropped and counted by the buffer; the next interval
+  // tells a gap.
+  static_cast<void>(implementation_->imu.Add(sample).ok());
+}
+
+Result<NavEstimate> Initializer::AddFrame(const TrackFrame& frame) {
+  Implementation& self = *implementation_;
+  const InitMethod method = self.config.init.method;
+  if (method == InitMethod::kTruth) {
+    return Status::Config(
+        "init.method: truth takes the state from ground truth; the initializer needs static, dynamic or "
+        "auto");
+  }
+  TrackFrame in_imu_time = frame;
+  in_imu_time.stamp_ns += SecondsToNs(self.rig.camera_time_offset_s);
+  if (!self.frames.empty() && in_imu_time.stamp_ns <= self.frames.back().stamp_ns) {
+    return Status::Input("frame at " + FormatSeconds(frame.stamp_ns) + " s is not after the previous one");
+  }
+  self.frames.push_back(std::move(in_imu_time));
+  self.Trim();
+  RestAssessment assessment;
+  Result<NavEstimate> estimate = self.TryStatic(&assessment);
+  if (estimate.ok()) {
+    estimate.value().stamp_ns = frame.stamp_ns;
+  }
+  return estimate;
+}
+
+}  // namespace alidade
