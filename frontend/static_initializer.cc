@@ -21,6 +21,7 @@ constexpr double kMaxGravityErrorMps2 = 2.0;
 constexpr double kDriftOfSpreadLimit = 0.5;
 constexpr double kGravityStdMps2 = 0.02;
 constexpr double kGyroBiasFloorRadps = 1e-4;  // the Earth's own rate
+constexpr size_t kBlocks = 10;
 constexpr int kMinCommonTracks = 8;
 // At rest the tracker keeps its tracks.
 constexpr double kMinCommonFraction = 0.2;
@@ -31,10 +32,25 @@ std::string Format(const char* format, double found, double limit) {
   return text;
 }
 
-/// Variance of a mean over the interval: white noise of the sheet, or motion that only a few independent
-/// values average.
-double VarianceOfMean(double density, double spread, double duration_s) {
-  return std::max(density * density / duration_s, 0.1 * spread * spread / std::max(duration_s, 1.0));
+/// Variance of a mean over the interval: white noise of the sheet, or the slower motion that the blocks show.
+double VarianceOfMean(double density, double mean_std, double duration_s) {
+  return std::max(density * density / duration_s, mean_std * mean_std);
+}
+
+/// Scatter of block means as standard deviation of the whole mean, one axis.
+double MeanDeviation(std::span<const ImuSample> samples, Vector3d ImuSample::*signal, const Vector3d& mean) {
+  const size_t blocks = std::min<size_t>(kBlocks, samples.size());
+  double sum = 0;
+  for (size_t b = 0; b < blocks; ++b) {
+    const size_t begin = b * samples.size() / blocks;
+    const size_t end = (b + 1) * samples.size() / blocks;
+    Vector3d block_mean = Vector3d::Zero();
+    for (size_t i = begin; i < end; ++i) {
+      block_mean += samples[i].*signal / static_cast<double>(end - begin);
+    }
+    sum += (block_mean - mean).squaredNorm() / 3;
+  }
+  return std::sqrt(sum / static_cast<double>(blocks * std::max<size_t>(blocks - 1, 1)));
 }
 
 std::string ReasonFromTracks(const InitConfig& config, const TrackMotion& motion) {
@@ -94,6 +110,8 @@ ImuSpread MeasureImuSpread(std::span<const ImuSample> samples) {
     spread.gyro_std_radps += (sample.gyro - spread.mean_gyro).squaredNorm() / (3 * count);
     spread.accel_std_mps2 += (sample.accel - spread.mean_accel).squaredNorm() / (3 * count);
   }
+  spread.gyro_mean_std_radps = MeanDeviation(samples, &ImuSample::gyro, spread.mean_gyro);
+  spread.accel_mean_std_mps2 = MeanDeviation(samples, &ImuSample::accel, spread.mean_accel);
   spread.gyro_std_radps = std::sqrt(spread.gyro_std_radps);
   spread.accel_std_mps2 = std::sqrt(spread.accel_std_mps2);
   return spread;
@@ -132,7 +150,7 @@ NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const Imu
   // the measured
   // (|f| - g) is its mean), and yaw.
   const double accel_variance =
-      VarianceOfMean(noise.accel_noise_density_mps2_sqrthz, spread.accel_std_mps2, spread.duration_s);
+      VarianceOfMean(noise.accel_noise_density_mps2_sqrthz, spread.accel_mean_std_mps2, spread.duration_s);
   const Matrix3d along = up * up.transpose();
   const Matrix3d weight = (Matrix3d::Identity() - along) / accel_variance +
                           along / (accel_variance + kGravityStdMps2 * kGravityStdMps2);
@@ -145,7 +163,7 @@ NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const Imu
   const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
   const double walk = noise.gyro_random_walk_radps2_sqrthz;
   const double gyro_variance =
-      VarianceOfMean(noise.gyro_noise_density_radps_sqrthz, spread.gyro_std_radps, spread.duration_s) +
+      VarianceOfMean(noise.gyro_noise_density_radps_sqrthz, spread.gyro_mean_std_radps, spread.duration_s) +
       walk * walk * spread.duration_s / 3 + kGyroBiasFloorRadps * kGyroBiasFloorRadps;
 
   Matrix15d& p = estimate.covariance;

@@ -17,9 +17,12 @@ struct ImuSpread {
   int samples = 0;
   Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_accel = Eigen::Vector3d::Zero();
-  double gyro_std_radps = 0;    ///< one axis, root mean square over the axes
-  double accel_std_mps2 = 0;    ///< likewise
-  double accel_drift_mps2 = 0;  ///< between the means of the two halves: a slow rotation shows here
+  double gyro_std_radps = 0;  ///< one axis, root mean square over the axes
+  double accel_std_mps2 = 0;  ///< likewise
+  double gyro_mean_std_radps =
+      0;  ///< of the mean, one axis, from the scatter of ten block means: counts slow vibration
+  double accel_mean_std_mps2 = 0;  ///< likewise
+  double accel_drift_mps2 = 0;     ///< between the means of the two halves: a slow rotation shows here
 };
 /// Needs at least two samples.
 [[nodiscard]] ImuSpread MeasureImuSpread(std::span<const ImuSample> samples);
@@ -44,8 +47,9 @@ struct RestAssessment {
 ///
 /// Covariance (canonical chart) from the linear relation f = g u + g [u]x phi + b_a + n with priors on b_a
 /// and on the rotation about u: the bias across u and the tilt it feigns, phi = u x b_a / g, come out fully
-/// correlated. The noise n is the larger of the sensor sheet's and a tenth of the spread's variance
-/// (vibration is not white); gravity and the accelerometer's scale are trusted to 0.02 m/s^2 along u.
+/// correlated. The noise n is
+/// the larger of the sensor sheet's and that seen in the block means; gravity and the accelerometer's scale
+/// are trusted to 0.02 m/s^2 along u.
 [[nodiscard]] NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const ImuNoise& noise,
                                       const ImuSpread& spread, TimeNs stamp_ns);
 
