@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/metrics.h"
+#include "eval/trajectory.h"
+
+namespace alidade {
+
+struct EvaluationOptions {
+  Alignment alignment = Alignment::kPosYaw;
+  AssociationOptions association;
+  std::vector<double> rpe_distances_m = {8, 16, 24, 32, 40};
+};
+
+/// Everything that is said about one estimate against one truth.
+struct Evaluation {
+  EvaluationOptions options;
+  std::size_t truth_rows = 0;
+  std::size_t estimate_rows = 0;
+  std::vector<StatePair> pairs;  ///< unaligned; ApplyAlignment(pairs, transform) gives the aligned ones
+  double duration_s = 0;         ///< first to last pair
+  double path_m = 0;             ///< truth path through the pairs
+  AlignmentTransform transform;
+  AteResult unaligned;
+  AteResult ate;                   ///< after the alignment
+  std::vector<RpeResult> rpe;      ///< after the alignment (only its scale matters here)
+  std::optional<NeesResult> nees;  ///< unaligned; absent when the estimate carries no covariance
+};
+
+/// Associates, aligns and scores. Errors: those of Associate.
+Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
+                            const EvaluationOptions& options);
+
+/// For a person: a few lines of text, six significant digits.
+[[nodiscard]] std::string FormatEvaluationText(const Evaluation& evaluation);
+
+/// For a program: one JSON object with keys in a fixed order and numbers rounded to nine significant digits
+/// (the same text on every machine); what is not a number is null.
+[[nodiscard]] std::string FormatEvaluationJson(const Evaluation& evaluation);
+
+}  // namespace alidade
