@@ -77,6 +77,24 @@ TEST(SimulatorTest, SensorsDoNotDisturbEachOther) {
   }
 }
 
+TEST(SimulatorTest, OutliersLeaveEveryOtherObservationAsItWas) {
+  SimulatorConfig config = ShortConfig();
+  const Dataset clean = Simulate(config, 5).value();
+  config.outlier_rate = 0.1;
+  const Dataset spoiled = Simulate(config, 5).value();
+  double changed = 0;
+  double count = 0;
+  for (std::size_t k = 0; k < clean.tracks.size(); ++k) {
+    ASSERT_EQ(clean.tracks[k].observations.size(), spoiled.tracks[k].observations.size());
+    for (std::size_t i = 0; i < clean.tracks[k].observations.size(); ++i) {
+      ASSERT_EQ(clean.tracks[k].observations[i].track_id, spoiled.tracks[k].observations[i].track_id);
+      changed += clean.tracks[k].observations[i].pixel == spoiled.tracks[k].observations[i].pixel ? 0 : 1;
+      count += 1;
+    }
+  }
+  EXPECT_NEAR(changed / count, 0.1, 0.01);
+}
+
 TEST(SimulatorTest, StreamsAreAlignedAndComplete) {
   const Dataset dataset = Simulate(ShortConfig(), 5).value();
   ASSERT_EQ(dataset.imu.size(), 2001u);
