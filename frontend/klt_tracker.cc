@@ -179,7 +179,7 @@ std::vector<cv::Point2f> KltTracker::Implementation::Predict(const std::optional
 
 std::vector<bool> KltTracker::Implementation::FollowPixels(const std::vector<cv::Point2f>& from,
                                                            std::vector<cv::Point2f>* to) const {
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.03);
   std::vector<unsigned char> found;
   cv::calcOpticalFlowPyrLK(last_pyramid, pyramid, from, *to, found, cv::noArray(), window,
                            config.pyramid_levels, criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
