@@ -1,0 +1,353 @@
+// SVG plots. Everything that must survive "save SVG" is an attribute, not a style sheet's rule.
+(function () {
+  const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "Liberation Sans", Arial, sans-serif';
+  const INK = '#1b2430', SOFT = '#5b6675', GRID = '#e6eaef', AXIS = '#b9c2cd';
+  let clips = 0;
+
+  // The time range and the time under the pointer are shared by all plots of the page.
+  report.view = { domain: null, plots: [], onZoom: function () {} };
+
+  const tooltip = document.getElementById('tooltip');
+  function showTooltip(html, event) {
+    tooltip.innerHTML = html;
+    tooltip.hidden = false;
+    const box = tooltip.getBoundingClientRect();
+    const right = event.clientX + 16 + box.width < window.innerWidth;
+    const x = right ? event.clientX + 16 : Math.max(4, event.clientX - 16 - box.width);
+    tooltip.style.left = x + 'px';
+    tooltip.style.top = Math.max(4, Math.min(event.clientY + 12, window.innerHeight - box.height - 4)) + 'px';
+  }
+  report.hideTooltip = function () { tooltip.hidden = true; };
+
+  report.escape = function (text) {
+    return String(text).replace(/[&<>"]/g, function (c) {
+      return { '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' }[c];
+    });
+  };
+  report.swatch = function (style) {
+    return '<svg class="swatch" width="22" height="8" aria-hidden="true"><line x1="0" y1="4" x2="22" y2="4" stroke="' +
+      style.colour + '" stroke-width="3"' + (style.dash ? ' stroke-dasharray="' + style.dash + '"' : '') + '/></svg>';
+  };
+
+  function saveSvg(svg, spec) {
+    const copy = svg.cloneNode(true);
+    const width = svg.getBoundingClientRect().width, height = svg.getBoundingClientRect().height;
+    const head = 24 + 16 * spec.legend.length;
+    d3.select(copy).selectAll('.overlay, .cursor').remove();
+    const group = document.createElementNS('http://www.w3.org/2000/svg', 'g');
+    group.setAttribute('transform', 'translate(0,' + head + ')');
+    while (copy.firstChild) { group.appendChild(copy.firstChild); }
+    const root = d3.select(copy).attr({ xmlns: 'http://www.w3.org/2000/svg', width: width, height: height + head,
+      viewBox: '0 0 ' + width + ' ' + (height + head) });
+    root.append('rect').attr({ width: width, height: height + head, fill: '#fff' });
+    root.append('text').attr({ x: 8, y: 17, 'font-size': 13, 'font-weight': 600, fill: INK }).text(spec.title);
+    spec.legend.forEach(function (entry, i) {
+      const y = 32 + 16 * i;
+      root.append('line').attr({ x1: 8, x2: 30, y1: y, y2: y, stroke: entry.style.colour, 'stroke-width': 2.5,
+        'stroke-dasharray': entry.style.dash });
+      root.append('text').attr({ x: 36, y: y + 4, 'font-size': 11.5, fill: INK }).text(entry.name);
+    });
+    copy.appendChild(group);
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([new XMLSerializer().serializeToString(copy)], { type: 'image/svg+xml' }));
+    link.download = spec.file + '.svg';
+    link.click();
+    setTimeout(function () { URL.revokeObjectURL(link.href); }, 1000);
+  }
+
+  // A figure with caption, "save SVG" and an empty plot area; `spec` needs id, title, file, legend, height.
+  function frame(parent, spec) {
+    const figure = d3.select(parent).append('figure');
+    const caption = figure.append('figcaption');
+    caption.append('span').text(spec.title);
+    const margin = { left: spec.left || 54, right: 12, top: 8, bottom: 38 };
+    const width = Math.max(240, figure.node().getBoundingClientRect().width);
+    const height = spec.height;
+    const svg = figure.append('svg').attr({ class: 'plot', id: 'plot-' + spec.id, role: 'img', width: width,
+      height: height, viewBox: '0 0 ' + width + ' ' + height, 'font-family': FONT, 'font-size': 11.5,
+      'aria-label': spec.title + ' (' + spec.x + '; ' + spec.y + ')' });
+    caption.append('button').attr({ type: 'button', class: 'save' }).text('save SVG')
+      .on('click', function () { saveSvg(svg.node(), spec); });
+    const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
+    const area = svg.append('g').attr('transform', 'translate(' + margin.left + ',' + margin.top + ')');
+    const clip = 'clip-' + (++clips);
+    area.append('clipPath').attr('id', clip).append('rect').attr({ width: inner.width, height: inner.height });
+    area.append('text').attr({ x: inner.width / 2, y: inner.height + 33, 'text-anchor': 'middle', fill: SOFT }).text(spec.x);
+    if (spec.y) {
+      area.append('text').attr({ transform: 'translate(' + (11 - margin.left) + ',' + inner.height / 2 + ') rotate(-90)',
+        'text-anchor': 'middle', fill: SOFT }).text(spec.y);
+    }
+    return { svg: svg, area: area, inner: inner, clip: 'url(#' + clip + ')' };
+  }
+
+  const MINUS = function (text) { return text.replace(/^-/, '\u2212'); };
+  function tickText(value) {
+    const magnitude = Math.abs(value);
+    return MINUS(magnitude >= 1e5 || (magnitude > 0 && magnitude < 1e-3) ? value.toExponential(0) : String(Number(value.toPrecision(5))));
+  }
+
+  // Grid, ticks and labels of the horizontal (`below`) or vertical axis.
+  function drawAxis(plot, scale, below, ticks) {
+    const inner = plot.inner;
+    const group = plot.area.append('g').attr('class', 'axis');
+    ticks.forEach(function (value) {
+      const at = Math.round(scale(value)) + 0.5;
+      group.append('line').attr(below ? { x1: at, x2: at, y1: 0, y2: inner.height } : { x1: 0, x2: inner.width, y1: at, y2: at })
+        .attr('stroke', GRID);
+      group.append('text').attr(below ? { x: at, y: inner.height + 15, 'text-anchor': 'middle' }
+        : { x: -7, y: at + 4, 'text-anchor': 'end' }).attr('fill', SOFT).text(tickText(value));
+    });
+    group.append('line').attr(below ? { x1: 0, x2: inner.width, y1: inner.height, y2: inner.height }
+      : { x1: 0, x2: 0, y1: 0, y2: inner.height }).attr({ stroke: AXIS, 'shape-rendering': 'crispEdges' });
+  }
+
+  function logTicks(domain) {
+    const all = [];
+    for (let e = Math.floor(Math.log10(domain[0])); e <= Math.log10(domain[1]) + 1e-9; ++e) {
+      [1, 2, 5].forEach(function (m) { all.push(Number((m * Math.pow(10, e)).toPrecision(3))); });
+    }
+    const inside = all.filter(function (v) { return v >= domain[0] * 0.999 && v <= domain[1] * 1.001; });
+    const decades = inside.filter(function (v) { return /^10*$|^0\.0*1$/.test(String(v)); });
+    return inside.length <= 7 ? inside : decades.length >= 2 ? decades : inside.filter(function (v, i) { return i % 2 === 0; });
+  }
+
+  function path(plot, points, x, y, style, width) {
+    const line = d3.svg.line().defined(function (p) { return p[0] !== null && p[1] !== null && !(y.log && p[1] <= 0); })
+      .x(function (p) { return x(p[0]).toFixed(1); }).y(function (p) { return y(p[1]).toFixed(1); });
+    plot.area.append('path').attr({ class: 'line', d: line(points), fill: 'none', stroke: style.colour,
+      'stroke-width': width || 1.5, 'stroke-dasharray': style.dash, 'stroke-linejoin': 'round', 'clip-path': plot.clip });
+  }
+
+  const zip = function (t, v) { return t.map(function (time, i) { return [time, v[i] === undefined ? null : v[i]]; }); };
+
+  function emptyNotice(plot) {
+    plot.area.append('text').attr({ x: plot.inner.width / 2, y: plot.inner.height / 2, 'text-anchor': 'middle', fill: SOFT })
+      .text('no data for this selection');
+  }
+
+  // Range of what is visible in the time range.
+  function valueDomain(spec, domain) {
+    const values = [];
+    const take = function (t, v) {
+      for (let i = 0; i < t.length; ++i) {
+        const ok = v[i] !== null && v[i] !== undefined && t[i] >= domain[0] && t[i] <= domain[1] && (!spec.log || v[i] > 0);
+        if (ok) { values.push(v[i]); }
+      }
+    };
+    spec.lines.forEach(function (line) { take(line.t, line.v); });
+    // A band far wider than the error would flatten it: it may take three times the error's range, and is cut there.
+    const reach = 3 * d3.max(values.map(Math.abs).concat(0));
+    const lines = values.length;
+    (spec.bands || []).forEach(function (band) { take(band.t, band.hi); take(band.t, band.lo); });
+    for (let i = lines; i < values.length; ++i) {
+      values[i] = reach > 0 ? Math.max(-reach, Math.min(reach, values[i])) : values[i];
+    }
+    (spec.regions || []).forEach(function (region) { values.push(region.lo, region.hi); });
+    if (spec.zero) { values.push(0); }
+    let low = d3.min(values), high = d3.max(values);
+    if (spec.log) { return [low / 1.3, high * 1.3]; }
+    const pad = 0.06 * (high - low) || Math.abs(high) * 0.1 || 1;
+    return [spec.zero && low >= 0 ? 0 : low - pad, high + pad];
+  }
+
+  function drawGround(plot, spec, x, y) {
+    (spec.regions || []).forEach(function (region) {
+      plot.area.append('rect').attr({ x: 0, width: plot.inner.width, y: y(region.hi), height: y(region.lo) - y(region.hi),
+        fill: '#dfeee6', 'clip-path': plot.clip });
+    });
+    (spec.bands || []).forEach(function (band) {
+      const points = band.t.map(function (t, i) { return [t, band.lo[i], band.hi[i]]; });
+      const shape = d3.svg.area().defined(function (p) { return p[1] !== null && p[2] !== null && p[1] !== undefined && p[2] !== undefined; })
+        .x(function (p) { return x(p[0]).toFixed(1); }).y0(function (p) { return y(p[1]).toFixed(1); })
+        .y1(function (p) { return y(p[2]).toFixed(1); });
+      plot.area.append('path').attr({ class: 'band', d: shape(points), fill: band.style.colour, 'fill-opacity': 0.1,
+        stroke: band.style.colour, 'stroke-opacity': 0.45, 'stroke-width': 0.8, 'clip-path': plot.clip });
+    });
+  }
+
+  function readout(spec, time) {
+    const rows = spec.lines.map(function (line) {
+      const i = report.nearest(line.t, time);
+      const value = i < 0 ? null : line.v[i];
+      return '<tr><td>' + report.swatch(line.style) + report.escape(line.name) + '</td><td>' +
+        MINUS(report.digits(value)) + ' ' + report.escape(spec.unit) + '</td></tr>';
+    });
+    return '<b>t = ' + time.toFixed(2) + ' s</b><table>' + rows.join('') + '</table>';
+  }
+
+  // Cursor, readout, drag to zoom and double click to undo.
+  function attachPointer(plot, spec, x) {
+    const cursor = plot.area.append('line').attr({ class: 'cursor', y1: 0, y2: plot.inner.height, stroke: SOFT,
+      'stroke-dasharray': '3 3', visibility: 'hidden' });
+    const span = plot.area.append('rect').attr({ class: 'cursor', y: 0, height: plot.inner.height, fill: '#0b5cad',
+      'fill-opacity': 0.12, visibility: 'hidden' });
+    const overlay = plot.area.append('rect').attr({ class: 'overlay', width: plot.inner.width, height: plot.inner.height,
+      fill: 'none', 'pointer-events': 'all' });
+    let start = null;
+    const place = function () { return Math.max(0, Math.min(plot.inner.width, d3.mouse(overlay.node())[0])); };
+    overlay.on('mousedown', function () { start = place(); d3.event.preventDefault(); })
+      .on('mousemove', function () {
+        const at = place();
+        const time = x.invert(at);
+        report.view.plots.forEach(function (other) { other.hover(time); });
+        showTooltip(readout(spec, time), d3.event);
+        if (start !== null) {
+          span.attr({ x: Math.min(start, at), width: Math.abs(at - start), visibility: 'visible' });
+        }
+      })
+      .on('mouseup', function () {
+        const at = place();
+        const from = start;
+        start = null;
+        span.attr('visibility', 'hidden');
+        if (from !== null && Math.abs(at - from) > 6) {
+          report.view.onZoom([x.invert(Math.min(from, at)), x.invert(Math.max(from, at))]);
+        }
+      })
+      .on('mouseleave', function () {
+        start = null;
+        span.attr('visibility', 'hidden');
+        report.view.plots.forEach(function (other) { other.hover(null); });
+        report.hideTooltip();
+      })
+      .on('dblclick', function () { report.view.onZoom(null); });
+    report.view.plots.push({ hover: function (time) {
+      const inside = time !== null && time >= x.domain()[0] && time <= x.domain()[1];
+      cursor.attr('visibility', inside ? 'visible' : 'hidden');
+      if (inside) { cursor.attr({ x1: x(time), x2: x(time) }); }
+    } });
+  }
+
+  // A quantity over time. spec: lines [{name, style, t, v}], bands [{style, t, lo, hi}], regions [{lo, hi}], log, zero,
+  // unit, means [{style, value}].
+  report.timePlot = function (parent, spec) {
+    const plot = frame(parent, spec);
+    const times = d3.merge(spec.lines.map(function (line) { return [line.t[0], line.t[line.t.length - 1]]; }));
+    const any = spec.lines.some(function (line) { return line.v.some(function (v) { return v !== null; }); });
+    if (!any) { emptyNotice(plot); return; }
+    const domain = report.view.domain || d3.extent(times);
+    const x = d3.scale.linear().domain(domain).range([0, plot.inner.width]);
+    const y = (spec.log ? d3.scale.log() : d3.scale.linear()).domain(valueDomain(spec, domain)).range([plot.inner.height, 0]);
+    y.log = spec.log;
+    drawAxis(plot, x, true, x.ticks(Math.max(3, plot.inner.width / 80)));
+    drawAxis(plot, y, false, spec.log ? logTicks(y.domain()) : y.ticks(5));
+    drawGround(plot, spec, x, y);
+    spec.lines.forEach(function (line) { path(plot, zip(line.t, line.v), x, y, line.style, line.width); });
+    (spec.means || []).forEach(function (mean) {
+      plot.area.append('line').attr({ x1: 0, x2: plot.inner.width, y1: y(mean.value), y2: y(mean.value),
+        stroke: mean.style.colour, 'stroke-width': 1.2, 'stroke-dasharray': '8 4', 'clip-path': plot.clip });
+    });
+    attachPointer(plot, spec, x);
+  };
+
+  // Top view with equal scales. spec: lines [{name, style, t, x, y}]. Only the zoomed time range is drawn.
+  report.topView = function (parent, spec) {
+    const plot = frame(parent, spec);
+    const domain = report.view.domain;
+    const lines = spec.lines.map(function (line) {
+      const keep = line.t.map(function (t, i) { return i; }).filter(function (i) {
+        return line.x[i] !== null && (!domain || (line.t[i] >= domain[0] && line.t[i] <= domain[1]));
+      });
+      return { name: line.name, style: line.style, width: line.width, t: keep.map(function (i) { return line.t[i]; }),
+        points: keep.map(function (i) { return [line.x[i], line.y[i]]; }) };
+    }).filter(function (line) { return line.points.length; });
+    if (!lines.length) { emptyNotice(plot); return; }
+    const all = d3.merge(lines.map(function (line) { return line.points; }));
+    const ex = d3.extent(all, function (p) { return p[0]; }), ey = d3.extent(all, function (p) { return p[1]; });
+    const scale = 1.08 * Math.max((ex[1] - ex[0]) / plot.inner.width, (ey[1] - ey[0]) / plot.inner.height) || 0.01;
+    const centred = function (extent, pixels) {
+      const middle = (extent[0] + extent[1]) / 2;
+      return [middle - scale * pixels / 2, middle + scale * pixels / 2];
+    };
+    const x = d3.scale.linear().domain(centred(ex, plot.inner.width)).range([0, plot.inner.width]);
+    const y = d3.scale.linear().domain(centred(ey, plot.inner.height)).range([plot.inner.height, 0]);
+    drawAxis(plot, x, true, x.ticks(Math.max(3, plot.inner.width / 80)));
+    drawAxis(plot, y, false, y.ticks(6));
+    lines.forEach(function (line) { path(plot, line.points, x, y, line.style, line.width); });
+    const first = lines[0].points[0];
+    plot.area.append('circle').attr({ cx: x(first[0]), cy: y(first[1]), r: 4, fill: '#fff', stroke: INK, 'stroke-width': 1.5 });
+    plot.area.append('text').attr({ x: x(first[0]) + 7, y: y(first[1]) - 6, fill: INK, 'paint-order': 'stroke', stroke: '#fff',
+      'stroke-width': 3 }).text('start');
+    const dots = lines.map(function (line) {
+      return plot.area.append('circle').attr({ class: 'cursor', r: 4.5, fill: line.style.colour, stroke: '#fff', visibility: 'hidden' });
+    });
+    const move = function (time) {
+      lines.forEach(function (line, k) {
+        const i = time === null ? -1 : report.nearest(line.t, time);
+        dots[k].attr('visibility', i < 0 ? 'hidden' : 'visible');
+        if (i >= 0) { dots[k].attr({ cx: x(line.points[i][0]), cy: y(line.points[i][1]) }); }
+      });
+    };
+    report.view.plots.push({ hover: move });
+    attachTopPointer(plot, lines, x, y);
+  };
+
+  // Hovering finds the nearest drawn point and shows its time in all plots.
+  function attachTopPointer(plot, lines, x, y) {
+    const overlay = plot.area.append('rect').attr({ class: 'overlay', width: plot.inner.width, height: plot.inner.height,
+      fill: 'none', 'pointer-events': 'all' });
+    overlay.on('mousemove', function () {
+      const at = d3.mouse(overlay.node());
+      let nearest = { d: Infinity };
+      lines.forEach(function (line) {
+        line.points.forEach(function (p, i) {
+          const d = Math.pow(x(p[0]) - at[0], 2) + Math.pow(y(p[1]) - at[1], 2);
+          if (d < nearest.d) { nearest = { d: d, line: line, i: i }; }
+        });
+      });
+      const p = nearest.line.points[nearest.i];
+      report.view.plots.forEach(function (other) { other.hover(nearest.line.t[nearest.i]); });
+      showTooltip('<b>t = ' + nearest.line.t[nearest.i].toFixed(2) + ' s</b>' + report.swatch(nearest.line.style) +
+        report.escape(nearest.line.name) + '<br>x ' + MINUS(p[0].toFixed(3)) + ' m, y ' + MINUS(p[1].toFixed(3)) + ' m', d3.event);
+    }).on('mouseleave', function () {
+      report.view.plots.forEach(function (other) { other.hover(null); });
+      report.hideTooltip();
+    });
+  }
+
+  function boxTooltip(shape, box, unit) {
+    shape.attr('pointer-events', 'all').on('mousemove', function () {
+      const names = ['5 %', '25 %', 'median', '75 %', '95 %'];
+      showTooltip('<b>' + report.escape(box.name) + '</b><table>' + names.map(function (name, i) {
+        return '<tr><td>' + name + '</td><td>' + report.digits(box.q[i]) + ' ' + report.escape(unit) + '</td></tr>';
+      }).join('') + '</table>' + (box.note ? report.escape(box.note) : ''), d3.event);
+    }).on('mouseleave', report.hideTooltip);
+  }
+
+  // Boxes from the 25th to the 75th percentile with whiskers to the 5th and 95th. spec: groups [{name, boxes [{name, style,
+  // q, note}]}], unit. Groups stand side by side, values upwards from zero.
+  report.boxPlot = function (parent, spec) {
+    const plot = frame(parent, spec);
+    const boxes = d3.merge(spec.groups.map(function (group) { return group.boxes; }));
+    if (!boxes.length) { emptyNotice(plot); return; }
+    const inner = plot.inner;
+    const y = d3.scale.linear().domain([0, 1.06 * d3.max(boxes, function (box) { return box.q[4]; }) || 1]).range([inner.height, 0]);
+    drawAxis(plot, y, false, y.ticks(5));
+    const step = inner.width / spec.groups.length;
+    spec.groups.forEach(function (group, g) {
+      const slot = Math.min(46, 0.86 * step / Math.max(1, group.boxes.length));
+      const from = step * (g + 0.5) - slot * group.boxes.length / 2;
+      if (group.name) {
+        plot.area.append('text').attr({ x: step * (g + 0.5), y: inner.height + 15, 'text-anchor': 'middle', fill: SOFT }).text(group.name);
+      }
+      group.boxes.forEach(function (box, b) {
+        const middle = from + slot * (b + 0.5), half = Math.max(1.5, slot * 0.34);
+        const line = function (x1, x2, v1, v2, width) {
+          plot.area.append('line').attr({ x1: x1, x2: x2, y1: y(v1), y2: y(v2), stroke: box.style.colour, 'stroke-width': width });
+        };
+        line(middle, middle, box.q[0], box.q[4], 1.2);
+        line(middle - half / 2, middle + half / 2, box.q[0], box.q[0], 1.2);
+        line(middle - half / 2, middle + half / 2, box.q[4], box.q[4], 1.2);
+        plot.area.append('rect').attr({ class: 'box', x: middle - half, width: 2 * half, y: y(box.q[3]),
+          height: Math.max(1, y(box.q[1]) - y(box.q[3])), fill: '#fff', stroke: box.style.colour, 'stroke-width': 1.4,
+          'stroke-dasharray': box.style.dash });
+        plot.area.append('rect').attr({ x: middle - half, width: 2 * half, y: y(box.q[3]),
+          height: Math.max(1, y(box.q[1]) - y(box.q[3])), fill: box.style.colour, 'fill-opacity': 0.18 });
+        line(middle - half, middle + half, box.q[2], box.q[2], 2.4);
+        boxTooltip(plot.area.append('rect').attr({ x: middle - slot / 2, width: slot, y: 0, height: inner.height, fill: 'none' }),
+          box, spec.unit);
+      });
+    });
+    plot.area.append('line').attr({ x1: 0, x2: inner.width, y1: inner.height, y2: inner.height, stroke: AXIS });
+  };
+})();

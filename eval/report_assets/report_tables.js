@@ -1,0 +1,156 @@
+// The tables of the page: overview, one sequence, input digests.
+(function () {
+  const data = report.data;
+  const escape = report.escape;
+
+  function figureIndex(key) {
+    return data.figures.findIndex(function (figure) { return figure.key === key; });
+  }
+
+  report.aggregate = function (estimator, sequence) {
+    return data.aggregate.find(function (row) { return row.estimator === estimator && row.sequence === sequence; });
+  };
+
+  function failure(row) {
+    const reasons = [['diverged', 'diverged'], ['not_initialized', 'not initialized'], ['failed', 'failed']];
+    return reasons.filter(function (r) { return row[r[0]] > 0; }).map(function (r) { return r[1]; }).join(', ');
+  }
+
+  // Mean, standard error below it, and how many runs are behind it when some were lost.
+  function statistic(row, i, extra) {
+    const figure = data.figures[i];
+    if (!row) { return '<td>\u2013</td>'; }
+    if (row.ok === 0) { return '<td class="bad">' + failure(row) + '</td>'; }
+    let html = report.format(row.means[i], figure.decimals);
+    if (row.errors[i] !== null) { html += '<span class="sub">\u00b1 ' + report.format(row.errors[i], figure.decimals) + '</span>'; }
+    if (extra && row.ok < row.cells) { html += '<span class="sub bad">' + row.ok + ' of ' + row.cells + ' ok</span>'; }
+    return '<td' + (row.best[i] ? ' class="best"' : '') + '>' + html + (extra || '') + '</td>';
+  }
+
+  function estimatorHead(estimator, backend) {
+    return '<th scope="row">' + report.swatch(report.style(estimator)) + escape(estimator) +
+      (backend ? '<span class="sub">' + escape(backend) + '</span>' : '') + '</th>';
+  }
+
+  function referencesOf(estimator, sequence, key) {
+    return data.references.filter(function (r) {
+      return r.estimator === estimator && r.sequence === sequence && r.figures[key] !== undefined;
+    });
+  }
+
+  // Mean over sequences, only where the estimator finished every one of them.
+  function acrossSequences(estimator, i) {
+    const rows = data.sequences.map(function (sequence) { return report.aggregate(estimator, sequence); });
+    const complete = rows.every(function (row) { return row && row.ok > 0 && row.means[i] !== null; });
+    return complete ? d3.mean(rows, function (row) { return row.means[i]; }) : null;
+  }
+
+  function overviewCell(estimator, sequence, i, most) {
+    const figure = data.figures[i];
+    const row = report.aggregate(estimator, sequence);
+    let extra = referencesOf(estimator, sequence, figure.key).map(function (r) {
+      return '<span class="sub"><i>' + escape(r.source) + ' ' + report.format(r.figures[figure.key], figure.decimals) + '</i></span>';
+    }).join('');
+    if (row && figure.ideal === 'low' && row.means[i] !== null) {
+      extra += '<span class="bar" aria-hidden="true"><i style="width:' + (100 * row.means[i] / most).toFixed(1) + '%"></i></span>';
+    }
+    return statistic(row, i, extra || ' ');
+  }
+
+  // References to estimators that did not run here.
+  function foreignRows(key, cellsOf) {
+    const seen = [];
+    data.references.forEach(function (r) {
+      const name = r.estimator + '\n' + r.source;
+      if (data.estimators.indexOf(r.estimator) < 0 && seen.indexOf(name) < 0 && (key === null || r.figures[key] !== undefined)) {
+        seen.push(name);
+      }
+    });
+    return seen.map(function (name) {
+      const parts = name.split('\n');
+      return '<tr class="reference"><th scope="row">' + escape(parts[0]) + '<span class="sub">' + escape(parts[1]) + '</span></th>' +
+        cellsOf(function (r) { return r.estimator === parts[0] && r.source === parts[1]; }) + '</tr>';
+    }).join('');
+  }
+
+  report.overviewTable = function (key) {
+    const i = figureIndex(key), figure = data.figures[i], several = data.sequences.length > 1;
+    const head = data.sequences.map(function (sequence) { return '<th scope="col">' + escape(sequence) + '</th>'; }).join('');
+    const most = data.sequences.map(function (sequence) {
+      return d3.max(data.estimators, function (estimator) {
+        const row = report.aggregate(estimator, sequence);
+        return row ? row.means[i] : null;
+      });
+    });
+    const rows = data.estimators.map(function (estimator) {
+      const backend = (data.aggregate.find(function (row) { return row.estimator === estimator; }) || {}).backend;
+      return '<tr>' + estimatorHead(estimator, backend) + data.sequences.map(function (sequence, s) {
+        return overviewCell(estimator, sequence, i, most[s]);
+      }).join('') + (several ? '<td>' + report.format(acrossSequences(estimator, i), figure.decimals) + '</td>' : '') + '</tr>';
+    }).join('');
+    const foreign = foreignRows(key, function (matches) {
+      return data.sequences.map(function (sequence) {
+        const found = data.references.find(function (r) { return matches(r) && r.sequence === sequence; });
+        return '<td>' + report.format(found ? found.figures[key] : null, figure.decimals) + '</td>';
+      }).join('') + (several ? '<td></td>' : '');
+    });
+    return '<table><thead><tr><th scope="col">Estimator</th>' + head +
+      (several ? '<th scope="col">mean of sequences</th>' : '') + '</tr></thead><tbody>' + rows + foreign + '</tbody></table>';
+  };
+
+  report.overviewNote = function (key) {
+    const figure = data.figures[figureIndex(key)];
+    const ideal = figure.ideal === 'low' ? 'Lower is better.' : figure.ideal === 'target' ?
+      'Ideal is ' + Number(figure.target.toFixed(4)) + '.' : 'No value is better than another.';
+    const unit = figure.unit ? ' in ' + figure.unit : '';
+    return figure.label + unit + ', mean over the seeds that ended ok \u00b1 its standard error. ' + ideal +
+      (figure.ideal === 'none' ? '' : ' The best of each column is shaded, among the estimators that lost the fewest runs.') +
+      (data.references.length ? ' Published figures are in italics.' : '');
+  };
+
+  report.sequenceTable = function (sequence) {
+    const used = data.figures.map(function (figure, i) { return i; }).filter(function (i) {
+      return data.aggregate.some(function (row) { return row.sequence === sequence && row.means[i] !== null; });
+    });
+    const head = used.map(function (i) {
+      const figure = data.figures[i];
+      return '<th scope="col">' + escape(figure.label) + '<span class="unit">' + (escape(figure.unit) || '\u00a0') + '</span></th>';
+    }).join('');
+    const referenceCells = function (matches) {
+      return '<td></td>' + used.map(function (i) {
+        const figure = data.figures[i];
+        const found = data.references.find(function (r) { return matches(r) && r.sequence === sequence; });
+        return '<td>' + report.format(found ? found.figures[figure.key] : null, figure.decimals) + '</td>';
+      }).join('');
+    };
+    const rows = data.estimators.map(function (estimator) {
+      const row = report.aggregate(estimator, sequence);
+      if (!row) { return ''; }
+      const counts = '<td' + (row.ok < row.cells ? ' class="bad"' : '') + '>' + row.ok + ' of ' + row.cells +
+        (row.ok < row.cells ? '<span class="sub bad">' + failure(row) + '</span>' : '') + '</td>';
+      const own = data.references.filter(function (r) { return r.estimator === estimator && r.sequence === sequence; });
+      return '<tr>' + estimatorHead(estimator, row.backend) + counts +
+        used.map(function (i) { return row.ok ? statistic(row, i) : '<td>\u2013</td>'; }).join('') + '</tr>' +
+        own.map(function (r) {
+          return '<tr class="reference"><th scope="row">' + escape(estimator) + '<span class="sub">' + escape(r.source) + '</span></th>' +
+            referenceCells(function (other) { return other === r; }) + '</tr>';
+        }).join('');
+    }).join('');
+    const here = data.references.some(function (r) { return r.sequence === sequence; });
+    return '<table><thead><tr><th scope="col">Estimator</th><th scope="col">runs ok</th>' + head + '</tr></thead><tbody>' + rows +
+      (here ? foreignRows(null, referenceCells) : '') + '</tbody></table>';
+  };
+
+  report.digestTable = function () {
+    const rows = [];
+    data.cells.forEach(function (cell) {
+      const text = '<td style="text-align:left">' + escape(cell.sequence) + '</td><td>' + cell.seed + '</td><td class="digest">' +
+        (escape(cell.digest) || '\u2013') + '</td>';
+      if (rows.indexOf(text) < 0) { rows.push(text); }
+    });
+    return '<table><thead><tr><th scope="col">Sequence</th><th scope="col">Seed</th>' +
+      '<th scope="col" style="text-align:left">SHA-256 of the measurement log</th></tr></thead><tbody>' +
+      rows.map(function (row) { return '<tr>' + row.replace('<td style="text-align:left">', '<th scope="row">').replace('</td>', '</th>') +
+        '</tr>'; }).join('') + '</tbody></table>';
+  };
+})();

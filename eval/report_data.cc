@@ -1,0 +1,258 @@
+#include "eval/report_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "eval/aggregate.h"
+
+namespace alidade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// A number that JSON can hold, rounded to significant digits; null where it is not finite.
+Json Rounded(double value, int digits) {
+  if (!std::isfinite(value)) {
+    return nullptr;
+  }
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), "%.*g", digits, value);
+  const double rounded = std::strtod(buffer, nullptr);
+  // An integer prints without ".0".
+  return std::abs(rounded) < 1e15 && rounded == std::floor(rounded) ? Json(static_cast<long long>(rounded))
+                                                                    : Json(rounded);
+}
+
+Json Packed(const std::vector<double>& values, double finest) {
+  const PackedColumn column = PackColumn(values, finest);
+  Json deltas = Json::array();
+  for (const auto& [finite, delta] : column.deltas) {
+    deltas.push_back(finite ? Json(delta) : Json(nullptr));
+  }
+  return {{"q", column.quantum}, {"d", deltas}};
+}
+
+/// Every k-th row and the last one, so that no more than `most` remain. Picking rows evenly keeps means and
+/// spreads.
+std::vector<size_t> KeptRows(size_t rows, int most) {
+  std::vector<size_t> kept;
+  const size_t step = std::max<size_t>(1, (rows + static_cast<size_t>(most) - 1) / static_cast<size_t>(most));
+  for (size_t i = 0; i < rows; i += step) {
+    kept.push_back(i);
+  }
+  if (rows > 0 && kept.back() + 1 != rows) {
+    kept.push_back(rows - 1);
+  }
+  return kept;
+}
+
+/// Components of the kept rows of a series of vectors, scaled; empty when the series is absent.
+template <typename Vectors>
+Json PackComponents(const Vectors& vectors, const std::vector<size_t>& kept, int first, double scale,
+                    double finest) {
+  Json components = Json::array();
+  if (kept.empty() || vectors.size() <= kept.back()) {
+    return components;
+  }
+  for (int axis = first; axis < first + 3; ++axis) {
+    std::vector<double> values;
+    for (const size_t i : kept) {
+      values.push_back(vectors[i](axis) * scale);
+    }
+    components.push_back(Packed(values, finest));
+  }
+  return components;
+}
+
+Json RoundKept(const std::vector<double>& values, const std::vector<size_t>& kept, int digits) {
+  Json list = Json::array();
+  for (const size_t i : kept) {
+    list.push_back(i < values.size() ? Rounded(values[i], digits) : Json(nullptr));
+  }
+  return list;
+}
+
+/// Five-number summary (5, 25, 50, 75, 95 %) of the finite values; empty without any.
+Json Quantiles(std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+               values.end());
+  std::sort(values.begin(), values.end());
+  Json quantiles = Json::array();
+  for (const double share : {0.05, 0.25, 0.5, 0.75, 0.95}) {
+    if (!values.empty()) {
+      const double place = share * static_cast<double>(values.size() - 1);
+      const size_t below = static_cast<size_t>(place);
+      const size_t above = std::min(below + 1, values.size() - 1);
+      const double part = place - static_cast<double>(below);
+      quantiles.push_back(Rounded(values[below] + part * (values[above] - values[below]), 4));
+    }
+  }
+  return quantiles;
+}
+
+Json SeriesData(const CellSeries& series, int most) {
+  const std::vector<size_t> kept = KeptRows(series.time_s.size(), most);
+  std::vector<double> times;
+  for (const size_t i : kept) {
+    times.push_back(series.time_s[i]);
+  }
+  return {{"t", Packed(times, 1e-3)},
+          {"truth", PackComponents(series.truth_position, kept, 0, 1.0, 1e-3)},
+          {"est", PackComponents(series.position, kept, 0, 1.0, 1e-3)},
+          {"ori", PackComponents(series.error, kept, 0, kDegrees, 1e-3)},
+          {"ori_sigma", PackComponents(series.sigma, kept, 0, kDegrees, 1e-3)},
+          {"pos", PackComponents(series.error, kept, 3, 1.0, 1e-3)},
+          {"pos_sigma", PackComponents(series.sigma, kept, 3, 1.0, 1e-3)},
+          {"nees", RoundKept(series.nees_pose, kept, 3)},
+          {"ms", RoundKept(series.backend_ms, kept, 3)},
+          {"ms_quantiles", Quantiles(series.backend_ms)},
+          {"features", RoundKept(series.features_used, kept, 4)}};
+}
+
+Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
+  Json values = Json::array();
+  for (const Figure& figure : figures) {
+    values.push_back(Rounded(figure.value(cell), 6));
+  }
+  return values;
+}
+
+Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell,
+              int most) {
+  Json rpe = Json::array();
+  for (const RpeResult& result : cell.rpe) {
+    rpe.push_back({{"d", result.distance_m}, {"n", result.count}, {"q", Quantiles(result.pos_errors_m)}});
+  }
+  return {{"estimator", LabelOf(comparison, cell)},
+          {"sequence", cell.sequence},
+          {"seed", cell.seed},
+          {"status", cell.status},
+          {"message", cell.message},
+          {"digest", cell.input_digest},
+          {"frames", cell.frames},
+          {"duration", Rounded(cell.duration_s, 6)},
+          {"path", Rounded(cell.path_m, 6)},
+          {"align", cell.align},
+          {"figures", FigureValues(figures, cell)},
+          {"rpe", rpe},
+          {"series", SeriesData(cell.series, most)}};
+}
+
+Json FigureData(const Figure& figure) {
+  const char* ideal = figure.ideal == Ideal::kLow      ? "low"
+                      : figure.ideal == Ideal::kTarget ? "target"
+                                                       : "none";
+  return {{"key", figure.key}, {"label", figure.label},   {"unit", figure.unit},
+          {"ideal", ideal},    {"target", figure.target}, {"decimals", figure.decimals}};
+}
+
+Json AggregateData(const AggregateRow& row) {
+  Json means = Json::array();
+  Json errors = Json::array();
+  Json best = Json::array();
+  for (size_t i = 0; i < row.figures.size(); ++i) {
+    means.push_back(Rounded(row.figures[i].mean, 6));
+    errors.push_back(Rounded(row.figures[i].standard_error, 3));
+    best.push_back(row.best[i] ? 1 : 0);
+  }
+  return {{"estimator", row.label},
+          {"backend", row.backend},
+          {"sequence", row.sequence},
+          {"cells", row.cells},
+          {"ok", row.ok},
+          {"diverged", row.diverged},
+          {"not_initialized", row.not_initialized},
+          {"failed", row.failed},
+          {"means", means},
+          {"errors", errors},
+          {"best", best}};
+}
+
+/// 95 % bands of the mean pose NEES of 1, 2, ... runs.
+Json NeesBands(int most_runs) {
+  Json bands = Json::array();
+  for (int runs = 1; runs <= most_runs; ++runs) {
+    const auto [low, high] = NeesBand(6, runs);
+    bands.push_back({Rounded(low, 5), Rounded(high, 5)});
+  }
+  return bands;
+}
+
+}  // namespace
+
+int PointsPerSeries(size_t cells) {
+  // A point of one cell is 22 numbers: measured at 65 to 80 characters.
+  const double budget = 4.3e6 / (80.0 * static_cast<double>(std::max<size_t>(1, cells)));
+  return static_cast<int>(std::clamp(budget, 150.0, 1000.0));
+}
+
+PackedColumn PackColumn(const std::vector<double>& values, double finest) {
+  double largest = 0;
+  for (const double value : values) {
+    largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : largest;
+  }
+  PackedColumn column;
+  column.quantum = finest;
+  if (largest > 0) {
+    const double fine = std::pow(10.0, std::floor(std::log10(largest / 2000)));
+    const double coarse = std::pow(10.0, std::ceil(std::log10(largest / 1e15)));
+    column.quantum = std::max(std::min(finest, fine), coarse);
+  }
+  long long last = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) {
+      column.deltas.emplace_back(false, 0);
+      continue;
+    }
+    const long long now = std::llround(value / column.quantum);
+    column.deltas.emplace_back(true, now - last);
+    last = now;
+  }
+  return column;
+}
+
+std::string ReportData(const Comparison& comparison) {
+  const std::vector<Figure> figures = ListFigures(comparison);
+  const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
+  const int most = PointsPerSeries(comparison.cells.size());
+  Json data = {{"title", comparison.title},
+               {"command", comparison.command},
+               {"points", most},
+               {"sequences", ListSequences(rows)},
+               {"estimators", ListLabels(rows)}};
+  data["figures"] = Json::array();
+  for (const Figure& figure : figures) {
+    data["figures"].push_back(FigureData(figure));
+  }
+  data["aggregate"] = Json::array();
+  int most_runs = 1;
+  for (const AggregateRow& row : rows) {
+    data["aggregate"].push_back(AggregateData(row));
+    most_runs = std::max(most_runs, row.cells);
+  }
+  data["nees_bands"] = NeesBands(most_runs);
+  data["references"] = Json::array();
+  for (const ReferenceFigure& reference : comparison.references) {
+    data["references"].push_back({{"source", reference.source},
+                                  {"estimator", reference.estimator},
+                                  {"sequence", reference.sequence},
+                                  {"figures", reference.figures}});
+  }
+  data["cells"] = Json::array();
+  for (const CellResult& cell : comparison.cells) {
+    data["cells"].push_back(CellData(comparison, figures, cell, most));
+  }
+  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // '<' stands only inside strings, where its escape means the same.
+  for (size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+}  // namespace alidade

@@ -1,0 +1,117 @@
+#include "eval/tables_text.h"
+
+#include <string_view>
+
+namespace alidade {
+namespace {
+
+/// Puts a backslash before each of the characters `special`; line breaks become blanks.
+std::string Backslash(const std::string& text, std::string_view special) {
+  std::string escaped;
+  for (const char c : text) {
+    if (special.find(c) != std::string_view::npos) {
+      escaped += '\\';
+    }
+    escaped += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return escaped;
+}
+
+std::string EscapeMarkdown(const std::string& text) {
+  return Backslash(text, "|_*`<>\\[]");
+}
+
+void ReplaceAll(const std::string& from, const std::string& to, std::string* text) {
+  for (size_t at = text->find(from); at != std::string::npos; at = text->find(from, at + to.size())) {
+    text->replace(at, from.size(), to);
+  }
+}
+
+std::string EscapeLatex(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    escaped +=
+        c == '\\' ? std::string("\x01") : std::string(1, c);  // held apart from the backslashes that follow
+  }
+  escaped = Backslash(escaped, "&%$#_{}");
+  ReplaceAll("\x01", "\\textbackslash{}", &escaped);
+  ReplaceAll("~", "\\textasciitilde{}", &escaped);
+  ReplaceAll("^", "\\textasciicircum{}", &escaped);
+  ReplaceAll("\u00b1", "$\\pm$", &escaped);
+  ReplaceAll("\u03c3", "$\\sigma$", &escaped);
+  ReplaceAll("\u2013", "--", &escaped);
+  return escaped;
+}
+
+std::string MarkdownTable(const TextTable& table) {
+  std::string text = "## ";
+  text += EscapeMarkdown(table.title) + "\n\n|";
+  for (const std::string& heading : table.header) {
+    text.append(" ").append(EscapeMarkdown(heading)).append(" |");
+  }
+  text += "\n|:---|";
+  for (size_t i = 1; i < table.header.size(); ++i) {
+    text += "---:|";
+  }
+  for (const TextRow& row : table.rows) {
+    text += "\n|";
+    for (const TextCell& cell : row.cells) {
+      const std::string mark = cell.best ? "**" : row.reference ? "*" : "";
+      text.append(" ").append(mark).append(EscapeMarkdown(cell.text)).append(mark).append(" |");
+    }
+  }
+  return text + "\n";
+}
+
+std::string LatexTable(const TextTable& table) {
+  std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + EscapeLatex(table.title) +
+                     "}\n  \\begin{tabular}{l" + std::string(table.header.size() - 1, 'r') +
+                     "}\n    \\toprule\n    ";
+  for (size_t i = 0; i < table.header.size(); ++i) {
+    text += (i > 0 ? " & " : "") + EscapeLatex(table.header[i]);
+  }
+  text += " \\\\\n    \\midrule\n";
+  bool references = false;
+  for (const TextRow& row : table.rows) {
+    text += row.reference && !references ? "    \\midrule\n" : "";
+    references = row.reference;
+    text += "    ";
+    for (size_t i = 0; i < row.cells.size(); ++i) {
+      const TextCell& cell = row.cells[i];
+      const std::string command = cell.best ? "\\textbf{" : row.reference ? "\\textit{" : "{";
+      text += (i > 0 ? " & " : "") + command + EscapeLatex(cell.text) + "}";
+    }
+    text += " \\\\\n";
+  }
+  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+}
+
+const char* const kReading =
+    "Means over the runs that ended ok, with the standard error of the mean where there are several. RMSE is "
+    "unaligned, ATE aligned as summary.csv says. The best value of a column is bold (NEES: nearest to its "
+    "degrees of "
+    "freedom, 6, 3 and 3), among the estimators with the most runs ok. Published figures are in italics.";
+
+}  // namespace
+
+std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables) {
+  std::string text = "# ";
+  text += EscapeMarkdown(comparison.title) + "\n\n" + kReading + "\n";
+  for (const TextTable& table : tables) {
+    text += "\n";
+    text += MarkdownTable(table);
+  }
+  return comparison.command.empty() ? text : text + "\nRepeat with:\n\n    " + comparison.command + "\n";
+}
+
+std::string LatexText(const Comparison& comparison, const std::vector<TextTable>& tables) {
+  std::string text =
+      "% Needs \\usepackage{booktabs}.\n% " + EscapeLatex(comparison.title) + "\n% " + kReading + "\n";
+  for (const TextTable& table : tables) {
+    text += "\n";
+    text += LatexTable(table);
+  }
+  return text;
+}
+
+}  // namespace alidade

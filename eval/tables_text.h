@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/comparison.h"
+#include "eval/table_layout.h"
+
+namespace alidade {
+
+/// tables.md: GitHub tables; the best of a column in bold, published figures in italics. Names are escaped.
+[[nodiscard]] std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables);
+
+/// tables.tex: the same as booktabs tables, to be input into a paper.
+[[nodiscard]] std::string LatexText(const Comparison& comparison, const std::vector<TextTable>& tables);
+
+}  // namespace alidade
