@@ -140,9 +140,15 @@ std::string FormatValue(double value, int decimals) {
 
 std::string FormatStatistic(const Statistic& statistic, int decimals, const std::string& plus_minus) {
   const std::string mean = FormatValue(statistic.mean, decimals);
-  return std::isnan(statistic.standard_error)
-             ? mean
-             : mean + plus_minus + FormatValue(statistic.standard_error, decimals);
+  if (std::isnan(statistic.standard_error)) {
+    return mean;
+  }
+  // The error shows the digits that the mean shows, unless the mean itself needs more.
+  const double magnitude = std::abs(statistic.mean);
+  const bool fixed = magnitude < 1e6 && magnitude >= std::pow(10.0, 1 - decimals);
+  return mean + plus_minus +
+         (fixed ? Print("%.*f", decimals, statistic.standard_error)
+                : FormatValue(statistic.standard_error, decimals));
 }
 
 std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::string& plus_minus) {

@@ -61,7 +61,7 @@ TextTable KeepColumns(const TextTable& table) {
     const std::string& heading = table.header[i];
     const bool drop = heading.starts_with("RPE") || heading.starts_with("front end") ||
                       heading.starts_with("back end p95") || heading.starts_with("NEES pos.") ||
-                      heading.starts_with("features");
+                      heading.starts_with("NEES ori.") || heading.starts_with("features");
     if (!drop) {
       columns.push_back(i);
       kept.header.push_back(heading);

@@ -38,7 +38,7 @@
 
   function lines(entries, pick) {
     return entries.map(function (entry) {
-      return { name: entry.name, style: entry.style, t: entry.series.t, v: pick(entry.series) || [] };
+      return { name: entry.name, style: entry.style, width: 1.1, t: entry.series.t, v: pick(entry.series) || [] };
     });
   }
 
@@ -69,7 +69,7 @@
     return aligned && aligned !== 'none' ? ', aligned to the truth (' + aligned + ')' : '';
   }
 
-  function drawErrors(entries, key, title, unit, names) {
+  function drawErrors(entries, key, title, unit, titles, names) {
     const mean = state.seed === MEAN;
     const width = mean ? 1 : 3;
     const grid = group(title, mean ?
@@ -83,7 +83,7 @@
         return { style: entry.style, t: entry.series.t, lo: times(mean ? 0 : -width), hi: times(width) };
       });
       const label = (mean ? 'RMS of ' : '') + name + ' [' + unit + ']';
-      report.timePlot(grid, spec(key + '-' + axis, name.charAt(0).toUpperCase() + name.slice(1), label, unit, entries, { bands: bands, zero: true,
+      report.timePlot(grid, spec(key + '-' + axis, titles[axis], label, unit, entries, { bands: bands, zero: true,
         lines: lines(entries, function (series) { return series[key][axis]; }) }));
     });
   }
@@ -122,13 +122,16 @@
 
   function drawCost(entries) {
     const grid = group('Cost', 'Time of the back end a frame, and the features that updated the state. Boxes: quartiles and median; whiskers: 5 % to 95 %.');
-    report.timePlot(grid, spec('time', 'Back-end time per frame', 'time [ms]', 'ms', entries,
-      { zero: true, lines: lines(entries, function (series) { return series.ms; }) }));
+    const medians = entries.map(function (entry) { return entry.series.ms_quantiles[2]; }).filter(function (m) { return m > 0; });
+    const log = d3.max(medians) > 6 * d3.min(medians);
+    const label = log ? 'time [ms], log scale' : 'time [ms]';
+    report.timePlot(grid, spec('time', 'Back-end time per frame', label, 'ms', entries,
+      { zero: !log, log: log, lines: lines(entries, function (series) { return series.ms; }) }));
     const boxes = entries.filter(function (entry) { return entry.series.ms_quantiles.length; }).map(function (entry) {
       return { name: entry.name, style: entry.style, q: entry.series.ms_quantiles };
     });
-    report.boxPlot(grid, spec('time-box', 'Distribution of the back-end time', 'time [ms]', 'ms', entries,
-      { x: 'estimators in the order of the buttons above', groups: [{ name: '', boxes: boxes }] }));
+    report.boxPlot(grid, spec('time-box', 'Distribution of the back-end time', label, 'ms', entries,
+      { x: 'estimators, in the order of the buttons above', log: log, groups: [{ name: '', boxes: boxes }] }));
     report.timePlot(grid, spec('features', 'Features used per frame', 'features [1/frame]', '', entries,
       { zero: true, lines: lines(entries, function (series) { return series.features; }) }));
   }
@@ -142,8 +145,9 @@
     report.hideTooltip();
     const entries = chosen();
     drawTrajectories(entries);
-    drawErrors(entries, 'pos', 'Position error', 'm', ['x error', 'y error', 'z error']);
-    drawErrors(entries, 'ori', 'Orientation error', 'deg', ['\u03c6x error (body)', '\u03c6y error (body)', '\u03c6z error (body)']);
+    drawErrors(entries, 'pos', 'Position error', 'm', ['Error in x', 'Error in y', 'Error in z'], ['x error', 'y error', 'z error']);
+    drawErrors(entries, 'ori', 'Orientation error', 'deg', ['Error about body x', 'Error about body y',
+      'Error about body z'], ['\u03c6x', '\u03c6y', '\u03c6z']);
     drawConsistency(entries);
     drawCost(entries);
     plots.style.minHeight = '';
@@ -191,6 +195,7 @@
       chip.html(report.swatch(report.style(name)) + report.escape(name));
       chip.on('click', function () { state.off[name] = !state.off[name]; fillChips(); drawPlots(); });
     });
+    chips.append('span').attr('class', 'legend').html(report.swatch(report.TRUTH) + 'truth');
     const allOn = data.estimators.every(function (name) { return !state.off[name]; });
     chips.append('button').attr({ type: 'button', class: 'chip-all' }).text(allOn ? 'none' : 'all').on('click', function () {
       data.estimators.forEach(function (name) { state.off[name] = allOn; });

@@ -99,6 +99,12 @@ window.addEventListener('error', function (event) {
     return value.toFixed(decimals);
   };
 
+  // The standard error of `mean`, with the digits that the mean shows.
+  report.formatError = function (error, mean, decimals) {
+    const fixed = Math.abs(mean) < 1e6 && Math.abs(mean) >= Math.pow(10, 1 - decimals);
+    return fixed ? error.toFixed(decimals) : report.format(error, decimals);
+  };
+
   report.digits = function (value) {
     return value === null || value === undefined ? '\u2013' : String(Number(value.toPrecision(4)));
   };

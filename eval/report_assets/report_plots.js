@@ -24,6 +24,8 @@
       return { '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' }[c];
     });
   };
+  // A name that may wrap after its underscores.
+  report.name = function (text) { return report.escape(text).replace(/_/g, '_<wbr>'); };
   report.swatch = function (style) {
     return '<svg class="swatch" width="22" height="8" aria-hidden="true"><line x1="0" y1="4" x2="22" y2="4" stroke="' +
       style.colour + '" stroke-width="3"' + (style.dash ? ' stroke-dasharray="' + style.dash + '"' : '') + '/></svg>';
@@ -315,14 +317,16 @@
   }
 
   // Boxes from the 25th to the 75th percentile with whiskers to the 5th and 95th. spec: groups [{name, boxes [{name, style,
-  // q, note}]}], unit. Groups stand side by side, values upwards from zero.
+  // q, note}]}], unit. log. Groups stand side by side; without log, values start at zero.
   report.boxPlot = function (parent, spec) {
     const plot = frame(parent, spec);
     const boxes = d3.merge(spec.groups.map(function (group) { return group.boxes; }));
     if (!boxes.length) { emptyNotice(plot); return; }
     const inner = plot.inner;
-    const y = d3.scale.linear().domain([0, 1.06 * d3.max(boxes, function (box) { return box.q[4]; }) || 1]).range([inner.height, 0]);
-    drawAxis(plot, y, false, y.ticks(5));
+    const least = d3.min(boxes, function (box) { return box.q[0]; }), most = d3.max(boxes, function (box) { return box.q[4]; });
+    const y = (spec.log && least > 0 ? d3.scale.log().domain([least / 1.3, most * 1.3]) :
+      d3.scale.linear().domain([0, 1.06 * most || 1])).range([inner.height, 0]);
+    drawAxis(plot, y, false, spec.log ? logTicks(y.domain()) : y.ticks(5));
     const step = inner.width / spec.groups.length;
     spec.groups.forEach(function (group, g) {
       const slot = Math.min(46, 0.86 * step / Math.max(1, group.boxes.length));

@@ -22,13 +22,13 @@
     if (!row) { return '<td>\u2013</td>'; }
     if (row.ok === 0) { return '<td class="bad">' + failure(row) + '</td>'; }
     let html = report.format(row.means[i], figure.decimals);
-    if (row.errors[i] !== null) { html += '<span class="sub">\u00b1 ' + report.format(row.errors[i], figure.decimals) + '</span>'; }
+    if (row.errors[i] !== null) { html += '<span class="sub">\u00b1 ' + report.formatError(row.errors[i], row.means[i], figure.decimals) + '</span>'; }
     if (extra && row.ok < row.cells) { html += '<span class="sub bad">' + row.ok + ' of ' + row.cells + ' ok</span>'; }
     return '<td' + (row.best[i] ? ' class="best"' : '') + '>' + html + (extra || '') + '</td>';
   }
 
   function estimatorHead(estimator, backend) {
-    return '<th scope="row">' + report.swatch(report.style(estimator)) + escape(estimator) +
+    return '<th scope="row">' + report.swatch(report.style(estimator)) + report.name(estimator) +
       (backend ? '<span class="sub">' + escape(backend) + '</span>' : '') + '</th>';
   }
 
@@ -43,6 +43,28 @@
     const rows = data.sequences.map(function (sequence) { return report.aggregate(estimator, sequence); });
     const complete = rows.every(function (row) { return row && row.ok > 0 && row.means[i] !== null; });
     return complete ? d3.mean(rows, function (row) { return row.means[i]; }) : null;
+  }
+
+  function lostRuns(estimator) {
+    return d3.sum(data.aggregate, function (row) { return row.estimator === estimator ? row.cells - row.ok : 0; });
+  }
+
+  // The column of means: best among the estimators that lost the fewest runs, as in the columns of the sequences.
+  function meanCells(i) {
+    const figure = data.figures[i];
+    const badness = function (value) {
+      return figure.ideal === 'low' ? value : figure.target < 1 ? Math.abs(value - figure.target) : Math.abs(Math.log(value / figure.target));
+    };
+    const values = data.estimators.map(function (estimator) { return acrossSequences(estimator, i); });
+    const fewest = d3.min(data.estimators, lostRuns);
+    const rivals = values.filter(function (value, e) {
+      return value !== null && figure.ideal !== 'none' && lostRuns(data.estimators[e]) === fewest;
+    });
+    const least = d3.min(rivals, badness);
+    return values.map(function (value, e) {
+      const best = rivals.length > 1 && value !== null && lostRuns(data.estimators[e]) === fewest && badness(value) === least;
+      return '<td' + (best ? ' class="best"' : '') + '>' + report.format(value, figure.decimals) + '</td>';
+    });
   }
 
   function overviewCell(estimator, sequence, i, most) {
@@ -68,7 +90,7 @@
     });
     return seen.map(function (name) {
       const parts = name.split('\n');
-      return '<tr class="reference"><th scope="row">' + escape(parts[0]) + '<span class="sub">' + escape(parts[1]) + '</span></th>' +
+      return '<tr class="reference"><th scope="row">' + report.name(parts[0]) + '<span class="sub">' + escape(parts[1]) + '</span></th>' +
         cellsOf(function (r) { return r.estimator === parts[0] && r.source === parts[1]; }) + '</tr>';
     }).join('');
   }
@@ -82,11 +104,12 @@
         return row ? row.means[i] : null;
       });
     });
-    const rows = data.estimators.map(function (estimator) {
+    const means = meanCells(i);
+    const rows = data.estimators.map(function (estimator, e) {
       const backend = (data.aggregate.find(function (row) { return row.estimator === estimator; }) || {}).backend;
       return '<tr>' + estimatorHead(estimator, backend) + data.sequences.map(function (sequence, s) {
         return overviewCell(estimator, sequence, i, most[s]);
-      }).join('') + (several ? '<td>' + report.format(acrossSequences(estimator, i), figure.decimals) + '</td>' : '') + '</tr>';
+      }).join('') + (several ? means[e] : '') + '</tr>';
     }).join('');
     const foreign = foreignRows(key, function (matches) {
       return data.sequences.map(function (sequence) {
@@ -109,9 +132,10 @@
   };
 
   report.sequenceTable = function (sequence) {
+    const isRpe = function (i) { return data.figures[i].key.indexOf('rpe_') === 0 ? 1 : 0; };
     const used = data.figures.map(function (figure, i) { return i; }).filter(function (i) {
       return data.aggregate.some(function (row) { return row.sequence === sequence && row.means[i] !== null; });
-    });
+    }).sort(function (a, b) { return isRpe(a) - isRpe(b) || a - b; });  // the many RPE columns last
     const head = used.map(function (i) {
       const figure = data.figures[i];
       return '<th scope="col">' + escape(figure.label) + '<span class="unit">' + (escape(figure.unit) || '\u00a0') + '</span></th>';
@@ -132,7 +156,7 @@
       return '<tr>' + estimatorHead(estimator, row.backend) + counts +
         used.map(function (i) { return row.ok ? statistic(row, i) : '<td>\u2013</td>'; }).join('') + '</tr>' +
         own.map(function (r) {
-          return '<tr class="reference"><th scope="row">' + escape(estimator) + '<span class="sub">' + escape(r.source) + '</span></th>' +
+          return '<tr class="reference"><th scope="row">' + report.name(estimator) + '<span class="sub">' + escape(r.source) + '</span></th>' +
             referenceCells(function (other) { return other === r; }) + '</tr>';
         }).join('');
     }).join('');
@@ -144,13 +168,11 @@
   report.digestTable = function () {
     const rows = [];
     data.cells.forEach(function (cell) {
-      const text = '<td style="text-align:left">' + escape(cell.sequence) + '</td><td>' + cell.seed + '</td><td class="digest">' +
-        (escape(cell.digest) || '\u2013') + '</td>';
-      if (rows.indexOf(text) < 0) { rows.push(text); }
+      const row = '<tr><th scope="row">' + report.name(cell.sequence) + '</th><td>' + cell.seed + '</td><td class="digest">' +
+        (escape(cell.digest) || '\u2013') + '</td></tr>';
+      if (rows.indexOf(row) < 0) { rows.push(row); }
     });
     return '<table><thead><tr><th scope="col">Sequence</th><th scope="col">Seed</th>' +
-      '<th scope="col" style="text-align:left">SHA-256 of the measurement log</th></tr></thead><tbody>' +
-      rows.map(function (row) { return '<tr>' + row.replace('<td style="text-align:left">', '<th scope="row">').replace('</td>', '</th>') +
-        '</tr>'; }).join('') + '</tbody></table>';
+      '<th scope="col" class="digest-head">SHA-256 of the measurement log</th></tr></thead><tbody>' + rows.join('') + '</tbody></table>';
   };
 })();
