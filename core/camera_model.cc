@@ -1,6 +1,7 @@
 #include "core/camera_model.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -117,6 +118,15 @@ double CameraModel::RadialDistortion(double radius, double* derivative) const {
 }
 
 void CameraModel::BoundDomain() {
+  // A calibration says nothing far outside the image it was made with.
+  constexpr double kMarginBeyondCorner = 1.5;
+  double corner = 0;
+  for (const double u : {0.0, static_cast<double>(width_px_)}) {
+    for (const double v : {0.0, static_cast<double>(height_px_)}) {
+      const Vector2d distorted = (Vector2d(u, v) - intrinsics_.tail<2>()).cwiseQuotient(intrinsics_.head<2>());
+      corner = std::max(corner, distorted.norm());
+    }
+  }
   // March outwards in angle until the radial map stops growing; the tangential terms are too small to move the bound.
   constexpr int kSteps = 2000;
   const double max_angle = std::atan(kMaxRadius);
@@ -124,8 +134,8 @@ void CameraModel::BoundDomain() {
   for (int i = 1; i <= kSteps; ++i) {
     const double radius = std::tan(max_angle * i / kSteps);
     double derivative = 0;
-    RadialDistortion(radius, &derivative);
-    if (derivative <= 1e-6 / (1 + radius * radius)) {
+    const double distorted = RadialDistortion(radius, &derivative);
+    if (derivative <= 1e-6 / (1 + radius * radius) || distorted > kMarginBeyondCorner * corner) {
       break;
     }
     max_radius_ = radius;

@@ -25,8 +25,8 @@ enum class DistortionModel { kNone, kRadialTangential, kEquidistant, kFov };
 /// Number of coefficients the model takes.
 [[nodiscard]] int CoefficientCount(DistortionModel model);
 
-/// Pinhole camera with a lens model. Immutable after Create, which bounds the domain in which the distortion is
-/// one-to-one; outside it every call answers false instead of a plausible number.
+/// Pinhole camera with a lens model. Immutable after Create, which bounds the domain to where the distortion is
+/// one-to-one and at most half again as far from the principal point as the image's farthest corner; outside it every call answers false instead of a plausible number.
 class CameraModel {
  public:
   /// An ideal camera of focal length 1: pixels are normalised coordinates.

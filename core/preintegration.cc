@@ -47,9 +47,9 @@ void Preintegration::Add(const ImuSample& from, const ImuSample& to) {
   variance /= dt;
 
   jacobian_ = f * jacobian_;
-  const Matrix15d propagated = f * covariance_ * f.transpose();
-  const Matrix15d driven = noise_input * variance.asDiagonal() * noise_input.transpose();
-  covariance_ = 0.5 * (propagated + propagated.transpose()) + driven;
+  const Matrix15d propagated =
+      f * covariance_ * f.transpose() + noise_input * variance.asDiagonal() * noise_input.transpose();
+  covariance_ = 0.5 * (propagated + propagated.transpose());
   alpha_ += beta_ * dt + 0.5 * dt2 * accel_mid;
   beta_ += accel_mid * dt;
   gamma_ = gamma_1;

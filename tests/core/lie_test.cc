@@ -1,0 +1,141 @@
+#include "core/lie.h"
+
+#include <gtest/gtest.h>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "tests/support/jacobian_checker.h"
+#include "tests/support/random_states.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using test::NumericJacobian;
+using test::RandomStates;
+
+// Angles around every threshold of the series, and close to pi.
+constexpr double kAngles[] = {0, 1e-12, 1e-8, 1e-5, 9.9e-3, 1.01e-2, 0.299, 0.301, 1.0, 2.5, 3.1, 3.14159};
+
+class So3AtAngle : public ::testing::TestWithParam<double> {
+ protected:
+  Vector3d phi_ = GetParam() * Vector3d(0.36, -0.48, 0.8);
+};
+INSTANTIATE_TEST_SUITE_P(AllAngles, So3AtAngle, ::testing::ValuesIn(kAngles));
+
+TEST_P(So3AtAngle, ExpIsTheMatrixExponential) {
+  const Matrix3d reference = Skew(phi_).exp();
+  EXPECT_LT((so3::Exp(phi_) - reference).norm(), 1e-13);
+  EXPECT_LT((so3::ExpQuaternion(phi_).toRotationMatrix() - reference).norm(), 1e-13);
+}
+
+TEST_P(So3AtAngle, LogInvertsExp) { EXPECT_LT((so3::Log(so3::Exp(phi_)) - phi_).norm(), 1e-9 + 1e-15 * GetParam()); }
+
+TEST_P(So3AtAngle, GammaIsItsPowerSeries) {
+  for (int m = 0; m < 4; ++m) {
+    Matrix3d sum = Matrix3d::Zero();
+    Matrix3d power = Matrix3d::Identity();
+    double factorial = std::tgamma(m + 1.0);
+    for (int k = 0; k < 40; ++k) {
+      sum += power / factorial;
+      power = power * Skew(phi_);
+      factorial *= k + m + 1;
+    }
+    EXPECT_LT((so3::Gamma(phi_, m) - sum).norm(), 2e-13) << "m = " << m;
+  }
+}
+
+TEST_P(So3AtAngle, LeftAndRightJacobiansDifferentiateExp) {
+  const auto left = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+    return so3::Log(so3::Exp(phi_ + Vector3d(d)) * so3::Exp(phi_).transpose());
+  };
+  const auto right = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+    return so3::Log(so3::Exp(phi_).transpose() * so3::Exp(phi_ + Vector3d(d)));
+  };
+  EXPECT_EQ(test::CompareJacobians(so3::LeftJacobian(phi_), NumericJacobian(left, 3), 1e-9), "");
+  EXPECT_EQ(test::CompareJacobians(so3::RightJacobian(phi_), NumericJacobian(right, 3), 1e-9), "");
+}
+
+TEST_P(So3AtAngle, InverseJacobiansInvert) {
+  EXPECT_LT((so3::LeftJacobianInverse(phi_) * so3::LeftJacobian(phi_) - Matrix3d::Identity()).norm(), 1e-11);
+  EXPECT_LT((so3::RightJacobianInverse(phi_) * so3::RightJacobian(phi_) - Matrix3d::Identity()).norm(), 1e-11);
+}
+
+TEST(So3Test, LogIsWellDefinedAtPi) {
+  const Matrix3d half_turn = Vector3d(-1, -1, 1).asDiagonal();
+  EXPECT_NEAR(so3::Log(half_turn).norm(), M_PI, 1e-12);
+}
+
+TEST(So3Test, NormalizeFindsTheNearestRotation) {
+  RandomStates random(3);
+  const Matrix3d rotation = random.Rotation();
+  Matrix3d noisy = rotation;
+  noisy(0, 1) += 1e-4;
+  const Matrix3d mended = so3::Normalize(noisy);
+  EXPECT_LT((mended.transpose() * mended - Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((mended - rotation).norm(), 1e-4);
+  EXPECT_GT(so3::Normalize(-Matrix3d::Identity()).determinant(), 0);
+}
+
+class GroupAtAngle : public ::testing::TestWithParam<double> {
+ protected:
+  RandomStates random_{11};
+  Vector3d phi_ = GetParam() * Vector3d(0.36, -0.48, 0.8);
+};
+INSTANTIATE_TEST_SUITE_P(AllAngles, GroupAtAngle, ::testing::Values(0.0, 1e-9, 1e-4, 0.29, 0.31, 1.2, 2.9));
+
+TEST_P(GroupAtAngle, Se3ExpLogAndJacobians) {
+  Vector6d xi;
+  xi << phi_, random_.Vector(3);
+  Eigen::Matrix4d hat = Eigen::Matrix4d::Zero();
+  hat.topLeftCorner<3, 3>() = Skew(xi.head<3>());
+  hat.topRightCorner<3, 1>() = xi.tail<3>();
+  const Eigen::Matrix4d element = se3::Exp(xi);
+  EXPECT_LT((element - Eigen::Matrix4d(hat.exp())).norm(), 1e-12);
+  EXPECT_LT((se3::Log(element) - xi).norm(), 1e-9);
+  const auto left = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+    return se3::Log(se3::Exp(xi + Vector6d(d)) * element.inverse());
+  };
+  const auto right = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+    return se3::Log(element.inverse() * se3::Exp(xi + Vector6d(d)));
+  };
+  EXPECT_EQ(test::CompareJacobians(se3::LeftJacobian(xi), NumericJacobian(left, 6), 1e-8), "");
+  EXPECT_EQ(test::CompareJacobians(se3::RightJacobian(xi), NumericJacobian(right, 6), 1e-8), "");
+}
+
+TEST_P(GroupAtAngle, Se23ExpLogAndJacobians) {
+  Vector9d xi;
+  xi << phi_, random_.Vector(3), random_.Vector(2);
+  se23::Matrix5d hat = se23::Matrix5d::Zero();
+  hat.topLeftCorner<3, 3>() = Skew(xi.head<3>());
+  hat.block<3, 1>(0, 3) = xi.segment<3>(3);
+  hat.block<3, 1>(0, 4) = xi.tail<3>();
+  const se23::Matrix5d element = se23::Exp(xi);
+  EXPECT_LT((element - se23::Matrix5d(hat.exp())).norm(), 1e-12);
+  EXPECT_LT((se23::Log(element) - xi).norm(), 1e-9);
+  const auto left = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+    return se23::Log(se23::Exp(xi + Vector9d(d)) * element.inverse());
+  };
+  EXPECT_EQ(test::CompareJacobians(se23::LeftJacobian(xi), NumericJacobian(left, 9), 1e-8), "");
+  EXPECT_LT((se23::RightJacobian(xi) - se23::LeftJacobian(-xi)).norm(), 1e-14);
+}
+
+TEST(GroupTest, AdjointsMoveTangentsAcrossAnElement) {
+  RandomStates random(5);
+  Vector6d xi6;
+  xi6 << random.Vector(1), random.Vector(2);
+  Vector6d at6;
+  at6 << random.Vector(1), random.Vector(2);
+  const Eigen::Matrix4d t = se3::Exp(at6);
+  EXPECT_LT((t * se3::Exp(xi6) * t.inverse() - se3::Exp(se3::Adjoint(t) * xi6)).norm(), 1e-12);
+  Vector9d xi9;
+  xi9 << random.Vector(1), random.Vector(2), random.Vector(2);
+  Vector9d at9;
+  at9 << random.Vector(1), random.Vector(2), random.Vector(2);
+  const se23::Matrix5d x = se23::Exp(at9);
+  EXPECT_LT((x * se23::Exp(xi9) * x.inverse() - se23::Exp(se23::Adjoint(x) * xi9)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace alidade
