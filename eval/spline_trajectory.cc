@@ -14,10 +14,11 @@ constexpr int kWeights = kDegree + 1;
 // The spline reaches this far beyond its samples: a camera with a time offset looks there.
 constexpr double kMarginSeconds = 0.5;
 // Weight of a squared second difference of control points against a squared residual: decides where no sample
-// does, and is far below the noise of any sample elsewhere.
-constexpr double kEvenness = 1e-9;
+// does, and elsewhere moves the spline by far less than any sample's noise. With less (1e-9) the control
+// points at the ends, which few samples hold, swing so far that real flights do not settle.
+constexpr double kEvenness = 1e-5;
 constexpr int kMaxIterations = 100;
-constexpr double kSettledRadians = 1e-11;
+constexpr double kSettledRadians = 1e-9;
 
 using Weights = std::array<double, kWeights>;
 
