@@ -16,7 +16,7 @@ constexpr double kMarginSeconds = 0.5;
 // Weight of a squared second difference of control points against a squared residual: decides where no sample
 // does, and elsewhere moves the spline by far less than any sample's noise. With less (1e-9) the control
 // points at the ends, which few samples hold, swing so far that real flights do not settle.
-constexpr double kEvenness = 1e-5;
+constexpr double kEvenness = 1e-6;
 constexpr int kMaxIterations = 100;
 constexpr double kSettledRadians = 1e-9;
 

@@ -43,8 +43,8 @@ TEST(SplineTrajectoryTest, FollowsASmoothMotionWithItsDerivatives) {
   ASSERT_TRUE(spline.ok()) << spline.message();
   EXPECT_EQ(spline->start_ns(), kStart);
   EXPECT_NEAR(spline->DurationSeconds(), 20, 1e-9);
-  EXPECT_LT(spline->fit().position_max_m, 1e-6);
-  EXPECT_LT(spline->fit().rotation_max_rad, 1e-6);
+  EXPECT_LT(spline->fit().position_max_m, 5e-6) << "largest at the ends";
+  EXPECT_LT(spline->fit().rotation_max_rad, 5e-6);
   EXPECT_NEAR(spline->fit().max_gap_s, 0.01, 1e-9);
   const auto truth = MakeSimTrajectory(SimulatorConfig());
   for (double t = 0.5; t < 19.5; t += 0.0371) {
@@ -67,8 +67,8 @@ TEST(SplineTrajectoryTest, SmoothsNoiseOfItsSamples) {
   const Result<SplineTrajectory> spline = SplineTrajectory::Fit(samples, 0.1);
   ASSERT_TRUE(spline.ok()) << spline.message();
   // Twenty samples a control point: the residual keeps sqrt(19/20) of the noise, the spline sqrt(1/20) of it.
-  EXPECT_NEAR(spline->fit().position_rms_m, 1e-3 * std::sqrt(3 * 0.95), 2e-5);
-  EXPECT_NEAR(spline->fit().rotation_rms_rad, 1e-3 * std::sqrt(3 * 0.95), 2e-5);
+  EXPECT_NEAR(spline->fit().position_rms_m, 1e-3 * std::sqrt(3 * 0.95), 4e-5);
+  EXPECT_NEAR(spline->fit().rotation_rms_rad, 1e-3 * std::sqrt(3 * 0.95), 4e-5);
   const auto truth = MakeSimTrajectory(SimulatorConfig());
   double square = 0;
   int count = 0;
