@@ -1,0 +1,79 @@
+#include <benchmark/benchmark.h>
+
+#include "eval/simulator.h"
+#include "filter/filter.h"
+#include "tests/support/scenario.h"
+
+namespace alidade {
+namespace {
+
+/// One iteration is one camera frame of the figure-8 in the steady state: propagation over ten IMU samples, cloning,
+/// update, marginalisation. Arguments: window, tracks.
+void FilterFrame(benchmark::State& state, FilterLandmark landmark, UpdateTiming update, int min_observations) {
+  SimulatorConfig sim;
+  sim.duration_s = 40;
+  sim.path_m = 52.4;
+  sim.max_features = static_cast<int>(state.range(1));
+  sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
+  const Dataset dataset = test::SimulateOrDie(sim, 1);
+  EstimatorConfig config;
+  config.filter.window = static_cast<int>(state.range(0));
+  config.filter.landmark = landmark;
+  config.filter.update = update;
+  config.filter.min_observations = min_observations;
+  if (update == UpdateTiming::kDelayedAll) {
+    config.filter.clone_policy = ClonePolicy::kOldest;
+  }
+  const NavEstimate initial = test::DrawInitialState(dataset, 1);
+  constexpr size_t kWarmUpFrames = 60;
+  std::unique_ptr<Estimator> filter;
+  size_t frame = dataset.tracks.size();
+  size_t imu = 0;
+  double tracks = 0;
+  double used = 0;
+  double rows = 0;
+  const auto feed_imu = [&] {
+    while (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.tracks[frame].stamp_ns) {
+      (void)filter->AddImu(dataset.imu[imu++]);
+    }
+  };
+  for (auto _ : state) {
+    state.PauseTiming();
+    if (frame == dataset.tracks.size()) {
+      filter = MakeFilter(config, dataset.rig);
+      (void)filter->Initialize(initial);
+      imu = 0;
+      for (frame = 0; frame < kWarmUpFrames; ++frame) {
+        feed_imu();
+        (void)filter->AddFrame(dataset.tracks[frame]);
+      }
+    }
+    feed_imu();
+    state.ResumeTiming();
+    const Status status = filter->AddFrame(dataset.tracks[frame]);
+    benchmark::DoNotOptimize(status.ok());
+    tracks += filter->last_statistics().tracks_in;
+    used += filter->last_statistics().features_used;
+    rows += filter->last_statistics().nis_dof;
+    ++frame;
+  }
+  state.counters["tracks"] = benchmark::Counter(tracks, benchmark::Counter::kAvgIterations);
+  state.counters["used"] = benchmark::Counter(used, benchmark::Counter::kAvgIterations);
+  state.counters["rows"] = benchmark::Counter(rows, benchmark::Counter::kAvgIterations);
+}
+
+void Sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const int window : {5, 11, 25, 50}) {
+    benchmark->Args({window, 150});
+  }
+  for (const int tracks : {50, 100, 200, 400}) {
+    benchmark->Args({25, tracks});
+  }
+  benchmark->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4)->Apply(Sizes);
+BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5)->Args({25, 150})->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace alidade
