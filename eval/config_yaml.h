@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config_schema.h"
@@ -17,6 +18,9 @@ Status ReadConfigFile(const std::string& path, const std::function<void(ConfigVi
 
 /// Applies "a.b=value" settings (the flag --set); the message names the setting.
 Status ApplySettings(const std::vector<std::string>& settings, const std::function<void(ConfigVisitor&)>& describe);
+
+/// The flag's text "a.b=1,c=[1,2,3]" -> its settings; commas inside brackets do not split.
+[[nodiscard]] std::vector<std::string> SplitSettings(std::string_view list);
 
 /// The resolved configuration as YAML that ReadConfigFile reads back to the same values; with_docs adds unit, range and
 /// reason as a comment to every key.

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "core/time.h"
+
+namespace alidade {
+
+/// A column a header must have: "name [unit]". A header may leave the unit out unless it is required.
+struct CsvColumn {
+  std::string_view name;
+  std::string_view unit = {};
+  bool unit_required = false;
+};
+
+/// Walks the rows of a delimited text file held in memory. Numbers are parsed from whole fields: trailing characters,
+/// "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a byte order mark are accepted. Every fault is
+/// kInput "file:line: column N (name): found 'text', expected ...".
+class CsvReader {
+ public:
+  /// `separator` ' ' means any run of spaces and tabs. Errors: the file cannot be read or holds no text.
+  static Result<CsvReader> Open(const std::string& path, char separator = ',');
+
+  /// Moves to the next row that is not blank; false at the end of the file.
+  bool NextRow();
+  [[nodiscard]] size_t columns() const { return fields_.size(); }
+  [[nodiscard]] std::string_view field(size_t column) const { return fields_[column]; }
+  /// "file:line" of the current row.
+  [[nodiscard]] std::string Place() const;
+
+  /// The current row is a header of these columns (a leading '#' and blanks aside); more may follow if `allow_more`.
+  [[nodiscard]] Status ExpectHeader(const std::vector<CsvColumn>& columns, bool allow_more = false) const;
+  /// The current row has exactly `count` fields; fewer is a torn row.
+  [[nodiscard]] Status ExpectColumns(size_t count) const;
+
+  Status ReadInt64(size_t column, std::string_view name, std::int64_t* value) const;
+  Status ReadReal(size_t column, std::string_view name, double* value) const;
+  /// A stamp [ns] in column 0 that must be later than `previous` unless `first`.
+  Status ReadStamp(bool first, TimeNs previous, TimeNs* stamp) const;
+  /// The fault of a column of the current row.
+  [[nodiscard]] Status Fault(size_t column, std::string_view name, const std::string& expected) const;
+
+ private:
+  CsvReader(std::string path, std::string content, char separator);
+  void Split(std::string_view line);
+
+  std::string path_;
+  std::string content_;
+  char separator_ = ',';
+  size_t position_ = 0;
+  int line_ = 0;
+  std::vector<std::string_view> fields_;  ///< views into content_: valid until the reader moves or dies
+};
+
+/// `text` in quotes, shortened for messages.
+[[nodiscard]] std::string Quoted(std::string_view text);
+
+}  // namespace alidade

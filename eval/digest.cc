@@ -1,0 +1,106 @@
+#include <openssl/evp.h>
+
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/check.h"
+#include "eval/dataset.h"
+
+namespace alidade {
+namespace {
+
+/// Collects numbers as little-endian 64-bit words, whatever the machine, and hashes them in blocks.
+class Hasher {
+ public:
+  Hasher() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    CHECK(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+    block_.reserve(kBlock);
+  }
+
+  void Add(std::uint64_t word) {
+    for (int shift = 0; shift < 64; shift += 8) {
+      block_.push_back(static_cast<unsigned char>(word >> shift));
+    }
+    if (block_.size() >= kBlock) {
+      Flush();
+    }
+  }
+  void Add(std::int64_t number) { Add(static_cast<std::uint64_t>(number)); }
+  void Add(double number) { Add(std::bit_cast<std::uint64_t>(number + 0.0)); }  // -0 counts as 0
+  template <typename Derived>
+  void Add(const Eigen::MatrixBase<Derived>& matrix) {
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      for (Eigen::Index col = 0; col < matrix.cols(); ++col) {
+        Add(static_cast<double>(matrix(row, col)));
+      }
+    }
+  }
+
+  std::string Hex() {
+    Flush();
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int size = 0;
+    CHECK_EQ(EVP_DigestFinal_ex(context_.get(), digest, &size), 1);
+    constexpr char kDigits[] = "0123456789abcdef";
+    std::string text;
+    for (unsigned int i = 0; i < size; ++i) {
+      text.push_back(kDigits[digest[i] >> 4]);
+      text.push_back(kDigits[digest[i] & 15]);
+    }
+    return text;
+  }
+
+ private:
+  static constexpr size_t kBlock = 1 << 16;
+
+  void Flush() {
+    CHECK_EQ(EVP_DigestUpdate(context_.get(), block_.data(), block_.size()), 1);
+    block_.clear();
+  }
+
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
+  std::vector<unsigned char> block_;
+};
+
+void AddRig(const RigCalibration& rig, Hasher* hasher) {
+  hasher->Add(static_cast<std::int64_t>(rig.camera.model()));
+  hasher->Add(std::int64_t{rig.camera.width_px()});
+  hasher->Add(std::int64_t{rig.camera.height_px()});
+  hasher->Add(rig.camera.intrinsics());
+  hasher->Add(rig.camera.coefficients());
+  hasher->Add(rig.T_BC.rotation);
+  hasher->Add(rig.T_BC.translation);
+  hasher->Add(rig.imu_noise.gyro_noise_density_radps_sqrthz);
+  hasher->Add(rig.imu_noise.accel_noise_density_mps2_sqrthz);
+  hasher->Add(rig.imu_noise.gyro_random_walk_radps2_sqrthz);
+  hasher->Add(rig.imu_noise.accel_random_walk_mps3_sqrthz);
+  hasher->Add(rig.camera_time_offset_s);
+}
+
+}  // namespace
+
+std::string DigestOf(const MeasurementLog& log) {
+  Hasher hasher;
+  AddRig(log.rig, &hasher);
+  // Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
+  hasher.Add(static_cast<std::uint64_t>(log.imu.size()));
+  for (const ImuSample& sample : log.imu) {
+    hasher.Add(std::int64_t{sample.stamp_ns});
+    hasher.Add(sample.gyro);
+    hasher.Add(sample.accel);
+  }
+  hasher.Add(static_cast<std::uint64_t>(log.frames.size()));
+  for (const TrackFrame& frame : log.frames) {
+    hasher.Add(std::int64_t{frame.stamp_ns});
+    hasher.Add(static_cast<std::uint64_t>(frame.observations.size()));
+    for (const TrackObservation& observation : frame.observations) {
+      hasher.Add(observation.track_id);
+      hasher.Add(observation.pixel);
+    }
+  }
+  return hasher.Hex();
+}
+
+}  // namespace alidade

@@ -1,0 +1,285 @@
+#include "eval/sensor_yaml.h"
+
+#include <cmath>
+#include <vector>
+
+#include "eval/csv.h"
+#include "eval/output_file.h"
+#include "eval/strict_yaml.h"
+#include "eval/suggest.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kMaxRigidityError = 1e-3;
+constexpr double kRoundingError = 1e-12;  // below this a rotation is kept as it is, so that writing and reading is exact
+
+/// One sensor.yaml with its path, for messages.
+class SensorFile {
+ public:
+  static Result<SensorFile> Open(const std::string& path, const std::string& sensor_type) {
+    Result<YAML::Node> root = ParseYamlFile(path, StatusCode::kInput);
+    if (!root.ok()) {
+      return root.status();
+    }
+    SensorFile file(path, *root);
+    if (file.Has("sensor_type") && file.root_["sensor_type"].as<std::string>("") != sensor_type) {
+      return file.Fault("sensor_type", "'" + sensor_type + "'");
+    }
+    return file;
+  }
+
+  [[nodiscard]] bool Has(const char* key) const { return root_[key].IsDefined(); }
+  [[nodiscard]] YAML::Node operator[](const char* key) const { return root_[key]; }
+
+  [[nodiscard]] Status Fault(const char* key, const std::string& expected) const {
+    if (!Has(key)) {
+      std::vector<std::string> keys;
+      for (const auto& entry : root_) {
+        keys.push_back(entry.first.Scalar());
+      }
+      const std::string nearest = NearestName(key, keys);
+      return Status::Input(path_ + ": " + key + ": is missing, expected " + expected +
+                           (nearest.empty() ? "" : " (found a key '" + nearest + "')"));
+    }
+    return Status::Input(YamlPlace(path_, root_[key]) + ": " + key + ": found " + YamlText(root_[key]) + ", expected " +
+                         expected);
+  }
+
+  Status ReadReal(const char* key, double min, double* value) const {
+    if (!Has(key)) {
+      return Fault(key, "a number");
+    }
+    if (const Status parsed = ParseYamlReal(root_[key], value); !parsed.ok()) {
+      return Fault(key, parsed.message());
+    }
+    return *value >= min ? Status::Ok() : Fault(key, "a number of at least " + ShortestDouble(min));
+  }
+
+  Status ReadReals(const char* key, size_t count, std::vector<double>* values) const {
+    if (!Has(key)) {
+      return Fault(key, "a list of numbers");
+    }
+    if (const Status parsed = ParseYamlReals(root_[key], count, values); !parsed.ok()) {
+      return Fault(key, parsed.message());
+    }
+    return Status::Ok();
+  }
+
+  Status ReadRate(std::optional<double>* rate_hz) const {
+    if (!Has("rate_hz")) {
+      return Status::Ok();
+    }
+    double rate = 0;
+    ALIDADE_RETURN_IF_ERROR(ReadReal("rate_hz", 0, &rate));
+    if (rate <= 0) {
+      return Fault("rate_hz", "a positive rate [Hz]");
+    }
+    *rate_hz = rate;
+    return Status::Ok();
+  }
+
+  /// The sixteen row-major numbers of a 4x4: {cols, rows, data} as EuRoC and OpenCV write it, or a list of four rows, or
+  /// a flat list.
+  Status ReadTransform(const char* key, Pose* transform) const;
+
+ private:
+  SensorFile(std::string path, YAML::Node root) : path_(std::move(path)), root_(std::move(root)) {}
+
+  std::string path_;
+  YAML::Node root_;
+};
+
+/// Checks that 16 row-major numbers are a rigid transform; the empty text, or what is wrong with them.
+std::string MakeRigid(const std::vector<double>& m, Pose* transform) {
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 16; ++i) {
+    matrix(i / 4, i % 4) = m[static_cast<size_t>(i)];
+  }
+  if (!matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-9)) {
+    return "last row 0 0 0 1 (row-major order)";
+  }
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const double determinant = rotation.determinant();
+  if (!(error <= kMaxRigidityError) || determinant < 0) {
+    return "a rigid transform: the determinant of its rotation is " + ShortestDouble(determinant) +
+           " (expected 1) and its orthogonality error " + ShortestDouble(error) + " (at most 1e-3)";
+  }
+  transform->rotation = error <= kRoundingError ? rotation : so3::Normalize(rotation);
+  transform->translation = matrix.topRightCorner<3, 1>();
+  return {};
+}
+
+Status SensorFile::ReadTransform(const char* key, Pose* transform) const {
+  const YAML::Node node = root_[key];
+  const YAML::Node data = node.IsMap() ? node["data"] : node;
+  std::vector<double> numbers;
+  if (data.IsDefined() && data.IsSequence() && data.size() == 4 && data[0].IsSequence()) {
+    for (const YAML::Node& row : data) {
+      std::vector<double> entries;
+      if (const Status parsed = ParseYamlReals(row, 4, &entries); !parsed.ok()) {
+        return Fault(key, "four rows of four numbers; a row is not " + parsed.message());
+      }
+      numbers.insert(numbers.end(), entries.begin(), entries.end());
+    }
+  } else if (!data.IsDefined()) {
+    return Fault(key, "'data' with 16 numbers, row-major");
+  } else if (const Status parsed = ParseYamlReals(data, 16, &numbers); !parsed.ok()) {
+    return Fault(key, parsed.message() + ", a row-major 4x4 transform");
+  }
+  const std::string wrong = MakeRigid(numbers, transform);
+  return wrong.empty() ? Status::Ok() : Fault(key, wrong);
+}
+
+Status ReadExtrinsics(const SensorFile& file, Pose* T_BC) {
+  const char* found = nullptr;
+  for (const char* key : {"T_BS", "T_imu_cam", "body_T_cam0", "T_cam_imu"}) {
+    if (!file.Has(key)) {
+      continue;
+    }
+    if (found != nullptr) {
+      return file.Fault(key, std::string("no second transform beside ") + found);
+    }
+    found = key;
+  }
+  if (found == nullptr) {
+    return file.Fault("T_BS", "the camera-to-body transform (or T_imu_cam, body_T_cam0, T_cam_imu by that name)");
+  }
+  ALIDADE_RETURN_IF_ERROR(file.ReadTransform(found, T_BC));
+  if (std::string_view(found) == "T_cam_imu") {
+    *T_BC = T_BC->Inverse();
+  }
+  return Status::Ok();
+}
+
+Status ReadDistortionModel(const SensorFile& file, DistortionModel* model) {
+  const std::string known = "one of radial-tangential, equidistant, fov, none";
+  if (!file.Has("distortion_model") || !file["distortion_model"].IsScalar()) {
+    return file.Fault("distortion_model", known);
+  }
+  const std::string name = file["distortion_model"].Scalar();
+  const std::optional<DistortionModel> parsed = ParseDistortionModel(name);
+  if (!parsed.has_value()) {
+    return file.Fault("distortion_model",
+                      known + Suggestion(name, {"radial-tangential", "equidistant", "fov", "none"}));
+  }
+  *model = *parsed;
+  return Status::Ok();
+}
+
+Status ReadCamera(const SensorFile& file, const std::string& path, CameraModel* camera) {
+  if (file.Has("camera_model") && file["camera_model"].as<std::string>("") != "pinhole") {
+    return file.Fault("camera_model", "'pinhole'");
+  }
+  DistortionModel model = DistortionModel::kNone;
+  ALIDADE_RETURN_IF_ERROR(ReadDistortionModel(file, &model));
+  std::vector<double> intrinsics;
+  std::vector<double> resolution;
+  std::vector<double> coefficients;
+  ALIDADE_RETURN_IF_ERROR(file.ReadReals("intrinsics", 4, &intrinsics));
+  ALIDADE_RETURN_IF_ERROR(file.ReadReals("resolution", 2, &resolution));
+  if (file.Has("distortion_coefficients") || model != DistortionModel::kNone) {
+    ALIDADE_RETURN_IF_ERROR(file.ReadReals("distortion_coefficients", 0, &coefficients));
+  }
+  for (const double side : resolution) {
+    if (side != std::floor(side) || side < 1 || side > 1e5) {
+      return file.Fault("resolution", "width and height, whole and positive [px]");
+    }
+  }
+  Result<CameraModel> created =
+      CameraModel::Create(model, Eigen::Vector4d(intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]),
+                          coefficients, static_cast<int>(resolution[0]), static_cast<int>(resolution[1]));
+  if (!created.ok()) {
+    return Status::Input(path + ": " + created.message());
+  }
+  *camera = *created;
+  return Status::Ok();
+}
+
+std::string TransformYaml(const Pose& transform) {
+  std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) {
+      text += ShortestDouble(transform.rotation(row, col)) + ", ";
+    }
+    text += ShortestDouble(transform.translation[row]) + ",\n         ";
+  }
+  return text + "0, 0, 0, 1]\n";
+}
+
+std::string Line(const char* key, double value, const char* comment) {
+  return std::string(key) + ": " + ShortestDouble(value) + comment + "\n";
+}
+
+}  // namespace
+
+Result<ImuSensor> ReadImuSensor(const std::string& path) {
+  const Result<SensorFile> file = SensorFile::Open(path, "imu");
+  if (!file.ok()) {
+    return file.status();
+  }
+  if (file->Has("T_BS")) {
+    Pose T_BS;
+    ALIDADE_RETURN_IF_ERROR(file->ReadTransform("T_BS", &T_BS));
+    if (!T_BS.rotation.isIdentity(1e-9) || !T_BS.translation.isZero(1e-9)) {
+      return file->Fault("T_BS", "the identity: the body frame is this sensor");
+    }
+  }
+  ImuSensor sensor;
+  ALIDADE_RETURN_IF_ERROR(file->ReadRate(&sensor.rate_hz));
+  ImuNoise& noise = sensor.noise;
+  ALIDADE_RETURN_IF_ERROR(file->ReadReal("gyroscope_noise_density", 0, &noise.gyro_noise_density_radps_sqrthz));
+  ALIDADE_RETURN_IF_ERROR(file->ReadReal("gyroscope_random_walk", 0, &noise.gyro_random_walk_radps2_sqrthz));
+  ALIDADE_RETURN_IF_ERROR(file->ReadReal("accelerometer_noise_density", 0, &noise.accel_noise_density_mps2_sqrthz));
+  ALIDADE_RETURN_IF_ERROR(file->ReadReal("accelerometer_random_walk", 0, &noise.accel_random_walk_mps3_sqrthz));
+  return sensor;
+}
+
+Result<CameraSensor> ReadCameraSensor(const std::string& path) {
+  const Result<SensorFile> file = SensorFile::Open(path, "camera");
+  if (!file.ok()) {
+    return file.status();
+  }
+  CameraSensor sensor;
+  ALIDADE_RETURN_IF_ERROR(ReadExtrinsics(*file, &sensor.T_BC));
+  ALIDADE_RETURN_IF_ERROR(file->ReadRate(&sensor.rate_hz));
+  ALIDADE_RETURN_IF_ERROR(ReadCamera(*file, path, &sensor.camera));
+  if (file->Has("time_offset_s")) {
+    ALIDADE_RETURN_IF_ERROR(file->ReadReal("time_offset_s", -10, &sensor.time_offset_s));
+    if (sensor.time_offset_s > 10) {
+      return file->Fault("time_offset_s", "a number within +-10 s");
+    }
+  }
+  return sensor;
+}
+
+std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz) {
+  return "sensor_type: imu\n" + TransformYaml(Pose()) + Line("rate_hz", rate_hz, "") +
+         Line("gyroscope_noise_density", noise.gyro_noise_density_radps_sqrthz, "  # rad s^-1 Hz^-0.5") +
+         Line("gyroscope_random_walk", noise.gyro_random_walk_radps2_sqrthz, "  # rad s^-2 Hz^-0.5") +
+         Line("accelerometer_noise_density", noise.accel_noise_density_mps2_sqrthz, "  # m s^-2 Hz^-0.5") +
+         Line("accelerometer_random_walk", noise.accel_random_walk_mps3_sqrthz, "  # m s^-3 Hz^-0.5");
+}
+
+std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
+  const CameraModel& camera = rig.camera;
+  std::string text = "sensor_type: camera\n" + TransformYaml(rig.T_BC) + Line("rate_hz", rate_hz, "");
+  text += "resolution: [" + std::to_string(camera.width_px()) + ", " + std::to_string(camera.height_px()) + "]\n";
+  text += "camera_model: pinhole\nintrinsics: [";
+  for (int i = 0; i < 4; ++i) {
+    text += (i > 0 ? ", " : "") + ShortestDouble(camera.intrinsics()[i]);
+  }
+  text += "]  # fu, fv, cu, cv [px]\ndistortion_model: " + std::string(ToString(camera.model())) +
+          "\ndistortion_coefficients: [";
+  for (int i = 0; i < CoefficientCount(camera.model()); ++i) {
+    text += (i > 0 ? ", " : "") + ShortestDouble(camera.coefficients()[i]);
+  }
+  text += "]\n";
+  if (rig.camera_time_offset_s != 0) {
+    text += Line("time_offset_s", rig.camera_time_offset_s, "  # t_imu = t_camera + offset");
+  }
+  return text;
+}
+
+}  // namespace alidade
