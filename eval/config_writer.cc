@@ -9,11 +9,13 @@ namespace {
 /// Text as a YAML scalar: plain when nobody could read it as anything else, otherwise in double quotes.
 std::string YamlScalar(const std::string& text) {
   const auto is_safe = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/' ||
-           c == '.' || c == '-';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '/' || c == '.' || c == '-';
   };
-  const bool starts_with_letter = !text.empty() && ((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z'));
-  const bool is_word = text == "null" || text == "Null" || text == "NULL" || text == "true" || text == "false";
+  const bool starts_with_letter =
+      !text.empty() && ((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z'));
+  const bool is_word =
+      text == "null" || text == "Null" || text == "NULL" || text == "true" || text == "false";
   if (starts_with_letter && !is_word && std::all_of(text.begin(), text.end(), is_safe)) {
     return text;
   }
@@ -54,11 +56,13 @@ class YamlWriter final : public ConfigVisitor {
   void Integer(const KeyDoc& doc, int* value, int min, int max) override {
     Line(doc, std::to_string(*value), Range(std::to_string(min), std::to_string(max)));
   }
-  void Boolean(const KeyDoc& doc, bool* value) override { Line(doc, *value ? "true" : "false", "true | false"); }
+  void Boolean(const KeyDoc& doc, bool* value) override {
+    Line(doc, *value ? "true" : "false", "true | false");
+  }
   void Text(const KeyDoc& doc, std::string* value) override { Line(doc, YamlScalar(*value), "text"); }
   void Vector3(const KeyDoc& doc, Eigen::Vector3d* value, double min, double max) override {
-    Line(doc,
-         "[" + ShortestDouble(value->x()) + ", " + ShortestDouble(value->y()) + ", " + ShortestDouble(value->z()) + "]",
+    const std::string xy = ShortestDouble(value->x()) + ", " + ShortestDouble(value->y());
+    Line(doc, Range(xy, ShortestDouble(value->z())),
          "each " + Range(ShortestDouble(min), ShortestDouble(max)));
   }
   void Choice(const KeyDoc& doc, const std::vector<std::string_view>& options, int* index) override {
@@ -70,7 +74,9 @@ class YamlWriter final : public ConfigVisitor {
   }
 
  private:
-  static std::string Range(const std::string& min, const std::string& max) { return "[" + min + ", " + max + "]"; }
+  static std::string Range(const std::string& min, const std::string& max) {
+    return "[" + min + ", " + max + "]";
+  }
 
   void Line(const KeyDoc& doc, const std::string& value, const std::string& range) {
     text_ += indent_ + std::string(doc.name) + ": " + value;

@@ -18,7 +18,9 @@ std::string Join(const std::string& prefix, std::string_view name) {
   return prefix.empty() ? std::string(name) : prefix + "." + std::string(name);
 }
 
-std::string Leaf(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+std::string Leaf(const std::string& path) {
+  return path.substr(path.rfind('.') + 1);
+}
 
 /// Lists every key and section by its dotted path.
 class SchemaCollector final : public ConfigVisitor {
@@ -71,7 +73,9 @@ class SchemaCollector final : public ConfigVisitor {
 /// Every key of the file is in the schema, and groups are where groups belong.
 Status CheckKnown(const YAML::Node& map, const std::string& prefix, const std::string& where,
                   const SchemaCollector& schema) {
-  for (const auto& [key, value] : map) {
+  for (const auto& entry : map) {
+    const YAML::Node& key = entry.first;
+    const YAML::Node& value = entry.second;
     const std::string path = Join(prefix, key.Scalar());
     if (prefix.empty() && path == "base") {
       continue;
@@ -163,8 +167,9 @@ class TreeReader final : public ConfigVisitor {
     }
     for (const double entry : parsed) {
       if (entry < min || entry > max) {
-        Fail(doc, node, "three numbers in [" + ShortestDouble(min) + ", " + ShortestDouble(max) + "]" + Unit(doc) +
-                            ", one is " + ShortestDouble(entry));
+        Fail(doc, node,
+             "three numbers in [" + ShortestDouble(min) + ", " + ShortestDouble(max) + "]" + Unit(doc) +
+                 ", one is " + ShortestDouble(entry));
         return;
       }
     }
@@ -191,9 +196,7 @@ class TreeReader final : public ConfigVisitor {
 
  private:
   /// The child of that name; an undefined node when there is none. Const, so that a look never inserts.
-  [[nodiscard]] YAML::Node Find(std::string_view name) const {
-    return node_[std::string(name)];
-  }
+  [[nodiscard]] YAML::Node Find(std::string_view name) const { return node_[std::string(name)]; }
 
   [[nodiscard]] static std::string Unit(const KeyDoc& doc) {
     return doc.unit == "-" ? std::string() : " " + std::string(doc.unit);
@@ -208,8 +211,8 @@ class TreeReader final : public ConfigVisitor {
 
   void Fail(const KeyDoc& doc, const YAML::Node& node, const std::string& expected) {
     if (fault_.ok()) {
-      fault_ = Status::Config(YamlPlace(where_, node) + ": " + Join(prefix_, doc.name) + ": found " + YamlText(node) +
-                              ", expected " + expected);
+      fault_ = Status::Config(YamlPlace(where_, node) + ": " + Join(prefix_, doc.name) + ": found " +
+                              YamlText(node) + ", expected " + expected);
     }
   }
 
@@ -236,7 +239,8 @@ Status ReadConfigLayer(const std::string& path, int depth, const SchemaCollector
   const YAML::Node& map = *root;
   if (const YAML::Node base = map["base"]; base.IsDefined()) {
     if (!base.IsScalar() || base.Scalar().empty()) {
-      return Status::Config(YamlPlace(path, base) + ": base: found " + YamlText(base) + ", expected a file name");
+      return Status::Config(YamlPlace(path, base) + ": base: found " + YamlText(base) +
+                            ", expected a file name");
     }
     if (depth >= kMaxBaseDepth) {
       return Status::Config(YamlPlace(path, base) + ": base: " + Quoted(base.Scalar()) +
@@ -252,7 +256,8 @@ Status ReadConfigLayer(const std::string& path, int depth, const SchemaCollector
   return ApplyTree(map, path, schema, describe);
 }
 
-/// "a.b=value" as a tree {a: {b: value}}. A value in brackets is a list; any other is one scalar, whatever its letters.
+/// "a.b=value" as a tree {a: {b: value}}. A value in brackets is a list; any other is one scalar, whatever
+/// its letters.
 Result<YAML::Node> SettingTree(const std::string& setting, const std::string& where, std::string* key) {
   const size_t equals = setting.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -289,7 +294,8 @@ Status ReadConfigFile(const std::string& path, const std::function<void(ConfigVi
   return ReadConfigLayer(path, 0, schema, describe);
 }
 
-Status ApplySettings(const std::vector<std::string>& settings, const std::function<void(ConfigVisitor&)>& describe) {
+Status ApplySettings(const std::vector<std::string>& settings,
+                     const std::function<void(ConfigVisitor&)>& describe) {
   SchemaCollector schema;
   describe(schema);
   for (const std::string& setting : settings) {
@@ -300,8 +306,9 @@ Status ApplySettings(const std::vector<std::string>& settings, const std::functi
       return tree.status();
     }
     if (!schema.IsKey(key)) {
-      return Status::Config(where + ": " + key + (schema.IsSection(key) ? ": is a group of keys, expected one of them"
-                                                                        : ": unknown key" + schema.Hint(key)));
+      return Status::Config(where + ": " + key +
+                            (schema.IsSection(key) ? ": is a group of keys, expected one of them"
+                                                   : ": unknown key" + schema.Hint(key)));
     }
     ALIDADE_RETURN_IF_ERROR(ApplyTree(*tree, where, schema, describe));
   }
@@ -327,7 +334,8 @@ std::vector<std::string> SplitSettings(std::string_view list) {
   return settings;
 }
 
-Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path, const std::vector<std::string>& settings) {
+Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path,
+                                            const std::vector<std::string>& settings) {
   EstimatorConfig config;
   const auto describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
   ALIDADE_RETURN_IF_ERROR(ReadConfigFile(path, describe));

@@ -38,7 +38,10 @@ std::string HeaderText(const CsvColumn& column) {
 }
 
 bool HeaderMatches(std::string_view field, const CsvColumn& column) {
-  const std::string found = WithoutBlanks(field.starts_with('#') ? field.substr(1) : field);
+  std::string found = WithoutBlanks(field.starts_with('#') ? field.substr(1) : field);
+  if (found.ends_with("[]")) {  // EuRoC's way to say that a quaternion has no unit
+    found.resize(found.size() - 2);
+  }
   return found == WithoutBlanks(HeaderText(column)) || (!column.unit_required && found == column.name);
 }
 
@@ -46,7 +49,8 @@ bool HeaderMatches(std::string_view field, const CsvColumn& column) {
 
 std::string Quoted(std::string_view text) {
   constexpr size_t kLongest = 60;
-  return text.size() <= kLongest ? "'" + std::string(text) + "'" : "'" + std::string(text.substr(0, kLongest)) + "...'";
+  return text.size() <= kLongest ? "'" + std::string(text) + "'"
+                                 : "'" + std::string(text.substr(0, kLongest)) + "...'";
 }
 
 CsvReader::CsvReader(std::string path, std::string content, char separator)
@@ -97,24 +101,26 @@ void CsvReader::Split(std::string_view line) {
   }
 }
 
-std::string CsvReader::Place() const { return path_ + ":" + std::to_string(line_); }
+std::string CsvReader::Place() const {
+  return path_ + ":" + std::to_string(line_);
+}
 
 Status CsvReader::Fault(size_t column, std::string_view name, const std::string& expected) const {
   const std::string_view found = column < fields_.size() ? fields_[column] : std::string_view();
-  return Status::Input(Place() + ": column " + std::to_string(column + 1) + " (" + std::string(name) + "): found " +
-                       Quoted(found) + ", expected " + expected);
+  return Status::Input(Place() + ": column " + std::to_string(column + 1) + " (" + std::string(name) +
+                       "): found " + Quoted(found) + ", expected " + expected);
 }
 
 Status CsvReader::ExpectHeader(const std::vector<CsvColumn>& columns, bool allow_more) const {
   for (size_t i = 0; i < columns.size(); ++i) {
     const std::string expected = HeaderText(columns[i]);
     if (i >= fields_.size()) {
-      return Status::Input(Place() + ": header ends after column " + std::to_string(i) + ", expected '" + expected +
-                           "' next");
+      return Status::Input(Place() + ": header ends after column " + std::to_string(i) + ", expected '" +
+                           expected + "' next");
     }
     if (!HeaderMatches(fields_[i], columns[i])) {
-      return Status::Input(Place() + ": header column " + std::to_string(i + 1) + ": found " + Quoted(fields_[i]) +
-                           ", expected '" + (i == 0 ? "#" : "") + expected + "'");
+      return Status::Input(Place() + ": header column " + std::to_string(i + 1) + ": found " +
+                           Quoted(fields_[i]) + ", expected '" + (i == 0 ? "#" : "") + expected + "'");
     }
   }
   if (!allow_more && fields_.size() > columns.size()) {
@@ -133,8 +139,8 @@ Status CsvReader::ExpectColumns(size_t count) const {
   if (fields_.size() < count) {
     return Status::Input(Place() + ": torn row: found " + found + ", expected " + std::to_string(count));
   }
-  return Status::Input(Place() + ": row too long: found " + found + " (the first extra is " + Quoted(fields_[count]) +
-                       "), expected " + std::to_string(count));
+  return Status::Input(Place() + ": row too long: found " + found + " (the first extra is " +
+                       Quoted(fields_[count]) + "), expected " + std::to_string(count));
 }
 
 Status CsvReader::ReadInt64(size_t column, std::string_view name, std::int64_t* value) const {

@@ -17,9 +17,9 @@ struct CsvColumn {
   bool unit_required = false;
 };
 
-/// Walks the rows of a delimited text file held in memory. Numbers are parsed from whole fields: trailing characters,
-/// "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a byte order mark are accepted. Every fault is
-/// kInput "file:line: column N (name): found 'text', expected ...".
+/// Walks the rows of a delimited text file held in memory. Numbers are parsed from whole fields: trailing
+/// characters, "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a byte order mark are
+/// accepted. Every fault is kInput "file:line: column N (name): found 'text', expected ...".
 class CsvReader {
  public:
   /// `separator` ' ' means any run of spaces and tabs. Errors: the file cannot be read or holds no text.
@@ -32,7 +32,8 @@ class CsvReader {
   /// "file:line" of the current row.
   [[nodiscard]] std::string Place() const;
 
-  /// The current row is a header of these columns (a leading '#' and blanks aside); more may follow if `allow_more`.
+  /// The current row is a header of these columns (a leading '#' and blanks aside); more may follow if
+  /// `allow_more`.
   [[nodiscard]] Status ExpectHeader(const std::vector<CsvColumn>& columns, bool allow_more = false) const;
   /// The current row has exactly `count` fields; fewer is a torn row.
   [[nodiscard]] Status ExpectColumns(size_t count) const;

@@ -46,7 +46,8 @@ Result<std::vector<ImuSample>> ReadImu(const std::string& path) {
   while (csv->NextRow()) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
     ImuSample sample;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(imu.empty(), imu.empty() ? 0 : imu.back().stamp_ns, &sample.stamp_ns));
+    ALIDADE_RETURN_IF_ERROR(
+        csv->ReadStamp(imu.empty(), imu.empty() ? 0 : imu.back().stamp_ns, &sample.stamp_ns));
     for (int i = 0; i < 3; ++i) {
       const size_t column = static_cast<size_t>(i) + 1;
       ALIDADE_RETURN_IF_ERROR(csv->ReadReal(column, header[column].name, &sample.gyro[i]));
@@ -62,7 +63,9 @@ Result<std::vector<ImuSample>> ReadImu(const std::string& path) {
 
 Status CloseFrame(TrackFrame* frame, const std::string& place) {
   std::vector<TrackObservation>& observations = frame->observations;
-  const auto by_id = [](const TrackObservation& a, const TrackObservation& b) { return a.track_id < b.track_id; };
+  const auto by_id = [](const TrackObservation& a, const TrackObservation& b) {
+    return a.track_id < b.track_id;
+  };
   if (!std::is_sorted(observations.begin(), observations.end(), by_id)) {
     std::stable_sort(observations.begin(), observations.end(), by_id);
   }
@@ -130,8 +133,9 @@ Result<std::vector<TimeNs>> ReadStamps(const std::string& path) {
   return stamps;
 }
 
-/// Width and height in the header of a PNG file: 8 bytes of signature, then the IHDR chunk with both as big-endian
-/// integers (ISO/IEC 15948). Nothing when the file is no PNG: other formats are the decoder's business.
+/// Width and height in the header of a PNG file: 8 bytes of signature, then the IHDR chunk with both as
+/// big-endian integers (ISO/IEC 15948). Nothing when the file is no PNG: other formats are the decoder's
+/// business.
 std::optional<std::pair<int, int>> PngSize(const std::string& path) {
   unsigned char head[24] = {};
   std::ifstream file(path, std::ios::binary);
@@ -169,7 +173,8 @@ Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraM
   while (csv->NextRow()) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(2));
     ImageEntry image;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(images.empty(), images.empty() ? 0 : images.back().stamp_ns, &image.stamp_ns));
+    ALIDADE_RETURN_IF_ERROR(
+        csv->ReadStamp(images.empty(), images.empty() ? 0 : images.back().stamp_ns, &image.stamp_ns));
     image.path = (folder / "data" / std::string(csv->field(1))).string();
     ALIDADE_RETURN_IF_ERROR(CheckImage(*csv, image, camera));
     images.push_back(std::move(image));
@@ -224,7 +229,8 @@ Status ReadCamera(const fs::path& folder, Dataset* dataset) {
     dataset->images = std::move(images).value();
   }
   if (dataset->tracks.empty() && dataset->camera_stamps.empty() && dataset->images.empty()) {
-    return Status::Input(folder.string() + ": expected tracks.csv, data.csv with images, or timestamps.csv; found none");
+    return Status::Input(folder.string() +
+                         ": expected tracks.csv, data.csv with images, or timestamps.csv; found none");
   }
   if (!dataset->tracks.empty() && !dataset->camera_stamps.empty()) {
     ALIDADE_RETURN_IF_ERROR(AddEmptyFrames(tracks_path, dataset));
@@ -272,7 +278,8 @@ Status CheckFolders(const std::string& path, const fs::path& mav) {
                          (inside ? " (this looks like mav0 itself: give the folder that holds it)" : ""));
   }
   if (!fs::is_directory(mav / "cam0") && !fs::is_directory(mav / "gnss0")) {
-    return Status::Input((mav / "cam0").string() + ": no such folder, expected a camera (or gnss0 beside it)");
+    return Status::Input((mav / "cam0").string() +
+                         ": no such folder, expected a camera (or gnss0 beside it)");
   }
   return Status::Ok();
 }

@@ -38,12 +38,13 @@ std::string ImuCsv(const std::vector<ImuSample>& imu) {
 }
 
 std::string TruthCsv(const Trajectory& truth) {
-  std::string text = truth.has_velocity
-                         ? "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
-                           "q_RS_z [],v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],"
-                           "b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],"
-                           "b_a_RS_S_z [m s^-2]\n"
-                         : "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n";
+  std::string text =
+      truth.has_velocity
+          ? "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
+            "q_RS_z [],v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],"
+            "b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],"
+            "b_a_RS_S_z [m s^-2]\n"
+          : "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n";
   text.reserve(truth.points.size() * 340);
   for (const TrajectoryPoint& point : truth.points) {
     const Eigen::Quaterniond q(point.nav.R_WB);
@@ -69,8 +70,8 @@ std::string StampsCsv(const std::vector<TimeNs>& stamps) {
   return text;
 }
 
-/// The stamps that timestamps.csv must hold: those given, or all frames when some frame saw nothing and tracks.csv alone
-/// would lose it.
+/// The stamps that timestamps.csv must hold: those given, or all frames when some frame saw nothing and
+/// tracks.csv alone would lose it.
 std::vector<TimeNs> StampsToWrite(const Dataset& dataset) {
   if (!dataset.camera_stamps.empty()) {
     return dataset.camera_stamps;
@@ -107,8 +108,8 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((mav / "imu0" / "sensor.yaml").string(),
                                               ImuSensorYaml(dataset.rig.imu_noise, dataset.imu_rate_hz)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((mav / "imu0" / "data.csv").string(), ImuCsv(dataset.imu)));
-  ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically((camera / "sensor.yaml").string(), CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((camera / "sensor.yaml").string(),
+                                              CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));
   if (!dataset.tracks.empty()) {
     ALIDADE_RETURN_IF_ERROR(WriteTracks(dataset.tracks, (camera / "tracks.csv").string()));
   }
@@ -117,8 +118,8 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
   }
   if (dataset.truth.has_value()) {
     const char* name = dataset.truth->has_velocity ? "data.csv" : "data_pose.csv";
-    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((mav / "state_groundtruth_estimate0" / name).string(),
-                                                TruthCsv(*dataset.truth)));
+    ALIDADE_RETURN_IF_ERROR(
+        WriteFileAtomically((mav / "state_groundtruth_estimate0" / name).string(), TruthCsv(*dataset.truth)));
   }
   return Status::Ok();
 }

@@ -13,7 +13,9 @@
 namespace alidade {
 namespace {
 
-std::string SystemReason() { return std::strerror(errno); }
+std::string SystemReason() {
+  return std::strerror(errno);
+}
 
 Status WriteAll(int descriptor, std::string_view content, const std::string& path) {
   while (!content.empty()) {

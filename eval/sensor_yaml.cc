@@ -12,7 +12,8 @@ namespace alidade {
 namespace {
 
 constexpr double kMaxRigidityError = 1e-3;
-constexpr double kRoundingError = 1e-12;  // below this a rotation is kept as it is, so that writing and reading is exact
+constexpr double kRoundingError =
+    1e-12;  // below this a rotation is kept as it is, so that writing and reading is exact
 
 /// One sensor.yaml with its path, for messages.
 class SensorFile {
@@ -42,8 +43,8 @@ class SensorFile {
       return Status::Input(path_ + ": " + key + ": is missing, expected " + expected +
                            (nearest.empty() ? "" : " (found a key '" + nearest + "')"));
     }
-    return Status::Input(YamlPlace(path_, root_[key]) + ": " + key + ": found " + YamlText(root_[key]) + ", expected " +
-                         expected);
+    return Status::Input(YamlPlace(path_, root_[key]) + ": " + key + ": found " + YamlText(root_[key]) +
+                         ", expected " + expected);
   }
 
   Status ReadReal(const char* key, double min, double* value) const {
@@ -79,8 +80,8 @@ class SensorFile {
     return Status::Ok();
   }
 
-  /// The sixteen row-major numbers of a 4x4: {cols, rows, data} as EuRoC and OpenCV write it, or a list of four rows, or
-  /// a flat list.
+  /// The sixteen row-major numbers of a 4x4: {cols, rows, data} as EuRoC and OpenCV write it, or a list of
+  /// four rows, or a flat list.
   Status ReadTransform(const char* key, Pose* transform) const;
 
  private:
@@ -144,7 +145,8 @@ Status ReadExtrinsics(const SensorFile& file, Pose* T_BC) {
     found = key;
   }
   if (found == nullptr) {
-    return file.Fault("T_BS", "the camera-to-body transform (or T_imu_cam, body_T_cam0, T_cam_imu by that name)");
+    return file.Fault("T_BS",
+                      "the camera-to-body transform (or T_imu_cam, body_T_cam0, T_cam_imu by that name)");
   }
   ALIDADE_RETURN_IF_ERROR(file.ReadTransform(found, T_BC));
   if (std::string_view(found) == "T_cam_imu") {
@@ -229,10 +231,13 @@ Result<ImuSensor> ReadImuSensor(const std::string& path) {
   ImuSensor sensor;
   ALIDADE_RETURN_IF_ERROR(file->ReadRate(&sensor.rate_hz));
   ImuNoise& noise = sensor.noise;
-  ALIDADE_RETURN_IF_ERROR(file->ReadReal("gyroscope_noise_density", 0, &noise.gyro_noise_density_radps_sqrthz));
+  ALIDADE_RETURN_IF_ERROR(
+      file->ReadReal("gyroscope_noise_density", 0, &noise.gyro_noise_density_radps_sqrthz));
   ALIDADE_RETURN_IF_ERROR(file->ReadReal("gyroscope_random_walk", 0, &noise.gyro_random_walk_radps2_sqrthz));
-  ALIDADE_RETURN_IF_ERROR(file->ReadReal("accelerometer_noise_density", 0, &noise.accel_noise_density_mps2_sqrthz));
-  ALIDADE_RETURN_IF_ERROR(file->ReadReal("accelerometer_random_walk", 0, &noise.accel_random_walk_mps3_sqrthz));
+  ALIDADE_RETURN_IF_ERROR(
+      file->ReadReal("accelerometer_noise_density", 0, &noise.accel_noise_density_mps2_sqrthz));
+  ALIDADE_RETURN_IF_ERROR(
+      file->ReadReal("accelerometer_random_walk", 0, &noise.accel_random_walk_mps3_sqrthz));
   return sensor;
 }
 
@@ -265,7 +270,8 @@ std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz) {
 std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
   const CameraModel& camera = rig.camera;
   std::string text = "sensor_type: camera\n" + TransformYaml(rig.T_BC) + Line("rate_hz", rate_hz, "");
-  text += "resolution: [" + std::to_string(camera.width_px()) + ", " + std::to_string(camera.height_px()) + "]\n";
+  text +=
+      "resolution: [" + std::to_string(camera.width_px()) + ", " + std::to_string(camera.height_px()) + "]\n";
   text += "camera_model: pinhole\nintrinsics: [";
   for (int i = 0; i < 4; ++i) {
     text += (i > 0 ? ", " : "") + ShortestDouble(camera.intrinsics()[i]);

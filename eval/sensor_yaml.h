@@ -20,14 +20,14 @@ struct CameraSensor {
   double time_offset_s = 0;  ///< t_imu = t_camera + offset; key time_offset_s
 };
 
-/// Reads imu0/sensor.yaml. The body frame is this sensor, so T_BS, when given, is the identity. Errors (kInput) name
-/// file:line:column, key, value and expectation.
+/// Reads imu0/sensor.yaml. The body frame is this sensor, so T_BS, when given, is the identity. Errors
+/// (kInput) name file:line:column, key, value and expectation.
 Result<ImuSensor> ReadImuSensor(const std::string& path);
 
-/// Reads cam0/sensor.yaml: T_BS (camera to body, row-major 4x4), resolution, intrinsics (fu fv cu cv), distortion_model,
-/// distortion_coefficients. In place of T_BS the extrinsics may bear the name of another convention: T_imu_cam and
-/// body_T_cam0 mean the same transform, T_cam_imu its inverse. A rotation off by rounding (1e-3) is made orthonormal;
-/// beyond that it is an error. Errors (kInput) as above.
+/// Reads cam0/sensor.yaml: T_BS (camera to body, row-major 4x4), resolution, intrinsics (fu fv cu cv),
+/// distortion_model, distortion_coefficients. In place of T_BS the extrinsics may bear the name of another
+/// convention: T_imu_cam and body_T_cam0 mean the same transform, T_cam_imu its inverse. A rotation off by
+/// rounding (1e-3) is made orthonormal; beyond that it is an error. Errors (kInput) as above.
 Result<CameraSensor> ReadCameraSensor(const std::string& path);
 
 /// The text of both files; reading it back gives equal values.

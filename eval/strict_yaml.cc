@@ -21,7 +21,9 @@ Status CheckKeys(const YAML::Node& node, const std::string& where, StatusCode co
     return Status::Ok();
   }
   std::set<std::string> seen;
-  for (const auto& [key, value] : node) {
+  for (const auto& entry : node) {
+    const YAML::Node& key = entry.first;
+    const YAML::Node& value = entry.second;
     if (!key.IsScalar()) {
       return Status(code, YamlPlace(where, key) + ": found a key that is no text, expected a name");
     }
@@ -34,11 +36,17 @@ Status CheckKeys(const YAML::Node& node, const std::string& where, StatusCode co
 }
 
 /// An unquoted scalar without a tag of its own.
-bool IsPlain(const YAML::Node& node) { return node.IsScalar() && (node.Tag() == "?" || node.Tag().empty()); }
+bool IsPlain(const YAML::Node& node) {
+  return node.IsScalar() && (node.Tag() == "?" || node.Tag().empty());
+}
 
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+bool IsDigit(char c) {
+  return c >= '0' && c <= '9';
+}
 
-bool LooksOctal(std::string_view digits) { return digits.size() > 1 && digits[0] == '0' && IsDigit(digits[1]); }
+bool LooksOctal(std::string_view digits) {
+  return digits.size() > 1 && digits[0] == '0' && IsDigit(digits[1]);
+}
 
 std::string_view WithoutSign(std::string_view text) {
   text.remove_prefix(text.starts_with('+') || text.starts_with('-') ? 1 : 0);
@@ -59,7 +67,8 @@ bool IsNotFiniteWord(std::string_view text) {
 
 Result<YAML::Node> ParseYaml(const std::string& text, const std::string& where, StatusCode code) {
   std::string content = text;
-  if (content.starts_with("%YAML:")) {  // OpenCV writes a colon where YAML wants a blank; a comment keeps the line count
+  if (content.starts_with(
+          "%YAML:")) {  // OpenCV writes a colon where YAML wants a blank; a comment keeps the line count
     content[0] = '#';
   }
   std::vector<YAML::Node> documents;
@@ -128,7 +137,8 @@ Status ParseYamlReal(const YAML::Node& node, double* value) {
   double parsed = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), parsed);
   const bool starts_like_a_number = !digits.empty() && (IsDigit(digits[0]) || digits[0] == '.');
-  if (!starts_like_a_number || error != std::errc() || end != number.data() + number.size() || !std::isfinite(parsed)) {
+  if (!starts_like_a_number || error != std::errc() || end != number.data() + number.size() ||
+      !std::isfinite(parsed)) {
     return Status::Input("a number");
   }
   *value = parsed;
@@ -163,7 +173,8 @@ Status ParseYamlBoolean(const YAML::Node& node, bool* value) {
 }
 
 Status ParseYamlReals(const YAML::Node& node, size_t count, std::vector<double>* values) {
-  const std::string expected = "a list of " + (count > 0 ? std::to_string(count) + " " : std::string()) + "numbers";
+  const std::string expected =
+      "a list of " + (count > 0 ? std::to_string(count) + " " : std::string()) + "numbers";
   if (!node.IsSequence()) {
     return Status::Input(expected);
   }
@@ -171,8 +182,8 @@ Status ParseYamlReals(const YAML::Node& node, size_t count, std::vector<double>*
   for (const YAML::Node& entry : node) {
     double value = 0;
     if (const Status parsed = ParseYamlReal(entry, &value); !parsed.ok()) {
-      return Status::Input(expected + "; entry " + std::to_string(values->size() + 1) + " is " + YamlText(entry) +
-                           ", not " + parsed.message());
+      return Status::Input(expected + "; entry " + std::to_string(values->size() + 1) + " is " +
+                           YamlText(entry) + ", not " + parsed.message());
     }
     values->push_back(value);
   }

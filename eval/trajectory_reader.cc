@@ -15,8 +15,8 @@ constexpr size_t kStateColumns = 17;
 constexpr size_t kCovarianceColumns = 21;
 
 const std::vector<CsvColumn>& PoseHeader() {
-  static const std::vector<CsvColumn> kHeader = {{"timestamp", "ns"}, {"p_x", "m"}, {"p_y", "m"}, {"p_z", "m"},
-                                                 {"q_w"},             {"q_x"},      {"q_y"},      {"q_z"}};
+  static const std::vector<CsvColumn> kHeader = {
+      {"timestamp", "ns"}, {"p_x", "m"}, {"p_y", "m"}, {"p_z", "m"}, {"q_w"}, {"q_x"}, {"q_y"}, {"q_z"}};
   return kHeader;
 }
 
@@ -43,15 +43,16 @@ const std::vector<CsvColumn>& EurocHeader() {
 
 const std::vector<CsvColumn>& StatesHeader() {
   static const std::vector<CsvColumn> kHeader = {
-      {"timestamp_ns"}, {"p_x"},  {"p_y"},  {"p_z"},  {"q_w"},  {"q_x"},  {"q_y"},  {"q_z"},  {"v_x"},  {"v_y"},
-      {"v_z"},          {"bg_x"}, {"bg_y"}, {"bg_z"}, {"ba_x"}, {"ba_y"}, {"ba_z"}, {"c_00"}, {"c_01"}, {"c_02"},
-      {"c_03"},         {"c_04"}, {"c_05"}, {"c_11"}, {"c_12"}, {"c_13"}, {"c_14"}, {"c_15"}, {"c_22"}, {"c_23"},
-      {"c_24"},         {"c_25"}, {"c_33"}, {"c_34"}, {"c_35"}, {"c_44"}, {"c_45"}, {"c_55"}};
+      {"timestamp_ns"}, {"p_x"},  {"p_y"},  {"p_z"},  {"q_w"},  {"q_x"},  {"q_y"},  {"q_z"},
+      {"v_x"},          {"v_y"},  {"v_z"},  {"bg_x"}, {"bg_y"}, {"bg_z"}, {"ba_x"}, {"ba_y"},
+      {"ba_z"},         {"c_00"}, {"c_01"}, {"c_02"}, {"c_03"}, {"c_04"}, {"c_05"}, {"c_11"},
+      {"c_12"},         {"c_13"}, {"c_14"}, {"c_15"}, {"c_22"}, {"c_23"}, {"c_24"}, {"c_25"},
+      {"c_33"},         {"c_34"}, {"c_35"}, {"c_44"}, {"c_45"}, {"c_55"}};
   return kHeader;
 }
 
-/// Decimal seconds -> integer nanoseconds, digit by digit: a double loses 0.2 us at Unix time. Digits beyond the ninth
-/// decimal round to nearest. False when the text is no decimal number or does not fit 64 bits.
+/// Decimal seconds -> integer nanoseconds, digit by digit: a double loses 0.2 us at Unix time. Digits beyond
+/// the ninth decimal round to nearest. False when the text is no decimal number or does not fit 64 bits.
 bool ParseSecondsToNs(std::string_view text, TimeNs* stamp) {
   int exponent = 0;
   if (const size_t e = text.find_first_of("eE"); e != std::string_view::npos) {
@@ -82,7 +83,8 @@ bool ParseSecondsToNs(std::string_view text, TimeNs* stamp) {
   const int kept = static_cast<int>(integer_digits) + 9 + exponent;  // digits up to the nanosecond
   std::uint64_t value = 0;
   for (int i = 0; i < kept; ++i) {
-    const unsigned digit = i < static_cast<int>(digits.size()) ? static_cast<unsigned>(digits[static_cast<size_t>(i)] - '0') : 0;
+    const unsigned digit =
+        i < static_cast<int>(digits.size()) ? static_cast<unsigned>(digits[static_cast<size_t>(i)] - '0') : 0;
     if (value > (static_cast<std::uint64_t>(INT64_MAX) - digit) / 10) {
       return false;
     }
@@ -109,12 +111,13 @@ Status ReadRotation(const CsvReader& csv, size_t first, bool w_last, Eigen::Matr
   for (size_t i = 0; i < 4; ++i) {
     ALIDADE_RETURN_IF_ERROR(csv.ReadReal(first + i, "quaternion", &q[i]));
   }
-  const Eigen::Quaterniond quaternion = w_last ? Eigen::Quaterniond(q[3], q[0], q[1], q[2])
-                                               : Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  const Eigen::Quaterniond quaternion =
+      w_last ? Eigen::Quaterniond(q[3], q[0], q[1], q[2]) : Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   const double norm = quaternion.norm();
   if (!(std::abs(norm - 1) <= kMaxQuaternionNormError)) {
-    return Status::Input(csv.Place() + ": columns " + std::to_string(first + 1) + " to " + std::to_string(first + 4) +
-                         ": quaternion of norm " + std::to_string(norm) + ", expected 1 within 1e-2");
+    return Status::Input(csv.Place() + ": columns " + std::to_string(first + 1) + " to " +
+                         std::to_string(first + 4) + ": quaternion of norm " + std::to_string(norm) +
+                         ", expected 1 within 1e-2");
   }
   *rotation = quaternion.normalized().toRotationMatrix();
   return Status::Ok();
@@ -131,7 +134,8 @@ Status ReadCovariance(const CsvReader& csv, size_t first, Matrix6d* covariance) 
       ++column;
     }
     if ((*covariance)(row, row) < 0) {
-      return csv.Fault(column - static_cast<size_t>(6 - row), "covariance", "a variance that is not negative");
+      return csv.Fault(column - static_cast<size_t>(6 - row), "covariance",
+                       "a variance that is not negative");
     }
   }
   return Status::Ok();
@@ -140,7 +144,8 @@ Status ReadCovariance(const CsvReader& csv, size_t first, Matrix6d* covariance) 
 /// One row of the three comma-separated formats: they share their first columns.
 Status ReadCsvPoint(const CsvReader& csv, const Trajectory& trajectory, TrajectoryPoint* point) {
   const bool first = trajectory.points.empty();
-  ALIDADE_RETURN_IF_ERROR(csv.ReadStamp(first, first ? 0 : trajectory.points.back().stamp_ns, &point->stamp_ns));
+  ALIDADE_RETURN_IF_ERROR(
+      csv.ReadStamp(first, first ? 0 : trajectory.points.back().stamp_ns, &point->stamp_ns));
   ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 1, "position", &point->nav.p_WB));
   ALIDADE_RETURN_IF_ERROR(ReadRotation(csv, 4, false, &point->nav.R_WB));
   if (trajectory.has_velocity) {
@@ -221,8 +226,8 @@ Result<Trajectory> ReadTumTrajectory(const std::string& path) {
       points.clear();
     }
     if (!points.empty() && point.stamp_ns <= points.back().stamp_ns) {
-      return csv->Fault(0, "stamp", "a stamp later than " + FormatSeconds(points.back().stamp_ns) +
-                                        " of the row before");
+      return csv->Fault(0, "stamp",
+                        "a stamp later than " + FormatSeconds(points.back().stamp_ns) + " of the row before");
     }
     points.push_back(point);
   }
