@@ -12,8 +12,8 @@ namespace alidade {
 namespace {
 
 constexpr double kMaxRigidityError = 1e-3;
-constexpr double kRoundingError =
-    1e-12;  // below this a rotation is kept as it is, so that writing and reading is exact
+// Below this a rotation is kept as it is, so that writing and reading is exact.
+constexpr double kRoundingError = 1e-14;
 
 /// One sensor.yaml with its path, for messages.
 class SensorFile {
