@@ -185,6 +185,29 @@ TEST(KltTracker, RejectsARegionThatMovesOnItsOwn) {
   EXPECT_GE(tracker.statistics().rejected, 8);
 }
 
+TEST(KltTracker, BackwardPassLosesTracksWhoseTextureIsCovered) {
+  const std::vector<unsigned char> before = Render(kWidthPx, kHeightPx, [](const Vector2d& u) { return u; });
+  // Something else comes to stand before the right half.
+  const std::vector<unsigned char> after = Render(kWidthPx, kHeightPx, [](const Vector2d& u) -> Vector2d {
+    return u.x() > kWidthPx / 2 ? Vector2d(u + Vector2d(3000, 4000)) : u;
+  });
+  const auto wrong_tracks = [&](double forward_backward_px) {
+    FrontendConfig config = WithoutImu();
+    config.forward_backward_px = forward_backward_px;
+    config.ransac_threshold_px = 20;  // out of the way
+    KltTracker tracker(config, TestRig());
+    const TrackFrame first = MustTrack(&tracker, 0, before);
+    const TrackFrame second = MustTrack(&tracker, kFrameNs, after);
+    const std::map<std::int64_t, Vector2d> start = ById(first);
+    return std::count_if(second.observations.begin(), second.observations.end(),
+                         [&](const TrackObservation& o) {
+                           return start.contains(o.track_id) && start.at(o.track_id).x() > kWidthPx / 2 + 15;
+                         });
+  };
+  EXPECT_LE(wrong_tracks(0.5), 12);
+  EXPECT_GE(wrong_tracks(0), 30);
+}
+
 TEST(KltTracker, SpreadsFeaturesOverTheGridAndKeepsThemApart) {
   const FrontendConfig config = WithoutImu();
   KltTracker tracker(config, TestRig());
