@@ -28,9 +28,9 @@ TEST(ReadGreyImage, ReadsEightBits) {
 TEST(ReadGreyImage, ScalesSixteenBitsToEight) {
   const test::TemporaryFolder folder;
   const Result<GreyImage> image = ReadGreyImage(folder.Write(
-      "deep.pgm", std::string("P5\n4 1\n65535\n") + std::string("\x00\x00\x01\x01\x80\x80\xff\xff", 8)));
+      "deep.pgm", std::string("P5\n4 1\n65535\n") + std::string("\x00\x00\x01\x01\xc0\xff\xff\xff", 8)));
   ASSERT_TRUE(image.ok()) << image.message();
-  EXPECT_THAT(image->pixels, ElementsAre(0, 1, 128, 255));
+  EXPECT_THAT(image->pixels, ElementsAre(0, 1, 192, 255));
 }
 
 TEST(ReadGreyImage, NamesThePathOfWhatItCannotRead) {
