@@ -236,6 +236,12 @@
   }
 
   function start() {
+    if (data.cells.length === 0) {
+      element('facts').textContent = 'There are no runs to show.';
+      d3.selectAll('main > *').remove();
+      document.documentElement.setAttribute('data-ready', 'true');
+      return;
+    }
     readAddress();
     // More than six at once hide each other; the others are one click away.
     data.estimators.forEach(function (name, i) { state.off[name] = i >= 6; });

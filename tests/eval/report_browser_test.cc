@@ -1,0 +1,187 @@
+// Opens the report in a headless browser: a page is right only when a browser draws it without a complaint.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "tests/eval/synthetic_comparison.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr const char* kBrowser = "/usr/bin/chromium";
+constexpr int kPlots = 13;
+
+std::string ReadFile(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// The page after its scripts have run, and what the browser's console said.
+struct Visit {
+  std::string dom;
+  std::string console;
+
+  /// Attribute of the root element; empty without it.
+  [[nodiscard]] std::string Mark(const std::string& name) const {
+    std::smatch match;
+    const std::string head = dom.substr(0, dom.find("<head"));
+    return std::regex_search(head, match, std::regex("data-" + name + "=\"([^\"]*)\"")) ? match[1].str() : "";
+  }
+};
+
+class ReportInBrowser : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(kBrowser)) {
+      GTEST_SKIP() << "no " << kBrowser << ": install the Debian package chromium";
+    }
+    ASSERT_TRUE(WriteReport(test::SyntheticComparison(300), folder_.File("report.html")).ok());
+    page_ = ReadFile(folder_.File("report.html"));
+  }
+
+  /// Opens `page` with `address` ("#...") appended to its location.
+  Visit Open(const std::string& page, const std::string& address = "") {
+    folder_.Write("visited.html", page);
+    const std::string command =
+        "timeout 100 " + std::string(kBrowser) +
+        " --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run"
+        " --user-data-dir=" +
+        folder_.File("profile") +
+        " --enable-logging=stderr --v=0 --virtual-time-budget=5000 --dump-dom"
+        " 'file://" +
+        folder_.File("visited.html") + address + "' 2>" + folder_.File("stderr");
+    Visit visit;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 4096> buffer;
+    for (size_t n = 0; pipe != nullptr && (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+      visit.dom.append(buffer.data(), n);
+    }
+    EXPECT_EQ(pipe == nullptr ? -1 : pclose(pipe), 0) << ReadFile(folder_.File("stderr"));
+    std::ifstream log(folder_.File("stderr"));
+    for (std::string line; std::getline(log, line);) {
+      visit.console += line.find("CONSOLE") != std::string::npos ? line + "\n" : "";
+    }
+    return visit;
+  }
+
+  /// The page with `script` run after its own scripts.
+  [[nodiscard]] std::string WithScript(const std::string& script) const {
+    std::string page = page_;
+    return page.insert(page.rfind("</body>"), "<script>" + script + "</script>");
+  }
+
+  test::TemporaryFolder folder_;
+  std::string page_;
+};
+
+void ExpectWhole(const Visit& visit) {
+  EXPECT_THAT(visit.console, IsEmpty());
+  EXPECT_EQ(visit.Mark("errors"), "");
+  EXPECT_EQ(visit.Mark("ready"), "true");
+  EXPECT_EQ(visit.Mark("plots"), std::to_string(kPlots));
+}
+
+TEST_F(ReportInBrowser, GivenAComparisonThenEveryPlotIsDrawnWithoutAComplaint) {
+  const Visit visit = Open(page_);
+  ExpectWhole(visit);
+  // Three estimators in ten plots of lines, and the truth in two; three bands in each of six error plots.
+  EXPECT_EQ(visit.Mark("lines"), "35");
+  EXPECT_EQ(visit.Mark("bands"), "18");
+  EXPECT_THAT(visit.dom, HasSubstr("class=\"best\""));
+  EXPECT_THAT(visit.dom, HasSubstr("alidade compare --plan=configs/plans/synthetic.yaml"));
+  EXPECT_THAT(visit.dom, HasSubstr("<td class=\"digest\">5f1c1"));
+}
+
+TEST_F(ReportInBrowser, GivenAFailedRunThenItsReasonIsToldAndTheOthersAreDrawn) {
+  const Visit visit = Open(page_, "#sequence=V1_01_easy&seed=2");
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("lines"), "24");
+  EXPECT_THAT(visit.dom, HasSubstr("&lt;/script&gt;&lt;b&gt;\"torn\" row, expected 4 columns</li>"));
+  EXPECT_THAT(visit.dom, HasSubstr("1 of 2 ok"));
+}
+
+TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
+  const Visit visit = Open(page_, "#sequence=figure8&seed=all");
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("lines"), "41");  // two more estimates of each estimator in top view and height
+  EXPECT_THAT(visit.dom, HasSubstr("the mean of 2 independent runs"));
+}
+
+TEST_F(ReportInBrowser, GivenNothingToCompareThenThePageSaysSoInsteadOfFailing) {
+  ASSERT_TRUE(WriteReport(Comparison{}, folder_.File("empty.html")).ok());
+  const Visit visit = Open(ReadFile(folder_.File("empty.html")));
+  EXPECT_THAT(visit.console, IsEmpty());
+  EXPECT_THAT(visit.dom, HasSubstr("no runs"));
+}
+
+TEST_F(ReportInBrowser, GivenAPersonWhoPointsDragsAndSelectsThenThePlotsFollow) {
+  const Visit visit = Open(WithScript(R"(
+    const root = document.documentElement;
+    const note = function (name, value) { root.setAttribute('data-' + name, value); };
+    const overlay = function () { return document.querySelector('#plot-pos-0 .overlay'); };
+    const send = function (type, share) {
+      const box = overlay().getBoundingClientRect();
+      overlay().dispatchEvent(new MouseEvent(type, { bubbles: true, clientX: box.left + share * box.width,
+        clientY: box.top + 20 }));
+    };
+    send('mousemove', 0.5);
+    note('tooltip', document.getElementById('tooltip').hidden ? 'hidden' : document.querySelectorAll('#tooltip tr').length);
+    send('mousedown', 0.25);
+    send('mousemove', 0.5);
+    send('mouseup', 0.75);
+    note('zoom', report.view.domain.map(Math.round).join(' '));
+    document.getElementById('zoom-reset').click();
+    note('unzoomed', report.view.domain === null);
+    document.querySelector('.chip').click();
+    note('lines-without-one', root.getAttribute('data-lines'));
+    document.querySelector('#plot-top').closest('figure').querySelector('.save').click();
+    const figure = document.getElementById('figure-select');
+    figure.value = 'nees_pose';
+    figure.dispatchEvent(new Event('change'));
+    note('overview', document.getElementById('overview-note').textContent);
+  )"));
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("tooltip"), "3");
+  EXPECT_EQ(visit.Mark("zoom"), "7 22");  // quarter to three quarters of 29.9 s
+  EXPECT_EQ(visit.Mark("unzoomed"), "true");
+  EXPECT_EQ(visit.Mark("lines-without-one"), "24");
+  EXPECT_THAT(visit.Mark("overview"), HasSubstr("Ideal is 6."));
+}
+
+TEST_F(ReportInBrowser, GivenThePageThenItAsksTheNetworkForNothing) {
+  EXPECT_FALSE(std::regex_search(page_.substr(0, page_.find("<script")),
+                                 std::regex("(src|href)\\s*=\\s*[\"']?(https?:)?//|url\\(|@import")));
+  const Visit visit =
+      Open(WithScript("document.documentElement.setAttribute('data-requests', "
+                      "performance.getEntriesByType('resource').filter("
+                      "function (e) { return e.name.indexOf('data:') !== 0; }).length);"));
+  EXPECT_EQ(visit.Mark("requests"), "0");
+}
+
+// The checks above must be able to fail.
+TEST_F(ReportInBrowser, GivenAPageWithAFaultThenTheFaultIsSeen) {
+  const size_t call = page_.find("drawFacts();\n");
+  ASSERT_NE(call, std::string::npos);
+  std::string broken = page_;
+  broken.replace(call, 12, "noSuchThing();");
+  const Visit visit = Open(broken);
+  EXPECT_THAT(visit.console, HasSubstr("noSuchThing"));
+  EXPECT_THAT(visit.Mark("errors"), HasSubstr("noSuchThing"));
+  EXPECT_EQ(visit.Mark("ready"), "");
+  EXPECT_THAT(visit.dom, HasSubstr("This page met a fault"));
+}
+
+}  // namespace
+}  // namespace alidade
