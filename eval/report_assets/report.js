@@ -215,6 +215,7 @@
     element('facts').textContent = count(data.estimators.length, 'estimator') + ' on ' + count(data.sequences.length, 'sequence') + ', ' +
       count(data.cells.length, 'run') + (ok === data.cells.length ? ', all ok' : ', ' + (data.cells.length - ok) + ' not ok');
     element('command').textContent = data.command || '(not recorded)';
+    element('thinning').textContent = 'A plotted series keeps every n-th frame, at most ' + data.points + ' of them; the figures are of all frames.';
     element('digest-table').innerHTML = report.digestTable();
   }
 

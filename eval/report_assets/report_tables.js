@@ -80,11 +80,11 @@
   }
 
   // References to estimators that did not run here.
-  function foreignRows(key, cellsOf) {
+  function foreignRows(wanted, cellsOf) {
     const seen = [];
-    data.references.forEach(function (r) {
+    data.references.filter(wanted).forEach(function (r) {
       const name = r.estimator + '\n' + r.source;
-      if (data.estimators.indexOf(r.estimator) < 0 && seen.indexOf(name) < 0 && (key === null || r.figures[key] !== undefined)) {
+      if (data.estimators.indexOf(r.estimator) < 0 && seen.indexOf(name) < 0) {
         seen.push(name);
       }
     });
@@ -111,14 +111,14 @@
         return overviewCell(estimator, sequence, i, most[s]);
       }).join('') + (several ? means[e] : '') + '</tr>';
     }).join('');
-    const foreign = foreignRows(key, function (matches) {
+    const foreign = foreignRows(function (r) { return r.figures[key] !== undefined; }, function (matches) {
       return data.sequences.map(function (sequence) {
         const found = data.references.find(function (r) { return matches(r) && r.sequence === sequence; });
         return '<td>' + report.format(found ? found.figures[key] : null, figure.decimals) + '</td>';
       }).join('') + (several ? '<td></td>' : '');
     });
     return '<table><thead><tr><th scope="col">Estimator</th>' + head +
-      (several ? '<th scope="col">mean of sequences</th>' : '') + '</tr></thead><tbody>' + rows + foreign + '</tbody></table>';
+      (several ? '<th scope="col">mean</th>' : '') + '</tr></thead><tbody>' + rows + foreign + '</tbody></table>';
   };
 
   report.overviewNote = function (key) {
@@ -160,9 +160,8 @@
             referenceCells(function (other) { return other === r; }) + '</tr>';
         }).join('');
     }).join('');
-    const here = data.references.some(function (r) { return r.sequence === sequence; });
     return '<table><thead><tr><th scope="col">Estimator</th><th scope="col">runs ok</th>' + head + '</tr></thead><tbody>' + rows +
-      (here ? foreignRows(null, referenceCells) : '') + '</tbody></table>';
+      foreignRows(function (r) { return r.sequence === sequence; }, referenceCells) + '</tbody></table>';
   };
 
   report.digestTable = function () {

@@ -119,6 +119,28 @@ TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
   EXPECT_THAT(visit.dom, HasSubstr("the mean of 2 independent runs"));
 }
 
+TEST_F(ReportInBrowser, GivenAnExternalTrajectoryThenWhatItLacksIsLeftOut) {
+  Comparison comparison;
+  comparison.title = "external";
+  comparison.cells = {test::SyntheticCell("external", "walk", 1, 0.1, 1, 2, 50)};
+  CellResult& cell = comparison.cells[0];
+  cell.backend.clear();
+  cell.align.clear();
+  cell.rpe.clear();
+  cell.nees_pose = cell.nees_ori = cell.nees_pos = cell.backend_ms = cell.backend_ms_p95 = 0;
+  cell.series.sigma.clear();
+  cell.series.backend_ms.clear();
+  cell.series.features_used.clear();
+  std::fill(cell.series.nees_pose.begin(), cell.series.nees_pose.end(), std::nan(""));
+  std::fill(cell.series.error.begin(), cell.series.error.end(), Vector6d::Zero());
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("external.html")).ok());
+  const Visit visit = Open(ReadFile(folder_.File("external.html")));
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("lines"), "10");  // two trajectories and their truth, six errors
+  EXPECT_EQ(visit.Mark("bands"), "0");
+  EXPECT_THAT(visit.dom, HasSubstr("no data for this selection"));
+}
+
 TEST_F(ReportInBrowser, GivenNothingToCompareThenThePageSaysSoInsteadOfFailing) {
   ASSERT_TRUE(WriteReport(Comparison{}, folder_.File("empty.html")).ok());
   const Visit visit = Open(ReadFile(folder_.File("empty.html")));
