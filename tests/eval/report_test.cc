@@ -103,12 +103,13 @@ TEST(Aggregate, GivenRivalsThenTheLowestErrorAndTheNeesNearestToItsFreedomAreBes
   EXPECT_EQ(BestOf(comparison, "features_per_frame"), std::vector<bool>({false, false, false}));
 }
 
-TEST(Aggregate, GivenAnEstimatorThatLostARunThenItCannotBeBest) {
+TEST(Aggregate, GivenEstimatorsThatLostARunThenTheyCannotBeBest) {
   Comparison comparison;
-  comparison.cells = {Cell("a", 1, 0.3, 6), Cell("a", 2, 0.3, 6), Cell("b", 1, 0.4, 6),
-                      Cell("b", 2, 0.4, 6), Cell("c", 1, 0.1, 6), Cell("c", 2, 0.1, 6)};
-  comparison.cells[5].status = "diverged";
-  EXPECT_EQ(BestOf(comparison, "ate_pos_m"), std::vector<bool>({true, false, false}));
+  comparison.cells = {Cell("a", 1, 0.3, 6), Cell("a", 2, 0.3, 6), Cell("b", 1, 0.4, 6), Cell("b", 2, 0.4, 6),
+                      Cell("c", 1, 0.1, 6), Cell("c", 2, 0.1, 6), Cell("d", 1, 0.3, 6), Cell("d", 2, 0.3, 6)};
+  comparison.cells[5].status = "diverged";  // would be the lowest
+  comparison.cells[7].status = "diverged";  // would share it
+  EXPECT_EQ(BestOf(comparison, "ate_pos_m"), std::vector<bool>({true, false, false, false}));
 }
 
 TEST(Aggregate, GivenOneEstimatorWithTwoBackEndsThenTheRowsAreApart) {
