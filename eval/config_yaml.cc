@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <set>
 
+#include "eval/config_keys.h"
 #include "eval/csv.h"
 #include "eval/output_file.h"
 #include "eval/strict_yaml.h"
@@ -14,69 +14,13 @@ namespace {
 
 constexpr int kMaxBaseDepth = 8;
 
-std::string Join(const std::string& prefix, std::string_view name) {
-  return prefix.empty() ? std::string(name) : prefix + "." + std::string(name);
-}
-
-std::string Leaf(const std::string& path) {
-  return path.substr(path.rfind('.') + 1);
-}
-
-/// Lists every key and section by its dotted path.
-class SchemaCollector final : public ConfigVisitor {
- public:
-  void Section(std::string_view name, std::string_view, const std::function<void()>& keys) override {
-    const std::string outer = prefix_;
-    prefix_ = Join(prefix_, name);
-    sections_.insert(prefix_);
-    keys();
-    prefix_ = outer;
-  }
-  void Real(const KeyDoc& doc, double*, double, double) override { Add(doc); }
-  void Integer(const KeyDoc& doc, int*, int, int) override { Add(doc); }
-  void Boolean(const KeyDoc& doc, bool*) override { Add(doc); }
-  void Text(const KeyDoc& doc, std::string*) override { Add(doc); }
-  void Vector3(const KeyDoc& doc, Eigen::Vector3d*, double, double) override { Add(doc); }
-  void Choice(const KeyDoc& doc, const std::vector<std::string_view>&, int*) override { Add(doc); }
-
-  [[nodiscard]] bool IsKey(const std::string& path) const { return keys_.count(path) > 0; }
-  [[nodiscard]] bool IsSection(const std::string& path) const { return sections_.count(path) > 0; }
-
-  /// What a person may have meant by an unknown path, as the tail of a message.
-  [[nodiscard]] std::string Hint(const std::string& path) const {
-    std::vector<std::string> siblings;
-    std::vector<std::string> everything;
-    const std::string parent = path.substr(0, path.size() - std::min(path.size(), Leaf(path).size()));
-    for (const std::set<std::string>* group : {&keys_, &sections_}) {
-      for (const std::string& known : *group) {
-        if (group == &keys_ && Leaf(known) == Leaf(path)) {
-          return "; did you mean '" + known + "'?";  // right name, wrong section
-        }
-        everything.push_back(known);
-        if (known.starts_with(parent) && known.find('.', parent.size()) == std::string::npos) {
-          siblings.push_back(known);
-        }
-      }
-    }
-    const std::string hint = Suggestion(path, siblings);
-    return hint.empty() ? Suggestion(path, everything) : hint;
-  }
-
- private:
-  void Add(const KeyDoc& doc) { keys_.insert(Join(prefix_, doc.name)); }
-
-  std::string prefix_;
-  std::set<std::string> keys_;
-  std::set<std::string> sections_;
-};
-
 /// Every key of the file is in the schema, and groups are where groups belong.
 Status CheckKnown(const YAML::Node& map, const std::string& prefix, const std::string& where,
-                  const SchemaCollector& schema) {
+                  const ConfigKeys& schema) {
   for (const auto& entry : map) {
     const YAML::Node& key = entry.first;
     const YAML::Node& value = entry.second;
-    const std::string path = Join(prefix, key.Scalar());
+    const std::string path = JoinKey(prefix, key.Scalar());
     if (prefix.empty() && path == "base") {
       continue;
     }
@@ -108,7 +52,7 @@ class TreeReader final : public ConfigVisitor {
     const YAML::Node outer = node_;
     const std::string outer_prefix = prefix_;
     node_.reset(inner);
-    prefix_ = Join(prefix_, name);
+    prefix_ = JoinKey(prefix_, name);
     keys();
     node_.reset(outer);
     prefix_ = outer_prefix;
@@ -211,7 +155,7 @@ class TreeReader final : public ConfigVisitor {
 
   void Fail(const KeyDoc& doc, const YAML::Node& node, const std::string& expected) {
     if (fault_.ok()) {
-      fault_ = Status::Config(YamlPlace(where_, node) + ": " + Join(prefix_, doc.name) + ": found " +
+      fault_ = Status::Config(YamlPlace(where_, node) + ": " + JoinKey(prefix_, doc.name) + ": found " +
                               YamlText(node) + ", expected " + expected);
     }
   }
@@ -222,7 +166,7 @@ class TreeReader final : public ConfigVisitor {
   Status fault_;
 };
 
-Status ApplyTree(const YAML::Node& root, const std::string& where, const SchemaCollector& schema,
+Status ApplyTree(const YAML::Node& root, const std::string& where, const ConfigKeys& schema,
                  const std::function<void(ConfigVisitor&)>& describe) {
   ALIDADE_RETURN_IF_ERROR(CheckKnown(root, "", where, schema));
   TreeReader reader(root, where);
@@ -230,7 +174,7 @@ Status ApplyTree(const YAML::Node& root, const std::string& where, const SchemaC
   return reader.status();
 }
 
-Status ReadConfigLayer(const std::string& path, int depth, const SchemaCollector& schema,
+Status ReadConfigLayer(const std::string& path, int depth, const ConfigKeys& schema,
                        const std::function<void(ConfigVisitor&)>& describe) {
   const Result<YAML::Node> root = ParseYamlFile(path, StatusCode::kConfig);
   if (!root.ok()) {
@@ -289,14 +233,14 @@ Result<YAML::Node> SettingTree(const std::string& setting, const std::string& wh
 }  // namespace
 
 Status ReadConfigFile(const std::string& path, const std::function<void(ConfigVisitor&)>& describe) {
-  SchemaCollector schema;
+  ConfigKeys schema;
   describe(schema);
   return ReadConfigLayer(path, 0, schema, describe);
 }
 
 Status ApplySettings(const std::vector<std::string>& settings,
                      const std::function<void(ConfigVisitor&)>& describe) {
-  SchemaCollector schema;
+  ConfigKeys schema;
   describe(schema);
   for (const std::string& setting : settings) {
     const std::string where = "setting " + Quoted(setting);
