@@ -4,7 +4,7 @@ namespace alidade {
 
 bool InverseDepthModel::Evaluate(const Pose& T_WC_base, const Pose& T_WC, double inverse_depth,
                                  Eigen::Vector2d* residual, PoseJacobian* jacobian_base, PoseJacobian* jacobian_view,
-                                 Eigen::Vector2d* jacobian_rho) const {
+                                 Eigen::Vector2d* jacobian_rho, Eigen::Matrix2d* jacobian_bearing) const {
   const Eigen::Vector3d ray = z_base.homogeneous();
   const Eigen::Vector3d ray_W = T_WC_base.rotation * ray;
   const Eigen::Vector3d shift_W = T_WC_base.translation - T_WC.translation;
@@ -29,6 +29,9 @@ bool InverseDepthModel::Evaluate(const Pose& T_WC_base, const Pose& T_WC, double
   }
   if (jacobian_rho != nullptr) {
     *jacobian_rho = to_world * shift_W;
+  }
+  if (jacobian_bearing != nullptr) {
+    *jacobian_bearing = to_world * T_WC_base.rotation.leftCols<2>();
   }
   return true;
 }

@@ -14,10 +14,12 @@ struct InverseDepthModel {
 
   using PoseJacobian = Eigen::Matrix<double, 2, 6>;
 
-  /// Jacobians over (phi, dp) of the base view and of the other view, and over rho [1/m]. False when the landmark is behind
-  /// the view. The base's own residual vanishes by construction and is not a measurement.
+  /// Jacobians over (phi, dp) of the base view and of the other view, over rho [1/m], and (for a caller who estimates the
+  /// base bearing, or propagates its noise) over z_base. False when the landmark is behind the view. The base's own residual
+  /// vanishes by construction and is not a measurement.
   bool Evaluate(const Pose& T_WC_base, const Pose& T_WC, double inverse_depth, Eigen::Vector2d* residual,
-                PoseJacobian* jacobian_base, PoseJacobian* jacobian_view, Eigen::Vector2d* jacobian_rho) const;
+                PoseJacobian* jacobian_base, PoseJacobian* jacobian_view, Eigen::Vector2d* jacobian_rho,
+                Eigen::Matrix2d* jacobian_bearing = nullptr) const;
 };
 
 }  // namespace alidade

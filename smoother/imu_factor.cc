@@ -1,0 +1,61 @@
+#include "smoother/imu_factor.h"
+
+#include <Eigen/Cholesky>
+
+namespace alidade {
+namespace {
+
+using RowMatrix15x9 = Eigen::Matrix<double, 15, 9, Eigen::RowMajor>;
+using RowMatrix15x6 = Eigen::Matrix<double, 15, 6, Eigen::RowMajor>;
+
+void Split(const Matrix15d& jacobian, double* nav, double* bias) {
+  if (nav != nullptr) {
+    Eigen::Map<RowMatrix15x9>{nav} = jacobian.leftCols<9>();
+  }
+  if (bias != nullptr) {
+    Eigen::Map<RowMatrix15x6>{bias} = jacobian.rightCols<6>();
+  }
+}
+
+}  // namespace
+
+ImuBias UnpackBias(const double* block) {
+  return {Eigen::Map<const Eigen::Vector3d>(block), Eigen::Map<const Eigen::Vector3d>(block + 3)};
+}
+
+void PackBias(const ImuBias& bias, double* block) {
+  Eigen::Map<Eigen::Vector3d>{block} = bias.gyro;
+  Eigen::Map<Eigen::Vector3d>{block + 3} = bias.accel;
+}
+
+ImuFactor::ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W, double mean_step_s)
+    : model_{preintegration, gravity_W}, sqrt_information_(Matrix15d::Zero()) {
+  Matrix15d covariance = preintegration->covariance();
+  const double density = preintegration->noise().accel_noise_density_mps2_sqrthz;
+  covariance.diagonal().head<3>().array() +=
+      density * density * preintegration->duration_s() * mean_step_s * mean_step_s / 12;
+  const Eigen::LLT<Matrix15d> factor(covariance);
+  if (factor.info() == Eigen::Success && covariance.allFinite()) {
+    sqrt_information_ = factor.matrixL().solve(Matrix15d::Identity());
+    valid_ = sqrt_information_.allFinite();
+  }
+}
+
+bool ImuFactor::Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const {
+  const NavState state_i = UnpackNavState(parameters[0]);
+  const NavState state_j = UnpackNavState(parameters[2]);
+  const bool differentiate = tangent_jacobians != nullptr;
+  Vector15d r;
+  Matrix15d jacobian_i;
+  Matrix15d jacobian_j;
+  model_.Evaluate(state_i, UnpackBias(parameters[1]), state_j, UnpackBias(parameters[3]), &r,
+                  differentiate ? &jacobian_i : nullptr, differentiate ? &jacobian_j : nullptr);
+  Eigen::Map<Vector15d>{residual} = sqrt_information_.triangularView<Eigen::Lower>() * r;
+  if (differentiate) {
+    Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_i, tangent_jacobians[0], tangent_jacobians[1]);
+    Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_j, tangent_jacobians[2], tangent_jacobians[3]);
+  }
+  return true;
+}
+
+}  // namespace alidade

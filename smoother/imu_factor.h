@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/preintegration.h"
+#include "smoother/lifted_cost.h"
+
+namespace alidade {
+
+[[nodiscard]] ImuBias UnpackBias(const double* block);
+void PackBias(const ImuBias& bias, double* block);
+
+/// PreintegrationModel between two frames, whitened: blocks nav_i, bias_i, nav_j, bias_j; 15 rows.
+///
+/// The midpoint rule treats the accelerometer noise as constant within a step, which leaves the position of each step fully
+/// correlated with its velocity (a single step would even be singular). The missing part of the continuous-time
+/// covariance, density^2 dt^3 / 12 a step, is added here.
+class ImuFactor {
+ public:
+  static constexpr int kRows = 15;
+
+  /// `preintegration` must outlive the factor. mean_step_s: length of one IMU step.
+  ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W, double mean_step_s);
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+  /// False when the covariance could not be inverted (not finite, or not positive definite).
+  [[nodiscard]] bool valid() const { return valid_; }
+
+ private:
+  static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kBias, BlockKind::kNavState,
+                                                       BlockKind::kBias};
+  PreintegrationModel model_;
+  Matrix15d sqrt_information_;  // lower triangular
+  bool valid_ = false;
+};
+
+}  // namespace alidade
