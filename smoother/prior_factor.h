@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "smoother/lifted_cost.h"
+#include "smoother/window.h"
+
+namespace alidade {
+
+/// What frames and landmarks that left the window said about those that stay: r = r0 + J xi, unit noise, with xi the
+/// stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed when the prior is made.
+///
+/// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision reaches only poses,
+/// and the IMU ties velocity and biases of the frame that left to those of the next one alone.
+struct LinearPrior {
+  struct Anchor {
+    const WindowFrame* frame = nullptr;
+    NavState origin;
+    ImuBias bias_origin;  ///< used for the first frame
+  };
+  ErrorConvention convention = ErrorConvention::kRightInvariant;
+  std::vector<Anchor> anchors;
+  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1))
+  Eigen::VectorXd residual;  ///< m, r0
+
+  [[nodiscard]] static int Column(int anchor) { return anchor == 0 ? 0 : 15 + 6 * (anchor - 1); }
+  [[nodiscard]] int columns() const { return Column(static_cast<int>(anchors.size())); }
+};
+
+/// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False when the
+/// covariance is not positive definite to rounding.
+bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
+                      LinearPrior* prior);
+
+/// LinearPrior as a factor; blocks nav and bias of the first frame, then nav of the others.
+class PriorFactor {
+ public:
+  static constexpr int kRows = Eigen::Dynamic;
+
+  /// `prior` must outlive the factor.
+  explicit PriorFactor(const LinearPrior* prior);
+
+  [[nodiscard]] int rows() const { return static_cast<int>(prior_->residual.size()); }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  const LinearPrior* prior_;
+  std::vector<BlockKind> blocks_;
+};
+
+}  // namespace alidade

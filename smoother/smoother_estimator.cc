@@ -1,0 +1,273 @@
+#include "smoother/smoother_estimator.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "core/imu_propagation.h"
+#include "smoother/imu_factor.h"
+#include "smoother/nav_state_manifold.h"
+#include "smoother/smoother.h"
+#include "smoother/window_system.h"
+
+namespace alidade {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
+constexpr size_t kMinViews = 2;
+// The filter linearises a track once and needs its depth to vision.max_relative_depth_deviation; here every solve linearises
+// again, so a track may enter earlier. It is still held to this multiple when it is marginalised, linearised for good.
+constexpr double kParallaxSlack = 10;
+constexpr int kMaxLandmarkIterations = 30;
+
+double MillisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+ImuNoise ScaledNoise(const ImuNoise& noise, const ImuConfig& config) {
+  return {noise.gyro_noise_density_radps_sqrthz * config.noise_scale,
+          noise.accel_noise_density_mps2_sqrthz * config.noise_scale,
+          noise.gyro_random_walk_radps2_sqrthz * config.random_walk_scale,
+          noise.accel_random_walk_mps3_sqrthz * config.random_walk_scale};
+}
+
+Status CheckInitial(const NavEstimate& initial) {
+  const NavState& nav = initial.nav;
+  if (!nav.R_WB.allFinite() || !nav.p_WB.allFinite() || !nav.v_WB.allFinite() || !initial.bias.gyro.allFinite() ||
+      !initial.bias.accel.allFinite() || !initial.covariance.allFinite()) {
+    return Status::Input("smoother: initial state is not finite");
+  }
+  const double off = (nav.R_WB * nav.R_WB.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (off > 1e-6 || nav.R_WB.determinant() < 0) {
+    return Status::Input("smoother: initial R_WB is not a rotation; |R R^T - I| is " + std::to_string(off));
+  }
+  const double scale = initial.covariance.cwiseAbs().maxCoeff();
+  if ((initial.covariance - initial.covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) {
+    return Status::Input("smoother: initial covariance is not symmetric");
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix15d> eigen(initial.covariance, Eigen::EigenvaluesOnly);
+  if (eigen.eigenvalues()[0] < -1e-12 * scale) {
+    return Status::Input("smoother: initial covariance has the negative eigenvalue " +
+                         std::to_string(eigen.eigenvalues()[0]));
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const RigCalibration& rig) {
+  return std::make_unique<SmootherEstimator>(config, rig);
+}
+
+SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCalibration& rig)
+    : config_(config),
+      rig_(rig),
+      noise_(ScaledNoise(rig.imu_noise, config.imu)),
+      solve_options_{config.smoother, config.vision, rig.T_BC, GravityInWorld(config.imu.gravity_mps2)},
+      kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
+      gate_(config.vision.gate_probability),
+      imu_(config.imu.max_gap_s) {}
+
+Status SmootherEstimator::Initialize(const NavEstimate& initial) {
+  ALIDADE_RETURN_IF_ERROR(CheckInitial(initial));
+  auto frame = std::make_unique<WindowFrame>();
+  frame->stamp_ns = initial.stamp_ns;
+  PackNavState(initial.nav, frame->nav.data());
+  PackBias(initial.bias, frame->bias.data());
+  LinearPrior prior;
+  if (!MakeInitialPrior(config_.smoother.error, *frame, initial.covariance, &prior)) {
+    return Status::Input("smoother: initial covariance is not positive semi-definite");
+  }
+  window_.Clear();
+  window_.AddFrame(std::move(frame));
+  prior_ = std::move(prior);
+  imu_.DropBefore(initial.stamp_ns);
+  latest_ = initial;
+  statistics_ = {};
+  initialized_ = true;
+  return Status::Ok();
+}
+
+Status SmootherEstimator::AddImu(const ImuSample& sample) { return imu_.Add(sample); }
+
+Status SmootherEstimator::Lost(const std::string& message) {
+  initialized_ = false;
+  return Status::Diverged(message);
+}
+
+Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
+  if (!initialized_) {
+    return Status::Diverged("smoother: not initialised");
+  }
+  const Clock::time_point start = Clock::now();
+  statistics_ = {};
+  statistics_.tracks_in = static_cast<int>(frame.observations.size());
+  ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
+  statistics_.propagate_ms = MillisecondsSince(start);
+  statistics_.observations_invalid =
+      window_.AddObservations(rig_.camera, config_.vision.pixel_noise_px, frame.observations);
+  window_.Prune();
+  if (window_.size() > 1) {
+    std::vector<WindowTrack*> tracks = SelectTracks();
+    ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
+  }
+  statistics_.update_ms = MillisecondsSince(start) - statistics_.propagate_ms;
+  return Status::Ok();
+}
+
+Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
+  const bool first = window_.size() == 1 && window_.tracks().empty();
+  if (first && stamp_ns == window_.newest().stamp_ns) {
+    return Status::Ok();  // the frame the smoother was initialised on
+  }
+  ALIDADE_RETURN_IF_ERROR(imu_.Interval(window_.newest().stamp_ns, stamp_ns, &interval_));
+  imu_.DropBefore(stamp_ns);
+  std::unique_ptr<WindowFrame> dropped;
+  if (!NewestIsKeyframe()) {
+    dropped = window_.RemoveNewest();
+  } else if (window_.size() > config_.smoother.window) {
+    MarginalizeOldestFrame();
+  }
+  PropagateToNewest(std::move(dropped), stamp_ns);
+  return Status::Ok();
+}
+
+bool SmootherEstimator::NewestIsKeyframe() const {
+  // The prior holds the first frame; with fewer than three frames every one is needed.
+  if (config_.smoother.frames == FramePolicy::kEveryFrame || window_.size() <= 2) {
+    return true;
+  }
+  const FrameParallax parallax =
+      ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), rig_.T_BC);
+  return parallax.common < config_.smoother.keyframe_min_tracked ||
+         parallax.mean * rig_.camera.mean_focal_px() >= config_.smoother.keyframe_parallax_px;
+}
+
+void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns) {
+  const WindowFrame& from = dropped ? *dropped : window_.newest();
+  auto frame = std::make_unique<WindowFrame>();
+  frame->stamp_ns = stamp_ns;
+  frame->bias = from.bias;
+  NavState state = from.nav_state();
+  PropagateImu(interval_, from.imu_bias(), noise_, solve_options_.gravity_W, &state, nullptr);
+  PackNavState(state, frame->nav.data());
+  if (dropped) {
+    frame->preintegration = std::move(dropped->preintegration);
+    frame->preintegration->Add(interval_);
+    frame->imu = std::move(dropped->imu);
+    frame->imu.insert(frame->imu.end(), interval_.begin() + 1, interval_.end());
+  } else {
+    frame->imu = interval_;
+  }
+  window_.AddFrame(std::move(frame));
+}
+
+void SmootherEstimator::MarginalizeOldestFrame() {
+  const WindowFrame* oldest = &window_.frame(0);
+  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
+  PoseSystem vision(window_.size());
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.views.empty() || track.views.front().frame != oldest) {
+      continue;
+    }
+    if (track.views.size() >= kMinViews && PrepareLandmark(&track, geometry) &&
+        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
+        AddTrack(track.views, geometry, kernel_, track.landmark, &workspace_, &vision)) {
+      track.Restart();
+    }
+  }
+  prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W);
+  window_.RemoveOldest();
+  window_.Prune();
+}
+
+bool SmootherEstimator::PrepareLandmark(WindowTrack* track, const std::vector<FrameGeometry>& geometry) {
+  if (track->has_landmark) {
+    return true;
+  }
+  double relative_deviation = 0;
+  if (!InitializeLandmark(track->views, geometry, &track->landmark, &relative_deviation) ||
+      relative_deviation > kParallaxSlack * config_.vision.max_relative_depth_deviation) {
+    ++statistics_.features_waiting;
+    return false;
+  }
+  const double max_rho = 1 / config_.vision.min_depth_m;
+  const double min_rho = 1 / config_.vision.max_depth_m;
+  if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark) ||
+      !(track->landmark.z() >= min_rho && track->landmark.z() <= max_rho)) {
+    ++statistics_.features_degenerate;
+    return false;
+  }
+  track->has_landmark = true;
+  return true;
+}
+
+std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
+  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
+  std::vector<WindowTrack*> selected;
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.views.size() >= kMinViews && PrepareLandmark(&track, geometry)) {
+      selected.push_back(&track);
+    }
+  }
+  const size_t limit = static_cast<size_t>(config_.smoother.max_landmarks);
+  if (selected.size() > limit) {
+    std::stable_sort(selected.begin(), selected.end(), [](const WindowTrack* a, const WindowTrack* b) {
+      return a->views.size() > b->views.size();
+    });
+    selected.resize(limit);
+  }
+  return selected;
+}
+
+Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
+  for (int i = 1; i < window_.size(); ++i) {
+    UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
+  }
+  const Result<WindowSolveReport> report = SolveWindow(solve_options_, prior_, *tracks, &window_);
+  if (!report.ok()) {
+    return Lost(report.message());
+  }
+  statistics_.iterations = report->iterations;
+
+  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
+  const double max_rho = 1 / config_.vision.min_depth_m;
+  const double min_rho = 1 / config_.vision.max_depth_m;
+  PoseSystem vision(window_.size());
+  for (WindowTrack* track : *tracks) {
+    const bool solved = SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark);
+    if (!solved || !(track->landmark.z() >= min_rho && track->landmark.z() <= max_rho)) {
+      ++statistics_.features_degenerate;
+      track->Restart();
+      continue;
+    }
+    const int dof = 2 * static_cast<int>(track->views.size()) - 3;
+    if (!gate_.Accepts(TrackChiSquare(track->views, geometry, track->landmark), dof)) {
+      ++statistics_.features_gated;
+      track->Restart();
+      continue;
+    }
+    AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision);
+  }
+  statistics_.features_used = vision.tracks;
+  statistics_.nis = vision.chi2;
+  statistics_.nis_dof = vision.dof;
+  return UpdateLatest(vision);
+}
+
+Status SmootherEstimator::UpdateLatest(const PoseSystem& vision) {
+  const WindowFrame& newest = window_.newest();
+  latest_.stamp_ns = newest.stamp_ns;
+  latest_.nav = newest.nav_state();
+  latest_.bias = newest.imu_bias();
+  if (!NewestCovariance(window_, prior_, vision, solve_options_.gravity_W, &latest_.covariance)) {
+    return Lost("smoother: information at " + FormatSeconds(newest.stamp_ns) + " s is not positive definite");
+  }
+  return Status::Ok();
+}
+
+}  // namespace alidade

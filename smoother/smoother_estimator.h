@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/estimator.h"
+#include "core/imu_buffer.h"
+#include "core/robust.h"
+#include "smoother/track_system.h"
+#include "smoother/window_solver.h"
+
+namespace alidade {
+
+/// Sliding-window smoother: least squares over the states of the last frames, their tracks and a prior that holds what left.
+///
+/// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval.
+///           2. When the window is full the oldest frame is marginalised together with every track based there: all
+///              observations of such a track, in newer frames too, go into the prior, each exactly once. A track still seen
+///              starts anew with its next observation. (Re-anchoring it and using its observations again, as
+///              VINS-Mono does, would count them twice.) A track without parallax only loses its oldest view.
+///           3. IMU prediction of the new frame, landmarks of new tracks, solve.
+///           4. Chi-square gate on each track at the solution: a refused track forgets its observations.
+///           5. Covariance of the newest state.
+/// The first prior is the covariance of Initialize, which also fixes the gauge (yaw and position).
+class SmootherEstimator final : public Estimator {
+ public:
+  SmootherEstimator(const EstimatorConfig& config, const RigCalibration& rig);
+
+  Status Initialize(const NavEstimate& initial) override;
+  Status AddImu(const ImuSample& sample) override;
+  Status AddFrame(const TrackFrame& frame) override;
+  [[nodiscard]] NavEstimate Latest() const override { return latest_; }
+  [[nodiscard]] bool initialized() const override { return initialized_; }
+  [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
+
+  [[nodiscard]] const Window& window() const { return window_; }
+
+ private:
+  Status BeginFrame(TimeNs stamp_ns);
+  [[nodiscard]] bool NewestIsKeyframe() const;
+  void MarginalizeOldestFrame();
+  void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
+  [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
+  bool PrepareLandmark(WindowTrack* track, const std::vector<FrameGeometry>& geometry);
+  Status SolveAndGate(std::vector<WindowTrack*>* tracks);
+  Status UpdateLatest(const PoseSystem& vision);
+  [[nodiscard]] Status Lost(const std::string& message);
+
+  EstimatorConfig config_;
+  RigCalibration rig_;
+  ImuNoise noise_;
+  WindowSolveOptions solve_options_;
+  ObservationKernel kernel_;
+  ChiSquareGate gate_;
+  ImuBuffer imu_;
+  Window window_;
+  LinearPrior prior_;
+  NavEstimate latest_;
+  FrameStatistics statistics_;
+  TrackWorkspace workspace_;
+  std::vector<ImuSample> interval_;
+  bool initialized_ = false;
+};
+
+}  // namespace alidade

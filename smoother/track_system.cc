@@ -1,0 +1,231 @@
+#include "smoother/track_system.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "core/pose_only.h"
+#include "core/robust.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Matrix2x3 = Eigen::Matrix<double, 2, 3>;
+
+constexpr double kMinViewDepth = 1e-6;  // of the scaled point (x, y, 1) + rho t
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Normal equations of the landmark (x, y, rho) with poses fixed.
+struct LandmarkSystem {
+  Matrix3d hessian = Matrix3d::Zero();
+  Vector3d gradient = Vector3d::Zero();
+};
+
+const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const WindowView& view) {
+  return geometry[static_cast<size_t>(view.frame->index)];
+}
+
+/// Robust cost (sum of rho) of the landmark; fills `system` when given. Infinite behind a view.
+double EvaluateLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                        const ObservationKernel& kernel, const Vector3d& landmark, LandmarkSystem* system) {
+  const Pose& base = Geometry(geometry, views.front()).T_WC;
+  const Vector3d ray_W = base.rotation * Vector3d(landmark.x(), landmark.y(), 1);
+  double cost = 0;
+  for (const WindowView& view : views) {
+    const Pose& T_WC = Geometry(geometry, view).T_WC;
+    const Vector3d shift_W = base.translation - T_WC.translation;
+    const Vector3d q = T_WC.rotation.transpose() * (ray_W + landmark.z() * shift_W);
+    if (!(q.z() > kMinViewDepth)) {
+      return kInfinity;
+    }
+    const Vector2d predicted = q.hnormalized();
+    const Vector2d residual = view.observation.sqrt_information * (predicted - view.observation.z);
+    const double s = residual.squaredNorm();
+    cost += kernel.Rho(s);
+    if (system != nullptr) {
+      Matrix2x3 perspective;
+      perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
+      const Matrix2x3 to_world = view.observation.sqrt_information * (perspective / q.z()) * T_WC.rotation.transpose();
+      Matrix2x3 jacobian;
+      jacobian << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
+      const double weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
+      system->hessian += weight * jacobian.transpose() * jacobian;
+      system->gradient += weight * jacobian.transpose() * residual;
+    }
+  }
+  return cost;
+}
+
+}  // namespace
+
+double ObservationKernel::Rho(double s) const {
+  const double k2 = scale_sigma * scale_sigma;
+  switch (kernel) {
+    case RobustKernel::kHuber:
+      return s <= k2 ? s : 2 * scale_sigma * std::sqrt(s) - k2;
+    case RobustKernel::kCauchy:
+      return k2 * std::log1p(s / k2);
+    case RobustKernel::kNone:
+      break;
+  }
+  return s;
+}
+
+FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC) {
+  return {state.T_WB() * T_BC, BodyToCameraJacobian(state.R_WB, T_BC)};
+}
+
+std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC) {
+  std::vector<FrameGeometry> geometry;
+  geometry.reserve(static_cast<size_t>(window.size()));
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    geometry.push_back(MakeGeometry(frame->nav_state(), T_BC));
+  }
+  return geometry;
+}
+
+PoseSystem::PoseSystem(int frames)
+    : hessian(Eigen::MatrixXd::Zero(6 * frames, 6 * frames)), gradient(Eigen::VectorXd::Zero(6 * frames)) {}
+
+bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                   const ObservationKernel& kernel, int max_iterations, Vector3d* landmark) {
+  LandmarkSystem system;
+  double cost = EvaluateLandmark(views, geometry, kernel, *landmark, &system);
+  double damping = 0;
+  for (int i = 0; i < max_iterations && std::isfinite(cost); ++i) {
+    Matrix3d damped = system.hessian;
+    damped.diagonal() *= 1 + damping;
+    const Vector3d step = -damped.llt().solve(system.gradient);
+    const double decrement = -step.dot(system.gradient);
+    if (!(decrement > 1e-14 * (1 + cost))) {
+      break;
+    }
+    LandmarkSystem next;
+    const Vector3d candidate = *landmark + step;
+    const double candidate_cost = EvaluateLandmark(views, geometry, kernel, candidate, &next);
+    if (candidate_cost <= cost * (1 + 1e-15)) {
+      *landmark = candidate;
+      cost = candidate_cost;
+      system = next;
+      damping = damping < 1e-6 ? 0 : damping * 0.1;
+    } else {
+      damping = std::max(damping * 100, 1e-4);
+      if (damping > 1e8) {
+        break;
+      }
+    }
+  }
+  return std::isfinite(cost) && landmark->allFinite();
+}
+
+bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry, const ObservationKernel& kernel,
+              const Vector3d& landmark, TrackWorkspace* workspace, PoseSystem* system) {
+  if (!(landmark.z() > 0) || !std::isfinite(EvaluateLandmark(views, geometry, kernel, landmark, nullptr))) {
+    return false;
+  }
+  const Pose& base = Geometry(geometry, views.front()).T_WC;
+  const Vector3d p_W = base * Vector3d(landmark.x() / landmark.z(), landmark.y() / landmark.z(), 1 / landmark.z());
+  workspace->coupling.resize(views.size());
+  workspace->reduced.resize(views.size());
+  Matrix3d point_hessian = Matrix3d::Zero();
+  Vector3d point_gradient = Vector3d::Zero();
+  // Two passes: nothing may be added before the landmark is known to be determined.
+  std::vector<TrackWorkspace::Rows>& rows = workspace->rows;
+  rows.resize(views.size());
+  double robust_cost = 0;
+  double chi2 = 0;
+  for (size_t k = 0; k < views.size(); ++k) {
+    const FrameGeometry& frame = Geometry(geometry, views[k]);
+    const NormalizedObservation& observation = views[k].observation;
+    const Vector3d p_C = frame.T_WC.rotation.transpose() * (p_W - frame.T_WC.translation);
+    const Vector2d predicted = p_C.hnormalized();
+    Matrix2x3 perspective;
+    perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
+    const Matrix2x3 weighted = observation.sqrt_information * (perspective / p_C.z());
+    const Matrix2x3 to_point = weighted * frame.T_WC.rotation.transpose();
+    Eigen::Matrix<double, 2, 6> camera;
+    camera << weighted * Skew(p_C), -to_point;
+    rows[k].pose.noalias() = camera * frame.camera_from_body;
+    rows[k].residual = observation.sqrt_information * (predicted - observation.z);
+    const double s = rows[k].residual.squaredNorm();
+    rows[k].weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
+    robust_cost += kernel.Rho(s);
+    chi2 += s;
+    workspace->coupling[k].noalias() = rows[k].weight * rows[k].pose.transpose() * to_point;
+    point_hessian.noalias() += rows[k].weight * to_point.transpose() * to_point;
+    point_gradient.noalias() += rows[k].weight * to_point.transpose() * rows[k].residual;
+  }
+  const Eigen::LLT<Matrix3d> factor(point_hessian);
+  if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() >
+                                           1e-7 * factor.matrixLLT().diagonal().maxCoeff())) {
+    return false;
+  }
+  const Vector3d reduced_gradient = factor.matrixL().solve(point_gradient);
+  const Matrix3d inverse_transposed = factor.matrixL().solve(Matrix3d::Identity()).transpose();
+  for (size_t k = 0; k < views.size(); ++k) {
+    const int row = 6 * views[k].frame->index;
+    workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
+    system->hessian.block<6, 6>(row, row).noalias() += rows[k].weight * rows[k].pose.transpose() * rows[k].pose;
+    system->gradient.segment<6>(row).noalias() += rows[k].weight * rows[k].pose.transpose() * rows[k].residual;
+    system->gradient.segment<6>(row).noalias() -= workspace->reduced[k] * reduced_gradient;
+    for (size_t l = 0; l <= k; ++l) {
+      system->hessian.block<6, 6>(row, 6 * views[l].frame->index).noalias() -=
+          workspace->reduced[k] * workspace->reduced[l].transpose();
+    }
+  }
+  system->robust_cost += robust_cost;
+  system->chi2 += chi2;
+  system->dof += 2 * static_cast<int>(views.size()) - 3;
+  ++system->tracks;
+  return true;
+}
+
+double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                      const Vector3d& landmark) {
+  return EvaluateLandmark(views, geometry, ObservationKernel{}, landmark, nullptr);
+}
+
+bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry, Vector3d* landmark,
+                        double* relative_deviation) {
+  std::vector<Pose> poses;
+  std::vector<Vector2d> z;
+  for (const WindowView& view : views) {
+    poses.push_back(Geometry(geometry, view).T_WC);
+    z.push_back(view.observation.z);
+  }
+  PoseOnlyDepth depth;
+  if (!ComputePoseOnlyDepth(poses, z, 0, DepthViews::kMulti, &depth) || !(std::abs(depth.depth) > 1e-9)) {
+    return false;
+  }
+  *landmark << z.front(), 1.0 / depth.depth;
+  *relative_deviation = views.front().observation.deviation() / std::sqrt(depth.normal);
+  return landmark->allFinite();
+}
+
+void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, Eigen::MatrixXd* jacobian,
+                    Eigen::VectorXd* residual) {
+  const Eigen::Index size = hessian.rows();
+  Eigen::MatrixXd lower = hessian;  // left-looking Cholesky on the lower triangle
+  *residual = gradient;
+  for (Eigen::Index j = 0; j < size; ++j) {
+    const double pivot = lower(j, j) - lower.row(j).head(j).squaredNorm();
+    const Eigen::Index below = size - j - 1;
+    if (!(pivot > 1e-13 * hessian(j, j)) || !(hessian(j, j) > 0)) {
+      lower.col(j).tail(below + 1).setZero();
+      (*residual)[j] = 0;
+      continue;
+    }
+    const double root = std::sqrt(pivot);
+    lower.col(j).tail(below).noalias() -= lower.bottomLeftCorner(below, j) * lower.row(j).head(j).transpose();
+    lower.col(j).tail(below) /= root;
+    lower(j, j) = root;
+    (*residual)[j] /= root;
+    residual->tail(below).noalias() -= (*residual)[j] * lower.col(j).tail(below);
+  }
+  *jacobian = lower.triangularView<Eigen::Lower>().transpose();
+}
+
+}  // namespace alidade

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/measurement_log.h"
+#include "core/preintegration.h"
+#include "core/visual_observation.h"
+
+namespace alidade {
+
+/// One frame of the window. `nav` and `bias` are the parameter blocks the solver works on (smoother/nav_state_manifold.h).
+struct WindowFrame {
+  TimeNs stamp_ns = 0;
+  int index = 0;  ///< position in the window, 0 the oldest
+  std::array<double, 10> nav{};
+  std::array<double, 6> bias{};
+  std::vector<ImuSample> imu;                    ///< from the previous frame to this one; empty in the first
+  std::optional<Preintegration> preintegration;  ///< of `imu`, at the previous frame's bias
+
+  [[nodiscard]] NavState nav_state() const;
+  [[nodiscard]] ImuBias imu_bias() const;
+  /// Mean length of one IMU step [s].
+  [[nodiscard]] double mean_step_s() const;
+};
+
+/// One observation of a track inside the window.
+struct WindowView {
+  const WindowFrame* frame = nullptr;
+  NormalizedObservation observation;
+};
+
+/// A landmark seen in the window. The first view is its base.
+struct WindowTrack {
+  std::int64_t id = 0;
+  std::vector<WindowView> views;  ///< in time order
+  /// (x, y, rho): bearing on the base's normalised plane and inverse depth [1/m]; set when has_landmark.
+  Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
+  bool has_landmark = false;
+  bool alive = false;  ///< seen in the newest frame
+
+  /// Forgets all observations; the next one starts the track anew.
+  void Restart() {
+    views.clear();
+    has_landmark = false;
+  }
+};
+
+/// Frames and tracks of a sliding window, with the bookkeeping that keeps them consistent. Frames keep their address for life.
+class Window {
+ public:
+  void Clear();
+  WindowFrame& AddFrame(std::unique_ptr<WindowFrame> frame);
+  /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's domain.
+  int AddObservations(const CameraModel& camera, double pixel_noise_px, const std::vector<TrackObservation>& observations);
+  /// Takes the newest frame out, its observations with it, and returns it.
+  std::unique_ptr<WindowFrame> RemoveNewest();
+  /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one becomes base.
+  void RemoveOldest();
+  /// Drops tracks that are not seen any more and have fewer than two views left.
+  void Prune();
+
+  [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }
+  [[nodiscard]] WindowFrame& frame(int index) { return *frames_[static_cast<size_t>(index)]; }
+  [[nodiscard]] const WindowFrame& frame(int index) const { return *frames_[static_cast<size_t>(index)]; }
+  [[nodiscard]] WindowFrame& newest() { return *frames_.back(); }
+  [[nodiscard]] const WindowFrame& newest() const { return *frames_.back(); }
+  [[nodiscard]] int size() const { return static_cast<int>(frames_.size()); }
+  [[nodiscard]] std::map<std::int64_t, WindowTrack>& tracks() { return tracks_; }
+  [[nodiscard]] const std::map<std::int64_t, WindowTrack>& tracks() const { return tracks_; }
+
+ private:
+  void Renumber();
+
+  std::vector<std::unique_ptr<WindowFrame>> frames_;
+  std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
+};
+
+/// Mean rotation-compensated motion of the tracks common to two frames, on the normalised plane, and their number.
+struct FrameParallax {
+  double mean = 0;
+  int common = 0;
+};
+[[nodiscard]] FrameParallax ComputeParallax(const Window& window, const WindowFrame& first, const WindowFrame& second,
+                                            const Pose& T_BC);
+
+/// Integrates frame.imu anew at the bias `previous` holds now, when the preintegration is missing or the bias has moved so
+/// far that its first-order correction no longer does.
+void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame);
+
+}  // namespace alidade
