@@ -28,7 +28,8 @@ void PackBias(const ImuBias& bias, double* block) {
   Eigen::Map<Eigen::Vector3d>{block + 3} = bias.accel;
 }
 
-ImuFactor::ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W, double mean_step_s)
+ImuFactor::ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W,
+                     double mean_step_s)
     : model_{preintegration, gravity_W}, sqrt_information_(Matrix15d::Zero()) {
   Matrix15d covariance = preintegration->covariance();
   const double density = preintegration->noise().accel_noise_density_mps2_sqrthz;
@@ -41,7 +42,8 @@ ImuFactor::ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d
   }
 }
 
-bool ImuFactor::Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const {
+bool ImuFactor::Evaluate(const double* const* parameters, double* residual,
+                         double* const* tangent_jacobians) const {
   const NavState state_i = UnpackNavState(parameters[0]);
   const NavState state_j = UnpackNavState(parameters[2]);
   const bool differentiate = tangent_jacobians != nullptr;
@@ -52,8 +54,10 @@ bool ImuFactor::Evaluate(const double* const* parameters, double* residual, doub
                   differentiate ? &jacobian_i : nullptr, differentiate ? &jacobian_j : nullptr);
   Eigen::Map<Vector15d>{residual} = sqrt_information_.triangularView<Eigen::Lower>() * r;
   if (differentiate) {
-    Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_i, tangent_jacobians[0], tangent_jacobians[1]);
-    Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_j, tangent_jacobians[2], tangent_jacobians[3]);
+    Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_i, tangent_jacobians[0],
+          tangent_jacobians[1]);
+    Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_j, tangent_jacobians[2],
+          tangent_jacobians[3]);
   }
   return true;
 }

@@ -13,9 +13,9 @@ void PackBias(const ImuBias& bias, double* block);
 
 /// PreintegrationModel between two frames, whitened: blocks nav_i, bias_i, nav_j, bias_j; 15 rows.
 ///
-/// The midpoint rule treats the accelerometer noise as constant within a step, which leaves the position of each step fully
-/// correlated with its velocity (a single step would even be singular). The missing part of the continuous-time
-/// covariance, density^2 dt^3 / 12 a step, is added here.
+/// The midpoint rule treats the accelerometer noise as constant within a step, which leaves the position of
+/// each step fully correlated with its velocity (a single step would even be singular). The missing part of
+/// the continuous-time covariance, density^2 dt^3 / 12 a step, is added here.
 class ImuFactor {
  public:
   static constexpr int kRows = 15;
@@ -30,8 +30,8 @@ class ImuFactor {
   [[nodiscard]] bool valid() const { return valid_; }
 
  private:
-  static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kBias, BlockKind::kNavState,
-                                                       BlockKind::kBias};
+  static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
+                                                       BlockKind::kNavState, BlockKind::kBias};
   PreintegrationModel model_;
   Matrix15d sqrt_information_;  // lower triangular
   bool valid_ = false;

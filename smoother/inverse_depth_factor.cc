@@ -10,8 +10,8 @@ using RowMatrix2x3 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
 // Whitened residual of a landmark behind the camera: far beyond any gate, far below overflow.
 constexpr double kBehindSigma = 1e4;
 
-void StoreNav(const Eigen::Matrix2d& whitening, const InverseDepthModel::PoseJacobian& camera, const NavState& state,
-              const Pose& T_BC, double* tangent) {
+void StoreNav(const Eigen::Matrix2d& whitening, const InverseDepthModel::PoseJacobian& camera,
+              const NavState& state, const Pose& T_BC, double* tangent) {
   if (tangent != nullptr) {
     Eigen::Map<RowMatrix2x9> out(tangent);
     out.leftCols<6>() = whitening * camera * BodyToCameraJacobian(state.R_WB, T_BC);
@@ -33,10 +33,10 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   InverseDepthModel::PoseJacobian jacobian_view;
   Vector2d jacobian_rho;
   Eigen::Matrix2d jacobian_bearing;
-  const bool in_front = model.Evaluate(base.T_WB() * *T_BC_, view.T_WB() * *T_BC_, landmark.z(), &r,
-                                       differentiate ? &jacobian_base : nullptr, differentiate ? &jacobian_view : nullptr,
-                                       differentiate ? &jacobian_rho : nullptr,
-                                       differentiate ? &jacobian_bearing : nullptr);
+  const bool in_front =
+      model.Evaluate(base.T_WB() * *T_BC_, view.T_WB() * *T_BC_, landmark.z(), &r,
+                     differentiate ? &jacobian_base : nullptr, differentiate ? &jacobian_view : nullptr,
+                     differentiate ? &jacobian_rho : nullptr, differentiate ? &jacobian_bearing : nullptr);
   if (!in_front) {
     r.setZero();
     jacobian_base.setZero();

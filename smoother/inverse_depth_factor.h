@@ -8,26 +8,29 @@
 
 namespace alidade {
 
-/// One observation of a landmark (x, y, rho) anchored in another frame: InverseDepthModel with the base bearing (x, y) as
-/// part of the landmark, whitened. Blocks nav_base, nav_view, landmark; 2 rows.
+/// One observation of a landmark (x, y, rho) anchored in another frame: InverseDepthModel with the base
+/// bearing (x, y) as part of the landmark, whitened. Blocks nav_base, nav_view, landmark; 2 rows.
 ///
-/// The model takes the base bearing as exact. It is a measurement like any other, so here the bearing is estimated too and
-/// BaseBearingFactor holds it to the base observation: base noise is then accounted for exactly, correlation between
-/// the views of a track included. (Holding it fixed, as VINS-Mono does, counts the common error of a track as information.)
+/// The model takes the base bearing as exact. It is a measurement like any other, so here the bearing is
+/// estimated too and BaseBearingFactor holds it to the base observation: base noise is then accounted for
+/// exactly, correlation between the views of a track included. (Holding it fixed, as VINS-Mono does, counts
+/// the common error of a track as information.)
 class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;
 
-  InverseDepthFactor(const NormalizedObservation& observation, const Pose* T_BC) : observation_(observation), T_BC_(T_BC) {}
+  InverseDepthFactor(const NormalizedObservation& observation, const Pose* T_BC)
+      : observation_(observation), T_BC_(T_BC) {}
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
-  /// Behind the view the residual is replaced by a large constant with zero Jacobians, so that a trial step of the solver is
-  /// refused rather than the whole solve failing.
+  /// Behind the view the residual is replaced by a large constant with zero Jacobians, so that a trial step
+  /// of the solver is refused rather than the whole solve failing.
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:
-  static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kNavState, BlockKind::kLandmark};
+  static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kNavState,
+                                                       BlockKind::kLandmark};
   NormalizedObservation observation_;
   const Pose* T_BC_;
 };

@@ -11,7 +11,8 @@
 
 namespace alidade {
 
-/// Kinds of parameter blocks. Ceres sees the ambient size; factors work in tangent columns of the canonical chart.
+/// Kinds of parameter blocks. Ceres sees the ambient size; factors work in tangent columns of the canonical
+/// chart.
 enum class BlockKind {
   kNavState,  ///< quaternion, p, v; tangent (phi, dp, dv)
   kBias,      ///< gyro, accel
@@ -30,12 +31,14 @@ enum class BlockKind {
 ///   static constexpr int kRows;                      rows, or Eigen::Dynamic
 ///   int rows() const;
 ///   std::span<const BlockKind> blocks() const;
-///   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+///   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians)
+///   const;
 ///
-/// where Evaluate returns the WHITENED residual and its row-major Jacobians in the canonical chart (tangent_jacobians, or any
-/// entry of it, may be null), and false where the factor is undefined. The lift to the ambient block is done here and nowhere
-/// else, by RotationLift (= chart Jacobian times the manifold's MinusJacobian), so that after Ceres has multiplied with the
-/// PlusJacobian of whichever convention's manifold is installed, it holds J_zeta C.
+/// where Evaluate returns the WHITENED residual and its row-major Jacobians in the canonical chart
+/// (tangent_jacobians, or any entry of it, may be null), and false where the factor is undefined. The lift to
+/// the ambient block is done here and nowhere else, by RotationLift (= chart Jacobian times the manifold's
+/// MinusJacobian), so that after Ceres has multiplied with the PlusJacobian of whichever convention's
+/// manifold is installed, it holds J_zeta C.
 template <typename Factor>
 class LiftedCost final : public ceres::CostFunction {
  public:

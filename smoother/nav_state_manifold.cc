@@ -13,7 +13,8 @@ using PlusMatrix = Eigen::Matrix<double, kNavAmbientSize, kNavTangentSize, Eigen
 using MinusMatrix = Eigen::Matrix<double, kNavTangentSize, kNavAmbientSize, Eigen::RowMajor>;
 using ConstQuaternion = Eigen::Map<const Eigen::Quaterniond>;
 
-/// d q / d theta at 0 for q Exp(theta), or for Exp(theta) q when the error stands on the left; 4x3, rows x y z w.
+/// d q / d theta at 0 for q Exp(theta), or for Exp(theta) q when the error stands on the left; 4x3, rows x y
+/// z w.
 Matrix4x3 QuaternionJacobian(const Eigen::Quaterniond& q, bool error_on_left) {
   Matrix4x3 jacobian;
   const double sign = error_on_left ? -1.0 : 1.0;
@@ -72,7 +73,8 @@ bool NavStateManifold::MinusJacobian(const double* x, double* jacobian) const {
   const bool right_invariant = convention_ == ErrorConvention::kRightInvariant;
   Eigen::Map<MinusMatrix> j(jacobian);
   j.setZero();
-  const Matrix3x4 theta = 4.0 * QuaternionJacobian(ConstQuaternion(x).normalized(), right_invariant).transpose();
+  const Matrix3x4 theta =
+      4.0 * QuaternionJacobian(ConstQuaternion(x).normalized(), right_invariant).transpose();
   const Matrix9d inverse = InverseChartJacobian(convention_, state);
   j.topLeftCorner<3, 4>() = theta;
   j.bottomRightCorner<6, 6>() = inverse.bottomRightCorner<6, 6>();

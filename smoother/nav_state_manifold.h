@@ -6,7 +6,8 @@
 
 namespace alidade {
 
-/// How a navigation state lies in a Ceres parameter block: unit Hamilton quaternion of R_WB (x, y, z, w), p_WB, v_WB.
+/// How a navigation state lies in a Ceres parameter block: unit Hamilton quaternion of R_WB (x, y, z, w),
+/// p_WB, v_WB.
 inline constexpr int kNavAmbientSize = 10;
 inline constexpr int kNavTangentSize = 9;
 
@@ -14,9 +15,10 @@ void PackNavState(const NavState& state, double* block);
 /// The quaternion is normalised on reading, so rounding in the block never leaves SO(3).
 [[nodiscard]] NavState UnpackNavState(const double* block);
 
-/// d zeta / d block, 9x10, of the canonical chart: phi = 2 vec(q^-1 dq), dp, dv. Only the 3x4 rotation part is not the
-/// identity, so only it is kept. It equals C * MinusJacobian for EVERY convention (C the convention's chart Jacobian: the
-/// terms that couple p and v to the rotation cancel), which is what makes one cost function serve all manifolds:
+/// d zeta / d block, 9x10, of the canonical chart: phi = 2 vec(q^-1 dq), dp, dv. Only the 3x4 rotation part
+/// is not the identity, so only it is kept. It equals C * MinusJacobian for EVERY convention (C the
+/// convention's chart Jacobian: the terms that couple p and v to the rotation cancel), which is what makes
+/// one cost function serve all manifolds:
 ///
 ///     (J_zeta * lift) * PlusJacobian = J_zeta * C * MinusJacobian * PlusJacobian = J_zeta * C.
 [[nodiscard]] Eigen::Matrix<double, 3, 4> RotationLift(const double* block);
@@ -41,8 +43,9 @@ class NavStateManifold final : public ceres::Manifold {
   ErrorConvention convention_;
 };
 
-/// d Local(origin, Retract(state, xi)) / d xi at xi = 0, 9x9: the identity where state == origin. A prior anchored at
-/// `origin` needs it wherever the state has moved on.
-[[nodiscard]] Matrix9d LocalJacobian(ErrorConvention convention, const NavState& origin, const NavState& state);
+/// d Local(origin, Retract(state, xi)) / d xi at xi = 0, 9x9: the identity where state == origin. A prior
+/// anchored at `origin` needs it wherever the state has moved on.
+[[nodiscard]] Matrix9d LocalJacobian(ErrorConvention convention, const NavState& origin,
+                                     const NavState& state);
 
 }  // namespace alidade

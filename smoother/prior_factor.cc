@@ -35,7 +35,8 @@ PriorFactor::PriorFactor(const LinearPrior* prior) : prior_(prior) {
   blocks_.resize(prior->anchors.size() + 1, BlockKind::kNavState);
 }
 
-bool PriorFactor::Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const {
+bool PriorFactor::Evaluate(const double* const* parameters, double* residual,
+                           double* const* tangent_jacobians) const {
   const Eigen::MatrixXd& J = prior_->jacobian;
   Eigen::Map<Eigen::VectorXd> r(residual, rows());
   r = prior_->residual;
@@ -51,12 +52,14 @@ bool PriorFactor::Evaluate(const double* const* parameters, double* residual, do
     if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
       const Matrix9d chain = LocalJacobian(prior_->convention, anchor.origin, state) *
                              InverseChartJacobian(prior_->convention, state);
-      RowMap<9>(tangent_jacobians[block], rows(), 9).noalias() = J.middleCols(column, width) * chain.topRows(width);
+      RowMap<9>(tangent_jacobians[block], rows(), 9).noalias() =
+          J.middleCols(column, width) * chain.topRows(width);
     }
   }
   const ImuBias bias = UnpackBias(parameters[1]);
   Vector6d shift;
-  shift << bias.gyro - prior_->anchors.front().bias_origin.gyro, bias.accel - prior_->anchors.front().bias_origin.accel;
+  shift << bias.gyro - prior_->anchors.front().bias_origin.gyro,
+      bias.accel - prior_->anchors.front().bias_origin.accel;
   r.noalias() += J.middleCols<6>(9) * shift;
   if (tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
     RowMap<6>(tangent_jacobians[1], rows(), 6) = J.middleCols<6>(9);

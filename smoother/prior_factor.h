@@ -8,11 +8,13 @@
 
 namespace alidade {
 
-/// What frames and landmarks that left the window said about those that stay: r = r0 + J xi, unit noise, with xi the
-/// stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed when the prior is made.
+/// What frames and landmarks that left the window said about those that stay: r = r0 + J xi, unit noise, with
+/// xi the stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed
+/// when the prior is made.
 ///
-/// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision reaches only poses,
-/// and the IMU ties velocity and biases of the frame that left to those of the next one alone.
+/// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision
+/// reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the next one
+/// alone.
 struct LinearPrior {
   struct Anchor {
     const WindowFrame* frame = nullptr;
@@ -28,8 +30,8 @@ struct LinearPrior {
   [[nodiscard]] int columns() const { return Column(static_cast<int>(anchors.size())); }
 };
 
-/// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False when the
-/// covariance is not positive definite to rounding.
+/// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False
+/// when the covariance is not positive definite to rounding.
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior);
 

@@ -19,8 +19,9 @@ using Clock = std::chrono::steady_clock;
 
 // Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
 constexpr size_t kMinViews = 2;
-// The filter linearises a track once and needs its depth to vision.max_relative_depth_deviation; here every solve linearises
-// again, so a track may enter earlier. It is still held to this multiple when it is marginalised, linearised for good.
+// The filter linearises a track once and needs its depth to vision.max_relative_depth_deviation; here every
+// solve linearises again, so a track may enter earlier. It is still held to this multiple when it is
+// marginalised, linearised for good.
 constexpr double kParallaxSlack = 10;
 constexpr int kMaxLandmarkIterations = 30;
 
@@ -37,8 +38,8 @@ ImuNoise ScaledNoise(const ImuNoise& noise, const ImuConfig& config) {
 
 Status CheckInitial(const NavEstimate& initial) {
   const NavState& nav = initial.nav;
-  if (!nav.R_WB.allFinite() || !nav.p_WB.allFinite() || !nav.v_WB.allFinite() || !initial.bias.gyro.allFinite() ||
-      !initial.bias.accel.allFinite() || !initial.covariance.allFinite()) {
+  if (!nav.R_WB.allFinite() || !nav.p_WB.allFinite() || !nav.v_WB.allFinite() ||
+      !initial.bias.gyro.allFinite() || !initial.bias.accel.allFinite() || !initial.covariance.allFinite()) {
     return Status::Input("smoother: initial state is not finite");
   }
   const double off = (nav.R_WB * nav.R_WB.transpose() - Eigen::Matrix3d::Identity()).norm();
@@ -92,7 +93,9 @@ Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   return Status::Ok();
 }
 
-Status SmootherEstimator::AddImu(const ImuSample& sample) { return imu_.Add(sample); }
+Status SmootherEstimator::AddImu(const ImuSample& sample) {
+  return imu_.Add(sample);
+}
 
 Status SmootherEstimator::Lost(const std::string& message) {
   initialized_ = false;
@@ -239,7 +242,8 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   const double min_rho = 1 / config_.vision.max_depth_m;
   PoseSystem vision(window_.size());
   for (WindowTrack* track : *tracks) {
-    const bool solved = SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark);
+    const bool solved =
+        SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark);
     if (!solved || !(track->landmark.z() >= min_rho && track->landmark.z() <= max_rho)) {
       ++statistics_.features_degenerate;
       track->Restart();

@@ -28,6 +28,19 @@ const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const Win
   return geometry[static_cast<size_t>(view.frame->index)];
 }
 
+/// rho' + 2 s rho'': second derivative of the cost along the residual, kept positive so that a Newton step
+/// descends.
+double RadialCurvature(const ObservationKernel& kernel, double s, double weight) {
+  const double k2 = kernel.scale_sigma * kernel.scale_sigma;
+  double ratio = 1;
+  if (kernel.kernel == RobustKernel::kHuber && s > k2) {
+    ratio = 0;
+  } else if (kernel.kernel == RobustKernel::kCauchy) {
+    ratio = (k2 - s) / (k2 + s);
+  }
+  return weight * std::max(ratio, 0.01);
+}
+
 /// Robust cost (sum of rho) of the landmark; fills `system` when given. Infinite behind a view.
 double EvaluateLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                         const ObservationKernel& kernel, const Vector3d& landmark, LandmarkSystem* system) {
@@ -48,12 +61,17 @@ double EvaluateLandmark(std::span<const WindowView> views, std::span<const Frame
     if (system != nullptr) {
       Matrix2x3 perspective;
       perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-      const Matrix2x3 to_world = view.observation.sqrt_information * (perspective / q.z()) * T_WC.rotation.transpose();
+      const Matrix2x3 to_world =
+          view.observation.sqrt_information * (perspective / q.z()) * T_WC.rotation.transpose();
       Matrix2x3 jacobian;
       jacobian << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
       const double weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
-      system->hessian += weight * jacobian.transpose() * jacobian;
-      system->gradient += weight * jacobian.transpose() * residual;
+      const Vector3d slope = jacobian.transpose() * residual;
+      system->gradient += weight * slope;
+      // Newton's curvature of the kernel, along the residual; plain re-weighting converges linearly only.
+      system->hessian +=
+          weight * jacobian.transpose() * jacobian -
+          (weight - RadialCurvature(kernel, s, weight)) / std::max(s, 1e-300) * slope * slope.transpose();
     }
   }
   return cost;
@@ -121,13 +139,15 @@ bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeome
   return std::isfinite(cost) && landmark->allFinite();
 }
 
-bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry, const ObservationKernel& kernel,
-              const Vector3d& landmark, TrackWorkspace* workspace, PoseSystem* system) {
+bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+              const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
+              PoseSystem* system) {
   if (!(landmark.z() > 0) || !std::isfinite(EvaluateLandmark(views, geometry, kernel, landmark, nullptr))) {
     return false;
   }
   const Pose& base = Geometry(geometry, views.front()).T_WC;
-  const Vector3d p_W = base * Vector3d(landmark.x() / landmark.z(), landmark.y() / landmark.z(), 1 / landmark.z());
+  const Vector3d p_W =
+      base * Vector3d(landmark.x() / landmark.z(), landmark.y() / landmark.z(), 1 / landmark.z());
   workspace->coupling.resize(views.size());
   workspace->reduced.resize(views.size());
   Matrix3d point_hessian = Matrix3d::Zero();
@@ -159,8 +179,8 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
     point_gradient.noalias() += rows[k].weight * to_point.transpose() * rows[k].residual;
   }
   const Eigen::LLT<Matrix3d> factor(point_hessian);
-  if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().minCoeff() >
-                                           1e-7 * factor.matrixLLT().diagonal().maxCoeff())) {
+  if (factor.info() != Eigen::Success ||
+      !(factor.matrixLLT().diagonal().minCoeff() > 1e-7 * factor.matrixLLT().diagonal().maxCoeff())) {
     return false;
   }
   const Vector3d reduced_gradient = factor.matrixL().solve(point_gradient);
@@ -168,8 +188,10 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   for (size_t k = 0; k < views.size(); ++k) {
     const int row = 6 * views[k].frame->index;
     workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
-    system->hessian.block<6, 6>(row, row).noalias() += rows[k].weight * rows[k].pose.transpose() * rows[k].pose;
-    system->gradient.segment<6>(row).noalias() += rows[k].weight * rows[k].pose.transpose() * rows[k].residual;
+    system->hessian.block<6, 6>(row, row).noalias() +=
+        rows[k].weight * rows[k].pose.transpose() * rows[k].pose;
+    system->gradient.segment<6>(row).noalias() +=
+        rows[k].weight * rows[k].pose.transpose() * rows[k].residual;
     system->gradient.segment<6>(row).noalias() -= workspace->reduced[k] * reduced_gradient;
     for (size_t l = 0; l <= k; ++l) {
       system->hessian.block<6, 6>(row, 6 * views[l].frame->index).noalias() -=
@@ -188,8 +210,8 @@ double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGe
   return EvaluateLandmark(views, geometry, ObservationKernel{}, landmark, nullptr);
 }
 
-bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry, Vector3d* landmark,
-                        double* relative_deviation) {
+bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                        Vector3d* landmark, double* relative_deviation) {
   std::vector<Pose> poses;
   std::vector<Vector2d> z;
   for (const WindowView& view : views) {
@@ -205,8 +227,8 @@ bool InitializeLandmark(std::span<const WindowView> views, std::span<const Frame
   return landmark->allFinite();
 }
 
-void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, Eigen::MatrixXd* jacobian,
-                    Eigen::VectorXd* residual) {
+void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                    Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
   const Eigen::Index size = hessian.rows();
   Eigen::MatrixXd lower = hessian;  // left-looking Cholesky on the lower triangle
   *residual = gradient;

@@ -9,7 +9,8 @@
 
 namespace alidade {
 
-/// Robust kernel of one observation: rho(s) of its whitened squared residual s, with ceres' conventions (rho'(0) = 1).
+/// Robust kernel of one observation: rho(s) of its whitened squared residual s, with ceres' conventions
+/// (rho'(0) = 1).
 struct ObservationKernel {
   RobustKernel kernel = RobustKernel::kNone;
   double scale_sigma = 1;
@@ -17,7 +18,8 @@ struct ObservationKernel {
   [[nodiscard]] double Rho(double squared_norm) const;
 };
 
-/// Camera pose of a frame and its error's chain to the body error; computed once a frame and evaluation point.
+/// Camera pose of a frame and its error's chain to the body error; computed once a frame and evaluation
+/// point.
 struct FrameGeometry {
   Pose T_WC;
   Matrix6d camera_from_body;
@@ -25,8 +27,9 @@ struct FrameGeometry {
 [[nodiscard]] FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC);
 [[nodiscard]] std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC);
 
-/// Normal equations of vision alone, every landmark eliminated (the 2N-3 rows N^T [H | r] of each track; N the left null space
-/// of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical chart.
+/// Normal equations of vision alone, every landmark eliminated (the 2N-3 rows N^T [H | r] of each track; N
+/// the left null space of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical
+/// chart.
 struct PoseSystem {
   explicit PoseSystem(int frames);
 
@@ -50,29 +53,31 @@ struct TrackWorkspace {
   std::vector<Eigen::Matrix<double, 6, 3>> reduced;   ///< coupling times L^-T, so that H -= reduced reduced^T
 };
 
-/// Landmark of the track with the poses held fixed: damped, iteratively re-weighted Gauss-Newton over (x, y, rho) of the base
-/// view, run to convergence so that the cost's derivative through the landmark vanishes. `landmark` is start and result. False:
-/// behind a view, or not finite.
+/// Landmark of the track with the poses held fixed: damped, iteratively re-weighted Gauss-Newton over (x, y,
+/// rho) of the base view, run to convergence so that the cost's derivative through the landmark vanishes.
+/// `landmark` is start and result. False: behind a view, or not finite.
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                    const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark);
 
-/// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its optimum is stepped
-/// there to first order. False (system untouched): behind a view, rho <= 0, or the landmark is not determined.
-bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry, const ObservationKernel& kernel,
-              const Eigen::Vector3d& landmark, TrackWorkspace* workspace, PoseSystem* system);
+/// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its
+/// optimum is stepped there to first order. False (system untouched): behind a view, rho <= 0, or the
+/// landmark is not determined.
+bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+              const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
+              PoseSystem* system);
 
 /// Sum of whitened squared residuals (no kernel) at the landmark; infinite when behind a view.
-[[nodiscard]] double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                                    const Eigen::Vector3d& landmark);
+[[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,
+                                    std::span<const FrameGeometry> geometry, const Eigen::Vector3d& landmark);
 
-/// First value of a landmark from the pose-only depth (core/pose_only.h), with its relative deviation sigma / sqrt(A^T A).
-/// False without parallax.
+/// First value of a landmark from the pose-only depth (core/pose_only.h), with its relative deviation sigma /
+/// sqrt(A^T A). False without parallax.
 bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                         Eigen::Vector3d* landmark, double* relative_deviation);
 
-/// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H (lower triangle
-/// given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.
-void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, Eigen::MatrixXd* jacobian,
-                    Eigen::VectorXd* residual);
+/// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H
+/// (lower triangle given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.
+void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                    Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual);
 
 }  // namespace alidade

@@ -12,12 +12,17 @@ namespace alidade {
 constexpr double kMaxGyroBiasShift = 1e-3;
 constexpr double kMaxAccelBiasShift = 2e-2;
 
-NavState WindowFrame::nav_state() const { return UnpackNavState(nav.data()); }
-ImuBias WindowFrame::imu_bias() const { return UnpackBias(bias.data()); }
+NavState WindowFrame::nav_state() const {
+  return UnpackNavState(nav.data());
+}
+ImuBias WindowFrame::imu_bias() const {
+  return UnpackBias(bias.data());
+}
 
 double WindowFrame::mean_step_s() const {
   return imu.size() < 2 ? 0.0
-                        : SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns) / static_cast<double>(imu.size() - 1);
+                        : SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns) /
+                              static_cast<double>(imu.size() - 1);
 }
 
 void Window::Clear() {
@@ -119,8 +124,7 @@ FrameParallax ComputeParallax(const Window& window, const WindowFrame& first, co
 
 void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame) {
   const ImuBias bias = previous.imu_bias();
-  if (frame->preintegration &&
-      (frame->preintegration->bias().gyro - bias.gyro).norm() < kMaxGyroBiasShift &&
+  if (frame->preintegration && (frame->preintegration->bias().gyro - bias.gyro).norm() < kMaxGyroBiasShift &&
       (frame->preintegration->bias().accel - bias.accel).norm() < kMaxAccelBiasShift) {
     return;
   }

@@ -13,7 +13,8 @@
 
 namespace alidade {
 
-/// One frame of the window. `nav` and `bias` are the parameter blocks the solver works on (smoother/nav_state_manifold.h).
+/// One frame of the window. `nav` and `bias` are the parameter blocks the solver works on
+/// (smoother/nav_state_manifold.h).
 struct WindowFrame {
   TimeNs stamp_ns = 0;
   int index = 0;  ///< position in the window, 0 the oldest
@@ -50,16 +51,20 @@ struct WindowTrack {
   }
 };
 
-/// Frames and tracks of a sliding window, with the bookkeeping that keeps them consistent. Frames keep their address for life.
+/// Frames and tracks of a sliding window, with the bookkeeping that keeps them consistent. Frames keep their
+/// address for life.
 class Window {
  public:
   void Clear();
   WindowFrame& AddFrame(std::unique_ptr<WindowFrame> frame);
-  /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's domain.
-  int AddObservations(const CameraModel& camera, double pixel_noise_px, const std::vector<TrackObservation>& observations);
+  /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's
+  /// domain.
+  int AddObservations(const CameraModel& camera, double pixel_noise_px,
+                      const std::vector<TrackObservation>& observations);
   /// Takes the newest frame out, its observations with it, and returns it.
   std::unique_ptr<WindowFrame> RemoveNewest();
-  /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one becomes base.
+  /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one
+  /// becomes base.
   void RemoveOldest();
   /// Drops tracks that are not seen any more and have fewer than two views left.
   void Prune();
@@ -80,16 +85,17 @@ class Window {
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
 
-/// Mean rotation-compensated motion of the tracks common to two frames, on the normalised plane, and their number.
+/// Mean rotation-compensated motion of the tracks common to two frames, on the normalised plane, and their
+/// number.
 struct FrameParallax {
   double mean = 0;
   int common = 0;
 };
-[[nodiscard]] FrameParallax ComputeParallax(const Window& window, const WindowFrame& first, const WindowFrame& second,
-                                            const Pose& T_BC);
+[[nodiscard]] FrameParallax ComputeParallax(const Window& window, const WindowFrame& first,
+                                            const WindowFrame& second, const Pose& T_BC);
 
-/// Integrates frame.imu anew at the bias `previous` holds now, when the preintegration is missing or the bias has moved so
-/// far that its first-order correction no longer does.
+/// Integrates frame.imu anew at the bias `previous` holds now, when the preintegration is missing or the bias
+/// has moved so far that its first-order correction no longer does.
 void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame);
 
 }  // namespace alidade

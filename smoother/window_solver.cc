@@ -4,6 +4,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -17,10 +18,20 @@
 namespace alidade {
 namespace {
 
-/// Everything one solve hands to Ceres by pointer, and the order in which it is eliminated.
+constexpr size_t kFrameStride = 16;    // nav (10) and bias (6)
+constexpr size_t kLandmarkStride = 4;  // one spare, so that every block stays 16-byte aligned
+
+/// Everything one solve hands to Ceres by pointer. All parameter blocks lie in one array in a fixed order:
+/// Ceres sorts the blocks of an elimination group by ADDRESS, so blocks scattered over the heap would make
+/// the rounding depend on its history.
 struct SolveStore {
-  explicit SolveStore(const WindowSolveOptions& options)
-      : manifold(options.smoother.error), kernel{options.vision.robust_kernel, options.vision.robust_scale_sigma} {
+  SolveStore(const WindowSolveOptions& options, const std::vector<WindowTrack*>& selected,
+             const Window& window)
+      : tracks(selected),
+        frames(static_cast<size_t>(window.size())),
+        parameters(kFrameStride * frames + kLandmarkStride * tracks.size()),
+        manifold(options.smoother.error),
+        kernel{options.vision.robust_kernel, options.vision.robust_scale_sigma} {
     switch (kernel.kernel) {
       case RobustKernel::kHuber:
         loss = std::make_unique<ceres::HuberLoss>(kernel.scale_sigma);
@@ -31,8 +42,33 @@ struct SolveStore {
       case RobustKernel::kNone:
         break;
     }
+    for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+      std::copy(frame->nav.begin(), frame->nav.end(), Nav(frame->index));
+      std::copy(frame->bias.begin(), frame->bias.end(), Bias(frame->index));
+    }
+    for (size_t i = 0; i < tracks.size(); ++i) {
+      std::copy_n(tracks[i]->landmark.data(), 3, Landmark(i));
+    }
   }
 
+  double* Nav(int frame) { return &parameters[kFrameStride * static_cast<size_t>(frame)]; }
+  double* Bias(int frame) { return Nav(frame) + kNavAmbientSize; }
+  double* Landmark(size_t track) { return &parameters[kFrameStride * frames + kLandmarkStride * track]; }
+
+  void WriteBack(Window* window) {
+    for (int i = 0; i < window->size(); ++i) {
+      WindowFrame& frame = window->frame(i);
+      std::copy_n(Nav(i), frame.nav.size(), frame.nav.begin());
+      std::copy_n(Bias(i), frame.bias.size(), frame.bias.begin());
+    }
+    for (size_t i = 0; i < tracks.size(); ++i) {
+      std::copy_n(Landmark(i), 3, tracks[i]->landmark.data());
+    }
+  }
+
+  const std::vector<WindowTrack*>& tracks;
+  size_t frames;
+  std::vector<double> parameters;
   NavStateManifold manifold;
   ObservationKernel kernel;
   std::unique_ptr<ceres::LossFunction> loss;
@@ -52,129 +88,116 @@ ceres::Problem::Options ProblemOptions() {
   return options;
 }
 
-void AddPrior(const LinearPrior& prior, Window* window, SolveStore* store, ceres::Problem* problem) {
+void AddPrior(const LinearPrior& prior, SolveStore* store, ceres::Problem* problem) {
   store->prior.emplace(PriorFactor(&prior));
   std::vector<double*> blocks;
   for (size_t i = 0; i < prior.anchors.size(); ++i) {
-    WindowFrame& frame = window->frame(prior.anchors[i].frame->index);
-    blocks.push_back(frame.nav.data());
+    blocks.push_back(store->Nav(prior.anchors[i].frame->index));
     if (i == 0) {
-      blocks.push_back(frame.bias.data());
+      blocks.push_back(store->Bias(prior.anchors[i].frame->index));
     }
   }
   problem->AddResidualBlock(&*store->prior, nullptr, blocks);
 }
 
-Status AddImu(const WindowSolveOptions& options, Window* window, SolveStore* store, ceres::Problem* problem) {
-  for (int i = 0; i + 1 < window->size(); ++i) {
-    WindowFrame& first = window->frame(i);
-    WindowFrame& second = window->frame(i + 1);
-    const ImuFactor factor(&*second.preintegration, options.gravity_W, second.mean_step_s());
+Status AddImu(const WindowSolveOptions& options, const Window& window, SolveStore* store,
+              ceres::Problem* problem) {
+  for (int i = 0; i + 1 < window.size(); ++i) {
+    const WindowFrame& next = window.frame(i + 1);
+    const ImuFactor factor(&*next.preintegration, options.gravity_W, next.mean_step_s());
     if (!factor.valid()) {
-      return Status::Diverged("smoother: IMU covariance up to " + FormatSeconds(second.stamp_ns) +
+      return Status::Diverged("smoother: IMU covariance up to " + FormatSeconds(next.stamp_ns) +
                               " s is not positive definite");
     }
     store->imu.emplace_back(factor);
-    problem->AddResidualBlock(&store->imu.back(), nullptr, first.nav.data(), first.bias.data(), second.nav.data(),
-                              second.bias.data());
+    problem->AddResidualBlock(&store->imu.back(), nullptr, store->Nav(i), store->Bias(i), store->Nav(i + 1),
+                              store->Bias(i + 1));
   }
   return Status::Ok();
 }
 
-void AddInverseDepth(const WindowSolveOptions& options, const std::vector<WindowTrack*>& tracks, Window* window,
-                     SolveStore* store, ceres::Problem* problem) {
-  for (WindowTrack* track : tracks) {
-    double* landmark = track->landmark.data();
-    double* base = window->frame(track->views.front().frame->index).nav.data();
-    store->base_bearing.emplace_back(BaseBearingFactor(track->views.front().observation));
-    problem->AddResidualBlock(&store->base_bearing.back(), store->loss.get(), landmark);
-    for (size_t k = 1; k < track->views.size(); ++k) {
-      const WindowView& view = track->views[k];
-      store->inverse_depth.emplace_back(InverseDepthFactor(view.observation, &options.T_BC));
-      problem->AddResidualBlock(&store->inverse_depth.back(), store->loss.get(), base,
-                                window->frame(view.frame->index).nav.data(), landmark);
+void AddInverseDepth(const WindowSolveOptions& options, SolveStore* store, ceres::Problem* problem) {
+  for (size_t i = 0; i < store->tracks.size(); ++i) {
+    const std::vector<WindowView>& views = store->tracks[i]->views;
+    store->base_bearing.emplace_back(BaseBearingFactor(views.front().observation));
+    problem->AddResidualBlock(&store->base_bearing.back(), store->loss.get(), store->Landmark(i));
+    for (size_t k = 1; k < views.size(); ++k) {
+      store->inverse_depth.emplace_back(InverseDepthFactor(views[k].observation, &options.T_BC));
+      problem->AddResidualBlock(&store->inverse_depth.back(), store->loss.get(),
+                                store->Nav(views.front().frame->index), store->Nav(views[k].frame->index),
+                                store->Landmark(i));
     }
   }
 }
 
-void AddPoseOnly(const WindowSolveOptions& options, const std::vector<WindowTrack*>& tracks, Window* window,
-                 SolveStore* store, ceres::Problem* problem) {
+void AddPoseOnly(const WindowSolveOptions& options, int frames, SolveStore* store, ceres::Problem* problem) {
   std::vector<double*> blocks;
-  for (int i = 0; i < window->size(); ++i) {
-    blocks.push_back(window->frame(i).nav.data());
+  for (int i = 0; i < frames; ++i) {
+    blocks.push_back(store->Nav(i));
   }
   store->pose_only.emplace(
-      PoseOnlyFactor(window->size(), {tracks.begin(), tracks.end()}, options.T_BC, store->kernel));
+      PoseOnlyFactor(frames, {store->tracks.begin(), store->tracks.end()}, options.T_BC, store->kernel));
   problem->AddResidualBlock(&*store->pose_only, nullptr, blocks);
 }
 
-ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, const std::vector<WindowTrack*>& tracks,
-                                     Window* window) {
+ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, int frames, SolveStore* store) {
   ceres::Solver::Options solver;
   solver.max_num_iterations = options.smoother.max_iterations;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
-  // Dogleg takes the undamped Gauss-Newton step; Levenberg-Marquardt would damp the weakly observed drift directions first.
+  // Dogleg takes the undamped Gauss-Newton step; Levenberg-Marquardt would damp the weakly observed drift
+  // directions first.
   solver.trust_region_strategy_type = ceres::DOGLEG;
   solver.function_tolerance = 1e-6;
   solver.parameter_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-12;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
-  // First group: blocks no factor couples with one another. Landmarks where they are explicit; else every second bias, which
-  // makes Ceres form the normal equations block by block and leaves the dense factorisation fewer columns.
-  const bool explicit_landmarks = options.smoother.landmark == SmootherLandmark::kInverseDepth && !tracks.empty();
+  // First group: blocks no factor couples with one another. Landmarks where they are explicit; else every
+  // second bias, which makes Ceres form the normal equations block by block and leaves the dense
+  // factorisation fewer columns.
+  const bool explicit_landmarks =
+      options.smoother.landmark == SmootherLandmark::kInverseDepth && !store->tracks.empty();
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  if (explicit_landmarks) {
-    for (WindowTrack* track : tracks) {
-      solver.linear_solver_ordering->AddElementToGroup(track->landmark.data(), 0);
-    }
+  for (size_t i = 0; explicit_landmarks && i < store->tracks.size(); ++i) {
+    solver.linear_solver_ordering->AddElementToGroup(store->Landmark(i), 0);
   }
-  for (int i = 0; i < window->size(); ++i) {
-    WindowFrame& frame = window->frame(i);
-    solver.linear_solver_ordering->AddElementToGroup(frame.nav.data(), 1);
-    solver.linear_solver_ordering->AddElementToGroup(frame.bias.data(), !explicit_landmarks && i % 2 == 0 ? 0 : 1);
+  for (int i = 0; i < frames; ++i) {
+    solver.linear_solver_ordering->AddElementToGroup(store->Nav(i), 1);
+    solver.linear_solver_ordering->AddElementToGroup(store->Bias(i),
+                                                     !explicit_landmarks && i % 2 == 0 ? 0 : 1);
   }
   return solver;
-}
-
-bool AllFinite(const Window& window) {
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    for (const double value : frame->nav) {
-      if (!std::isfinite(value)) return false;
-    }
-    for (const double value : frame->bias) {
-      if (!std::isfinite(value)) return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace
 
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
                                       const std::vector<WindowTrack*>& tracks, Window* window) {
-  SolveStore store(options);
+  const int frames = window->size();
+  SolveStore store(options, tracks, *window);
   ceres::Problem problem(ProblemOptions());
-  for (int i = 0; i < window->size(); ++i) {
-    problem.AddParameterBlock(window->frame(i).nav.data(), kNavAmbientSize, &store.manifold);
-    problem.AddParameterBlock(window->frame(i).bias.data(), 6);
+  for (int i = 0; i < frames; ++i) {
+    problem.AddParameterBlock(store.Nav(i), kNavAmbientSize, &store.manifold);
+    problem.AddParameterBlock(store.Bias(i), 6);
   }
-  AddPrior(prior, window, &store, &problem);
-  ALIDADE_RETURN_IF_ERROR(AddImu(options, window, &store, &problem));
-  if (tracks.empty()) {
-    // prior and IMU alone
-  } else if (options.smoother.landmark == SmootherLandmark::kInverseDepth) {
-    AddInverseDepth(options, tracks, window, &store, &problem);
-  } else {
-    AddPoseOnly(options, tracks, window, &store, &problem);
+  AddPrior(prior, &store, &problem);
+  ALIDADE_RETURN_IF_ERROR(AddImu(options, *window, &store, &problem));
+  if (options.smoother.landmark == SmootherLandmark::kInverseDepth) {
+    AddInverseDepth(options, &store, &problem);
+  } else if (!tracks.empty()) {
+    AddPoseOnly(options, frames, &store, &problem);
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(SolverOptions(options, tracks, window), &problem, &summary);
-  if (summary.termination_type == ceres::FAILURE || !AllFinite(*window)) {
+  ceres::Solve(SolverOptions(options, frames, &store), &problem, &summary);
+  const bool finite = std::all_of(store.parameters.begin(), store.parameters.end(),
+                                  [](double value) { return std::isfinite(value); });
+  if (summary.termination_type == ceres::FAILURE || !finite) {
     return Status::Diverged("smoother: solver failed at " + FormatSeconds(window->newest().stamp_ns) +
                             " s: " + summary.message);
   }
-  return WindowSolveReport{static_cast<int>(summary.iterations.size()) - 1, summary.initial_cost, summary.final_cost};
+  store.WriteBack(window);
+  return WindowSolveReport{static_cast<int>(summary.iterations.size()) - 1, summary.initial_cost,
+                           summary.final_cost};
 }
 
 }  // namespace alidade

@@ -23,10 +23,11 @@ struct WindowSolveReport {
   double final_cost = 0;
 };
 
-/// Least squares over all frames of the window with Ceres: prior, IMU factors and the given tracks, which must have landmarks.
-/// States are updated in place; with explicit inverse depths the landmarks as well, with pose-only landmarks they are left
-/// for SolveLandmark. One thread and no time limit: equal input, equal bits. Errors (kDiverged): an IMU factor cannot be
-/// whitened, the solver failed, or a state is not finite; the window's states are then undefined.
+/// Least squares over all frames of the window with Ceres: prior, IMU factors and the given tracks, which
+/// must have landmarks. States are updated in place; with explicit inverse depths the landmarks as well, with
+/// pose-only landmarks they are left for SolveLandmark. One thread and no time limit: equal input, equal
+/// bits. Errors (kDiverged): an IMU factor cannot be whitened, the solver failed, or a state is not finite;
+/// the window is then as before.
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
                                       const std::vector<WindowTrack*>& tracks, Window* window);
 

@@ -27,7 +27,8 @@ ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second, const 
   Eigen::Matrix<double, 15, 6, Eigen::RowMajor> bias_first, bias_second;
   const std::array<const double*, 4> parameters = {first.nav.data(), first.bias.data(), second.nav.data(),
                                                    second.bias.data()};
-  const std::array<double*, 4> jacobians = {nav_first.data(), bias_first.data(), nav_second.data(), bias_second.data()};
+  const std::array<double*, 4> jacobians = {nav_first.data(), bias_first.data(), nav_second.data(),
+                                            bias_second.data()};
   ImuRows rows;
   factor.Evaluate(parameters.data(), rows.residual.data(), jacobians.data());
   rows.first << nav_first, bias_first;
@@ -51,7 +52,9 @@ void AddPriorHessian(const LinearPrior& prior, MatrixXd* hessian) {
   }
   jacobian.middleCols<6>(9) = prior.jacobian.middleCols<6>(9);
   // Anchors are the window's first frames, in order: their columns are the leading ones.
-  hessian->topLeftCorner(15 * count, 15 * count).selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  hessian->topLeftCorner(15 * count, 15 * count)
+      .selfadjointView<Eigen::Lower>()
+      .rankUpdate(jacobian.transpose());
 }
 
 }  // namespace
@@ -109,7 +112,8 @@ LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, co
   const ErrorConvention convention = prior.convention;
   const ImuRows imu = LinearizeImu(window.frame(0), window.frame(1), gravity_W);
   stack.block<15, 15>(prior_rows, 0) = imu.first * ImuChartJacobian(convention, window.frame(0).nav_state());
-  stack.block<15, 15>(prior_rows, 15) = imu.second * ImuChartJacobian(convention, window.frame(1).nav_state());
+  stack.block<15, 15>(prior_rows, 15) =
+      imu.second * ImuChartJacobian(convention, window.frame(1).nav_state());
   stack.col(columns).segment<15>(prior_rows) = imu.residual;
 
   MatrixXd vision_jacobian;

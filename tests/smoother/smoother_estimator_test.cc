@@ -1,0 +1,181 @@
+#include "smoother/smoother_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "smoother/smoother.h"
+#include "tests/support/scenario.h"
+
+namespace alidade {
+namespace {
+
+struct SequenceOptions {
+  double duration_s = 12;
+  double pixel_noise_px = 1;
+  bool exact = false;  ///< no noise anywhere, start at the truth
+  unsigned seed = 1;
+};
+
+Dataset MakeSequence(const SequenceOptions& options) {
+  SimulatorConfig simulator;
+  simulator.duration_s = options.duration_s;
+  simulator.path_m = 1.3 * options.duration_s;
+  simulator.pixel_noise_px = options.exact ? 0 : options.pixel_noise_px;
+  const ImuNoise noise = simulator.imu_noise;
+  if (options.exact) {
+    simulator.imu_noise = {0, 0, 0, 0};
+    simulator.imu_rate_hz = 400;
+  }
+  Result<Dataset> dataset = Simulate(simulator, options.seed);
+  EXPECT_TRUE(dataset.ok()) << dataset.message();
+  dataset->rig.imu_noise = noise;
+  return std::move(dataset).value();
+}
+
+EstimatorConfig MakeConfig(SmootherLandmark landmark,
+                           ErrorConvention error = ErrorConvention::kRightInvariant) {
+  EstimatorConfig config;
+  config.backend = Backend::kSmoother;
+  config.smoother.landmark = landmark;
+  config.smoother.error = error;
+  return config;
+}
+
+test::ScenarioResult RunSmoother(const Dataset& dataset, const EstimatorConfig& config, bool perturb,
+                                 unsigned seed = 1) {
+  const std::unique_ptr<Estimator> estimator = MakeSmoother(config, dataset.rig);
+  const test::ScenarioResult result =
+      test::RunScenario(dataset, test::DrawInitialState(dataset, seed, perturb ? 1 : 0), estimator.get());
+  EXPECT_TRUE(result.status.ok()) << result.status.message();
+  return result;
+}
+
+constexpr SmootherLandmark kLandmarks[] = {SmootherLandmark::kInverseDepth, SmootherLandmark::kPoseOnly};
+
+TEST(SmootherEstimatorTest, ExactDataGivesTheTruthForBothLandmarks) {
+  const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
+  for (const SmootherLandmark landmark : kLandmarks) {
+    const test::ScenarioResult run = RunSmoother(dataset, MakeConfig(landmark), false);
+    EXPECT_LT(run.max_position_m, 1e-4);
+    EXPECT_GT(run.frames, 70);
+  }
+}
+
+TEST(SmootherEstimatorTest, BothLandmarksFindTheSameMinimumInNoise) {
+  const Dataset dataset = MakeSequence({.duration_s = 6});
+  EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);
+  config.smoother.max_iterations = 30;
+  const test::ScenarioResult explicit_depth = RunSmoother(dataset, config, true);
+  config.smoother.landmark = SmootherLandmark::kPoseOnly;
+  const test::ScenarioResult pose_only = RunSmoother(dataset, config, true);
+  ASSERT_EQ(explicit_depth.frames, pose_only.frames);
+  const NavEstimate& a = explicit_depth.last;
+  const NavEstimate& b = pose_only.last;
+  EXPECT_LT((a.nav.p_WB - b.nav.p_WB).norm(), 2e-3);  // a tenth of the standard deviation
+  EXPECT_LT(so3::Log(a.nav.R_WB.transpose() * b.nav.R_WB).norm(), 2e-4);
+  EXPECT_LT((a.covariance - b.covariance).norm(), 0.05 * a.covariance.norm());
+}
+
+TEST(SmootherEstimatorTest, EqualInputGivesEqualBits) {
+  const Dataset dataset = MakeSequence({.duration_s = 4});
+  for (const SmootherLandmark landmark : kLandmarks) {
+    const test::ScenarioResult first = RunSmoother(dataset, MakeConfig(landmark), true);
+    const test::ScenarioResult second = RunSmoother(dataset, MakeConfig(landmark), true);
+    EXPECT_EQ(std::memcmp(&first.last.nav, &second.last.nav, sizeof(NavState)), 0);
+    EXPECT_EQ(std::memcmp(&first.last.bias, &second.last.bias, sizeof(ImuBias)), 0);
+    EXPECT_EQ(std::memcmp(&first.last.covariance, &second.last.covariance, sizeof(Matrix15d)), 0);
+    EXPECT_EQ(first.rmse_position_m, second.rmse_position_m);
+  }
+}
+
+TEST(SmootherEstimatorTest, NoisyRunsAreConsistent) {
+  double nees = 0;
+  constexpr int kRuns = 6;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const Dataset dataset = MakeSequence({.duration_s = 10, .seed = seed});
+    const SmootherLandmark landmark = kLandmarks[seed % 2];
+    const test::ScenarioResult run = RunSmoother(dataset, MakeConfig(landmark), true, seed);
+    EXPECT_LT(run.rmse_position_m, 0.15);
+    nees += run.nees_pose / kRuns;
+  }
+  EXPECT_GT(nees, 2.5);
+  EXPECT_LT(nees, 10.5);  // errors within a run are correlated: 6 runs scatter widely about 6
+}
+
+TEST(SmootherEstimatorTest, EveryConventionAndFramePolicyRuns) {
+  const Dataset dataset = MakeSequence({.duration_s = 6});
+  for (const ErrorConvention error :
+       {ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant, ErrorConvention::kSo3xRn}) {
+    EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly, error);
+    config.smoother.frames = FramePolicy::kEveryFrame;
+    EXPECT_LT(RunSmoother(dataset, config, true).rmse_position_m, 0.15) << ToString(error);
+    config.smoother.frames = FramePolicy::kKeyframes;
+    config.smoother.keyframe_parallax_px = 40;
+    EXPECT_LT(RunSmoother(dataset, config, true).rmse_position_m, 0.15) << ToString(error);
+  }
+}
+
+TEST(SmootherEstimatorTest, FramesThatAreNotKeyframesLeaveTheWindow) {
+  const Dataset dataset = MakeSequence({.duration_s = 4});
+  EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);
+  config.smoother.keyframe_parallax_px = 500;
+  config.smoother.keyframe_min_tracked = 0;
+  SmootherEstimator estimator(config, dataset.rig);
+  for (const ImuSample& sample : dataset.imu) {
+    ASSERT_TRUE(estimator.AddImu(sample).ok());
+  }
+  ASSERT_TRUE(estimator.Initialize(test::DrawInitialState(dataset, 1, 0)).ok());
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(estimator.AddFrame(dataset.tracks[static_cast<size_t>(i)]).ok());
+    EXPECT_EQ(estimator.Latest().stamp_ns, dataset.tracks[static_cast<size_t>(i)].stamp_ns);
+  }
+  ASSERT_EQ(estimator.window().size(), 3);
+  const WindowFrame& newest = estimator.window().newest();
+  EXPECT_EQ(newest.imu.front().stamp_ns, estimator.window().frame(1).stamp_ns)
+      << "their IMU joined the next interval";
+  EXPECT_EQ(newest.imu.back().stamp_ns, newest.stamp_ns);
+  EXPECT_NEAR(newest.preintegration->duration_s(), 0.6, 1e-9);
+}
+
+TEST(SmootherEstimatorTest, BadInputIsAStatusAndLeavesTheStateAlone) {
+  const Dataset dataset = MakeSequence({.duration_s = 2});
+  const EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);
+  SmootherEstimator estimator(config, dataset.rig);
+  EXPECT_EQ(estimator.AddFrame(dataset.tracks.front()).code(), StatusCode::kDiverged);
+
+  const NavEstimate good = test::DrawInitialState(dataset, 1, 0);
+  NavEstimate bad = good;
+  bad.nav.p_WB.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(estimator.Initialize(bad).code(), StatusCode::kInput);
+  bad = good;
+  bad.nav.R_WB *= 1.01;
+  EXPECT_EQ(estimator.Initialize(bad).code(), StatusCode::kInput);
+  bad = good;
+  bad.covariance(0, 1) += 1;
+  EXPECT_EQ(estimator.Initialize(bad).code(), StatusCode::kInput);
+  bad = good;
+  bad.covariance(3, 3) = -1;
+  EXPECT_EQ(estimator.Initialize(bad).code(), StatusCode::kInput);
+  EXPECT_FALSE(estimator.initialized());
+
+  ASSERT_TRUE(estimator.Initialize(good).ok());
+  TrackFrame late = dataset.tracks[1];
+  EXPECT_EQ(estimator.AddFrame(late).code(), StatusCode::kInput) << "no IMU reaches the frame";
+  EXPECT_TRUE(estimator.initialized());
+  EXPECT_EQ(estimator.Latest().stamp_ns, good.stamp_ns);
+  for (const ImuSample& sample : dataset.imu) {
+    ASSERT_TRUE(estimator.AddImu(sample).ok());
+  }
+  ASSERT_TRUE(estimator.AddFrame(late).ok());
+  EXPECT_EQ(estimator.AddFrame(late).code(), StatusCode::kInput) << "the same frame again";
+  EXPECT_EQ(estimator.Latest().stamp_ns, late.stamp_ns);
+  TrackFrame invalid = dataset.tracks[2];
+  invalid.observations.front().pixel.x() = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(estimator.AddFrame(invalid).ok());
+  EXPECT_EQ(estimator.last_statistics().observations_invalid, 1);
+}
+
+}  // namespace
+}  // namespace alidade
