@@ -7,11 +7,21 @@
 #include <vector>
 
 #include "core/imu_buffer.h"
+#include "frontend/dynamic_initializer.h"
+#include "frontend/dynamic_window.h"
 #include "frontend/static_initializer.h"
 #include "frontend/track_motion.h"
 
 namespace alidade {
 namespace {
+
+// An attempt in motion costs some ten milliseconds: not on every frame.
+constexpr double kAttemptEveryS = 0.25;
+// A sharp scale is worth a short wait; later a rough one has to do.
+constexpr double kSharpScaleStd = 0.03;
+constexpr double kRoughScaleStd = 0.12;
+constexpr double kSharpForS = 2.0;
+constexpr double kRoughAfterS = 6.0;
 
 /// Longest silence inside the samples; an interpolated gap would pass for rest.
 double LongestStep(const std::vector<ImuSample>& samples) {
@@ -31,21 +41,28 @@ struct Initializer::Implementation {
   std::deque<TrackFrame> frames;  // stamps are IMU time
   std::string method;
   std::string report;
+  InitializerWindow window;
 
   Implementation(const EstimatorConfig& config_in, const RigCalibration& rig_in)
       : config(config_in), rig(rig_in), imu(config_in.imu.max_gap_s) {}
+
+  TimeNs first_stamp_ns = 0;  // of the first frame: how long the search has been going on
+  TimeNs next_attempt_ns = INT64_MIN;
+  std::string last_refusal;  // of the last attempt in motion
 
   void Trim();
   std::optional<TrackMotion> MotionOverWindow() const;
   RestAssessment Assess(ImuSpread* spread);
   Result<NavEstimate> TryStatic(RestAssessment* assessment);
+  [[nodiscard]] double AcceptedScaleStd() const;
+  Result<NavEstimate> TryDynamic();
 };
 
-/// Keeps twice the dynamic window, or as many frames as it needs when they are sparse, and the IMU that
+/// Keeps the longest dynamic window, or as many frames as it needs when they are sparse, and the IMU that
 /// reaches back to them.
 void Initializer::Implementation::Trim() {
   const TimeNs newest = frames.back().stamp_ns;
-  const TimeNs keep_from = newest - SecondsToNs(2 * config.init.dynamic_window_s);
+  const TimeNs keep_from = newest - SecondsToNs((kWindowGrowth + 0.1) * config.init.dynamic_window_s);
   const size_t keep = static_cast<size_t>(config.init.dynamic_min_frames);
   while (frames.size() > keep && frames.front().stamp_ns < keep_from) {
     frames.pop_front();
@@ -119,12 +136,43 @@ Result<NavEstimate> Initializer::Implementation::TryStatic(RestAssessment* asses
   return estimate;
 }
 
+/// Loosens from sharp to rough as the search drags on.
+double Initializer::Implementation::AcceptedScaleStd() const {
+  const double searching_s =
+      SecondsBetween(first_stamp_ns, frames.back().stamp_ns) - config.init.dynamic_window_s - kSharpForS;
+  const double fraction = std::clamp(searching_s / (kRoughAfterS - kSharpForS), 0.0, 1.0);
+  return kSharpScaleStd + fraction * (kRoughScaleStd - kSharpScaleStd);
+}
+
+Result<NavEstimate> Initializer::Implementation::TryDynamic() {
+  const TimeNs newest = frames.back().stamp_ns;
+  if (newest < next_attempt_ns) {
+    return Status::Diverged(last_refusal);
+  }
+  const Result<DynamicSolution> solution = InitializeDynamic(config, rig, frames, AcceptedScaleStd(), &imu);
+  if (!solution.ok()) {
+    next_attempt_ns = newest + SecondsToNs(kAttemptEveryS);
+    last_refusal = solution.message();
+    return solution.status();
+  }
+  method = "dynamic";
+  report = solution->report;
+  window = solution->window;
+  for (TimeNs& stamp : window.stamps_ns) {
+    stamp -= SecondsToNs(rig.camera_time_offset_s);
+  }
+  return solution->estimate;
+}
+
 Initializer::Initializer(const EstimatorConfig& config, const RigCalibration& rig)
     : implementation_(std::make_unique<Implementation>(config, rig)) {}
 Initializer::~Initializer() = default;
 
 const std::string& Initializer::method() const {
   return implementation_->method;
+}
+const InitializerWindow& Initializer::window() const {
+  return implementation_->window;
 }
 const std::string& Initializer::report() const {
   return implementation_->report;
@@ -149,10 +197,20 @@ Result<NavEstimate> Initializer::AddFrame(const TrackFrame& frame) {
   if (!self.frames.empty() && in_imu_time.stamp_ns <= self.frames.back().stamp_ns) {
     return Status::Input("frame at " + FormatSeconds(frame.stamp_ns) + " s is not after the previous one");
   }
+  if (self.frames.empty()) {
+    self.first_stamp_ns = in_imu_time.stamp_ns;
+  }
   self.frames.push_back(std::move(in_imu_time));
   self.Trim();
-  RestAssessment assessment;
-  Result<NavEstimate> estimate = self.TryStatic(&assessment);
+  RestAssessment assessment{RestVerdict::kMoving, {}};
+  Result<NavEstimate> estimate = Status::Diverged("not tried");
+  if (method != InitMethod::kDynamic) {
+    estimate = self.TryStatic(&assessment);
+  }
+  // A short rest is waited for: a static start is the better one.
+  if (method != InitMethod::kStatic && assessment.verdict == RestVerdict::kMoving) {
+    estimate = self.TryDynamic();
+  }
   if (estimate.ok()) {
     estimate.value().stamp_ns = frame.stamp_ns;
   }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/estimator_config.h"
 #include "core/measurement_log.h"
@@ -10,10 +11,17 @@
 
 namespace alidade {
 
-/// Finds the first state from IMU and tracks alone; shared by both back ends. Static: at rest (IMU spread and track motion
-/// small), gravity gives roll and pitch, the gyroscope mean its bias. Dynamic: visual structure from motion, then
-/// visual-inertial alignment for gyroscope bias, velocities, gravity and scale. World: z up, yaw 0 and position 0 at the
-/// returned state.
+/// The states a dynamic initialisation found over its window, in the world of the returned state.
+struct InitializerWindow {
+  std::vector<TimeNs> stamps_ns;  ///< of the camera frames used, the returned one last
+  std::vector<NavState> states;
+  double relative_scale_std = 0;  ///< of the window's size
+};
+
+/// Finds the first state from IMU and tracks alone; shared by both back ends. Static: at rest (IMU spread and
+/// track motion small), gravity gives roll and pitch, the gyroscope mean its bias. Dynamic: visual structure
+/// from motion, then visual-inertial alignment for gyroscope bias, velocities, gravity and scale. World: z
+/// up, yaw 0 and position 0 at the returned state.
 class Initializer {
  public:
   Initializer(const EstimatorConfig& config, const RigCalibration& rig);
@@ -22,13 +30,16 @@ class Initializer {
   Initializer& operator=(const Initializer&) = delete;
 
   void AddImu(const ImuSample& sample);
-  /// The state at this frame's stamp with its covariance (canonical chart), or kDiverged with the reason why there is none
-  /// yet ("moving: gyro spread 0.21 rad/s exceeds 0.03", "parallax 4.1 px of 20", ...).
+  /// The state at this frame's stamp with its covariance (canonical chart), or kDiverged with the reason why
+  /// there is none yet ("moving: gyro spread 0.21 rad/s exceeds 0.03", "parallax 4.1 px of 20", ...).
   Result<NavEstimate> AddFrame(const TrackFrame& frame);
 
   /// "static" or "dynamic", and what was found, once AddFrame has succeeded.
   [[nodiscard]] const std::string& method() const;
   [[nodiscard]] const std::string& report() const;
+
+  /// Empty after a static start.
+  [[nodiscard]] const InitializerWindow& window() const;
 
  private:
   struct Implementation;

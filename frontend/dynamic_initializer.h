@@ -1,0 +1,30 @@
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "core/estimator_config.h"
+#include "core/imu_buffer.h"
+#include "core/measurement_log.h"
+#include "core/status.h"
+#include "frontend/initializer.h"
+
+namespace alidade {
+
+/// A state found in motion, and the figures that let it pass.
+struct DynamicSolution {
+  NavEstimate estimate;  ///< stamp in IMU time
+  std::string report;
+  InitializerWindow window;  ///< likewise
+};
+
+/// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),
+/// velocity, gravity and accelerometer bias in closed form (linear_alignment.h), maximum likelihood over the
+/// window (alignment_refinement.h), then the checks that accept it. Stamps of `frames` are in IMU time.
+/// max_scale_std: relative standard deviation of the scale up to which the solution is accepted. Error
+/// (kDiverged): why there is no solution yet, with the figure and its limit.
+Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
+                                          const std::deque<TrackFrame>& frames, double max_scale_std,
+                                          ImuBuffer* imu);
+
+}  // namespace alidade

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/imu_buffer.h"
+#include "core/measurement_log.h"
+#include "core/preintegration.h"
+#include "core/visual_observation.h"
+
+namespace alidade {
+
+/// One track over the frames of a window.
+struct WindowTrack {
+  std::int64_t track_id = 0;
+  std::vector<int> frames;  ///< indices into DynamicWindow::stamps_ns, increasing
+  std::vector<NormalizedObservation> observations;
+};
+
+/// The data one dynamic initialisation works on: a few frames spread over the newest seconds, the tracks that
+/// two or more of them share, and the inertial samples between them.
+struct DynamicWindow {
+  std::vector<TimeNs> stamps_ns;            ///< in IMU time, increasing; M frames
+  std::vector<std::vector<ImuSample>> imu;  ///< M-1 intervals, both ends interpolated
+  std::vector<WindowTrack> tracks;          ///< longest first
+};
+
+/// Takes frames over init.dynamic_window_s up to the newest one, at least init.dynamic_min_frames of them
+/// (sparse frames stretch the window), at most kMaxWindowFrames, evenly thinned. Stamps of `frames` are in
+/// IMU time. Errors (kDiverged): too few frames, or inertial samples that do not cover them.
+inline constexpr int kMaxWindowFrames = 15;
+inline constexpr double kWindowGrowth = 2.5;
+inline constexpr int kMaxWindowTracks = 80;
+Status BuildDynamicWindow(const EstimatorConfig& config, const CameraModel& camera,
+                          const std::deque<TrackFrame>& frames, ImuBuffer* imu, DynamicWindow* window);
+
+/// One preintegration an interval, about `bias`.
+[[nodiscard]] std::vector<Preintegration> PreintegrateWindow(const DynamicWindow& window, const ImuBias& bias,
+                                                             const ImuNoise& noise);
+
+/// Bearing of an observation in its camera, unit length, and its angular deviation [rad].
+[[nodiscard]] Eigen::Vector3d BearingOf(const NormalizedObservation& observation);
+[[nodiscard]] double AngularDeviation(const NormalizedObservation& observation);
+
+}  // namespace alidade
