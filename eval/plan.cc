@@ -1,0 +1,225 @@
+#include "eval/plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "eval/plan_reader.h"
+#include "eval/suggest.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kMaxDistance = 1e6;
+constexpr double kMaxSeconds = 1e6;
+constexpr double kMaxFigure = 1e12;
+
+std::string Stem(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
+
+/// Fills one Plan from its file, section by section.
+class PlanParser {
+ public:
+  PlanParser(const std::string& path, const std::string& data_root) : reader_(path, data_root) {
+    plan_.path = path;
+  }
+
+  Result<Plan> Parse(const YAML::Node& root) {
+    ALIDADE_RETURN_IF_ERROR(reader_.Map(
+        root, "a plan",
+        {{"title", [&](const YAML::Node& n) { return reader_.Text(n, "title", &plan_.title); }},
+         {"estimators",
+          [&](const YAML::Node& n) {
+            return reader_.Each(n, "estimators", [&](const YAML::Node& e) { return AddEstimator(e); });
+          },
+          true},
+         {"set", [&](const YAML::Node& n) { return reader_.Settings(n, "set", &plan_.settings); }},
+         {"sequences",
+          [&](const YAML::Node& n) {
+            return reader_.Each(n, "sequences", [&](const YAML::Node& e) { return AddSequence(e); });
+          },
+          true},
+         {"metrics", [&](const YAML::Node& n) { return ReadMetrics(n); }},
+         {"reference", [&](const YAML::Node& n) {
+            return reader_.Each(n, "reference", [&](const YAML::Node& e) { return AddReference(e); });
+          }}}));
+    ALIDADE_RETURN_IF_ERROR(CheckTrajectoryNames(root));
+    if (plan_.title.empty()) {
+      plan_.title = Stem(plan_.path);
+    }
+    return plan_;
+  }
+
+ private:
+  using Node = YAML::Node;
+
+  Status AddEstimator(const Node& node) {
+    PlanEstimator estimator;
+    if (node.IsScalar()) {
+      ALIDADE_RETURN_IF_ERROR(reader_.ExistingPath(node, "estimators", false, &estimator.config));
+    } else {
+      ALIDADE_RETURN_IF_ERROR(reader_.Map(
+          node, "estimators",
+          {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &estimator.name); }},
+           {"config",
+            [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &estimator.config); }},
+           {"set", [&](const Node& n) { return reader_.Settings(n, "set", &estimator.settings); }},
+           {"trajectories", [&](const Node& n) { return ReadTrajectories(n, &estimator.trajectories); }}}));
+    }
+    if (estimator.config.empty() == estimator.trajectories.empty()) {
+      return reader_.Fault(node, "estimators", "either `config` or `trajectories`");
+    }
+    if (estimator.external() && (estimator.name.empty() || !estimator.settings.empty())) {
+      return reader_.Fault(node, "estimators", "`trajectories` with a `name` and without `set`");
+    }
+    if (estimator.name.empty()) {
+      estimator.name = Stem(estimator.config);
+    }
+    return Add(node, "estimators", std::move(estimator), &plan_.estimators);
+  }
+
+  Status ReadTrajectories(const Node& node, std::map<std::string, std::string>* trajectories) {
+    if (!node.IsMap()) {
+      return reader_.Fault(node, "trajectories", "a mapping of sequence names to files");
+    }
+    for (const auto& entry : node) {
+      const std::string& sequence = entry.first.Scalar();
+      ALIDADE_RETURN_IF_ERROR(
+          reader_.ExistingPath(entry.second, "trajectories." + sequence, false, &(*trajectories)[sequence]));
+    }
+    return Status::Ok();
+  }
+
+  Status AddSequence(const Node& node) {
+    PlanSequence sequence;
+    ALIDADE_RETURN_IF_ERROR(reader_.Map(
+        node, "sequences",
+        {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &sequence.name); }},
+         {"path", [&](const Node& n) { return reader_.ExistingPath(n, "path", true, &sequence.dataset); }},
+         {"config",
+          [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
+         {"seeds", [&](const Node& n) { return reader_.Seeds(n, "seeds", &sequence.seeds); }},
+         {"set", [&](const Node& n) { return reader_.Settings(n, "set", &sequence.settings); }}}));
+    if (sequence.dataset.empty() == sequence.config.empty()) {
+      return reader_.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
+    }
+    if (!sequence.dataset.empty() && !sequence.settings.empty()) {
+      return reader_.Fault(node, "sequences", "`set` beside `config` only: a dataset has no settings");
+    }
+    if (sequence.name.empty()) {
+      const std::filesystem::path source = sequence.dataset.empty() ? sequence.config : sequence.dataset;
+      sequence.name = sequence.dataset.empty()
+                          ? source.stem().string()
+                          : (source.has_filename() ? source : source.parent_path()).filename().string();
+    }
+    return Add(node, "sequences", std::move(sequence), &plan_.sequences);
+  }
+
+  Status ReadMetrics(const Node& node) {
+    EvaluationOptions& metrics = plan_.metrics;
+    return reader_.Map(
+        node, "metrics",
+        {{"align", [&](const Node& n) { return ReadAlignment(n); }},
+         {"rpe",
+          [&](const Node& n) {
+            metrics.rpe_distances_m.clear();
+            return reader_.Each(n, "rpe", [&](const Node& entry) {
+              double distance = 0;
+              ALIDADE_RETURN_IF_ERROR(reader_.Real(entry, "rpe", 1e-3, kMaxDistance, &distance));
+              metrics.rpe_distances_m.push_back(distance);
+              return Status::Ok();
+            });
+          }},
+         {"max_dt",
+          [&](const Node& n) {
+            return reader_.Real(n, "max_dt", 0, kMaxSeconds, &metrics.association.max_dt_s);
+          }},
+         {"interpolate",
+          [&](const Node& n) { return reader_.Boolean(n, "interpolate", &metrics.association.interpolate); }},
+         {"max_gap", [&](const Node& n) {
+            return reader_.Real(n, "max_gap", 0, kMaxSeconds, &metrics.association.max_gap_s);
+          }}});
+  }
+
+  Status ReadAlignment(const Node& node) {
+    std::string name;
+    ALIDADE_RETURN_IF_ERROR(reader_.Text(node, "align", &name));
+    const std::optional<Alignment> alignment = ParseAlignment(name);
+    if (!alignment) {
+      return reader_.Fault(node, "align", "none, pos, posyaw, se3 or sim3");
+    }
+    plan_.metrics.alignment = *alignment;
+    return Status::Ok();
+  }
+
+  Status AddReference(const Node& node) {
+    ReferenceFigure reference;
+    ALIDADE_RETURN_IF_ERROR(reader_.Map(
+        node, "reference",
+        {{"source", [&](const Node& n) { return reader_.Text(n, "source", &reference.source); }, true},
+         {"estimator", [&](const Node& n) { return reader_.Text(n, "estimator", &reference.estimator); },
+          true},
+         {"sequence", [&](const Node& n) { return reader_.Text(n, "sequence", &reference.sequence); }, true},
+         {"figures", [&](const Node& n) { return ReadFigures(n, &reference.figures); }, true}}));
+    plan_.references.push_back(std::move(reference));
+    return Status::Ok();
+  }
+
+  Status ReadFigures(const Node& node, std::map<std::string, double>* figures) {
+    if (!node.IsMap()) {
+      return reader_.Fault(node, "figures", "a mapping of summary.csv columns to numbers");
+    }
+    for (const auto& entry : node) {
+      const std::string& column = entry.first.Scalar();
+      ALIDADE_RETURN_IF_ERROR(
+          reader_.Real(entry.second, "figures." + column, -kMaxFigure, kMaxFigure, &(*figures)[column]));
+    }
+    return Status::Ok();
+  }
+
+  template <typename Entry>
+  Status Add(const Node& node, const std::string& section, Entry entry, std::vector<Entry>* entries) {
+    for (const Entry& other : *entries) {
+      if (other.name == entry.name) {
+        return reader_.Fault(node, section,
+                             "a name that no other entry has; `name: " + entry.name + "` is taken");
+      }
+    }
+    entries->push_back(std::move(entry));
+    return Status::Ok();
+  }
+
+  /// Trajectories are given by sequence name: a name that no sequence has would be left out silently.
+  Status CheckTrajectoryNames(const Node& root) const {
+    std::vector<std::string> names;
+    for (const PlanSequence& sequence : plan_.sequences) {
+      names.push_back(sequence.name);
+    }
+    for (const PlanEstimator& estimator : plan_.estimators) {
+      for (const auto& [sequence, path] : estimator.trajectories) {
+        if (std::find(names.begin(), names.end(), sequence) == names.end()) {
+          return Status::Config(YamlPlace(plan_.path, root["estimators"]) + ": " + estimator.name +
+                                ".trajectories." + sequence + ": no such sequence" +
+                                Suggestion(sequence, names));
+        }
+      }
+    }
+    return Status::Ok();
+  }
+
+  PlanReader reader_;
+  Plan plan_;
+};
+
+}  // namespace
+
+Result<Plan> ReadPlan(const std::string& path, const std::string& data_root) {
+  Result<YAML::Node> root = ParseYamlFile(path, StatusCode::kConfig);
+  if (!root.ok()) {
+    return root.status();
+  }
+  return PlanParser(path, data_root).Parse(*root);
+}
+
+}  // namespace alidade

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "eval/comparison.h"
+#include "eval/evaluate.h"
+
+namespace alidade {
+
+/// One row of a comparison: a configured estimator, or trajectories that another program wrote.
+struct PlanEstimator {
+  std::string name;
+  std::string config;                               ///< path; empty for an external one
+  std::vector<std::string> settings;                ///< "a.b=value" over the file
+  std::map<std::string, std::string> trajectories;  ///< sequence name -> path; external only
+
+  [[nodiscard]] bool external() const { return config.empty(); }
+};
+
+/// One input of a comparison: a dataset folder or a simulation, once a seed.
+struct PlanSequence {
+  std::string name;
+  std::string dataset;                ///< folder in the extended ASL layout; empty for a simulation
+  std::string config;                 ///< simulation config; empty for a dataset
+  std::vector<std::string> settings;  ///< over the simulation config
+  std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws
+};
+
+/// What to compare, as a person wrote it (docs/plans.md lists the keys).
+struct Plan {
+  std::string path;
+  std::string title;
+  std::vector<std::string> settings;  ///< over every estimator's file, before the estimator's own
+  std::vector<PlanEstimator> estimators;
+  std::vector<PlanSequence> sequences;
+  EvaluationOptions metrics;
+  std::vector<ReferenceFigure> references;
+};
+
+/// Reads a plan. `${data}` in a path becomes `data_root`; relative paths are relative to the plan's folder.
+/// Strict: an unknown, duplicate or ill-typed key, two estimators or sequences of one name, a name that is no
+/// folder name, or a file that does not exist is kConfig with file:line:column.
+Result<Plan> ReadPlan(const std::string& path, const std::string& data_root);
+
+}  // namespace alidade

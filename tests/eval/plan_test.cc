@@ -1,0 +1,126 @@
+#include "eval/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class PlanTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.Write("estimators/a.yaml", "name: a\n");
+    folder_.Write("estimators/b.yaml", "name: b\n");
+    folder_.Write("sim.yaml", "name: s\n");
+    folder_.Write("data/seq/mav0/x", "");
+    folder_.Write("other.tum", "");
+  }
+  Result<Plan> Read(const std::string& text, const std::string& data_root = "") {
+    return ReadPlan(folder_.Write("plan.yaml", text), data_root);
+  }
+  test::TemporaryFolder folder_;
+};
+
+constexpr char kMinimal[] = "estimators: [estimators/a.yaml]\nsequences:\n  - config: sim.yaml\n";
+
+TEST_F(PlanTest, ReadsEveryKey) {
+  const Result<Plan> plan = Read(
+      "title: Both\n"
+      "set: {init.method: truth}\n"
+      "estimators:\n"
+      "  - estimators/a.yaml\n"
+      "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}}\n"
+      "  - {name: other, trajectories: {seq: other.tum}}\n"
+      "sequences:\n"
+      "  - {path: '${data}/seq', seeds: [4, 2]}\n"
+      "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2}}\n"
+      "  - {config: sim.yaml, seeds: 9}\n"
+      "metrics: {align: se3, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
+      "reference:\n"
+      "  - {source: the paper, estimator: a, sequence: sim, figures: {ate_pos_m: 0.1}}\n",
+      folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_EQ(plan->title, "Both");
+  EXPECT_THAT(plan->settings, ElementsAre("init.method=truth"));
+  ASSERT_EQ(plan->estimators.size(), 3u);
+  EXPECT_EQ(plan->estimators[0].name, "a");
+  EXPECT_EQ(plan->estimators[0].config, folder_.File("estimators/a.yaml"));
+  EXPECT_THAT(plan->estimators[1].settings, ElementsAre("filter.window=10", "x.v=[1, 2, 3]"));
+  EXPECT_TRUE(plan->estimators[2].external());
+  EXPECT_EQ(plan->estimators[2].trajectories.at("seq"), folder_.File("other.tum"));
+  ASSERT_EQ(plan->sequences.size(), 3u);
+  EXPECT_EQ(plan->sequences[0].name, "seq");
+  EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(4, 2));
+  EXPECT_EQ(plan->sequences[1].name, "loud");
+  EXPECT_THAT(plan->sequences[1].seeds, ElementsAre(1, 2, 3));
+  EXPECT_THAT(plan->sequences[1].settings, ElementsAre("pixel_noise_px=2"));
+  EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
+  EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
+  EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
+  EXPECT_EQ(plan->metrics.association.max_dt_s, 0.02);
+  EXPECT_TRUE(plan->metrics.association.interpolate);
+  EXPECT_EQ(plan->metrics.association.max_gap_s, 0.2);
+  ASSERT_EQ(plan->references.size(), 1u);
+  EXPECT_EQ(plan->references[0].figures.at("ate_pos_m"), 0.1);
+}
+
+TEST_F(PlanTest, FillsTitleAndSeedWhenTheyAreLeftOut) {
+  const Result<Plan> plan = Read(kMinimal);
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_EQ(plan->title, "plan");
+  EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(1));
+}
+
+TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
+  const std::string sequences = "sequences: [{config: sim.yaml}]\n";
+  const std::string estimators = "estimators: [estimators/a.yaml]\n";
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"", "empty"},
+      {"- a\n", "expected keys and values"},
+      {"estimators: [\n", "not valid YAML"},
+      {estimators, "sequences: missing"},
+      {sequences, "estimators: missing"},
+      {sequences + "estimators: []\n", "at least one entry"},
+      {sequences + estimators + "metrix: {}\n",
+       "plan.yaml:3:1: metrix: unknown key in a plan; did you mean 'metrics'"},
+      {sequences + estimators + "title: x\ntitle: y\n", "duplicate"},
+      {sequences + "estimators: [estimators/none.yaml]\n", "a file that exists"},
+      {sequences + "estimators: [{name: x}]\n", "either `config` or `trajectories`"},
+      {sequences + "estimators: [{config: estimators/a.yaml, name: a/b}]\n", "letters, digits"},
+      {sequences + "estimators: [{config: estimators/a.yaml, name: ..}]\n", "letters, digits"},
+      {sequences + "estimators: [estimators/a.yaml, {config: estimators/b.yaml, name: a}]\n", "is taken"},
+      {sequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
+       "no such sequence; did you mean 'sim'"},
+      {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
+      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` beside `config` only"},
+      {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: -1}]\n", "from 0 to"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: 1.5}]\n", "whole number"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: 0..4000000000}]\n", "at most 1000"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: [010]}]\n", "whole number"},
+      {sequences + estimators + "metrics: {align: yaw}\n", "posyaw"},
+      {sequences + estimators + "metrics: {rpe: [0]}\n", "rpe: found"},
+      {sequences + estimators + "metrics: {max_dt: .nan}\n", "max_dt: found"},
+      {sequences + estimators + "metrics: {interpolate: maybe}\n", "interpolate: found"},
+      {sequences + estimators + "reference: [{source: x}]\n", "missing in reference"}};
+  for (const auto& [text, expected] : faults) {
+    const Result<Plan> plan = Read(text);
+    EXPECT_EQ(plan.code(), StatusCode::kConfig) << text;
+    EXPECT_THAT(plan.message(), HasSubstr(expected)) << text;
+    EXPECT_THAT(plan.message(), HasSubstr("plan.yaml")) << text;
+  }
+}
+
+TEST_F(PlanTest, MissingFileIsAConfigurationFault) {
+  EXPECT_EQ(ReadPlan(folder_.File("none.yaml"), "").code(), StatusCode::kConfig);
+}
+
+}  // namespace
+}  // namespace alidade
