@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,26 +17,51 @@ struct RunRecord {
   NavEstimate estimate;
   FrameStatistics statistics;
   double frontend_ms = 0;
-  double backend_ms = 0;
+  double backend_ms = 0;  ///< wall time of the estimator for this frame and the IMU samples before it
   std::string status = "ok";
 };
 
 struct RunResult {
-  Status status;                    ///< kDiverged when never initialised or lost; records hold what there was
-  std::vector<RunRecord> records;   ///< one a frame since initialisation
-  std::string init_method;          ///< truth | static | dynamic
-  std::string init_report;          ///< what the initialiser found, or why it did not initialise
+  Status status;                   ///< kDiverged when never initialised or lost; records hold what there was
+  std::vector<RunRecord> records;  ///< one a frame since initialisation
+  std::string init_method;         ///< truth | static | dynamic
+  std::string init_report;         ///< what the initialiser found, or why it did not initialise
   TimeNs init_stamp_ns = 0;
-  int frames_skipped = 0;
+  int frames_skipped = 0;   ///< refused by the estimator after initialisation
+  std::string skip_report;  ///< why the first of them was
+  int imu_rejected = 0;     ///< samples refused by the estimator
+  bool interrupted = false;
   double wall_s = 0;
-  double cpu_s = 0;
+  double cpu_s = 0;  ///< of the running thread
 };
 
-/// The back end that `config.backend` names.
-[[nodiscard]] std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config, const RigCalibration& rig);
+/// ok | diverged | not_initialized | interrupted | failed: one word for tables.
+[[nodiscard]] std::string StatusWord(const RunResult& result);
 
-/// Feeds the log to one estimator in time order. `truth` is read only by init.method truth; `seed` draws its prior.
-[[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const Trajectory* truth,
-                                     unsigned seed);
+/// The rows of a result as a trajectory with covariance.
+[[nodiscard]] Trajectory TrajectoryOf(const RunResult& result);
+
+/// The back end that `config.backend` names.
+[[nodiscard]] std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config,
+                                                       const RigCalibration& rig);
+
+struct RunOptions {
+  const Trajectory* truth = nullptr;        ///< read only by init.method truth
+  unsigned seed = 1;                        ///< draws the prior of init.method truth
+  const std::atomic<bool>* stop = nullptr;  ///< polled once a frame
+  std::function<void(size_t frames_done, size_t frames)> progress;
+};
+
+/// Feeds the log to `estimator` in time order: before each frame every IMU sample up to and including the
+/// first one at or after the frame's IMU time (stamp + time offset); the frame that yields the initial state
+/// is also the first one added.
+[[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
+                                     const RunOptions& options, Estimator* estimator);
+
+/// The same with the back end that `config` names.
+[[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
+                                     const RunOptions& options);
+[[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
+                                     const Trajectory* truth, unsigned seed);
 
 }  // namespace alidade

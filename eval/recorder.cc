@@ -1,0 +1,153 @@
+#include "eval/recorder.h"
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "eval/config_json.h"
+#include "eval/config_yaml.h"
+#include "eval/output_file.h"
+#include "eval/sha256.h"
+
+namespace alidade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Appends ",x" for every coefficient.
+void AppendNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, char separator, std::string* line) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    *line += separator + ShortestDouble(values[i]);
+  }
+}
+
+/// x y z w, w >= 0.
+Eigen::Vector4d Quaternion(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond q(rotation);
+  const Eigen::Vector4d xyzw = q.normalized().coeffs();
+  return xyzw[3] < 0 ? Eigen::Vector4d(-xyzw) : xyzw;
+}
+
+std::string TumText(const RunResult& result) {
+  std::string text;
+  for (const RunRecord& record : result.records) {
+    text += FormatSeconds(record.estimate.stamp_ns);
+    AppendNumbers(record.estimate.nav.p_WB, ' ', &text);
+    AppendNumbers(Quaternion(record.estimate.nav.R_WB), ' ', &text);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string StatesHeader() {
+  std::string header = "timestamp_ns,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bg_x,bg_y,bg_z,ba_x,ba_y,ba_z";
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      header += ",c_" + std::to_string(row) + std::to_string(column);
+    }
+  }
+  return header + "\n";
+}
+
+std::string StatesText(const RunResult& result) {
+  std::string text = StatesHeader();
+  for (const RunRecord& record : result.records) {
+    const NavEstimate& estimate = record.estimate;
+    const Eigen::Vector4d xyzw = Quaternion(estimate.nav.R_WB);
+    text += std::to_string(estimate.stamp_ns);
+    AppendNumbers(estimate.nav.p_WB, ',', &text);
+    AppendNumbers(Eigen::Vector4d(xyzw[3], xyzw[0], xyzw[1], xyzw[2]), ',', &text);
+    AppendNumbers(estimate.nav.v_WB, ',', &text);
+    AppendNumbers(estimate.bias.gyro, ',', &text);
+    AppendNumbers(estimate.bias.accel, ',', &text);
+    for (Eigen::Index row = 0; row < 6; ++row) {
+      AppendNumbers(estimate.covariance.row(row).segment(row, 6 - row).transpose(), ',', &text);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string TimingText(const RunResult& result) {
+  std::string text = "timestamp_ns,frontend_ms,propagate_ms,update_ms,backend_ms,total_ms\n";
+  for (const RunRecord& record : result.records) {
+    Eigen::Matrix<double, 5, 1> row;
+    row << record.frontend_ms, record.statistics.propagate_ms, record.statistics.update_ms, record.backend_ms,
+        record.frontend_ms + record.backend_ms;
+    text += std::to_string(record.estimate.stamp_ns);
+    AppendNumbers(row, ',', &text);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string StatusText(const RunResult& result) {
+  std::string text =
+      "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
+      "dof,"
+      "observations_invalid,features_waiting,features_degenerate,iterations\n";
+  for (const RunRecord& record : result.records) {
+    const FrameStatistics& s = record.statistics;
+    text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
+    for (const int count :
+         {s.tracks_in, s.features_used, s.features_gated, s.satellites_used, s.satellites_gated}) {
+      text += "," + std::to_string(count);
+    }
+    text += "," + ShortestDouble(s.nis);
+    for (const int count :
+         {s.nis_dof, s.observations_invalid, s.features_waiting, s.features_degenerate, s.iterations}) {
+      text += "," + std::to_string(count);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Json RunJson(const RunIdentity& identity, const RunResult& result) {
+  EstimatorConfig config = identity.config;
+  Json json;
+  json["program"] = "alidade";
+  json["version"] = ALIDADE_VERSION;
+  json["status"] = StatusWord(result);
+  json["message"] = result.status.message();
+  json["estimator"] = config.name;
+  json["backend"] = config.backend == Backend::kFilter ? "filter" : "smoother";
+  json["dataset"] = identity.dataset;
+  json["seed"] = identity.seed;
+  json["config_digest"] = DigestOf(config);
+  json["dataset_digest"] = identity.dataset_digest;
+  json["input_digest"] = identity.input_digest;
+  json["initialization"] = {
+      {"method", result.init_method}, {"report", result.init_report}, {"stamp_ns", result.init_stamp_ns}};
+  json["counts"] = {{"imu_samples", identity.imu_samples},
+                    {"imu_rejected", result.imu_rejected},
+                    {"frames", identity.frames},
+                    {"frames_processed", result.records.size()},
+                    {"frames_skipped", result.frames_skipped}};
+  json["skip_report"] = result.skip_report;
+  json["config"] = ConfigToJson([&config](ConfigVisitor& visitor) { config.Describe(visitor); });
+  json["times"] = {{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}};
+  return json;
+}
+
+}  // namespace
+
+std::string DigestOf(const EstimatorConfig& config) {
+  EstimatorConfig copy = config;  // Describe hands out pointers to what it lists
+  return Sha256Hex(ConfigToYaml([&copy](ConfigVisitor& visitor) { copy.Describe(visitor); }, false));
+}
+
+Status WriteRun(const RunIdentity& identity, const RunResult& result, const std::string& folder) {
+  const std::filesystem::path path(folder);
+  std::error_code ignored;
+  std::filesystem::remove(path / "run.json", ignored);
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "trajectory.tum").string(), TumText(result)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "states.csv").string(), StatesText(result)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "timing.csv").string(), TimingText(result)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "status.csv").string(), StatusText(result)));
+  const std::string json =
+      RunJson(identity, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return WriteFileAtomically((path / "run.json").string(), json);
+}
+
+}  // namespace alidade

@@ -1,0 +1,160 @@
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "eval/csv.h"
+#include "eval/input_file.h"
+#include "eval/recorder.h"
+
+namespace alidade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string In(const std::string& folder, const char* name) {
+  return (std::filesystem::path(folder) / name).string();
+}
+
+Result<Json> ReadRunJson(const std::string& folder) {
+  const std::string path = In(folder, "run.json");
+  const Result<std::string> text = ReadWholeFile(path);
+  if (!text.ok()) {
+    return text.status();
+  }
+  Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object()) {
+    return Status::Input(path + ": is not a JSON object");
+  }
+  return json;
+}
+
+/// A member of the expected type, or its default: what an older version did not write.
+template <typename T>
+T Get(const Json& json, const char* key, T fallback) {
+  try {
+    return json.is_object() ? json.value(key, fallback) : fallback;
+  } catch (const Json::exception&) {
+    return fallback;
+  }
+}
+
+Status StatusFromWord(const std::string& word, const std::string& message) {
+  if (word == "ok" || word == "interrupted") {
+    return Status::Ok();
+  }
+  return word == "failed" ? Status::Input(message) : Status::Diverged(message);
+}
+
+Status ReadStates(const std::string& folder, RunResult* result) {
+  const std::string path = In(folder, "states.csv");
+  Result<Trajectory> trajectory = ReadTrajectory(path);
+  if (!trajectory.ok()) {
+    return trajectory.status();
+  }
+  result->records.resize(trajectory->points.size());
+  for (size_t i = 0; i < result->records.size(); ++i) {
+    const TrajectoryPoint& point = trajectory->points[i];
+    NavEstimate& estimate = result->records[i].estimate;
+    estimate.stamp_ns = point.stamp_ns;
+    estimate.nav = point.nav;
+    estimate.bias = point.bias;
+    estimate.covariance.topLeftCorner<6, 6>() = point.covariance;
+  }
+  return Status::Ok();
+}
+
+/// Opens a table of `columns` columns, skips its header and hands every row to `read` with its record.
+template <typename Read>
+Status ReadRows(const std::string& path, size_t columns, RunResult* result, const Read& read) {
+  Result<CsvReader> reader = CsvReader::Open(path);
+  if (!reader.ok()) {
+    return reader.status();
+  }
+  reader->NextRow();
+  size_t row = 0;
+  while (reader->NextRow()) {
+    ALIDADE_RETURN_IF_ERROR(reader->ExpectColumns(columns));
+    std::int64_t stamp = 0;
+    ALIDADE_RETURN_IF_ERROR(reader->ReadInt64(0, "timestamp_ns", &stamp));
+    if (row >= result->records.size() || result->records[row].estimate.stamp_ns != stamp) {
+      return reader->Fault(0, "timestamp_ns", "the stamps of states.csv");
+    }
+    ALIDADE_RETURN_IF_ERROR(read(*reader, &result->records[row++]));
+  }
+  if (row != result->records.size()) {
+    return Status::Input(path + ": found " + std::to_string(row) + " rows, expected " +
+                         std::to_string(result->records.size()) + " as in states.csv");
+  }
+  return Status::Ok();
+}
+
+Status ReadTimingRow(const CsvReader& row, RunRecord* record) {
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(1, "frontend_ms", &record->frontend_ms));
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(2, "propagate_ms", &record->statistics.propagate_ms));
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(3, "update_ms", &record->statistics.update_ms));
+  return row.ReadReal(4, "backend_ms", &record->backend_ms);
+}
+
+Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
+  FrameStatistics& s = record->statistics;
+  record->status = std::string(row.field(1));
+  const std::vector<std::pair<size_t, int*>> counts = {{2, &s.tracks_in},
+                                                       {3, &s.features_used},
+                                                       {4, &s.features_gated},
+                                                       {5, &s.satellites_used},
+                                                       {6, &s.satellites_gated},
+                                                       {8, &s.nis_dof},
+                                                       {9, &s.observations_invalid},
+                                                       {10, &s.features_waiting},
+                                                       {11, &s.features_degenerate},
+                                                       {12, &s.iterations}};
+  for (const auto& [column, count] : counts) {
+    std::int64_t value = 0;
+    ALIDADE_RETURN_IF_ERROR(row.ReadInt64(column, "count", &value));
+    *count = static_cast<int>(value);
+  }
+  return row.ReadReal(7, "nis", &s.nis);
+}
+
+}  // namespace
+
+Result<RunResult> ReadRun(const std::string& folder) {
+  const Result<Json> json = ReadRunJson(folder);
+  if (!json.ok()) {
+    return json.status();
+  }
+  RunResult result;
+  const std::string word = Get(*json, "status", std::string("failed"));
+  result.status = StatusFromWord(word, Get(*json, "message", std::string()));
+  result.interrupted = word == "interrupted";
+  const Json initialization = Get(*json, "initialization", Json::object());
+  result.init_method = Get(initialization, "method", std::string());
+  result.init_report = Get(initialization, "report", std::string());
+  result.init_stamp_ns = Get(initialization, "stamp_ns", TimeNs{0});
+  result.skip_report = Get(*json, "skip_report", std::string());
+  const Json counts = Get(*json, "counts", Json::object());
+  result.frames_skipped = Get(counts, "frames_skipped", 0);
+  result.imu_rejected = Get(counts, "imu_rejected", 0);
+  const Json times = Get(*json, "times", Json::object());
+  result.wall_s = Get(times, "wall_s", 0.0);
+  result.cpu_s = Get(times, "cpu_s", 0.0);
+  if (Get(counts, "frames_processed", 0) == 0) {
+    return result;  // tables of a header alone
+  }
+  ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
+  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
+  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 13, &result, ReadStatusRow));
+  return result;
+}
+
+bool HoldsRun(const std::string& folder, const RunIdentity& identity) {
+  const Result<Json> json = ReadRunJson(folder);
+  const std::string word = json.ok() ? Get(*json, "status", std::string("failed")) : "failed";
+  return json.ok() && Get(*json, "version", std::string()) == ALIDADE_VERSION &&
+         Get(*json, "config_digest", std::string()) == DigestOf(identity.config) &&
+         Get(*json, "input_digest", std::string()) == identity.input_digest &&
+         Get(*json, "dataset_digest", std::string()) == identity.dataset_digest &&
+         Get(*json, "seed", std::uint64_t{0}) == identity.seed &&
+         word != "interrupted" && word != "failed";
+}
+
+}  // namespace alidade

@@ -1,0 +1,253 @@
+#include "eval/runner.h"
+
+#include <time.h>
+
+#include <chrono>
+
+#include "eval/truth_start.h"
+#include "filter/filter.h"
+#include "frontend/initializer.h"
+#if __has_include("smoother/smoother.h")
+#include "smoother/smoother.h"
+#else
+namespace alidade {
+static std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig&, const RigCalibration&) {
+  return nullptr;
+}
+}  // namespace alidade
+#endif
+
+namespace alidade {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ThreadCpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * kNsToSeconds;
+}
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool IsFinite(const NavEstimate& estimate) {
+  return estimate.nav.R_WB.allFinite() && estimate.nav.p_WB.allFinite() && estimate.nav.v_WB.allFinite() &&
+         estimate.bias.gyro.allFinite() && estimate.bias.accel.allFinite() && estimate.covariance.allFinite();
+}
+
+/// One pass of one estimator over one log.
+class Run {
+ public:
+  Run(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
+      Estimator* estimator)
+      : config_(config),
+        log_(log),
+        options_(options),
+        estimator_(*estimator),
+        initializer_(config, log.rig) {}
+
+  RunResult Execute() {
+    const Clock::time_point wall_start = Clock::now();
+    const double cpu_start = ThreadCpuSeconds();
+    for (size_t i = 0; i < log_.frames.size() && result_.status.ok(); ++i) {
+      if (options_.stop != nullptr && options_.stop->load()) {
+        result_.interrupted = true;
+        break;
+      }
+      ProcessFrame(log_.frames[i]);
+      if (options_.progress) {
+        options_.progress(i + 1, log_.frames.size());
+      }
+    }
+    if (result_.status.ok() && !initialized_ && !result_.interrupted) {
+      result_.status = Status::Diverged("not initialised before the sequence ended: " + Reason());
+    }
+    result_.wall_s = SecondsSince(wall_start);
+    result_.cpu_s = ThreadCpuSeconds() - cpu_start;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] TimeNs ImuStamp(const TrackFrame& frame) const {
+    return frame.stamp_ns + SecondsToNs(log_.rig.camera_time_offset_s);
+  }
+
+  void ProcessFrame(const TrackFrame& frame) {
+    const Clock::time_point start = Clock::now();
+    DeliverImu(ImuStamp(frame));
+    if (!initialized_) {
+      TryInitialize(frame);
+    }
+    if (initialized_) {
+      AddFrame(frame, start);
+    } else if (result_.status.ok() &&
+               SecondsBetween(log_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
+      result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
+                                        std::to_string(config_.init.max_wait_s) + " s: " + Reason());
+    }
+  }
+
+  /// Every sample up to and including the first one at or after `stamp_ns`.
+  void DeliverImu(TimeNs stamp_ns) {
+    while (next_imu_ < log_.imu.size() && (next_imu_ == 0 || log_.imu[next_imu_ - 1].stamp_ns < stamp_ns)) {
+      const ImuSample& sample = log_.imu[next_imu_++];
+      if (initialized_) {
+        AddImu(sample);
+      } else {
+        initializer_.AddImu(sample);
+      }
+    }
+  }
+
+  void AddImu(const ImuSample& sample) { result_.imu_rejected += estimator_.AddImu(sample).ok() ? 0 : 1; }
+
+  void TryInitialize(const TrackFrame& frame) {
+    const Result<NavEstimate> start = InitialState(frame);
+    if (!start.ok()) {
+      result_.init_report = start.message();
+      return;
+    }
+    if (const Status status = estimator_.Initialize(*start); !status.ok()) {
+      result_.status = Status::Diverged("initial state refused: " + status.message());
+      return;
+    }
+    initialized_ = true;
+    result_.init_stamp_ns = start->stamp_ns;
+    // The estimator starts at the initial stamp: it needs the delivered samples from the last one not after
+    // it on.
+    size_t first = next_imu_;
+    while (first > 0 && (first == next_imu_ || log_.imu[first].stamp_ns > start->stamp_ns)) {
+      --first;
+    }
+    for (size_t i = first; i < next_imu_; ++i) {
+      AddImu(log_.imu[i]);
+    }
+  }
+
+  Result<NavEstimate> InitialState(const TrackFrame& frame) {
+    if (config_.init.method != InitMethod::kTruth) {
+      Result<NavEstimate> start = initializer_.AddFrame(frame);
+      if (start.ok()) {
+        result_.init_method = initializer_.method();
+        result_.init_report = initializer_.report();
+      }
+      return start;
+    }
+    if (options_.truth == nullptr) {
+      result_.status = Status::Input(
+          "init.method: found truth, but the sequence has no ground truth; expected static, "
+          "dynamic or auto");
+      return result_.status;
+    }
+    if (!options_.truth->has_velocity || !options_.truth->has_bias) {
+      result_.status = StartFromTruth(config_.init, *options_.truth, ImuStamp(frame), options_.seed).status();
+      return result_.status;
+    }
+    if (log_.imu.empty() || ImuStamp(frame) < log_.imu.front().stamp_ns) {
+      return Status::Input("no IMU sample before the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+    }
+    Result<NavEstimate> start = StartFromTruth(config_.init, *options_.truth, ImuStamp(frame), options_.seed);
+    if (start.ok()) {
+      result_.init_method = "truth";
+      result_.init_report =
+          config_.init.perturb_truth
+              ? "truth, moved by an error drawn from the prior with seed " + std::to_string(options_.seed)
+              : "truth itself";
+    }
+    return start;
+  }
+
+  void AddFrame(const TrackFrame& frame, Clock::time_point start) {
+    Status status = estimator_.AddFrame(frame);
+    if (status.code() == StatusCode::kInput) {
+      result_.skip_report = result_.frames_skipped++ == 0 ? status.message() : result_.skip_report;
+      return;
+    }
+    if (!status.ok()) {
+      result_.status = std::move(status);
+      return;
+    }
+    RunRecord record;
+    record.estimate = estimator_.Latest();
+    if (!IsFinite(record.estimate)) {
+      result_.status =
+          Status::Diverged("state is not finite after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+      return;
+    }
+    record.statistics = estimator_.last_statistics();
+    record.frontend_ms = frame.frontend_ms;
+    record.backend_ms = 1e3 * SecondsSince(start);
+    result_.records.push_back(std::move(record));
+  }
+
+  [[nodiscard]] std::string Reason() const {
+    return result_.init_report.empty() ? "there is no frame" : result_.init_report;
+  }
+
+  const EstimatorConfig& config_;
+  const MeasurementLog& log_;
+  const RunOptions& options_;
+  Estimator& estimator_;
+  Initializer initializer_;
+  RunResult result_;
+  size_t next_imu_ = 0;
+  bool initialized_ = false;
+};
+
+}  // namespace
+
+std::string StatusWord(const RunResult& result) {
+  if (result.interrupted) {
+    return "interrupted";
+  }
+  if (result.status.ok()) {
+    return "ok";
+  }
+  if (result.status.code() != StatusCode::kDiverged) {
+    return "failed";
+  }
+  return result.init_method.empty() ? "not_initialized" : "diverged";
+}
+
+Trajectory TrajectoryOf(const RunResult& result) {
+  Trajectory trajectory;
+  trajectory.has_velocity = trajectory.has_bias = trajectory.has_covariance = true;
+  trajectory.points.reserve(result.records.size());
+  for (const RunRecord& record : result.records) {
+    const NavEstimate& estimate = record.estimate;
+    trajectory.points.push_back(
+        {estimate.stamp_ns, estimate.nav, estimate.bias, estimate.covariance.topLeftCorner<6, 6>()});
+  }
+  return trajectory;
+}
+
+std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config, const RigCalibration& rig) {
+  return config.backend == Backend::kFilter ? MakeFilter(config, rig) : MakeSmoother(config, rig);
+}
+
+RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
+                       Estimator* estimator) {
+  return Run(config, log, options, estimator).Execute();
+}
+
+RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options) {
+  const std::unique_ptr<Estimator> estimator = MakeEstimator(config, log.rig);
+  if (estimator == nullptr) {
+    RunResult result;
+    result.status = Status::Config("backend: the smoother is not in this build");
+    return result;
+  }
+  return RunEstimator(config, log, options, estimator.get());
+}
+
+RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const Trajectory* truth,
+                       unsigned seed) {
+  RunOptions options;
+  options.truth = truth;
+  options.seed = seed;
+  return RunEstimator(config, log, options);
+}
+
+}  // namespace alidade
