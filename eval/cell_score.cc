@@ -1,0 +1,145 @@
+#include "eval/cell_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "core/error_convention.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Points of a curve beyond these are not seen on a screen.
+constexpr size_t kMaxSeriesPoints = 600;
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) {
+    sum += value;
+  }
+  return values.empty() ? kUnknown : sum / static_cast<double>(values.size());
+}
+
+/// Nearest-rank percentile.
+double Percentile(std::vector<double> values, double share) {
+  if (values.empty()) {
+    return kUnknown;
+  }
+  const size_t rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const size_t index = std::min(values.size() - 1, rank == 0 ? 0 : rank - 1);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
+  return values[index];
+}
+
+void FillFigures(const Evaluation& evaluation, CellResult* cell) {
+  cell->duration_s = evaluation.duration_s;
+  cell->path_m = evaluation.path_m;
+  cell->rmse_pos_m = evaluation.unaligned.pos_m;
+  cell->rmse_ori_deg = evaluation.unaligned.ori_deg;
+  cell->ate_pos_m = evaluation.ate.pos_m;
+  cell->ate_ori_deg = evaluation.ate.ori_deg;
+  cell->rpe = evaluation.rpe;
+  if (evaluation.nees) {
+    cell->nees_pose = evaluation.nees->mean_pose;
+    cell->nees_ori = evaluation.nees->mean_orientation;
+    cell->nees_pos = evaluation.nees->mean_position;
+    cell->coverage_3sigma = evaluation.nees->coverage_3sigma;
+  }
+}
+
+void FillSeries(const Evaluation& evaluation, CellSeries* series) {
+  const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
+  const size_t stride = (evaluation.pairs.size() + kMaxSeriesPoints - 1) / kMaxSeriesPoints;
+  for (size_t i = 0; i < evaluation.pairs.size(); i += stride) {
+    const StatePair& pair = evaluation.pairs[i];
+    series->time_s.push_back(
+        SecondsBetween(evaluation.pairs.front().estimate.stamp_ns, pair.estimate.stamp_ns));
+    series->truth_position.push_back(pair.truth.nav.p_WB);
+    series->position.push_back(aligned[i].estimate.nav.p_WB);
+    series->error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
+    series->sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
+    series->nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kUnknown);
+  }
+}
+
+/// backend_ms and features_used at the stamps that FillSeries kept.
+void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+  std::unordered_map<TimeNs, const RunRecord*> by_stamp;
+  for (const RunRecord& record : run.records) {
+    by_stamp[record.estimate.stamp_ns] = &record;
+  }
+  const size_t stride = (evaluation.pairs.size() + kMaxSeriesPoints - 1) / kMaxSeriesPoints;
+  for (size_t i = 0; i < evaluation.pairs.size(); i += stride) {
+    const auto record = by_stamp.find(evaluation.pairs[i].estimate.stamp_ns);
+    const bool found = record != by_stamp.end();
+    series->backend_ms.push_back(found ? record->second->backend_ms : kUnknown);
+    series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
+  }
+}
+
+void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult* run,
+           const EvaluationOptions& options, CellResult* cell) {
+  cell->align = std::string(ToString(options.alignment));
+  cell->frames = static_cast<int>(estimate.points.size());
+  if (estimate.points.empty()) {
+    return;
+  }
+  if (truth == nullptr) {
+    cell->message += (cell->message.empty() ? "" : "; ") + std::string("no ground truth to score against");
+    return;
+  }
+  const Result<Evaluation> evaluation = Evaluate(*truth, estimate, options);
+  if (!evaluation.ok()) {
+    cell->message += (cell->message.empty() ? "" : "; ") + evaluation.message();
+    cell->status = cell->status == "ok" ? "failed" : cell->status;
+    return;
+  }
+  FillFigures(*evaluation, cell);
+  FillSeries(*evaluation, &cell->series);
+  if (run != nullptr) {
+    FillRunSeries(*evaluation, *run, &cell->series);
+  } else {
+    cell->series.backend_ms.assign(cell->series.time_s.size(), kUnknown);
+    cell->series.features_used.assign(cell->series.time_s.size(), kUnknown);
+  }
+}
+
+}  // namespace
+
+CellResult UnscoredCell() {
+  CellResult cell;
+  for (double* figure :
+       {&cell.duration_s, &cell.path_m, &cell.rmse_pos_m, &cell.rmse_ori_deg, &cell.ate_pos_m,
+        &cell.ate_ori_deg, &cell.nees_pose, &cell.nees_ori, &cell.nees_pos, &cell.coverage_3sigma,
+        &cell.frontend_ms, &cell.backend_ms, &cell.backend_ms_p95, &cell.features_per_frame}) {
+    *figure = kUnknown;
+  }
+  return cell;
+}
+
+void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,
+                     CellResult* cell) {
+  cell->status = "ok";
+  Score(truth, estimate, nullptr, options, cell);
+}
+
+void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOptions& options,
+              CellResult* cell) {
+  cell->status = StatusWord(run);
+  cell->message = run.status.message();
+  std::vector<double> frontend_ms, backend_ms, features;
+  for (const RunRecord& record : run.records) {
+    frontend_ms.push_back(record.frontend_ms);
+    backend_ms.push_back(record.backend_ms);
+    features.push_back(record.statistics.features_used);
+  }
+  cell->frontend_ms = Mean(frontend_ms);
+  cell->backend_ms = Mean(backend_ms);
+  cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
+  cell->features_per_frame = Mean(features);
+  Score(truth, TrajectoryOf(run), &run, options, cell);
+}
+
+}  // namespace alidade

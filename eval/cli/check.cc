@@ -1,0 +1,38 @@
+#include <cstdio>
+
+#include "eval/cli/command.h"
+#include "eval/cli/flags.h"
+#include "eval/cli/support.h"
+#include "eval/dataset.h"
+
+namespace alidade::cli {
+namespace {
+
+const char* Word(DatasetFinding::Severity severity) {
+  switch (severity) {
+    case DatasetFinding::Severity::kError:
+      return "error";
+    case DatasetFinding::Severity::kWarning:
+      return "warning";
+    case DatasetFinding::Severity::kFact:
+      break;
+  }
+  return "fact";
+}
+
+}  // namespace
+
+int RunCheck(const std::vector<std::string>&) {
+  const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  if (!dataset.ok()) {
+    return Report(dataset.status());
+  }
+  bool faulty = false;
+  for (const DatasetFinding& finding : CheckDataset(*dataset)) {
+    std::printf("%-8s %s\n", Word(finding.severity), finding.text.c_str());
+    faulty = faulty || finding.severity == DatasetFinding::Severity::kError;
+  }
+  return faulty ? kExitInput : kExitDone;
+}
+
+}  // namespace alidade::cli

@@ -1,0 +1,60 @@
+#include "eval/cli/command.h"
+
+namespace alidade::cli {
+
+const std::vector<Command>& Commands() {
+  static const std::vector<Command> commands = {
+      {"simulate",
+       "write a simulated sequence, with truth",
+       {"config", "output", "seed", "set", "overwrite", "quiet"},
+       {"config", "output"},
+       0,
+       RunSimulate},
+      {"track",
+       "run the front end alone: images in, tracks out",
+       {"dataset", "output", "config", "set", "overwrite", "quiet"},
+       {"dataset", "output"},
+       0,
+       RunTrack},
+      {"run",
+       "one estimator on one sequence",
+       {"dataset", "config", "backend", "set", "output", "seed", "overwrite", "quiet"},
+       {"dataset", "config", "output"},
+       0,
+       RunRun},
+      {"evaluate",
+       "errors and consistency of a trajectory against truth",
+       {"truth", "estimate", "align", "max_dt", "interpolate", "rpe", "json"},
+       {"truth", "estimate"},
+       0,
+       RunEvaluate},
+      {"compare",
+       "estimators x sequences x seeds on identical inputs; tables and report.html",
+       {"plan", "output", "jobs", "resume", "overwrite", "data", "quiet"},
+       {"plan", "output"},
+       0,
+       RunCompare},
+      {"probe",
+       "evaluate one measurement model on given cases",
+       {"model", "input", "error"},
+       {"model", "input"},
+       0,
+       RunProbe},
+      {"spp",
+       "single-point positions and Doppler velocities (not in this build)",
+       {"obs", "nav", "sp3", "clk", "output"},
+       {},
+       0,
+       RunSpp},
+      {"check", "say what is in a sequence and what is wrong with it", {"dataset"}, {"dataset"}, 0, RunCheck},
+      {"config",
+       "--show F | --check F | --diff F F2: a configuration, its faults, its differences",
+       {"show", "check", "diff", "kind", "set", "data"},
+       {},
+       2,
+       RunConfig},
+  };
+  return commands;
+}
+
+}  // namespace alidade::cli

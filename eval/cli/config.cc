@@ -1,0 +1,88 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "eval/cli/command.h"
+#include "eval/cli/command_line.h"
+#include "eval/cli/flags.h"
+#include "eval/cli/support.h"
+#include "eval/config_json.h"
+#include "eval/config_yaml.h"
+#include "eval/plan.h"
+#include "eval/simulator.h"
+
+namespace alidade::cli {
+namespace {
+
+using Describe = std::function<void(ConfigVisitor&)>;
+
+/// A configuration of either kind, read and valid; hands its keys to `use`.
+Status WithConfig(const std::string& path, const std::function<void(const Describe&)>& use) {
+  if (FLAGS_kind == "simulator") {
+    SimulatorConfig config;
+    const Describe describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
+    ALIDADE_RETURN_IF_ERROR(ReadConfigFile(path, describe));
+    ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set), describe));
+    ALIDADE_RETURN_IF_ERROR(config.Validate());
+    use(describe);
+    return Status::Ok();
+  }
+  Result<EstimatorConfig> config = LoadEstimatorConfig(path, SplitSettings(FLAGS_set));
+  if (config.ok()) {
+    use([&config](ConfigVisitor& visitor) { config->Describe(visitor); });
+  }
+  return config.status();
+}
+
+Status Show(const std::string& path) {
+  return WithConfig(
+      path, [](const Describe& describe) { std::fputs(ConfigToYaml(describe, true).c_str(), stdout); });
+}
+
+Status Check(const std::string& path) {
+  if (FLAGS_kind == "plan") {
+    return ReadPlan(path, FLAGS_data).status();
+  }
+  return WithConfig(path, [](const Describe&) {});
+}
+
+/// "key: a -> b" for every key in which the resolved configurations differ.
+Status Diff(const std::string& path, const std::string& other_path) {
+  nlohmann::ordered_json first, second;
+  ALIDADE_RETURN_IF_ERROR(
+      WithConfig(path, [&first](const Describe& d) { first = ConfigToJson(d).flatten(); }));
+  ALIDADE_RETURN_IF_ERROR(
+      WithConfig(other_path, [&second](const Describe& d) { second = ConfigToJson(d).flatten(); }));
+  for (const auto& [pointer, value] : first.items()) {
+    const nlohmann::ordered_json& other = second[pointer];
+    if (value != other) {
+      std::string key = pointer.substr(1);
+      std::replace(key.begin(), key.end(), '/', '.');
+      std::printf("%s: %s -> %s\n", key.c_str(), value.dump().c_str(), other.dump().c_str());
+    }
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+int RunConfig(const std::vector<std::string>& files) {
+  const size_t wanted = FLAGS_diff ? 2 : 1;
+  if (static_cast<int>(FLAGS_show) + static_cast<int>(FLAGS_check) + static_cast<int>(FLAGS_diff) != 1 ||
+      files.size() != wanted) {
+    return Report(Status::Usage("config: expected --show FILE, --check FILE or --diff FILE FILE2"));
+  }
+  const bool plan = FLAGS_kind == "plan";
+  if (FLAGS_kind != "estimator" && FLAGS_kind != "simulator" && !(plan && FLAGS_check)) {
+    return Report(Status::Usage("config: --kind: found '" + FLAGS_kind + "', expected estimator, simulator" +
+                                (FLAGS_check ? " or plan" : "; a plan has --check alone")));
+  }
+  const Status status = FLAGS_show    ? Show(files[0])
+                        : FLAGS_check ? Check(files[0])
+                                      : Diff(files[0], files[1]);
+  if (status.ok() && FLAGS_check) {
+    std::printf("%s: no faults\n", files[0].c_str());
+  }
+  return Report(status);
+}
+
+}  // namespace alidade::cli

@@ -1,0 +1,61 @@
+#include "eval/evaluate.h"
+
+#include <charconv>
+#include <cstdio>
+
+#include "eval/cli/command.h"
+#include "eval/cli/command_line.h"
+#include "eval/cli/flags.h"
+#include "eval/cli/support.h"
+
+namespace alidade::cli {
+namespace {
+
+Result<EvaluationOptions> OptionsFromFlags() {
+  EvaluationOptions options;
+  const std::optional<Alignment> alignment = ParseAlignment(FLAGS_align);
+  if (!alignment) {
+    return Status::Usage("evaluate: --align: found '" + FLAGS_align +
+                         "', expected none, pos, posyaw, se3 or sim3");
+  }
+  options.alignment = *alignment;
+  options.association.max_dt_s = FLAGS_max_dt;
+  options.association.interpolate = FLAGS_interpolate;
+  options.rpe_distances_m.clear();
+  for (const std::string& word : SplitWords(FLAGS_rpe)) {
+    double distance = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), distance);
+    if (error != std::errc() || end != word.data() + word.size() || !(distance > 0 && distance < 1e9)) {
+      return Status::Usage("evaluate: --rpe: found '" + word +
+                           "', expected distances in metres, separated by commas");
+    }
+    options.rpe_distances_m.push_back(distance);
+  }
+  return options;
+}
+
+}  // namespace
+
+int RunEvaluate(const std::vector<std::string>&) {
+  const Result<EvaluationOptions> options = OptionsFromFlags();
+  if (!options.ok()) {
+    return Report(options.status());
+  }
+  const Result<Trajectory> truth = ReadTrajectory(FLAGS_truth);
+  if (!truth.ok()) {
+    return Report(truth.status());
+  }
+  const Result<Trajectory> estimate = ReadTrajectory(FLAGS_estimate);
+  if (!estimate.ok()) {
+    return Report(estimate.status());
+  }
+  const Result<Evaluation> evaluation = Evaluate(*truth, *estimate, *options);
+  if (!evaluation.ok()) {
+    return Report(evaluation.status());
+  }
+  std::fputs((FLAGS_json ? FormatEvaluationJson(*evaluation) : FormatEvaluationText(*evaluation)).c_str(),
+             stdout);
+  return kExitDone;
+}
+
+}  // namespace alidade::cli

@@ -1,0 +1,32 @@
+#include "eval/cli/flags.h"
+
+DEFINE_string(align, "posyaw", "none | pos | posyaw | se3 | sim3: what is taken out before the ATE");
+DEFINE_string(backend, "", "filter | smoother: replaces the key `backend` of the configuration");
+DEFINE_bool(check, false, "name the faults of a configuration file");
+DEFINE_string(clk, "", "precise clocks, RINEX CLK");
+DEFINE_string(config, "", "configuration file, YAML");
+DEFINE_string(data, "", "folder that ${data} stands for in a plan");
+DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout");
+DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
+DEFINE_string(error, "right_invariant", "right_invariant | left_invariant | so3xrn: the error of Jacobians");
+DEFINE_string(estimate, "", "trajectory file to be scored");
+DEFINE_string(input, "", "cases, JSON; - reads standard input");
+DEFINE_bool(interpolate, false, "interpolate truth at the stamps of the estimate instead of pairing rows");
+DEFINE_int32(jobs, 1, "runs at a time; more than one shares the caches, so times are no longer comparable");
+DEFINE_bool(json, false, "answer in JSON");
+DEFINE_string(kind, "estimator", "estimator | simulator | plan: what the configuration file is");
+DEFINE_double(max_dt, 0.01, "largest stamp difference of a pair [s]");
+DEFINE_string(model, "", "measurement model");
+DEFINE_string(nav, "", "broadcast orbits, RINEX, separated by commas");
+DEFINE_string(obs, "", "observations, RINEX");
+DEFINE_string(output, "", "where the results go");
+DEFINE_bool(overwrite, false, "write into an output that exists");
+DEFINE_string(plan, "", "comparison plan, YAML");
+DEFINE_bool(quiet, false, "print errors and results alone");
+DEFINE_bool(resume, false, "keep the complete cells of an interrupted comparison");
+DEFINE_string(rpe, "8,16,24,32,40", "distances of the relative error [m], separated by commas");
+DEFINE_uint32(seed, 1, "seed of the simulation, and of the start that init.method truth draws");
+DEFINE_string(set, "", "a.b=value,...: settings over the configuration file; may be repeated");
+DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
+DEFINE_string(sp3, "", "precise orbits, SP3");
+DEFINE_string(truth, "", "ground-truth trajectory file");

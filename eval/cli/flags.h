@@ -1,0 +1,36 @@
+#pragma once
+
+#include <gflags/gflags.h>
+
+// Every flag of the program; eval/cli/commands.cc says which command takes which. The only folder that knows
+// gflags.
+DECLARE_string(align);
+DECLARE_string(backend);
+DECLARE_bool(check);
+DECLARE_string(clk);
+DECLARE_string(config);
+DECLARE_string(data);
+DECLARE_string(dataset);
+DECLARE_bool(diff);
+DECLARE_string(error);
+DECLARE_string(estimate);
+DECLARE_string(input);
+DECLARE_bool(interpolate);
+DECLARE_int32(jobs);
+DECLARE_bool(json);
+DECLARE_string(kind);
+DECLARE_double(max_dt);
+DECLARE_string(model);
+DECLARE_string(nav);
+DECLARE_string(obs);
+DECLARE_string(output);
+DECLARE_bool(overwrite);
+DECLARE_string(plan);
+DECLARE_bool(quiet);
+DECLARE_bool(resume);
+DECLARE_string(rpe);
+DECLARE_uint32(seed);
+DECLARE_string(set);
+DECLARE_bool(show);
+DECLARE_string(sp3);
+DECLARE_string(truth);

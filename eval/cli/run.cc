@@ -1,0 +1,87 @@
+#include <cstdio>
+
+#include "eval/cli/command.h"
+#include "eval/cli/command_line.h"
+#include "eval/cli/flags.h"
+#include "eval/cli/support.h"
+#include "eval/config_yaml.h"
+#include "eval/image_pipeline.h"
+#include "eval/recorder.h"
+#include "eval/sha256.h"
+
+namespace alidade::cli {
+namespace {
+
+Result<EstimatorConfig> LoadConfig() {
+  std::vector<std::string> settings = SplitSettings(FLAGS_set);
+  if (!FLAGS_backend.empty()) {
+    if (FLAGS_backend != "filter" && FLAGS_backend != "smoother") {
+      return Status::Usage("run: --backend: found '" + FLAGS_backend + "', expected filter or smoother");
+    }
+    settings.push_back("backend=" + FLAGS_backend);
+  }
+  return LoadEstimatorConfig(FLAGS_config, settings);
+}
+
+Result<MeasurementLog> LogWithProgress(const Dataset& dataset, const FrontendConfig& frontend,
+                                       const std::atomic<bool>* stop) {
+  ProgressLine progress("images");
+  return MakeLog(dataset, frontend,
+                 {stop, [&progress](size_t done, size_t total) { progress.Update(done, total); }});
+}
+
+RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const Dataset& dataset,
+                          const std::atomic<bool>* stop) {
+  ProgressLine progress(config.name + ": frames");
+  RunOptions options;
+  options.truth = dataset.truth ? &*dataset.truth : nullptr;
+  options.seed = FLAGS_seed;
+  options.stop = stop;
+  options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
+  return RunEstimator(config, log, options);
+}
+
+std::string Summary(const RunResult& result) {
+  char times[96];
+  const double frames = static_cast<double>(std::max<size_t>(result.records.size(), 1));
+  std::snprintf(times, sizeof times, "%.1f s wall, %.1f s CPU, %.2f ms CPU a frame", result.wall_s,
+                result.cpu_s, 1e3 * result.cpu_s / frames);
+  return StatusWord(result) + ": " + std::to_string(result.records.size()) + " frames, " +
+         std::to_string(result.frames_skipped) + " skipped, start: " + result.init_method + ", " + times;
+}
+
+}  // namespace
+
+int RunRun(const std::vector<std::string>&) {
+  const Result<EstimatorConfig> config = LoadConfig();
+  if (!config.ok()) {
+    return Report(config.status());
+  }
+  const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  if (!dataset.ok()) {
+    return Report(dataset.status());
+  }
+  const Result<std::string> dataset_digest = DigestOfFolder(FLAGS_dataset);
+  if (!dataset_digest.ok()) {
+    return Report(dataset_digest.status());
+  }
+  if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
+    return Report(status);
+  }
+  const std::atomic<bool>* stop = InstallInterruptHandler();
+  const Result<MeasurementLog> log = LogWithProgress(*dataset, config->frontend, stop);
+  if (!log.ok()) {
+    return stop->load() ? kExitInterrupted : Report(log.status());
+  }
+  const RunIdentity identity{*config,    dataset->name,   *dataset_digest,   DigestOf(*log),
+                             FLAGS_seed, log->imu.size(), log->frames.size()};
+  Say(DescribeLog(*log, identity.input_digest));
+  const RunResult result = RunWithProgress(*config, *log, *dataset, stop);
+  if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {
+    return Report(status);
+  }
+  Say(Summary(result));
+  return result.interrupted ? kExitInterrupted : Report(result.status);
+}
+
+}  // namespace alidade::cli

@@ -1,0 +1,104 @@
+#include "eval/cli/support.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "eval/cli/command.h"
+#include "eval/cli/flags.h"
+
+namespace alidade::cli {
+namespace {
+
+constexpr size_t kPlainSteps = 10;
+
+// A signal handler reaches nothing but statics.
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void OnSignal(int signal) {
+  if (interrupted.exchange(true)) {
+    _exit(128 + signal);
+  }
+}
+
+}  // namespace
+
+int Report(const Status& status) {
+  if (status.ok()) {
+    return kExitDone;
+  }
+  std::fprintf(stderr, "alidade: %s\n", status.message().c_str());
+  switch (status.code()) {
+    case StatusCode::kUsage:
+      return kExitUsage;
+    case StatusCode::kConfig:
+      return kExitConfig;
+    case StatusCode::kInput:
+      return kExitInput;
+    case StatusCode::kDiverged:
+      return kExitDiverged;
+    case StatusCode::kOutput:
+    case StatusCode::kOk:
+      break;
+  }
+  return kExitOutput;
+}
+
+Status PrepareOutputFolder(const std::string& path, bool allowed) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (path.empty()) {
+    return Status::Usage("--output: found an empty path, expected a folder");
+  }
+  if (fs::exists(path, error) && !fs::is_directory(path, error)) {
+    return Status::Output(path + ": exists and is no folder, expected a folder for the output");
+  }
+  if (!allowed && fs::exists(path, error) && !fs::is_empty(path, error)) {
+    return Status::Output(path + ": exists and is not empty, expected a new folder or --overwrite");
+  }
+  fs::create_directories(path, error);
+  if (error) {
+    return Status::Output(path + ": cannot be made: " + error.message());
+  }
+  if (access(path.c_str(), W_OK | X_OK) != 0) {
+    return Status::Output(path + ": cannot be written to");
+  }
+  return Status::Ok();
+}
+
+void Say(const std::string& line) {
+  if (!FLAGS_quiet) {
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
+}
+
+ProgressLine::ProgressLine(std::string label)
+    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+ProgressLine::~ProgressLine() {
+  if (open_) {
+    std::fputc('\n', stderr);
+  }
+}
+
+void ProgressLine::Update(size_t done, size_t total) {
+  const size_t steps = terminal_ ? 100 : kPlainSteps;
+  const size_t step = total == 0 ? steps : done * steps / total;
+  if (FLAGS_quiet || step == shown_) {
+    return;
+  }
+  shown_ = step;
+  open_ = terminal_;
+  std::fprintf(stderr, terminal_ ? "\r%s %zu/%zu" : "%s %zu/%zu\n", label_.c_str(), done, total);
+}
+
+const std::atomic<bool>* InstallInterruptHandler() {
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  return &interrupted;
+}
+
+}  // namespace alidade::cli

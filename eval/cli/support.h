@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "core/status.h"
+
+namespace alidade::cli {
+
+/// Prints "alidade: <message>" on standard error and gives the exit code of the status.
+int Report(const Status& status);
+
+/// Refuses an output folder that exists (even empty is fine) unless `allowed`; kOutput when it cannot be
+/// made.
+Status PrepareOutputFolder(const std::string& path, bool allowed);
+
+/// A line for people on standard error, unless --quiet.
+void Say(const std::string& line);
+
+/// "label 120/600": one line that rewrites itself on a terminal, every tenth as a plain line otherwise;
+/// nothing with --quiet.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string label);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  void Update(size_t done, size_t total);
+
+ private:
+  std::string label_;
+  bool terminal_ = false;
+  bool open_ = false;
+  size_t shown_ = 0;
+};
+
+/// Set by SIGINT and SIGTERM once the handler is installed. A second signal ends the program at once.
+[[nodiscard]] const std::atomic<bool>* InstallInterruptHandler();
+
+}  // namespace alidade::cli

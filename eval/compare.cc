@@ -1,0 +1,272 @@
+#include "eval/compare.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "eval/cell_score.h"
+#include "eval/compare_input.h"
+#include "eval/config_json.h"
+#include "eval/config_yaml.h"
+#include "eval/recorder.h"
+
+namespace alidade {
+namespace {
+
+/// One estimator on one sequence with one seed.
+struct Cell {
+  const PlanEstimator* estimator = nullptr;
+  const EstimatorConfig* config = nullptr;  ///< null when external
+  const PlanSequence* sequence = nullptr;
+  CompareInput* input = nullptr;
+  unsigned seed = 0;
+  CellResult result;
+};
+
+std::string OneLine(const CellResult& cell) {
+  char figures[128] = "";
+  if (std::isfinite(cell.ate_pos_m)) {
+    std::snprintf(figures, sizeof figures, ", ATE %.3f m %.3f deg, %.2f ms a frame", cell.ate_pos_m, cell.ate_ori_deg,
+                  cell.backend_ms);
+  }
+  return cell.estimator + " / " + cell.sequence + " / " + std::to_string(cell.seed) + ": " + cell.status + figures +
+         (cell.message.empty() ? "" : " (" + cell.message + ")");
+}
+
+/// One comparison from a plan to its tables.
+class Comparer {
+ public:
+  Comparer(const Plan& plan, const CompareOptions& options) : plan_(plan), options_(options) {
+    pipeline_.stop = options.stop;
+  }
+
+  Result<CompareOutcome> Execute() {
+    ALIDADE_RETURN_IF_ERROR(LoadConfigs());
+    ALIDADE_RETURN_IF_ERROR(MakeCells());
+    RunAll();
+    return Finish();
+  }
+
+ private:
+  Status LoadConfigs() {
+    for (const PlanEstimator& estimator : plan_.estimators) {
+      if (estimator.external()) {
+        configs_.push_back(nullptr);
+        continue;
+      }
+      std::vector<std::string> settings = plan_.settings;
+      settings.insert(settings.end(), estimator.settings.begin(), estimator.settings.end());
+      Result<EstimatorConfig> config = LoadEstimatorConfig(estimator.config, settings);
+      if (!config.ok()) {
+        return Status(config.code(), "estimator " + estimator.name + ": " + config.message());
+      }
+      config->name = estimator.name;
+      configs_.push_back(std::make_unique<EstimatorConfig>(std::move(*config)));
+    }
+    return Status::Ok();
+  }
+
+  /// The front end runs once a sequence: where it runs, all estimators must agree on its settings.
+  Result<FrontendConfig> CommonFrontend(const PlanSequence& sequence) const {
+    FrontendConfig common;
+    nlohmann::ordered_json expected;
+    for (const std::unique_ptr<EstimatorConfig>& config : configs_) {
+      if (config == nullptr) {
+        continue;
+      }
+      FrontendConfig frontend = config->frontend;
+      const nlohmann::ordered_json found = ConfigToJson([&](ConfigVisitor& visitor) { frontend.Describe(visitor); });
+      if (expected.is_null()) {
+        expected = found;
+        common = frontend;
+      } else if (found != expected && !std::filesystem::exists(sequence.dataset + "/mav0/cam0/tracks.csv")) {
+        return Status::Config("estimator " + config->name + ": frontend differs from that of the other estimators, but the "
+                              "front end runs once for sequence " + sequence.name + "; expected equal settings");
+      }
+    }
+    return common;
+  }
+
+  Status MakeCells() {
+    for (const PlanSequence& sequence : plan_.sequences) {
+      if (sequence.dataset.empty()) {
+        ALIDADE_RETURN_IF_ERROR(AddSimulation(sequence));
+      } else {
+        const Result<FrontendConfig> frontend = CommonFrontend(sequence);
+        if (!frontend.ok()) {
+          return frontend.status();
+        }
+        inputs_.push_back(std::make_unique<CompareInput>(sequence, *frontend));
+        for (const unsigned seed : sequence.seeds) {
+          AddCells(sequence, seed, inputs_.back().get());
+        }
+      }
+    }
+    return Status::Ok();
+  }
+
+  Status AddSimulation(const PlanSequence& sequence) {
+    SimulatorConfig config;
+    const auto describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
+    Status status = ReadConfigFile(sequence.config, describe);
+    status = status.ok() ? ApplySettings(sequence.settings, describe) : status;
+    status = status.ok() ? config.Validate() : status;
+    if (!status.ok()) {
+      return Status(status.code(), "sequence " + sequence.name + ": " + status.message());
+    }
+    for (const unsigned seed : sequence.seeds) {
+      inputs_.push_back(std::make_unique<CompareInput>(sequence, config, seed));
+      AddCells(sequence, seed, inputs_.back().get());
+    }
+    return Status::Ok();
+  }
+
+  void AddCells(const PlanSequence& sequence, unsigned seed, CompareInput* input) {
+    for (size_t i = 0; i < plan_.estimators.size(); ++i) {
+      const PlanEstimator& estimator = plan_.estimators[i];
+      if (estimator.external() && estimator.trajectories.count(sequence.name) == 0) {
+        continue;
+      }
+      Cell cell{&estimator, configs_[i].get(), &sequence, input, seed, UnscoredCell()};
+      cell.result.estimator = estimator.name;
+      cell.result.backend = estimator.external()                         ? "external"
+                            : configs_[i]->backend == Backend::kFilter ? "filter"
+                                                                         : "smoother";
+      cell.result.sequence = sequence.name;
+      cell.result.seed = seed;
+      input->AddUser();
+      cells_.push_back(std::move(cell));
+    }
+  }
+
+  void RunAll() {
+    std::vector<std::thread> threads;
+    for (int i = 1; i < options_.jobs; ++i) {
+      threads.emplace_back([this] { Work(); });
+    }
+    Work();
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+  }
+
+  void Work() {
+    for (size_t i = next_cell_++; i < cells_.size() && !Stopped(); i = next_cell_++) {
+      Cell& cell = cells_[i];
+      RunGuarded(&cell);
+      cell.input->Release();
+      Say("[" + std::to_string(++cells_done_) + "/" + std::to_string(cells_.size()) + "] " + OneLine(cell.result));
+    }
+  }
+
+  /// Nothing that one cell does may end the others, an exception of a library least of all.
+  void RunGuarded(Cell* cell) {
+    try {
+      RunCell(cell);
+    } catch (const std::exception& error) {
+      Fail(cell, error.what());
+    }
+  }
+
+  static void Fail(Cell* cell, const std::string& message) {
+    cell->result.status = "failed";
+    cell->result.message = message;
+  }
+
+  void RunCell(Cell* cell) {
+    const Result<CompareInput::Data>& data = cell->input->Acquire(pipeline_);
+    if (!data.ok()) {
+      return Fail(cell, data.message());
+    }
+    const Trajectory* truth = data->truth ? &*data->truth : nullptr;
+    cell->result.input_digest = DigestOf(data->log);
+    if (cell->result.input_digest != data->input_digest) {
+      return Fail(cell, "the measurement log changed between two estimators");
+    }
+    if (cell->config == nullptr) {
+      const Result<Trajectory> estimate = ReadTrajectory(cell->estimator->trajectories.at(cell->sequence->name));
+      return estimate.ok() ? ScoreTrajectory(truth, *estimate, plan_.metrics, &cell->result)
+                           : Fail(cell, estimate.message());
+    }
+    const std::string folder = FolderOf(*cell);
+    const RunIdentity identity{*cell->config,      cell->sequence->name, data->dataset_digest,
+                               data->input_digest, cell->seed,           data->log.imu.size(),
+                               data->log.frames.size()};
+    if (options_.resume && HoldsRun(folder, identity)) {
+      ++cells_reused_;
+    } else {
+      RunOptions run_options;
+      run_options.truth = truth;
+      run_options.seed = cell->seed;
+      run_options.stop = options_.stop;
+      const RunResult result = RunEstimator(*cell->config, data->log, run_options);
+      if (result.interrupted) {
+        return Fail(cell, "interrupted");
+      }
+      if (const Status status = WriteRun(identity, result, folder); !status.ok()) {
+        return Fail(cell, status.message());
+      }
+    }
+    // Scored from what was written: fresh and resumed comparisons give the same figures to the last digit.
+    const Result<RunResult> written = ReadRun(folder);
+    return written.ok() ? ScoreRun(truth, *written, plan_.metrics, &cell->result) : Fail(cell, written.message());
+  }
+
+  Result<CompareOutcome> Finish() {
+    CompareOutcome outcome;
+    outcome.interrupted = Stopped();
+    outcome.cells_reused = cells_reused_;
+    Comparison& comparison = outcome.comparison;
+    comparison.title = plan_.title;
+    comparison.references = plan_.references;
+    comparison.command = options_.command;
+    for (const PlanEstimator& estimator : plan_.estimators) {
+      for (Cell& cell : cells_) {
+        if (cell.estimator == &estimator) {
+          outcome.cells_failed += cell.result.status == "ok" ? 0 : 1;
+          comparison.cells.push_back(std::move(cell.result));
+        }
+      }
+    }
+    if (!outcome.interrupted) {
+      ALIDADE_RETURN_IF_ERROR(WriteTables(comparison, options_.output));
+      ALIDADE_RETURN_IF_ERROR(WriteReport(comparison, options_.output + "/report.html"));
+    }
+    return outcome;
+  }
+
+  [[nodiscard]] std::string FolderOf(const Cell& cell) const {
+    return options_.output + "/cells/" + cell.estimator->name + "/" + cell.sequence->name + "/" + std::to_string(cell.seed);
+  }
+
+  [[nodiscard]] bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  void Say(const std::string& line) {
+    const std::lock_guard<std::mutex> lock(say_mutex_);
+    if (options_.progress) {
+      options_.progress(line);
+    }
+  }
+
+  const Plan& plan_;
+  const CompareOptions& options_;
+  PipelineOptions pipeline_;
+  std::vector<std::unique_ptr<EstimatorConfig>> configs_;  ///< one an estimator of the plan
+  std::vector<std::unique_ptr<CompareInput>> inputs_;
+  std::vector<Cell> cells_;
+  std::atomic<size_t> next_cell_{0};
+  std::atomic<size_t> cells_done_{0};
+  std::atomic<int> cells_reused_{0};
+  std::mutex say_mutex_;
+};
+
+}  // namespace
+
+Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options) {
+  return Comparer(plan, options).Execute();
+}
+
+}  // namespace alidade

@@ -1,0 +1,75 @@
+#include "eval/image_pipeline.h"
+
+#include <chrono>
+
+#include "frontend/klt_tracker.h"
+
+namespace alidade {
+
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
+                                            const PipelineOptions& options) {
+  if (dataset.images.empty()) {
+    return Status::Input(dataset.path + ": found no images, expected mav0/cam0/data.csv and its image files");
+  }
+  KltTracker tracker(config, dataset.rig);
+  std::vector<TrackFrame> frames;
+  frames.reserve(dataset.images.size());
+  size_t next_imu = 0;
+  for (const ImageEntry& image : dataset.images) {
+    if (options.stop != nullptr && options.stop->load()) {
+      return Status::Diverged("interrupted");
+    }
+    const TimeNs imu_stamp = image.stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s);
+    while (next_imu < dataset.imu.size() &&
+           (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
+      tracker.AddImu(dataset.imu[next_imu++]);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const Result<GreyImage> grey = ReadGreyImage(image.path);
+    if (!grey.ok()) {
+      return grey.status();
+    }
+    Result<TrackFrame> frame =
+        tracker.Track(image.stamp_ns, grey->pixels.data(), grey->width_px, grey->height_px);
+    if (!frame.ok()) {
+      return Status(frame.code(), image.path + ": " + frame.message());
+    }
+    frame->frontend_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    frames.push_back(std::move(*frame));
+    if (options.progress) {
+      options.progress(frames.size(), dataset.images.size());
+    }
+  }
+  return frames;
+}
+
+Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
+                               const PipelineOptions& options) {
+  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
+  if (!log.frames.empty()) {
+    return log;
+  }
+  if (dataset.images.empty()) {
+    return Status::Input(dataset.path + ": found neither tracks nor images" +
+                         (dataset.camera_stamps.empty() ? "" : " (camera stamps alone)") +
+                         ", expected mav0/cam0/tracks.csv or mav0/cam0/data.csv");
+  }
+  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, config, options);
+  if (!frames.ok()) {
+    return frames.status();
+  }
+  log.frames = std::move(*frames);
+  return log;
+}
+
+std::string DescribeLog(const MeasurementLog& log, const std::string& digest) {
+  size_t observations = 0;
+  for (const TrackFrame& frame : log.frames) {
+    observations += frame.observations.size();
+  }
+  return "measurement log " + digest + ": " + std::to_string(log.imu.size()) + " IMU samples, " +
+         std::to_string(log.frames.size()) + " frames, " + std::to_string(observations) + " observations";
+}
+
+}  // namespace alidade
