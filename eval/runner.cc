@@ -7,15 +7,7 @@
 #include "eval/truth_start.h"
 #include "filter/filter.h"
 #include "frontend/initializer.h"
-#if __has_include("smoother/smoother.h")
 #include "smoother/smoother.h"
-#else
-namespace alidade {
-static std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig&, const RigCalibration&) {
-  return nullptr;
-}
-}  // namespace alidade
-#endif
 
 namespace alidade {
 namespace {
@@ -234,11 +226,6 @@ RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options) {
   const std::unique_ptr<Estimator> estimator = MakeEstimator(config, log.rig);
-  if (estimator == nullptr) {
-    RunResult result;
-    result.status = Status::Config("backend: the smoother is not in this build");
-    return result;
-  }
   return RunEstimator(config, log, options, estimator.get());
 }
 
