@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Installs what Alidade needs on Debian 12 and is missing. `--with-tests-of-report` adds the headless browser that one test of
+# the report page uses (it is skipped without).
+set -euo pipefail
+
+packages=(
+  ca-certificates g++ cmake ninja-build pkg-config ccache
+  libeigen3-dev libceres-dev libsuitesparse-dev libopenblas-serial-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-video-dev libopencv-calib3d-dev
+  libopencv-features2d-dev
+  libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev
+  libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3
+)
+if [[ "${1:-}" == "--with-tests-of-report" ]]; then
+  packages+=(chromium)
+elif [[ $# -gt 0 ]]; then
+  echo "usage: $0 [--with-tests-of-report]" >&2
+  exit 2
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ "$status" == installed ]] || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+  echo "all packages are installed"
+  exit 0
+fi
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "missing packages: ${missing[*]}; install them as root, or install sudo" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "installing ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Builds and runs every test. The last line is "N passed, N failed[, N skipped]"; the exit code tells whether all is well.
+# Usage: scripts/test.sh [release|dev] [ctest options]
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+preset=${1:-release}
+shift || true
+if ! scripts/build.sh "$preset"; then
+  echo "the build failed"
+  echo "0 passed, 1 failed"
+  exit 1
+fi
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+ctest --preset "$preset" --parallel "$(nproc)" "$@" 2>&1 | tee "$log"
+code=${PIPESTATUS[0]}
+
+# A line of ctest for one test: "12/345 Test  #12: Name ....   Passed    0.01 sec".
+results=$(grep -E '^ *[0-9]+/[0-9]+ Test +#[0-9]+: ' "$log")
+total=$(grep -c . <<<"$results" || true)
+passed=$(grep -cE ' Passed +[0-9.]+ sec$' <<<"$results" || true)
+skipped=$(grep -cE '\*\*\*Skipped +[0-9.]+ sec$' <<<"$results" || true)
+failed=$((total - passed - skipped))
+if [[ $failed -eq 0 && ( $code -ne 0 || $total -eq 0 ) ]]; then
+  failed=1  # ctest itself did not come to its tests
+fi
+
+line="$passed passed, $failed failed"
+[[ $skipped -gt 0 ]] && line="$line, $skipped skipped"
+echo "$line"
+[[ $failed -eq 0 ]]

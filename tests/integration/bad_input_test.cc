@@ -1,0 +1,132 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/integration/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade::test {
+namespace {
+
+using testing::HasSubstr;
+
+struct BadCall {
+  std::string words;
+  int code;
+  std::string message;
+};
+
+/// A folder with a small sequence `seq` and files that are wrong in one way each.
+class BadInput : public testing::Test {
+ protected:
+  void SetUp() override {
+    const CommandResult made =
+        Alidade("simulate --config=" + Source("configs/datasets/figure8_short.yaml") +
+                " --set=duration_s=5,path_m=6.5 --output=" + folder_.File("seq") + " --quiet");
+    ASSERT_EQ(made.code, 0) << made.output;
+    folder_.Write("unknown_key.yaml", "base: " + Source("configs/base.yaml") + "\nfilter:\n  windw: 3\n");
+    folder_.Write("torn.tum", "1.0 2.0 3.0\n");
+    folder_.Write("plan.yaml",
+                  "estimators: [" + Source("configs/base.yaml") + "]\nsequences: [{paht: seq}]\n");
+    folder_.Write("file", "");
+    folder_.Write("no_imu/mav0/cam0/tracks.csv", "");
+    std::filesystem::copy(folder_.File("seq"), folder_.File("torn_imu"),
+                          std::filesystem::copy_options::recursive);
+    folder_.Write("torn_imu/mav0/imu0/data.csv",
+                  ReadText(folder_.File("seq/mav0/imu0/data.csv")) + "2000000000000,1,2\n");
+    std::filesystem::copy(folder_.File("seq"), folder_.File("no_truth"),
+                          std::filesystem::copy_options::recursive);
+    std::filesystem::remove_all(folder_.File("no_truth/mav0/state_groundtruth_estimate0"));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
+  const std::string base = Source("configs/base.yaml");
+  const std::string seq = folder_.File("seq"), out = folder_.File("out");
+  const std::string run = "run --dataset=" + seq + " --output=" + out;
+  const std::vector<BadCall> calls = {
+      {"", 2, "Usage: alidade <command>"},
+      {"evalute", 2, "did you mean 'evaluate'"},
+      {"run --datset=x", 2, "did you mean '--dataset'"},
+      {"run --plan=x", 2, "unknown flag '--plan'"},
+      {run, 2, "--config is missing"},
+      {run + " --config=" + base + " --output=twice", 2, "--output: given twice"},
+      {run + " --config=" + base + " --seed=x", 2, "--seed: found 'x'"},
+      {run + " --config=" + base + " --seed=-1", 2, "--seed: found '-1'"},
+      {run + " --config=" + base + " --seed", 2, "--seed: found no value"},
+      {run + " --config=" + base + " --backend=ekf", 2, "expected filter or smoother"},
+      {run + " --config=" + base + " extra", 2, "found 'extra'"},
+      {run + " --config=" + folder_.File("none.yaml"), 3, "none.yaml"},
+      {run + " --config=" + folder_.File("unknown_key.yaml"), 3, "unknown_key.yaml:3:3"},
+      {run + " --config=" + base + " --set=filter.windw=3", 3, "filter.window"},
+      {run + " --config=" + base + " --set=filter.window=0", 3, "filter.window"},
+      {run + " --config=" + base + " --set=gnss.enabled=true", 3, "no GNSS"},
+      {"run --dataset=" + folder_.File("none") + " --config=" + base + " --output=" + out, 4, "none"},
+      {"run --dataset=" + folder_.File("no_imu") + " --config=" + base + " --output=" + out, 4, "imu0"},
+      {"run --dataset=" + folder_.File("torn_imu") + " --config=" + base + " --output=" + out, 4,
+       "data.csv:50"},
+      {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
+           " --set=init.method=truth --output=" + out,
+       4, "no ground truth"},
+      {"run --dataset=" + seq + " --config=" + base + " --output=" + seq, 6, "--overwrite"},
+      {"run --dataset=" + seq + " --config=" + base + " --output=" + folder_.File("file") + "/x", 6,
+       "file/x"},
+      {"simulate --config=" + base + " --output=" + out, 3, "base.yaml"},
+      {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
+           " --set=duration_s=nan --output=" + out,
+       3, "duration_s"},
+      {"track --dataset=" + seq + " --output=" + folder_.File("tracks"), 4, "no images"},
+      {"evaluate --truth=" + folder_.File("torn.tum") + " --estimate=" + folder_.File("torn.tum"), 4,
+       "torn.tum:1"},
+      {"evaluate --truth=a --estimate=b --align=yaw", 2, "--align: found 'yaw'"},
+      {"evaluate --truth=a --estimate=b --rpe=8,x", 2, "--rpe: found 'x'"},
+      {"compare --plan=" + folder_.File("plan.yaml") + " --output=" + out, 3, "did you mean 'path'"},
+      {"compare --plan=" + folder_.File("plan.yaml") + " --jobs=0 --output=" + out, 2, "--jobs: found 0"},
+      {"probe --model=pose_onyl --input=" + folder_.File("file"), 2, "did you mean 'pose_only'"},
+      {"probe --model=pose_only --input=" + folder_.File("file"), 4, "not JSON"},
+      {"probe --model=pose_only --input=" + folder_.File("file") + " --error=left", 2,
+       "--error: found 'left'"},
+      {"check --dataset=" + folder_.File("none"), 4, "none"},
+      {"config --check " + folder_.File("unknown_key.yaml"), 3, "did you mean"},
+      {"config", 2, "--show FILE"},
+      {"config --diff " + base, 2, "--diff FILE FILE2"},
+      {"spp --obs=x --nav=y --output=z", 2, "not in this build"},
+  };
+  for (const BadCall& call : calls) {
+    const CommandResult result = Alidade(call.words);
+    EXPECT_EQ(result.code, call.code) << call.words << "\n" << result.output;
+    EXPECT_THAT(result.output, HasSubstr(call.message)) << call.words;
+    EXPECT_LT(result.output.size(), 2000u) << call.words << "\n" << result.output;
+  }
+}
+
+TEST_F(BadInput, EstimatorThatNeverStartsKeepsItsOutputsAndExits5) {
+  const std::string out = folder_.File("out");
+  const CommandResult result =
+      Alidade("run --dataset=" + folder_.File("seq") + " --config=" + Source("configs/base.yaml") +
+              " --set=init.method=static --output " + out + " --quiet");
+  EXPECT_EQ(result.code, 5) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("not initialised"));
+  EXPECT_THAT(ReadText(out + "/run.json"), HasSubstr("\"not_initialized\""));
+  EXPECT_TRUE(std::filesystem::exists(out + "/states.csv"));
+}
+
+TEST(Help, ListsCommandsAndFlagsWithDefaults) {
+  const CommandResult general = Alidade("help");
+  EXPECT_EQ(general.code, 0);
+  for (const char* command :
+       {"simulate", "track", "run", "evaluate", "compare", "probe", "spp", "check", "config"}) {
+    EXPECT_THAT(general.output, HasSubstr(command));
+    const CommandResult help = Alidade(std::string(command) + " --help");
+    EXPECT_EQ(help.code, 0);
+    EXPECT_THAT(help.output, HasSubstr("Flags:"));
+    EXPECT_EQ(help.output, Alidade(std::string("help ") + command).output);
+  }
+  EXPECT_THAT(Alidade("evaluate --help").output, HasSubstr("default 0.01"));
+}
+
+}  // namespace
+}  // namespace alidade::test

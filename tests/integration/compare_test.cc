@@ -1,0 +1,110 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <vector>
+
+#include "tests/integration/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Rows of a CSV file without the columns of measured times.
+std::string WithoutTimes(const std::string& text) {
+  std::istringstream lines(text);
+  std::vector<bool> keep;
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    size_t column = 0;
+    for (std::string field; std::getline(fields, field, ','); ++column) {
+      if (result.empty() || keep.size() == column) {
+        keep.push_back(field.find("_ms") == std::string::npos);
+      }
+      result += keep[column] ? field + "," : "";
+    }
+    result += "\n";
+  }
+  return result;
+}
+
+class CompareCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    plan_ = folder_.Write("plan.yaml",
+                          "set: {init.method: truth}\n"
+                          "estimators:\n"
+                          "  - " +
+                              Source("configs/estimators/alidade_filter.yaml") +
+                              "\n"
+                              "  - " +
+                              Source("configs/estimators/vins_mono_class.yaml") +
+                              "\n"
+                              "sequences:\n"
+                              "  - {config: " +
+                              Source("configs/datasets/figure8_short.yaml") +
+                              ", name: short, set: {duration_s: 5, path_m: 6.5}, seeds: 1..2}\n"
+                              "metrics: {rpe: [1, 2]}\n");
+  }
+  CommandResult Compare(const std::string& output, const std::string& more = "") const {
+    return Alidade("compare --quiet --plan=" + plan_ + " --output=" + folder_.File(output) + " " + more);
+  }
+  test::TemporaryFolder folder_;
+  std::string plan_;
+};
+
+TEST_F(CompareCommand, ResultsDoNotDependOnTheNumberOfJobs) {
+  const CommandResult one = Compare("one");
+  ASSERT_EQ(one.code, 0) << one.output;
+  ASSERT_EQ(Compare("two", "--jobs=2").code, 0);
+  EXPECT_EQ(ComparableFiles(folder_.File("one/cells")), ComparableFiles(folder_.File("two/cells")));
+  const std::string summary = WithoutTimes(ReadText(folder_.File("one/summary.csv")));
+  EXPECT_THAT(summary, HasSubstr("alidade_filter,filter,short,2,ok,"));
+  EXPECT_EQ(summary, WithoutTimes(ReadText(folder_.File("two/summary.csv"))));
+  for (const char* file : {"aggregate.csv", "tables.md", "tables.tex", "report.html"}) {
+    EXPECT_FALSE(ReadText(folder_.File(std::string("one/") + file)).empty()) << file;
+  }
+}
+
+// GIVEN a comparison with one cell gone and one torn WHEN it is resumed THEN those two run again, the others
+// are not touched, and the tables are those of the first time.
+TEST_F(CompareCommand, ResumeRunsOnlyWhatIsMissing) {
+  ASSERT_EQ(Compare("out").code, 0);
+  const std::string summary = ReadText(folder_.File("out/summary.csv"));
+  const std::string kept = folder_.File("out/cells/alidade_filter/short/1/run.json");
+  const std::string kept_text = ReadText(kept);
+  const auto kept_time = std::filesystem::last_write_time(kept);
+  std::filesystem::remove_all(folder_.File("out/cells/alidade_filter/short/2"));
+  folder_.Write("out/cells/vins_mono_class/short/1/run.json", "{");
+  EXPECT_EQ(Compare("out").code, 6);  // neither --resume nor --overwrite
+  const CommandResult resumed = Compare("out", "--resume");
+  ASSERT_EQ(resumed.code, 0) << resumed.output;
+  EXPECT_EQ(ReadText(kept), kept_text);
+  EXPECT_EQ(std::filesystem::last_write_time(kept), kept_time);
+  EXPECT_EQ(WithoutTimes(ReadText(folder_.File("out/summary.csv"))), WithoutTimes(summary));
+}
+
+TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
+  folder_.Write("plan.yaml",
+                "estimators:\n"
+                "  - {config: " +
+                    Source("configs/estimators/alidade_filter.yaml") +
+                    ", name: moving, set: {init.method: static}}\n"
+                    "  - {config: " +
+                    Source("configs/estimators/alidade_filter.yaml") +
+                    ", name: good, set: {init.method: truth}}\n"
+                    "sequences:\n"
+                    "  - {config: " +
+                    Source("configs/datasets/figure8_short.yaml") + ", set: {duration_s: 5, path_m: 6.5}}\n");
+  const CommandResult result = Compare("out");
+  EXPECT_EQ(result.code, 7) << result.output;
+  const std::string summary = ReadText(folder_.File("out/summary.csv"));
+  EXPECT_THAT(summary, HasSubstr("moving,filter,figure8_short,1,not_initialized,"));
+  EXPECT_THAT(summary, HasSubstr("good,filter,figure8_short,1,ok,"));
+}
+
+}  // namespace
+}  // namespace alidade::test

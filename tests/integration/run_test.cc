@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade::test {
+namespace {
+
+std::vector<std::string> Presets() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(Source("configs/estimators"))) {
+    names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// One short sequence for all tests of this file.
+class Sequence {
+ public:
+  Sequence() {
+    made_ = Alidade("simulate --config=" + Source("configs/datasets/figure8_short.yaml") +
+                    " --set=duration_s=6,path_m=7.8 --output=" + folder_.File("seq") + " --quiet");
+  }
+  static const Sequence& Get() {
+    static const Sequence sequence;
+    return sequence;
+  }
+  [[nodiscard]] CommandResult Run(const std::string& preset, const std::string& output,
+                                  const std::string& more = "") const {
+    return Alidade("run --quiet --set=init.method=truth --dataset=" + folder_.File("seq") + " --config=" +
+                   Source("configs/estimators/" + preset + ".yaml") + " --output=" + output + " " + more);
+  }
+  [[nodiscard]] const CommandResult& made() const { return made_; }
+  [[nodiscard]] std::string path() const { return folder_.File("seq"); }
+
+ private:
+  TemporaryFolder folder_;
+  CommandResult made_;
+};
+
+class EveryPreset : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryPreset, SameInputsGiveSameBytes) {
+  TemporaryFolder folder;
+  const Sequence& sequence = Sequence::Get();
+  ASSERT_EQ(sequence.made().code, 0) << sequence.made().output;
+  const CommandResult first = sequence.Run(GetParam(), folder.File("a"));
+  ASSERT_EQ(first.code, 0) << first.output;
+  ASSERT_EQ(sequence.Run(GetParam(), folder.File("b")).code, 0);
+  const auto a = ComparableFiles(folder.File("a"));
+  EXPECT_EQ(a.size(), 4u);
+  EXPECT_GT(a.at("states.csv").size(), 10000u);
+  EXPECT_EQ(a, ComparableFiles(folder.File("b")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryPreset, testing::ValuesIn(Presets()),
+                         [](const auto& preset) { return preset.param; });
+
+TEST(Run, BackendSwitchLeavesTheInputDigestUnchanged) {
+  TemporaryFolder folder;
+  const Sequence& sequence = Sequence::Get();
+  ASSERT_EQ(sequence.Run("alidade_filter", folder.File("filter"), "--backend filter").code, 0);
+  ASSERT_EQ(sequence.Run("alidade_filter", folder.File("smoother"), "--backend=smoother").code, 0);
+  const auto filter = nlohmann::json::parse(ReadText(folder.File("filter/run.json")));
+  const auto smoother = nlohmann::json::parse(ReadText(folder.File("smoother/run.json")));
+  EXPECT_EQ(filter["backend"], "filter");
+  EXPECT_EQ(smoother["backend"], "smoother");
+  EXPECT_EQ(filter["input_digest"], smoother["input_digest"]);
+  EXPECT_EQ(filter["dataset_digest"], smoother["dataset_digest"]);
+  EXPECT_NE(filter["config_digest"], smoother["config_digest"]);
+  EXPECT_NE(ReadText(folder.File("filter/states.csv")), ReadText(folder.File("smoother/states.csv")));
+}
+
+TEST(Run, EvaluatesWhatItWrote) {
+  TemporaryFolder folder;
+  const Sequence& sequence = Sequence::Get();
+  ASSERT_EQ(sequence.Run("alidade_filter", folder.File("a")).code, 0);
+  const std::string truth = sequence.path() + "/mav0/state_groundtruth_estimate0/data.csv";
+  for (const char* file : {"states.csv", "trajectory.tum"}) {
+    const CommandResult scored =
+        Alidade("evaluate --json --truth=" + truth + " --estimate=" + folder.File(std::string("a/") + file));
+    EXPECT_EQ(scored.code, 0) << scored.output;
+    EXPECT_TRUE(nlohmann::json::accept(scored.output)) << scored.output;
+  }
+}
+
+TEST(Run, SettingsMayBeRepeated) {
+  TemporaryFolder folder;
+  const Sequence& sequence = Sequence::Get();
+  ASSERT_EQ(
+      sequence.Run("alidade_filter", folder.File("a"), "--set filter.window=9,vision.pixel_noise_px=1.5")
+          .code,
+      0);
+  const auto config = nlohmann::json::parse(ReadText(folder.File("a/run.json")))["config"];
+  EXPECT_EQ(config["filter"]["window"], 9);
+  EXPECT_EQ(config["vision"]["pixel_noise_px"], 1.5);
+  EXPECT_EQ(config["init"]["method"], "truth");
+}
+
+}  // namespace
+}  // namespace alidade::test
