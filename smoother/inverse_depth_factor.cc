@@ -70,4 +70,13 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
   return true;
 }
 
+bool DepthPriorFactor::Evaluate(const double* const* parameters, double* residual,
+                                double* const* tangent_jacobians) const {
+  residual[0] = prior_.sqrt_information * (parameters[0][2] - prior_.mean);
+  if (tangent_jacobians != nullptr && tangent_jacobians[0] != nullptr) {
+    Eigen::Map<Eigen::RowVector3d>{tangent_jacobians[0]} << 0, 0, prior_.sqrt_information;
+  }
+  return true;
+}
+
 }  // namespace alidade

@@ -5,6 +5,7 @@
 
 #include "core/inverse_depth.h"
 #include "smoother/lifted_cost.h"
+#include "smoother/window.h"
 
 namespace alidade {
 
@@ -49,6 +50,22 @@ class BaseBearingFactor {
  private:
   static constexpr std::array<BlockKind, 1> kBlocks = {BlockKind::kLandmark};
   NormalizedObservation observation_;
+};
+
+/// The weak prior on the inverse depth of a track without parallax. Block landmark; 1 row.
+class DepthPriorFactor {
+ public:
+  static constexpr int kRows = 1;
+
+  explicit DepthPriorFactor(const DepthPrior& prior) : prior_(prior) {}
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  static constexpr std::array<BlockKind, 1> kBlocks = {BlockKind::kLandmark};
+  DepthPrior prior_;
 };
 
 }  // namespace alidade

@@ -35,8 +35,10 @@ void PoseOnlyFactor::Linearize(const double* const* parameters) const {
   PoseSystem system(frames_);
   for (const WindowTrack* track : tracks_) {
     Eigen::Vector3d landmark = track->landmark;
-    if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &landmark) ||
-        !AddTrack(track->views, geometry, kernel_, landmark, &memo_->workspace, &system)) {
+    if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &landmark,
+                       track->depth_prior) ||
+        !AddTrack(track->views, geometry, kernel_, landmark, &memo_->workspace, &system,
+                  track->depth_prior)) {
       system.robust_cost += kBehindChiSquare;
     }
   }

@@ -24,6 +24,11 @@ constexpr size_t kMinViews = 2;
 // marginalised, linearised for good.
 constexpr double kParallaxSlack = 10;
 constexpr int kMaxLandmarkIterations = 30;
+// Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
+// as uncertain as it is large.
+constexpr double kUnknownInverseDepth = 0.2;
+constexpr double kDepthPriorRelative = 1.0;
+constexpr size_t kMinKnownDepths = 10;
 
 double MillisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -177,7 +182,7 @@ void SmootherEstimator::MarginalizeOldestFrame() {
     if (track.views.empty() || track.views.front().frame != oldest) {
       continue;
     }
-    if (track.views.size() >= kMinViews && PrepareLandmark(&track, geometry) &&
+    if (track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) &&
         SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
         AddTrack(track.views, geometry, kernel_, track.landmark, &workspace_, &vision)) {
       track.Restart();
@@ -188,7 +193,7 @@ void SmootherEstimator::MarginalizeOldestFrame() {
   window_.Prune();
 }
 
-bool SmootherEstimator::PrepareLandmark(WindowTrack* track, const std::vector<FrameGeometry>& geometry) {
+bool SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) {
   if (track->has_landmark) {
     return true;
   }
@@ -198,23 +203,57 @@ bool SmootherEstimator::PrepareLandmark(WindowTrack* track, const std::vector<Fr
     ++statistics_.features_waiting;
     return false;
   }
-  const double max_rho = 1 / config_.vision.min_depth_m;
-  const double min_rho = 1 / config_.vision.max_depth_m;
   if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark) ||
-      !(track->landmark.z() >= min_rho && track->landmark.z() <= max_rho)) {
+      !DepthInRange(track->landmark)) {
     ++statistics_.features_degenerate;
     return false;
   }
   track->has_landmark = true;
+  track->depth_prior = {};
   return true;
+}
+
+bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
+  return landmark.z() >= 1 / config_.vision.max_depth_m && landmark.z() <= 1 / config_.vision.min_depth_m;
+}
+
+double SmootherEstimator::TypicalInverseDepth() const {
+  std::vector<double> known;
+  for (const auto& [id, track] : window_.tracks()) {
+    if (track.has_landmark) {
+      known.push_back(track.landmark.z());
+    }
+  }
+  if (known.size() < kMinKnownDepths) {
+    return kUnknownInverseDepth;
+  }
+  std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
+  return known[known.size() / 2];
 }
 
 std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
   std::vector<WindowTrack*> selected;
+  std::vector<WindowTrack*> without_depth;
   for (auto& [id, track] : window_.tracks()) {
-    if (track.views.size() >= kMinViews && PrepareLandmark(&track, geometry)) {
-      selected.push_back(&track);
+    if (track.views.size() >= kMinViews) {
+      (PrepareLandmark(geometry, &track) ? selected : without_depth).push_back(&track);
+    }
+  }
+  const double typical = TypicalInverseDepth();
+  // With enough depths known the others add little, and the assumed one would only bias them: they wait.
+  const bool enough = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked;
+  for (WindowTrack* track : without_depth) {
+    if (enough) {
+      track->depth_prior = {};
+      continue;
+    }
+    track->depth_prior = {typical, 1 / (kDepthPriorRelative * typical)};
+    track->landmark << track->views.front().observation.z, typical;
+    if (SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark,
+                      track->depth_prior) &&
+        DepthInRange(track->landmark)) {
+      selected.push_back(track);
     }
   }
   const size_t limit = static_cast<size_t>(config_.smoother.max_landmarks);
@@ -238,13 +277,11 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   statistics_.iterations = report->iterations;
 
   const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
-  const double max_rho = 1 / config_.vision.min_depth_m;
-  const double min_rho = 1 / config_.vision.max_depth_m;
   PoseSystem vision(window_.size());
   for (WindowTrack* track : *tracks) {
-    const bool solved =
-        SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark);
-    if (!solved || !(track->landmark.z() >= min_rho && track->landmark.z() <= max_rho)) {
+    const bool solved = SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
+                                      &track->landmark, track->depth_prior);
+    if (!solved || !DepthInRange(track->landmark)) {
       ++statistics_.features_degenerate;
       track->Restart();
       continue;
@@ -255,7 +292,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
       track->Restart();
       continue;
     }
-    AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision);
+    AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision, track->depth_prior);
   }
   statistics_.features_used = vision.tracks;
   statistics_.nis = vision.chi2;

@@ -44,7 +44,9 @@ class SmootherEstimator final : public Estimator {
   void MarginalizeOldestFrame();
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
-  bool PrepareLandmark(WindowTrack* track, const std::vector<FrameGeometry>& geometry);
+  bool PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track);
+  [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
+  [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
   Status UpdateLatest(const PoseSystem& vision);
   [[nodiscard]] Status Lost(const std::string& message);

@@ -43,10 +43,16 @@ double RadialCurvature(const ObservationKernel& kernel, double s, double weight)
 
 /// Robust cost (sum of rho) of the landmark; fills `system` when given. Infinite behind a view.
 double EvaluateLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                        const ObservationKernel& kernel, const Vector3d& landmark, LandmarkSystem* system) {
+                        const ObservationKernel& kernel, const Vector3d& landmark, const DepthPrior& prior,
+                        LandmarkSystem* system) {
   const Pose& base = Geometry(geometry, views.front()).T_WC;
   const Vector3d ray_W = base.rotation * Vector3d(landmark.x(), landmark.y(), 1);
-  double cost = 0;
+  const double depth_residual = prior.sqrt_information * (landmark.z() - prior.mean);
+  double cost = depth_residual * depth_residual;
+  if (system != nullptr) {
+    system->gradient.z() += prior.sqrt_information * depth_residual;
+    system->hessian(2, 2) += prior.sqrt_information * prior.sqrt_information;
+  }
   for (const WindowView& view : views) {
     const Pose& T_WC = Geometry(geometry, view).T_WC;
     const Vector3d shift_W = base.translation - T_WC.translation;
@@ -109,9 +115,10 @@ PoseSystem::PoseSystem(int frames)
     : hessian(Eigen::MatrixXd::Zero(6 * frames, 6 * frames)), gradient(Eigen::VectorXd::Zero(6 * frames)) {}
 
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                   const ObservationKernel& kernel, int max_iterations, Vector3d* landmark) {
+                   const ObservationKernel& kernel, int max_iterations, Vector3d* landmark,
+                   const DepthPrior& prior) {
   LandmarkSystem system;
-  double cost = EvaluateLandmark(views, geometry, kernel, *landmark, &system);
+  double cost = EvaluateLandmark(views, geometry, kernel, *landmark, prior, &system);
   double damping = 0;
   for (int i = 0; i < max_iterations && std::isfinite(cost); ++i) {
     Matrix3d damped = system.hessian;
@@ -123,7 +130,7 @@ bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeome
     }
     LandmarkSystem next;
     const Vector3d candidate = *landmark + step;
-    const double candidate_cost = EvaluateLandmark(views, geometry, kernel, candidate, &next);
+    const double candidate_cost = EvaluateLandmark(views, geometry, kernel, candidate, prior, &next);
     if (candidate_cost <= cost * (1 + 1e-15)) {
       *landmark = candidate;
       cost = candidate_cost;
@@ -141,8 +148,9 @@ bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeome
 
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
-              PoseSystem* system) {
-  if (!(landmark.z() > 0) || !std::isfinite(EvaluateLandmark(views, geometry, kernel, landmark, nullptr))) {
+              PoseSystem* system, const DepthPrior& prior) {
+  if (!(landmark.z() > 0) ||
+      !std::isfinite(EvaluateLandmark(views, geometry, kernel, landmark, {}, nullptr))) {
     return false;
   }
   const Pose& base = Geometry(geometry, views.front()).T_WC;
@@ -178,6 +186,23 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
     point_hessian.noalias() += rows[k].weight * to_point.transpose() * to_point;
     point_gradient.noalias() += rows[k].weight * to_point.transpose() * rows[k].residual;
   }
+  // The depth prior as one more row of the base view: rho = 1 / z in its camera frame, d rho = -rho^2 dz.
+  Eigen::Matrix<double, 1, 6> prior_pose = Eigen::Matrix<double, 1, 6>::Zero();
+  double prior_residual = 0;
+  if (prior.sqrt_information > 0) {
+    const FrameGeometry& frame = Geometry(geometry, views.front());
+    const Vector3d p_C = frame.T_WC.rotation.transpose() * (p_W - frame.T_WC.translation);
+    const double slope = -prior.sqrt_information * landmark.z() * landmark.z();
+    const Eigen::RowVector3d prior_point = slope * frame.T_WC.rotation.col(2).transpose();
+    Eigen::Matrix<double, 1, 6> camera;
+    camera << slope * Skew(p_C).row(2), -prior_point;
+    prior_pose.noalias() = camera * frame.camera_from_body;
+    prior_residual = prior.sqrt_information * (landmark.z() - prior.mean);
+    robust_cost += prior_residual * prior_residual;
+    workspace->coupling[0].noalias() += prior_pose.transpose() * prior_point;
+    point_hessian.noalias() += prior_point.transpose() * prior_point;
+    point_gradient += prior_point.transpose() * prior_residual;
+  }
   const Eigen::LLT<Matrix3d> factor(point_hessian);
   if (factor.info() != Eigen::Success ||
       !(factor.matrixLLT().diagonal().minCoeff() > 1e-7 * factor.matrixLLT().diagonal().maxCoeff())) {
@@ -185,6 +210,9 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   }
   const Vector3d reduced_gradient = factor.matrixL().solve(point_gradient);
   const Matrix3d inverse_transposed = factor.matrixL().solve(Matrix3d::Identity()).transpose();
+  const int base_row = 6 * views.front().frame->index;
+  system->hessian.block<6, 6>(base_row, base_row).noalias() += prior_pose.transpose() * prior_pose;
+  system->gradient.segment<6>(base_row) += prior_pose.transpose() * prior_residual;
   for (size_t k = 0; k < views.size(); ++k) {
     const int row = 6 * views[k].frame->index;
     workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
@@ -207,7 +235,7 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
 
 double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                       const Vector3d& landmark) {
-  return EvaluateLandmark(views, geometry, ObservationKernel{}, landmark, nullptr);
+  return EvaluateLandmark(views, geometry, ObservationKernel{}, landmark, {}, nullptr);
 }
 
 bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,

@@ -57,14 +57,15 @@ struct TrackWorkspace {
 /// rho) of the base view, run to convergence so that the cost's derivative through the landmark vanishes.
 /// `landmark` is start and result. False: behind a view, or not finite.
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                   const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark);
+                   const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,
+                   const DepthPrior& prior = {});
 
 /// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its
 /// optimum is stepped there to first order. False (system untouched): behind a view, rho <= 0, or the
 /// landmark is not determined.
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
-              PoseSystem* system);
+              PoseSystem* system, const DepthPrior& prior = {});
 
 /// Sum of whitened squared residuals (no kernel) at the landmark; infinite when behind a view.
 [[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,

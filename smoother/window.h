@@ -35,14 +35,23 @@ struct WindowView {
   NormalizedObservation observation;
 };
 
+/// Weak prior on a landmark's inverse depth, for tracks without parallax: sqrt_information (rho - mean). Such
+/// a track (at rest, or far away) still holds rotation and says that the camera did not move; leaving it out
+/// would leave both to the IMU.
+struct DepthPrior {
+  double mean = 0;              ///< [1/m]
+  double sqrt_information = 0;  ///< [m]; 0: no prior
+};
+
 /// A landmark seen in the window. The first view is its base.
 struct WindowTrack {
   std::int64_t id = 0;
   std::vector<WindowView> views;  ///< in time order
   /// (x, y, rho): bearing on the base's normalised plane and inverse depth [1/m]; set when has_landmark.
   Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
-  bool has_landmark = false;
-  bool alive = false;  ///< seen in the newest frame
+  bool has_landmark = false;  ///< its depth is known from parallax
+  DepthPrior depth_prior;     ///< stands in for parallax while has_landmark is false
+  bool alive = false;         ///< seen in the newest frame
 
   /// Forgets all observations; the next one starts the track anew.
   void Restart() {

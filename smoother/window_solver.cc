@@ -75,6 +75,7 @@ struct SolveStore {
   std::deque<LiftedCost<ImuFactor>> imu;
   std::deque<LiftedCost<InverseDepthFactor>> inverse_depth;
   std::deque<LiftedCost<BaseBearingFactor>> base_bearing;
+  std::deque<LiftedCost<DepthPriorFactor>> depth_prior;
   std::optional<LiftedCost<PoseOnlyFactor>> pose_only;
   std::optional<LiftedCost<PriorFactor>> prior;
 };
@@ -121,6 +122,10 @@ void AddInverseDepth(const WindowSolveOptions& options, SolveStore* store, ceres
     const std::vector<WindowView>& views = store->tracks[i]->views;
     store->base_bearing.emplace_back(BaseBearingFactor(views.front().observation));
     problem->AddResidualBlock(&store->base_bearing.back(), store->loss.get(), store->Landmark(i));
+    if (store->tracks[i]->depth_prior.sqrt_information > 0) {
+      store->depth_prior.emplace_back(DepthPriorFactor(store->tracks[i]->depth_prior));
+      problem->AddResidualBlock(&store->depth_prior.back(), nullptr, store->Landmark(i));
+    }
     for (size_t k = 1; k < views.size(); ++k) {
       store->inverse_depth.emplace_back(InverseDepthFactor(views[k].observation, &options.T_BC));
       problem->AddResidualBlock(&store->inverse_depth.back(), store->loss.get(),

@@ -158,6 +158,13 @@ TEST(InverseDepthFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConv
   }
 }
 
+TEST(InverseDepthFactorTest, TheDepthPriorActsOnTheInverseDepthAlone) {
+  const LiftedCost<DepthPriorFactor> cost(DepthPriorFactor({0.2, 5}));
+  const Point point = {Eigen::Vector3d(0.1, -0.2, 0.5)};
+  EXPECT_DOUBLE_EQ(Residual(cost, point)[0], 1.5);
+  ExpectJacobianInAllConventions(cost, point, 1e-9);
+}
+
 TEST(InverseDepthFactorTest, ALandmarkBehindTheCameraCostsMuchButDoesNotFailTheSolve) {
   WindowFixture fixture(5, 3, 4);
   const WindowTrack& track = *fixture.tracks().front();
@@ -201,7 +208,10 @@ TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     // Residuals beyond the kernel's scale; fewer for Cauchy, whose landmark cost has several minima in heavy
     // contamination.
-    WindowFixture fixture(seed, 4, 10, GetParam() == RobustKernel::kCauchy ? 1.0 : 3.0);
+    WindowFixture fixture(seed, 4, 10, GetParam() == RobustKernel::kCauchy ? 0.7 : 3.0);
+    for (auto& [id, track] : fixture.window.tracks()) {
+      track.depth_prior = {0.15, id % 3 == 0 ? 30.0 : 0.0};
+    }
     const LiftedCost<PoseOnlyFactor> cost(
         PoseOnlyFactor(4, fixture.tracks(), fixture.T_BC, {GetParam(), 1.5}));
     Point point;
