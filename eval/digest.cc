@@ -1,12 +1,9 @@
-#include <openssl/evp.h>
-
 #include <bit>
 #include <cstdint>
-#include <memory>
-#include <vector>
+#include <string>
 
-#include "core/check.h"
 #include "eval/dataset.h"
+#include "eval/sha256.h"
 
 namespace alidade {
 namespace {
@@ -14,14 +11,11 @@ namespace {
 /// Collects numbers as little-endian 64-bit words, whatever the machine, and hashes them in blocks.
 class Hasher {
  public:
-  Hasher() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-    CHECK(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-    block_.reserve(kBlock);
-  }
+  Hasher() { block_.reserve(kBlock); }
 
   void Add(std::uint64_t word) {
     for (int shift = 0; shift < 64; shift += 8) {
-      block_.push_back(static_cast<unsigned char>(word >> shift));
+      block_.push_back(static_cast<char>(static_cast<unsigned char>(word >> shift)));
     }
     if (block_.size() >= kBlock) {
       Flush();
@@ -40,28 +34,19 @@ class Hasher {
 
   std::string Hex() {
     Flush();
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned int size = 0;
-    CHECK_EQ(EVP_DigestFinal_ex(context_.get(), digest, &size), 1);
-    constexpr char kDigits[] = "0123456789abcdef";
-    std::string text;
-    for (unsigned int i = 0; i < size; ++i) {
-      text.push_back(kDigits[digest[i] >> 4]);
-      text.push_back(kDigits[digest[i] & 15]);
-    }
-    return text;
+    return hash_.Hex();
   }
 
  private:
   static constexpr size_t kBlock = 1 << 16;
 
   void Flush() {
-    CHECK_EQ(EVP_DigestUpdate(context_.get(), block_.data(), block_.size()), 1);
+    hash_.Add(block_);
     block_.clear();
   }
 
-  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
-  std::vector<unsigned char> block_;
+  Sha256 hash_;
+  std::string block_;
 };
 
 void AddRig(const RigCalibration& rig, Hasher* hasher) {

@@ -52,10 +52,11 @@ TEST_F(RecorderTest, WritesTheFormatsOfTheContract) {
               StartsWith("timestamp_ns,frontend_ms,propagate_ms,update_ms,backend_ms,total_ms\n"));
   EXPECT_THAT(Written("status.csv"), StartsWith("timestamp_ns,status,tracks_in,features_used,features_gated,"
                                                 "satellites_used,satellites_gated,nis,"));
-  // Eight columns, single spaces.
+  // Eight columns, single spaces; of the two quaternions of a rotation the one with w >= 0.
   const std::string tum = Written("trajectory.tum");
   const std::string line = tum.substr(0, tum.find('\n'));
   EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 7);
+  EXPECT_GT(std::stod(line.substr(line.rfind(' '))), 0);
   const auto json = nlohmann::json::parse(Written("run.json"));
   EXPECT_EQ(json["status"], "ok");
   EXPECT_EQ(json["seed"], 7);
