@@ -6,23 +6,10 @@
 #include <optional>
 
 #include "core/random.h"
+#include "eval/sensor_yaml.h"
 
 namespace alidade {
 namespace {
-
-/// Positions of the body about `spacing_m` apart.
-std::vector<Eigen::Vector3d> SamplePath(const ContinuousTrajectory& trajectory, double spacing_m) {
-  constexpr double kStepSeconds = 0.01;
-  std::vector<Eigen::Vector3d> points = {trajectory.At(0).nav.p_WB};
-  const int steps = static_cast<int>(trajectory.DurationSeconds() / kStepSeconds);
-  for (int i = 1; i <= steps; ++i) {
-    const Eigen::Vector3d p_WB = trajectory.At(i * kStepSeconds).nav.p_WB;
-    if ((p_WB - points.back()).norm() >= spacing_m) {
-      points.push_back(p_WB);
-    }
-  }
-  return points;
-}
 
 /// One track that is alive.
 struct LiveTrack {
@@ -170,9 +157,24 @@ class TrackSimulator {
   SimulatedTracks result_;
 };
 
+/// The rig with the camera of a dataset folder.
+Result<RigCalibration> RigOfDataset(const SimulatorConfig& config) {
+  const Result<CameraSensor> sensor = ReadCameraSensor(config.trajectory_file + "/mav0/cam0/sensor.yaml");
+  ALIDADE_RETURN_IF_ERROR(sensor.status());
+  RigCalibration rig;
+  rig.camera = sensor->camera;
+  rig.T_BC = sensor->T_BC;
+  rig.imu_noise = config.imu_noise;
+  rig.camera_time_offset_s = sensor->time_offset_s;
+  return rig;
+}
+
 }  // namespace
 
 Result<RigCalibration> MakeSimRig(const SimulatorConfig& config) {
+  if (config.camera_view == SimCameraView::kDataset) {
+    return RigOfDataset(config);
+  }
   std::vector<double> coefficients;
   for (int i = 0; i < CoefficientCount(config.distortion); ++i) {
     coefficients.push_back(config.distortion_coefficients[i]);
@@ -196,38 +198,6 @@ Result<RigCalibration> MakeSimRig(const SimulatorConfig& config) {
   rig.imu_noise = config.imu_noise;
   rig.camera_time_offset_s = config.camera_time_offset_s;
   return rig;
-}
-
-Result<std::vector<Eigen::Vector3d>> MakeLandmarks(const SimulatorConfig& config,
-                                                   const ContinuousTrajectory& trajectory,
-                                                   std::uint64_t seed) {
-  constexpr double kMaxSinElevation = 0.35;
-  constexpr int kMaxTriesPerLandmark = 100;
-  const double min_m = config.landmark_min_distance_m;
-  const std::vector<Eigen::Vector3d> path = SamplePath(trajectory, 0.1 * min_m);
-  RandomStream stream(seed, "world.landmarks");
-  std::vector<Eigen::Vector3d> landmarks;
-  landmarks.reserve(static_cast<std::size_t>(config.landmark_count));
-  for (std::int64_t tries = 0; landmarks.size() < static_cast<std::size_t>(config.landmark_count); ++tries) {
-    if (tries >= static_cast<std::int64_t>(config.landmark_count) * kMaxTriesPerLandmark) {
-      return Status::Config(
-          "landmark_max_distance_m: no room for landmarks between the two distances to the path");
-    }
-    const Eigen::Vector3d& origin = path[static_cast<std::size_t>(stream.Below(path.size()))];
-    const double azimuth = stream.Uniform(0, 2 * std::numbers::pi);
-    const double sine = stream.Uniform(-kMaxSinElevation, kMaxSinElevation);
-    const double cosine = std::sqrt(1 - sine * sine);
-    const double distance_m = stream.Uniform(min_m, config.landmark_max_distance_m);
-    const Eigen::Vector3d p_W =
-        origin + distance_m * Eigen::Vector3d(cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine);
-    const bool is_free = std::none_of(path.begin(), path.end(), [&](const Eigen::Vector3d& point) {
-      return (point - p_W).squaredNorm() < min_m * min_m;
-    });
-    if (is_free) {
-      landmarks.push_back(p_W);
-    }
-  }
-  return landmarks;
 }
 
 SimulatedTracks SimulateTracks(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,

@@ -5,22 +5,16 @@
 
 #include "core/measurement_log.h"
 #include "eval/continuous_trajectory.h"
+#include "eval/sim_landmarks.h"
 #include "eval/simulator.h"
 
 namespace alidade {
 
 /// The simulated rig: camera model, T_BC, IMU noise and camera time offset, all exactly known to the
-/// estimators. Errors (kConfig): a lens model that CameraModel::Create refuses.
+/// estimators. camera_view: dataset takes camera model, T_BC and time offset from cam0/sensor.yaml of the
+/// dataset folder in trajectory_file. Errors: a lens model that CameraModel::Create refuses (kConfig), a
+/// folder without calibration (kInput).
 Result<RigCalibration> MakeSimRig(const SimulatorConfig& config);
-
-/// Landmarks around the path, in W [m]. Each is thrown from a random point of the path in a direction uniform
-/// in azimuth and at most 20 degrees up or down (like the walls of a hall), to a distance uniform in [min,
-/// max], and is thrown again while any point of the path (sampled every tenth of min) is nearer than min. So
-/// its distance to the nearest point of the path lies within [min, max] (to the sampling). Errors (kConfig):
-/// the path leaves no room for landmarks.
-Result<std::vector<Eigen::Vector3d>> MakeLandmarks(const SimulatorConfig& config,
-                                                   const ContinuousTrajectory& trajectory,
-                                                   std::uint64_t seed);
 
 struct SimulatedTracks {
   std::vector<TrackFrame> frames;      ///< one a camera stamp, in order; observations sorted by id

@@ -5,6 +5,22 @@
 #include "core/random.h"
 
 namespace alidade {
+namespace {
+
+/// Scale factors on the diagonal, small angles between true and sensed axes off it.
+Eigen::Matrix3d DrawSensorMatrix(double scale_std, double misalignment_std_rad, RandomStream* scale,
+                                 RandomStream* misalignment) {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  matrix.diagonal() += scale_std * scale->Normal3();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      matrix(row, column) += row == column ? 0 : misalignment_std_rad * misalignment->Normal();
+    }
+  }
+  return matrix;
+}
+
+}  // namespace
 
 std::vector<TimeNs> EvenStamps(TimeNs start_ns, double duration_s, double rate_hz) {
   // A duration that is a whole number of periods includes its end despite rounding.
@@ -32,6 +48,12 @@ SimulatedImu SimulateImu(const ContinuousTrajectory& trajectory, const std::vect
   bias.gyro = errors.gyro_bias_radps * turn_on.Normal3();
   bias.accel = errors.accel_bias_mps2 * turn_on.Normal3();
   SimulatedImu imu;
+  RandomStream scale(seed, "imu.scale");
+  RandomStream misalignment(seed, "imu.misalignment");
+  imu.gyro_matrix =
+      DrawSensorMatrix(errors.gyro_scale_std, errors.misalignment_std_rad, &scale, &misalignment);
+  imu.accel_matrix =
+      DrawSensorMatrix(errors.accel_scale_std, errors.misalignment_std_rad, &scale, &misalignment);
   imu.samples.reserve(stamps.size());
   imu.biases.reserve(stamps.size());
   for (std::size_t k = 0; k < stamps.size(); ++k) {
@@ -43,8 +65,9 @@ SimulatedImu SimulateImu(const ContinuousTrajectory& trajectory, const std::vect
     const Kinematics motion = trajectory.At(SecondsBetween(stamps.front(), stamps[k]));
     ImuSample sample;
     sample.stamp_ns = stamps[k];
-    sample.gyro = motion.angular_rate_B + bias.gyro + gyro_std * gyro_noise.Normal3();
-    sample.accel = motion.SpecificForce(gravity_mps2) + bias.accel + accel_std * accel_noise.Normal3();
+    sample.gyro = imu.gyro_matrix * motion.angular_rate_B + bias.gyro + gyro_std * gyro_noise.Normal3();
+    sample.accel = imu.accel_matrix * motion.SpecificForce(gravity_mps2) + bias.accel +
+                   accel_std * accel_noise.Normal3();
     imu.samples.push_back(sample);
     imu.biases.push_back(bias);
   }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/config_schema.h"
 #include "core/status.h"
@@ -8,15 +10,28 @@
 
 namespace alidade {
 
-enum class SimTrajectory { kFigureEight, kEllipse };
-enum class SimCameraView { kForward, kSideways };
+enum class SimTrajectory { kFigureEight, kEllipse, kWander, kFile };
+enum class SimCameraView { kForward, kSideways, kDataset };
+enum class SimLandmarkLayout {
+  kShell,  ///< between two distances around the path
+  kRoom,   ///< on floor, ceiling and walls of a box around the path
+};
+/// What to do with a recorded trajectory that has gaps: the motion in a gap is unknown.
+enum class TruthGaps {
+  kLongestSpan,  ///< use the longest stretch without a gap
+  kRefuse,
+};
 enum class SimOutlierKind {
   kJump,   ///< a single observation lands elsewhere
   kDrift,  ///< a whole track slides away from its landmark at a constant rate
 };
 
-/// A simulated sequence: analytic trajectory, IMU as its exact derivative, landmarks around the path, feature
-/// tracks. The noise defaults are those of the simulation in the Po-InVIO paper.
+/// Value of a path that is not given.
+inline constexpr std::string_view kNoPath = "none";
+
+/// A simulated sequence: trajectory (analytic or recorded), IMU as its exact derivative, landmarks around the
+/// path, feature tracks. The noise defaults are those of the simulation in the Po-InVIO paper. With
+/// hybrid_dataset only the tracks are simulated.
 struct SimulatorConfig {
   std::string name = "figure8";
   int start_time_s = 1000;  ///< stamp of the first sample
@@ -32,12 +47,22 @@ struct SimulatorConfig {
   double wobble_rad = 0.05;  ///< amplitude of the attitude about the path's tangent
   double wobble_hz = 0.3;
 
+  std::string trajectory_file = std::string(kNoPath);  ///< for kFile: a trajectory or a dataset folder
+  std::string hybrid_dataset = std::string(kNoPath);   ///< dataset folder whose IMU and calibration are used
+  std::string truth_file = "auto";                     ///< which truth of a dataset folder
+  double knot_spacing_s = 0.1;                         ///< of the spline through a recorded trajectory
+  double max_gap_s = 0.2;                              ///< longer silences of a recorded trajectory are gaps
+  TruthGaps truth_gaps = TruthGaps::kLongestSpan;
+
   double imu_rate_hz = 100;
   double camera_rate_hz = 10;
   ImuNoise imu_noise;
   double gravity_mps2 = 9.81;
   double gyro_bias_radps = 0.005;  ///< standard deviation of the constant turn-on bias
   double accel_bias_mps2 = 0.05;
+  double gyro_scale_std = 0;  ///< of each axis' scale factor less one; drawn once a seed
+  double accel_scale_std = 0;
+  double misalignment_std_rad = 0;  ///< of each of the six small angles between true and sensed axes
 
   SimCameraView camera_view = SimCameraView::kForward;
   Eigen::Vector3d camera_lever_arm_m = Eigen::Vector3d(0.10, -0.05, 0.04);  ///< p_BC
@@ -50,15 +75,23 @@ struct SimulatorConfig {
 
   double pixel_noise_px = 1;
   int max_features = 150;
-  double mean_track_loss = 0.0;  ///< probability that a visible track is lost from one frame to the next
+  /// Probability that a visible track is lost from one frame to the next. Sets the mean length of tracks: p
+  /// alone ends a track after 1 / p frames on average (0.125: 8 frames), leaving the view ends it earlier.
+  double mean_track_loss = 0.0;
   double border_px = 10;
   double max_range_m = 30;
   double outlier_rate = 0;  ///< fraction of observations (jump) or of tracks (drift)
   SimOutlierKind outlier_kind = SimOutlierKind::kJump;
   double outlier_px = 20;  ///< mean size of a jump; mean drift in one second
 
-  double landmark_min_distance_m = 2, landmark_max_distance_m = 10;
+  SimLandmarkLayout landmark_layout = SimLandmarkLayout::kShell;
+  double landmark_min_distance_m = 2;   ///< of every landmark to the path
+  double landmark_max_distance_m = 10;  ///< shell
   int landmark_count = 800;
+  Eigen::Vector3d room_margin_m = Eigen::Vector3d(2, 2, 1);  ///< from the path's bounding box to the walls
+  double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
+
+  [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }
 
   /// Lists every key with unit, range and reason; the order is the order of configs/datasets/figure8.yaml.
   void Describe(ConfigVisitor& visitor);
@@ -66,13 +99,24 @@ struct SimulatorConfig {
   [[nodiscard]] Status Validate() const;
 };
 
-/// Same config and seed, same bytes. Truth has all 17 columns at the IMU rate.
+/// Reads a simulation config (ReadConfigFile), then applies settings "a.b=value", then validates. A relative
+/// path in the file is taken from the file's own folder, one in a setting from the working folder. Errors
+/// (kConfig) as ReadConfigFile.
+Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,
+                                            const std::vector<std::string>& settings);
+
+/// Same config and seed, same bytes (and same recording, where one is used).
 ///
-/// IMU: a_m = R^T (a - g) + b_a + n_a, w_m = w + b_g + n_g with g = (0, 0, -gravity_mps2), sampled at its
-/// stamps; white noise n has the standard deviation density * sqrt(rate), a bias walks by random walk *
-/// sqrt(1 / rate) a sample from a normal turn-on value. Camera: frames start at the first IMU stamp; a frame
-/// shows the world at its stamp plus the time offset; an observation is the projection of its landmark plus
-/// normal noise. Errors: those of Validate (kConfig).
+/// IMU: a_m = M_a R^T (a - g) + b_a + n_a, w_m = M_g w + b_g + n_g with g = (0, 0, -gravity_mps2), sampled at
+/// its stamps; white noise n has the standard deviation density * sqrt(rate), a bias walks by random walk *
+/// sqrt(1 / rate) a sample from a normal turn-on value; M = I + scale errors on and misalignment off the
+/// diagonal, constant. Camera: frames start at the first IMU stamp; a frame shows the world at its stamp plus
+/// the time offset; an observation is the projection of its landmark plus normal noise. Truth has all 17
+/// columns at the IMU rate.
+///
+/// trajectory: file moves the body along a spline through a recorded trajectory (recorded_motion.h), stamped
+/// as the recording, for at most duration_s. hybrid_dataset simulates the tracks alone (sim_hybrid.h).
+/// Errors: those of Validate (kConfig); a recording that cannot be read or used (kInput).
 Result<Dataset> Simulate(const SimulatorConfig& config, unsigned seed);
 
 }  // namespace alidade

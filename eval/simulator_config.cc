@@ -1,17 +1,25 @@
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
+#include "eval/config_yaml.h"
 #include "eval/simulator.h"
 
 namespace alidade {
 namespace {
 
 void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Enumeration({"trajectory", "-", "figure8 turns both ways, ellipse one way only"},
-                      &config->trajectory,
-                      {{"figure8", SimTrajectory::kFigureEight}, {"ellipse", SimTrajectory::kEllipse}});
-  visitor.Real({"duration_s", "s", "200 s is the length of the paper's simulation"}, &config->duration_s, 1,
-               1e5);
+  visitor.Enumeration(
+      {"trajectory", "-",
+       "figure8 turns both ways, ellipse one way only; wander never repeats; file is a recorded one"},
+      &config->trajectory,
+      {{"figure8", SimTrajectory::kFigureEight},
+       {"ellipse", SimTrajectory::kEllipse},
+       {"wander", SimTrajectory::kWander},
+       {"file", SimTrajectory::kFile}});
+  visitor.Real({"duration_s", "s",
+                "200 s is the length of the paper's simulation; of a recorded trajectory at most this much"},
+               &config->duration_s, 1, 1e5);
   visitor.Real({"length_m", "m", "extent of the path along x"}, &config->length_m, 0.1, 1e5);
   visitor.Real({"width_m", "m", "extent of the path along y"}, &config->width_m, 0.1, 1e5);
   visitor.Real({"height_m", "m", "amplitude of the vertical motion, three periods a lap; 0 is planar"},
@@ -31,6 +39,28 @@ void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
                &config->wobble_hz, 0, 10);
 }
 
+void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Text({"trajectory_file", "-",
+                "for trajectory: file; EuRoC, TUM or our own, or a dataset folder; relative to this file"},
+               &config->trajectory_file);
+  visitor.Text({"hybrid_dataset", "-",
+                "dataset folder whose real IMU and calibration are used; only tracks are simulated"},
+               &config->hybrid_dataset);
+  visitor.Text(
+      {"truth_file", "-",
+       "which truth of a dataset folder; auto: data_recomputed.csv, else data.csv, else data_pose.csv"},
+      &config->truth_file);
+  visitor.Real({"knot_spacing_s", "s",
+                "of the spline through a recorded trajectory; shorter follows faster motion and more noise"},
+               &config->knot_spacing_s, 0.01, 10);
+  visitor.Real(
+      {"max_gap_s", "s", "a longer silence of a recorded trajectory is a gap: nobody knows the motion"},
+      &config->max_gap_s, 0.001, 100);
+  visitor.Enumeration(
+      {"truth_gaps", "-", "longest_span uses the longest stretch without a gap, refuse makes gaps an error"},
+      &config->truth_gaps, {{"longest_span", TruthGaps::kLongestSpan}, {"refuse", TruthGaps::kRefuse}});
+}
+
 void DescribeImu(SimulatorConfig* config, ConfigVisitor& visitor) {
   ImuNoise* noise = &config->imu_noise;
   visitor.Real({"imu_rate_hz", "Hz", "of the paper's simulation"}, &config->imu_rate_hz, 1, 1e4);
@@ -47,14 +77,26 @@ void DescribeImu(SimulatorConfig* config, ConfigVisitor& visitor) {
                &config->gyro_bias_radps, 0, 1);
   visitor.Real({"accel_bias_mps2", "m/s^2", "standard deviation of the turn-on bias, each axis"},
                &config->accel_bias_mps2, 0, 10);
+  visitor.Real(
+      {"gyro_scale_std", "-",
+       "of each axis' scale factor less 1, constant in a run; no estimator models it (MEMS: 0.001 to 0.01)"},
+      &config->gyro_scale_std, 0, 0.2);
+  visitor.Real({"accel_scale_std", "-", "likewise, accelerometer"}, &config->accel_scale_std, 0, 0.2);
+  visitor.Real({"misalignment_std_rad", "rad",
+                "of each small angle between true and sensed axes, six a sensor, constant in a run"},
+               &config->misalignment_std_rad, 0, 0.2);
 }
 
 void DescribeCamera(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"camera_rate_hz", "Hz", "of the paper's simulation"}, &config->camera_rate_hz, 0.1, 1e3);
-  visitor.Enumeration({"camera_view", "-",
-                       "forward looks along the motion: little parallax ahead; sideways looks to its left"},
-                      &config->camera_view,
-                      {{"forward", SimCameraView::kForward}, {"sideways", SimCameraView::kSideways}});
+  visitor.Enumeration(
+      {"camera_view", "-",
+       "forward looks along body x: little parallax ahead; sideways along body y; dataset has the "
+       "calibrated camera of the folder in trajectory_file"},
+      &config->camera_view,
+      {{"forward", SimCameraView::kForward},
+       {"sideways", SimCameraView::kSideways},
+       {"dataset", SimCameraView::kDataset}});
   visitor.Vector3(
       {"camera_lever_arm_m", "m", "position of the camera in the body frame, x forward y left z up"},
       &config->camera_lever_arm_m, -10, 10);
@@ -81,9 +123,11 @@ void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"pixel_noise_px", "px", "standard deviation of each image coordinate of an observation"},
                &config->pixel_noise_px, 0, 100);
   visitor.Integer({"max_features", "-", "tracks alive in a frame, at most"}, &config->max_features, 1, 10000);
-  visitor.Real({"mean_track_loss", "-",
-                "probability that a visible track is lost from one frame to the next; shortens tracks"},
-               &config->mean_track_loss, 0, 1);
+  visitor.Real(
+      {"mean_track_loss", "-",
+       "probability that a visible track is lost from one frame to the next; p alone makes tracks of 1 / p "
+       "frames on average (0.125: 8)"},
+      &config->mean_track_loss, 0, 1);
   visitor.Real(
       {"border_px", "px",
        "a landmark nearer to the image's edge is not seen; keeps the noise from being cut off there"},
@@ -99,15 +143,29 @@ void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real(
       {"outlier_px", "px", "mean size of a jump, or mean drift in one second; half to one and a half of it"},
       &config->outlier_px, 0, 1e4);
+}
+
+void DescribeLandmarks(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Enumeration({"landmark_layout", "-",
+                       "shell: between two distances around the path; room: on floor, ceiling and walls of a "
+                       "box around it"},
+                      &config->landmark_layout,
+                      {{"shell", SimLandmarkLayout::kShell}, {"room", SimLandmarkLayout::kRoom}});
   visitor.Real({"landmark_min_distance_m", "m", "of every landmark to the path"},
                &config->landmark_min_distance_m, 0.1, 1e4);
   visitor.Real({"landmark_max_distance_m", "m",
-                "of a landmark to the nearest point of the path; sets the tracks' length"},
+                "of a landmark to the nearest point of the path; sets the tracks' length; layout shell"},
                &config->landmark_max_distance_m, 0.1, 1e4);
   visitor.Integer({"landmark_count", "-",
                    "fewer and longer tracks when few: 800 give about 115 tracks a frame of 24 frames each, "
                    "1500 give 148 of 20"},
                   &config->landmark_count, 1, 1000000);
+  visitor.Vector3({"room_margin_m", "m", "from the path's bounding box to the walls; layout room"},
+                  &config->room_margin_m, 0.1, 1e4);
+  visitor.Real(
+      {"room_depth_m", "m",
+       "landmarks stand out from their wall by up to this much, else a view may be of one plane; room"},
+      &config->room_depth_m, 0, 1e4);
 }
 
 std::string Print(double value) {
@@ -121,6 +179,28 @@ Status Expect(bool holds, const char* key, double value, const std::string& expe
                : Status::Config(std::string(key) + ": " + Print(value) + "; expected " + expected);
 }
 
+Status ValidateRecording(const SimulatorConfig& config) {
+  const bool reads_file = config.trajectory == SimTrajectory::kFile && !config.IsHybrid();
+  if (reads_file && config.trajectory_file == kNoPath) {
+    return Status::Config("trajectory_file: none; trajectory: file expected a path");
+  }
+  if (config.camera_view == SimCameraView::kDataset && !config.IsHybrid() &&
+      !(reads_file && std::filesystem::is_directory(config.trajectory_file))) {
+    return Status::Config(
+        "camera_view: dataset; expected trajectory: file and a dataset folder in trajectory_file");
+  }
+  ALIDADE_RETURN_IF_ERROR(Expect(std::isfinite(config.knot_spacing_s) && config.knot_spacing_s > 0,
+                                 "knot_spacing_s", config.knot_spacing_s, "a positive number"));
+  return Expect(config.max_gap_s > 0, "max_gap_s", config.max_gap_s, "a positive number");
+}
+
+/// Makes a path from a file in `folder` independent of the working folder.
+void ResolvePath(const std::filesystem::path& folder, std::string* path) {
+  if (*path != kNoPath) {
+    *path = (folder / *path).lexically_normal().string();
+  }
+}
+
 }  // namespace
 
 void SimulatorConfig::Describe(ConfigVisitor& visitor) {
@@ -128,9 +208,11 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer({"start_time_s", "s", "stamp of the first sample; not 0, so that a forgotten offset shows"},
                   &start_time_s, 0, 2000000000);
   DescribeMotion(this, visitor);
+  DescribeRecording(this, visitor);
   DescribeImu(this, visitor);
   DescribeCamera(this, visitor);
   DescribeTracks(this, visitor);
+  DescribeLandmarks(this, visitor);
 }
 
 Status SimulatorConfig::Validate() const {
@@ -146,9 +228,14 @@ Status SimulatorConfig::Validate() const {
       Expect(duration_s * imu_rate_hz < 1e8, "duration_s", duration_s, "less than 1e8 IMU samples"));
   ALIDADE_RETURN_IF_ERROR(Expect(rest_s == 0 || rest_s + rest_ramp_s < duration_s, "rest_s", rest_s,
                                  "rest_s + rest_ramp_s less than duration_s " + Print(duration_s)));
-  ALIDADE_RETURN_IF_ERROR(Expect(landmark_min_distance_m < landmark_max_distance_m, "landmark_min_distance_m",
-                                 landmark_min_distance_m,
-                                 "less than landmark_max_distance_m " + Print(landmark_max_distance_m)));
+  // An open path is walked from end to end: this bounds the work.
+  ALIDADE_RETURN_IF_ERROR(Expect(trajectory != SimTrajectory::kWander || path_m < 1e4 * (length_m + width_m),
+                                 "path_m", path_m, "less than 1e4 times length_m + width_m"));
+  ALIDADE_RETURN_IF_ERROR(ValidateRecording(*this));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(landmark_layout == SimLandmarkLayout::kRoom || landmark_min_distance_m < landmark_max_distance_m,
+             "landmark_min_distance_m", landmark_min_distance_m,
+             "less than landmark_max_distance_m " + Print(landmark_max_distance_m)));
   ALIDADE_RETURN_IF_ERROR(Expect(camera_lever_arm_m.norm() < landmark_min_distance_m, "camera_lever_arm_m",
                                  camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
   for (int i = CoefficientCount(distortion); i < 4; ++i) {
@@ -157,6 +244,21 @@ Status SimulatorConfig::Validate() const {
                "0 at position " + std::to_string(i + 1) + " of model " + std::string(ToString(distortion))));
   }
   return Status::Ok();
+}
+
+Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,
+                                            const std::vector<std::string>& settings) {
+  SimulatorConfig config;
+  const auto describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
+  ALIDADE_RETURN_IF_ERROR(ReadConfigFile(path, describe));
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  ResolvePath(folder, &config.trajectory_file);
+  ResolvePath(folder, &config.hybrid_dataset);
+  ALIDADE_RETURN_IF_ERROR(ApplySettings(settings, describe));
+  if (const Status valid = config.Validate(); !valid.ok()) {
+    return Status(valid.code(), path + ": " + valid.message());
+  }
+  return config;
 }
 
 }  // namespace alidade

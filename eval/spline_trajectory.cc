@@ -11,12 +11,16 @@ namespace {
 
 constexpr int kDegree = 5;
 constexpr int kWeights = kDegree + 1;
-// The spline reaches this far beyond its samples: a camera with a time offset looks there.
+// The motion goes on this far beyond its samples: a camera with a time offset looks there.
 constexpr double kMarginSeconds = 0.5;
 // Weight of a squared second difference of control points against a squared residual: decides where no sample
-// does, and elsewhere moves the spline by far less than any sample's noise. With less (1e-9) the control
-// points at the ends, which few samples hold, swing so far that real flights do not settle.
+// does, and elsewhere moves the spline by far less than any sample's noise.
 constexpr double kEvenness = 1e-6;
+// Weight of the third difference at either end. The outermost control point counts for 1/120 at most and only
+// at the very end: held by that alone it would swing by radians, and the fit of a real flight would not
+// settle. Tied to its neighbours it moves the spline by 1/120 of a third difference, which is next to
+// nothing.
+constexpr double kEndStiffness = 1e-2;
 constexpr int kMaxIterations = 100;
 constexpr double kSettledRadians = 1e-9;
 
@@ -64,9 +68,9 @@ struct Place {
   double x = 0;
 };
 
-Place Locate(double time_s, double first_knot_s, double spacing_s, std::size_t control_count) {
+Place Locate(double time_s, double spacing_s, std::size_t control_count) {
   const double last_segment = static_cast<double>(control_count - kWeights);
-  const double position = std::clamp((time_s - first_knot_s) / spacing_s, 0.0, last_segment + 1);
+  const double position = std::clamp(time_s / spacing_s, 0.0, last_segment + 1);
   const double segment = std::min(std::floor(position), last_segment);
   return {static_cast<std::size_t>(segment), position - segment};
 }
@@ -105,12 +109,17 @@ class SplineTrajectory::NormalEquations {
  public:
   explicit NormalEquations(std::size_t control_count)
       : right_(Eigen::MatrixXd::Zero(Count(control_count), 3)) {
-    const Eigen::Index n = right_.rows();
-    for (Eigen::Index i = 0; i + 2 < n; ++i) {
-      const double difference[] = {1, -2, 1};
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) {
-          entries_.emplace_back(i + a, i + b, kEvenness * difference[a] * difference[b]);
+    for (std::size_t i = 0; i + 2 < control_count; ++i) {
+      wishes_.push_back({i, {1, -2, 1, 0}, 3, kEvenness});
+    }
+    wishes_.push_back({0, {-1, 3, -3, 1}, 4, kEndStiffness});
+    wishes_.push_back({control_count - 4, {-1, 3, -3, 1}, 4, kEndStiffness});
+    for (const Wish& wish : wishes_) {
+      const Eigen::Index i = Count(wish.first);
+      for (std::size_t a = 0; a < wish.count; ++a) {
+        for (std::size_t b = 0; b < wish.count; ++b) {
+          entries_.emplace_back(i + Count(a), i + Count(b),
+                                wish.weight * wish.difference[a] * wish.difference[b]);
         }
       }
     }
@@ -142,24 +151,20 @@ class SplineTrajectory::NormalEquations {
     }
   }
 
-  /// The even-spacing wish pulls on control points that exist already.
-  void AddEvenness(const std::vector<Eigen::Vector3d>& control) {
-    for (std::size_t i = 0; i + 2 < control.size(); ++i) {
-      const Eigen::Vector3d second = control[i] - 2 * control[i + 1] + control[i + 2];
-      right_.row(Count(i)) -= kEvenness * second.transpose();
-      right_.row(Count(i) + 1) += 2 * kEvenness * second.transpose();
-      right_.row(Count(i) + 2) -= kEvenness * second.transpose();
-    }
-  }
-
-  /// Same for rotations: the second difference is the change of the step between neighbours, in W.
-  void AddEvenness(const std::vector<Eigen::Matrix3d>& control) {
-    for (std::size_t i = 0; i + 2 < control.size(); ++i) {
-      const Eigen::Vector3d second = so3::Log(control[i + 2] * control[i + 1].transpose()) -
-                                     so3::Log(control[i + 1] * control[i].transpose());
-      right_.row(Count(i)) -= kEvenness * second.transpose();
-      right_.row(Count(i) + 1) += 2 * kEvenness * second.transpose();
-      right_.row(Count(i) + 2) -= kEvenness * second.transpose();
+  /// The wishes pull on control points that exist already; `steps` are the steps from one control point to
+  /// the next (for rotations their logarithms in W).
+  void AddWishes(const std::vector<Eigen::Vector3d>& steps) {
+    for (const Wish& wish : wishes_) {
+      // A difference of control points is one order less of steps: its coefficients are the sums so far.
+      Eigen::Vector3d difference = Eigen::Vector3d::Zero();
+      double sum = 0;
+      for (std::size_t a = 0; a + 1 < wish.count; ++a) {
+        sum -= wish.difference[a];
+        difference += sum * steps[wish.first + a];
+      }
+      for (std::size_t a = 0; a < wish.count; ++a) {
+        right_.row(Count(wish.first + a)) -= wish.weight * wish.difference[a] * difference.transpose();
+      }
     }
   }
 
@@ -168,6 +173,15 @@ class SplineTrajectory::NormalEquations {
  private:
   static Eigen::Index Count(std::size_t value) { return static_cast<Eigen::Index>(value); }
 
+  /// A difference of neighbouring control points that should be small.
+  struct Wish {
+    std::size_t first = 0;
+    std::array<double, 4> difference = {};
+    std::size_t count = 0;  ///< of coefficients in use
+    double weight = 0;
+  };
+
+  std::vector<Wish> wishes_;
   std::vector<Eigen::Triplet<double>> entries_;
   Eigen::MatrixXd right_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
@@ -178,7 +192,8 @@ Result<SplineTrajectory> SplineTrajectory::Fit(const Trajectory& samples, double
   SplineTrajectory spline;
   spline.start_ns_ = samples.points.front().stamp_ns;
   spline.duration_s_ = SecondsBetween(spline.start_ns_, samples.points.back().stamp_ns);
-  spline.spacing_s_ = knot_spacing_s;
+  // Whole segments: a last one with few samples would hardly hold its control point.
+  spline.spacing_s_ = spline.duration_s_ / std::ceil(spline.duration_s_ / knot_spacing_s - 1e-6);
   spline.PlaceControlPoints(samples);
   ALIDADE_RETURN_IF_ERROR(spline.Solve(samples));
   spline.MeasureFit(samples);
@@ -186,16 +201,13 @@ Result<SplineTrajectory> SplineTrajectory::Fit(const Trajectory& samples, double
 }
 
 void SplineTrajectory::PlaceControlPoints(const Trajectory& samples) {
-  const double margin_knots = std::ceil(kMarginSeconds / spacing_s_);
-  first_knot_s_ = -margin_knots * spacing_s_;
-  const double segments = std::ceil(duration_s_ / spacing_s_) + 2 * margin_knots;
-  const std::size_t count = static_cast<std::size_t>(segments) + kDegree;
+  const std::size_t count = static_cast<std::size_t>(std::llround(duration_s_ / spacing_s_)) + kDegree;
   positions_.reserve(count);
   rotations_.reserve(count);
   std::size_t next = 0;
   for (std::size_t i = 0; i < count; ++i) {
     // The weight of control point i peaks here.
-    const double centre_s = first_knot_s_ + (static_cast<double>(i) - 0.5 * (kDegree - 1)) * spacing_s_;
+    const double centre_s = (static_cast<double>(i) - 0.5 * (kDegree - 1)) * spacing_s_;
     const TimeNs centre_ns = start_ns_ + SecondsToNs(centre_s);
     while (next + 1 < samples.points.size() && samples.points[next].stamp_ns < centre_ns) {
       ++next;
@@ -208,8 +220,7 @@ void SplineTrajectory::PlaceControlPoints(const Trajectory& samples) {
 Status SplineTrajectory::Solve(const Trajectory& samples) {
   NormalEquations equations(positions_.size());
   for (const TrajectoryPoint& point : samples.points) {
-    const Place place =
-        Locate(SecondsBetween(start_ns_, point.stamp_ns), first_knot_s_, spacing_s_, positions_.size());
+    const Place place = Locate(SecondsBetween(start_ns_, point.stamp_ns), spacing_s_, positions_.size());
     equations.AddRow(place, Basis(place.x).value);
   }
   if (!equations.Factorize()) {
@@ -218,10 +229,14 @@ Status SplineTrajectory::Solve(const Trajectory& samples) {
   // The position is linear: one step, and one more takes off the rounding of the first.
   for (int iteration = 0; iteration < 2; ++iteration) {
     equations.ClearRight();
-    equations.AddEvenness(positions_);
+    std::vector<Eigen::Vector3d> steps;
+    for (std::size_t i = 1; i < positions_.size(); ++i) {
+      steps.emplace_back(positions_[i] - positions_[i - 1]);
+    }
+    equations.AddWishes(steps);
     for (const TrajectoryPoint& point : samples.points) {
       const double time_s = SecondsBetween(start_ns_, point.stamp_ns);
-      const Place place = Locate(time_s, first_knot_s_, spacing_s_, positions_.size());
+      const Place place = Locate(time_s, spacing_s_, positions_.size());
       equations.AddRight(place, Basis(place.x).value, point.nav.p_WB - At(time_s).nav.p_WB);
     }
     const Eigen::MatrixXd step = equations.Solve();
@@ -236,10 +251,14 @@ Status SplineTrajectory::SolveRotation(const Trajectory& samples, NormalEquation
   double largest_step_rad = 0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     equations->ClearRight();
-    equations->AddEvenness(rotations_);
+    std::vector<Eigen::Vector3d> turns;
+    for (std::size_t i = 1; i < rotations_.size(); ++i) {
+      turns.push_back(so3::Log(rotations_[i] * rotations_[i - 1].transpose()));
+    }
+    equations->AddWishes(turns);
     for (const TrajectoryPoint& point : samples.points) {
       const double time_s = SecondsBetween(start_ns_, point.stamp_ns);
-      const Place place = Locate(time_s, first_knot_s_, spacing_s_, positions_.size());
+      const Place place = Locate(time_s, spacing_s_, positions_.size());
       // A common turn of all control points in W turns the spline by just as much: the Jacobian is b_j to
       // first order in the turn between neighbours, and the steps below contract by that much each.
       equations->AddRight(place, Basis(place.x).value,
@@ -261,7 +280,24 @@ Status SplineTrajectory::SolveRotation(const Trajectory& samples, NormalEquation
 }
 
 Kinematics SplineTrajectory::At(double time_s) const {
-  const Place place = Locate(time_s, first_knot_s_, spacing_s_, positions_.size());
+  const double inside_s = std::clamp(time_s, 0.0, duration_s_);
+  Kinematics motion = Inside(inside_s);
+  const double beyond_s = time_s - inside_s;
+  if (beyond_s != 0) {
+    const double even_s = std::clamp(beyond_s, -kMarginSeconds, kMarginSeconds);
+    motion.nav.p_WB += even_s * motion.nav.v_WB;
+    motion.nav.R_WB = motion.nav.R_WB * so3::Exp(even_s * motion.angular_rate_B);
+    motion.acceleration_W.setZero();
+    if (even_s != beyond_s) {
+      motion.nav.v_WB.setZero();
+      motion.angular_rate_B.setZero();
+    }
+  }
+  return motion;
+}
+
+Kinematics SplineTrajectory::Inside(double time_s) const {
+  const Place place = Locate(time_s, spacing_s_, positions_.size());
   const Basis basis(place.x);
   const double rate = 1 / spacing_s_;
   Kinematics motion;

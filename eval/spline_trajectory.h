@@ -30,14 +30,16 @@ struct SplineFit {
 /// groups", 2020). Velocities in the trajectory are not used: they are the position's derivatives here.
 class SplineTrajectory final : public ContinuousTrajectory {
  public:
-  /// Least squares over all points, with a faint wish for even spacing that decides where there are none.
-  /// Knots every `knot_spacing_s`: shorter follows faster motion and more of the samples' noise; 0.1 s suits
-  /// hand-held and flown truth. Time 0 is the first point. Errors (kInput): fewer than two points, a spacing
-  /// that is not positive, a trajectory shorter than the spacing, stamps out of order, a number that is not
-  /// finite, a rotation that turns too fast for the spacing (the fit does not settle).
+  /// Least squares over all points, with a faint wish for even spacing that decides where there are none and
+  /// a wish for a small third difference at the ends. Knots every `knot_spacing_s` (or a little closer, so
+  /// that they divide the duration): shorter follows faster motion and more of the samples' noise; 0.1 s
+  /// suits hand-held and flown truth. Time 0 is the first point. Errors (kInput): fewer than two points, a
+  /// spacing that is not positive, a trajectory shorter than the spacing, stamps out of order, a number that
+  /// is not finite, a rotation that turns too fast for the spacing (the fit does not settle).
   static Result<SplineTrajectory> Fit(const Trajectory& samples, double knot_spacing_s);
 
-  /// Outside the samples, up to half a second, the motion goes on evenly; farther out it stands at that end.
+  /// Outside the samples, up to half a second, velocity and angular rate stay as at that end; farther out the
+  /// body stands.
   [[nodiscard]] Kinematics At(double time_s) const override;
   [[nodiscard]] double DurationSeconds() const override { return duration_s_; }
 
@@ -49,6 +51,7 @@ class SplineTrajectory final : public ContinuousTrajectory {
 
   SplineTrajectory() = default;
 
+  [[nodiscard]] Kinematics Inside(double time_s) const;
   void PlaceControlPoints(const Trajectory& samples);
   Status Solve(const Trajectory& samples);
   Status SolveRotation(const Trajectory& samples, NormalEquations* equations);
@@ -57,7 +60,6 @@ class SplineTrajectory final : public ContinuousTrajectory {
   TimeNs start_ns_ = 0;
   double duration_s_ = 0;
   double spacing_s_ = 0;
-  double first_knot_s_ = 0;                 ///< time at which segment 0 starts
   std::vector<Eigen::Vector3d> positions_;  ///< control points p_i in W
   std::vector<Eigen::Matrix3d> rotations_;  ///< control points R_i = R_WB
   SplineFit fit_;

@@ -91,6 +91,38 @@ TEST(SimImuTest, NoiseHasTheStatisticsItWasGiven) {
   ExpectStd(accel_walk, count, 2e-4 * 0.1);
 }
 
+TEST(SimImuTest, ScaleAndMisalignmentAreConstantAndHaveTheirStatistics) {
+  const auto trajectory = MakeSimTrajectory(SimulatorConfig());
+  SimImuErrors errors;
+  errors.noise = {0, 0, 0, 0};
+  errors.gyro_scale_std = 0.01;
+  errors.accel_scale_std = 0.005;
+  errors.misalignment_std_rad = 0.002;
+  double gyro = 0;
+  double accel = 0;
+  double angles = 0;
+  constexpr int kSeeds = 300;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const std::vector<TimeNs> stamps = EvenStamps(0, 0.1, 100);
+    const SimulatedImu imu =
+        SimulateImu(*trajectory, stamps, 100, 9.81, errors, static_cast<std::uint64_t>(seed));
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      const Kinematics motion = trajectory->At(SecondsBetween(0, stamps[k]));
+      ASSERT_LT((imu.samples[k].gyro - imu.gyro_matrix * motion.angular_rate_B).norm(), 1e-12);
+      ASSERT_LT((imu.samples[k].accel - imu.accel_matrix * motion.SpecificForce(9.81)).norm(), 1e-12);
+    }
+    const Eigen::Matrix3d gyro_error = imu.gyro_matrix - Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d accel_error = imu.accel_matrix - Eigen::Matrix3d::Identity();
+    gyro += gyro_error.diagonal().squaredNorm();
+    accel += accel_error.diagonal().squaredNorm();
+    angles += gyro_error.squaredNorm() - gyro_error.diagonal().squaredNorm();
+    angles += accel_error.squaredNorm() - accel_error.diagonal().squaredNorm();
+  }
+  ExpectStd(gyro, 3.0 * kSeeds, 0.01);
+  ExpectStd(accel, 3.0 * kSeeds, 0.005);
+  ExpectStd(angles, 12.0 * kSeeds, 0.002);
+}
+
 TEST(SimImuTest, TurnOnBiasHasTheStatisticsItWasGiven) {
   const auto trajectory = MakeSimTrajectory(SimulatorConfig());
   SimImuErrors errors;
