@@ -109,16 +109,12 @@ class Comparer {
   }
 
   Status AddSimulation(const PlanSequence& sequence) {
-    SimulatorConfig config;
-    const auto describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
-    Status status = ReadConfigFile(sequence.config, describe);
-    status = status.ok() ? ApplySettings(sequence.settings, describe) : status;
-    status = status.ok() ? config.Validate() : status;
-    if (!status.ok()) {
-      return Status(status.code(), "sequence " + sequence.name + ": " + status.message());
+    const Result<SimulatorConfig> config = LoadSimulatorConfig(sequence.config, sequence.settings);
+    if (!config.ok()) {
+      return Status(config.code(), "sequence " + sequence.name + ": " + config.message());
     }
     for (const unsigned seed : sequence.seeds) {
-      inputs_.push_back(std::make_unique<CompareInput>(sequence, config, seed));
+      inputs_.push_back(std::make_unique<CompareInput>(sequence, *config, seed));
       AddCells(sequence, seed, inputs_.back().get());
     }
     return Status::Ok();

@@ -95,17 +95,22 @@ Status PlanReader::FolderName(const YAML::Node& node, const std::string& name, s
   return Status::Ok();
 }
 
-Status PlanReader::ExistingPath(const YAML::Node& node, const std::string& name, bool folder,
-                                std::string* value) const {
-  std::string text;
-  ALIDADE_RETURN_IF_ERROR(Text(node, name, &text));
-  const size_t variable = text.find(kDataVariable);
+Status PlanReader::SubstituteData(const YAML::Node& node, const std::string& name, std::string* text) const {
+  const size_t variable = text->find(kDataVariable);
   if (variable != std::string::npos) {
     if (data_root_.empty()) {
       return Fault(node, name, "--data=FOLDER on the command line, which ${data} stands for");
     }
-    text.replace(variable, kDataVariable.size(), data_root_);
+    text->replace(variable, kDataVariable.size(), data_root_);
   }
+  return Status::Ok();
+}
+
+Status PlanReader::ExistingPath(const YAML::Node& node, const std::string& name, bool folder,
+                                std::string* value) const {
+  std::string text;
+  ALIDADE_RETURN_IF_ERROR(Text(node, name, &text));
+  ALIDADE_RETURN_IF_ERROR(SubstituteData(node, name, &text));
   const std::filesystem::path resolved = (std::filesystem::path(path_).parent_path() / text)
                                              .lexically_normal();  // an absolute `text` replaces the folder
   std::error_code ignored;
@@ -179,7 +184,9 @@ Status PlanReader::Settings(const YAML::Node& node, const std::string& name,
     const std::string& key = entry.first.Scalar();
     const YAML::Node& value = entry.second;
     if (value.IsScalar()) {
-      settings->push_back(key + "=" + value.Scalar());
+      std::string text = value.Scalar();
+      ALIDADE_RETURN_IF_ERROR(SubstituteData(value, name + "." + key, &text));
+      settings->push_back(key + "=" + text);
       continue;
     }
     std::vector<double> numbers;

@@ -42,6 +42,10 @@ class PlanReader {
   Status Settings(const YAML::Node& node, const std::string& name, std::vector<std::string>* settings) const;
 
  private:
+  /// Replaces ${data} in `text`; a fault when there is no data root.
+  [[nodiscard]] Status SubstituteData(const YAML::Node& node, const std::string& name,
+                                      std::string* text) const;
+
   Status AddSeed(const YAML::Node& node, const std::string& name, std::vector<unsigned>* seeds) const;
 
   std::string path_;

@@ -28,6 +28,8 @@ enum class SimOutlierKind {
 
 /// Value of a path that is not given.
 inline constexpr std::string_view kNoPath = "none";
+/// Value of a path that a setting must give: a config for many sequences is refused without it.
+inline constexpr std::string_view kRequiredPath = "required";
 
 /// A simulated sequence: trajectory (analytic or recorded), IMU as its exact derivative, landmarks around the
 /// path, feature tracks. The noise defaults are those of the simulation in the Po-InVIO paper. With

@@ -43,9 +43,11 @@ void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Text({"trajectory_file", "-",
                 "for trajectory: file; EuRoC, TUM or our own, or a dataset folder; relative to this file"},
                &config->trajectory_file);
-  visitor.Text({"hybrid_dataset", "-",
-                "dataset folder whose real IMU and calibration are used; only tracks are simulated"},
-               &config->hybrid_dataset);
+  visitor.Text(
+      {"hybrid_dataset", "-",
+       "dataset folder whose real IMU and calibration are used; only tracks are simulated; required: a "
+       "setting must name it"},
+      &config->hybrid_dataset);
   visitor.Text(
       {"truth_file", "-",
        "which truth of a dataset folder; auto: data_recomputed.csv, else data.csv, else data_pose.csv"},
@@ -180,6 +182,10 @@ Status Expect(bool holds, const char* key, double value, const std::string& expe
 }
 
 Status ValidateRecording(const SimulatorConfig& config) {
+  if (config.hybrid_dataset == kRequiredPath || config.trajectory_file == kRequiredPath) {
+    const std::string key = config.hybrid_dataset == kRequiredPath ? "hybrid_dataset" : "trajectory_file";
+    return Status::Config(key + ": required; expected a path, as in the setting " + key + "=FOLDER");
+  }
   const bool reads_file = config.trajectory == SimTrajectory::kFile && !config.IsHybrid();
   if (reads_file && config.trajectory_file == kNoPath) {
     return Status::Config("trajectory_file: none; trajectory: file expected a path");
@@ -196,7 +202,7 @@ Status ValidateRecording(const SimulatorConfig& config) {
 
 /// Makes a path from a file in `folder` independent of the working folder.
 void ResolvePath(const std::filesystem::path& folder, std::string* path) {
-  if (*path != kNoPath) {
+  if (*path != kNoPath && *path != kRequiredPath) {
     *path = (folder / *path).lexically_normal().string();
   }
 }

@@ -18,13 +18,11 @@ using Describe = std::function<void(ConfigVisitor&)>;
 /// A configuration of either kind, read and valid; hands its keys to `use`.
 Status WithConfig(const std::string& path, const std::function<void(const Describe&)>& use) {
   if (FLAGS_kind == "simulator") {
-    SimulatorConfig config;
-    const Describe describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
-    ALIDADE_RETURN_IF_ERROR(ReadConfigFile(path, describe));
-    ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set), describe));
-    ALIDADE_RETURN_IF_ERROR(config.Validate());
-    use(describe);
-    return Status::Ok();
+    Result<SimulatorConfig> config = LoadSimulatorConfig(path, SplitSettings(FLAGS_set));
+    if (config.ok()) {
+      use([&config](ConfigVisitor& visitor) { config->Describe(visitor); });
+    }
+    return config.status();
   }
   Result<EstimatorConfig> config = LoadEstimatorConfig(path, SplitSettings(FLAGS_set));
   if (config.ok()) {

@@ -9,16 +9,12 @@
 namespace alidade::cli {
 
 int RunSimulate(const std::vector<std::string>&) {
-  SimulatorConfig config;
-  const auto describe = [&config](ConfigVisitor& visitor) { config.Describe(visitor); };
-  Status status = ReadConfigFile(FLAGS_config, describe);
-  status = status.ok() ? ApplySettings(SplitSettings(FLAGS_set), describe) : status;
-  status = status.ok() ? config.Validate() : status;
-  status = status.ok() ? PrepareOutputFolder(FLAGS_output, FLAGS_overwrite) : status;
+  const Result<SimulatorConfig> config = LoadSimulatorConfig(FLAGS_config, SplitSettings(FLAGS_set));
+  Status status = config.ok() ? PrepareOutputFolder(FLAGS_output, FLAGS_overwrite) : config.status();
   if (!status.ok()) {
     return Report(status);
   }
-  const Result<Dataset> dataset = Simulate(config, FLAGS_seed);
+  const Result<Dataset> dataset = Simulate(*config, FLAGS_seed);
   if (!dataset.ok()) {
     return Report(dataset.status());
   }

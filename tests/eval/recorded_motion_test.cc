@@ -21,7 +21,7 @@ SimulatorConfig ShortConfig() {
 /// Points every 10 ms, stamped from 100 s on.
 Trajectory EvenPoints(int count) {
   Trajectory trajectory;
-  for (int k = 0; k < count; ++k) {
+  for (TimeNs k = 0; k < count; ++k) {
     TrajectoryPoint point;
     point.stamp_ns = 100000000000 + k * 10000000;
     trajectory.points.push_back(point);

@@ -12,12 +12,23 @@ namespace {
 TEST(SimulatorConfigTest, EveryShippedConfigurationIsValid) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(ALIDADE_SOURCE_DIR "/configs/datasets")) {
-    const Result<SimulatorConfig> config = LoadSimulatorConfig(entry.path().string(), {});
+    const Result<SimulatorConfig> config =
+        LoadSimulatorConfig(entry.path().string(), entry.path().stem() == "hybrid"
+                                                       ? std::vector<std::string>{"hybrid_dataset=somewhere"}
+                                                       : std::vector<std::string>{});
     EXPECT_TRUE(config.ok()) << config.message();
     EXPECT_EQ(config.ok() ? config->name : "", entry.path().stem().string());
     ++count;
   }
   EXPECT_GE(count, 4);
+}
+
+TEST(SimulatorConfigTest, TheHybridIsRefusedWithoutASequence) {
+  const Result<SimulatorConfig> config =
+      LoadSimulatorConfig(ALIDADE_SOURCE_DIR "/configs/datasets/hybrid.yaml", {});
+  ASSERT_FALSE(config.ok());
+  EXPECT_EQ(config.code(), StatusCode::kConfig);
+  EXPECT_NE(config.message().find("hybrid_dataset=FOLDER"), std::string::npos) << config.message();
 }
 
 TEST(SimulatorConfigTest, WhatIsWrittenReadsBack) {

@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "eval/sim_imu.h"
 #include "eval/sim_trajectory.h"
+#include "tests/support/shared_data.h"
 
 namespace alidade {
 namespace {
@@ -110,6 +111,22 @@ TEST(SplineTrajectoryTest, ImuOfTheSplineIntegratesToTheSpline) {
     state.R_WB = R_next;
   }
   EXPECT_LT((state.p_WB - spline->At(19).nav.p_WB).norm(), 1e-3);
+}
+
+TEST(SplineTrajectoryTest, RealFlightsSettleAtEverySpacing) {
+  ALIDADE_SKIP_WITHOUT_SHARED_DATA();
+  const std::string folder = test::SharedDir() + "/data/euroc/V1_02_medium/mav0/state_groundtruth_estimate0/";
+  Trajectory samples = ReadTrajectory(folder + "data.csv").value();
+  samples.points.resize(6000);  // ends in flight
+  for (const double spacing_s : {0.05, 0.1, 0.2}) {
+    const Result<SplineTrajectory> spline = SplineTrajectory::Fit(samples, spacing_s);
+    ASSERT_TRUE(spline.ok()) << spline.message();
+    EXPECT_LT(spline->fit().rotation_max_rad, 0.03) << spacing_s;
+    const double end_s = spline->DurationSeconds();
+    EXPECT_LT((spline->At(end_s).nav.v_WB - samples.points.back().nav.v_WB).norm(), 0.1) << "tame at the end";
+    EXPECT_LT(spline->At(end_s).angular_rate_B.norm(), 2) << spacing_s;
+    EXPECT_LT(spline->At(end_s).acceleration_W.norm(), 10) << spacing_s;
+  }
 }
 
 TEST(SplineTrajectoryTest, BadSamplesAreInputErrors) {
