@@ -22,6 +22,7 @@ struct FrameStatistics {
   int satellites_used = 0;
   int satellites_gated = 0;
   int iterations = 0;            ///< of the smoother's solver
+  bool at_rest = false;          ///< the frame was used as a zero-velocity measurement
   double nis = 0;                ///< normalised innovation squared of the applied rows
   int nis_dof = 0;               ///< rows applied
   double propagate_ms = 0;

@@ -6,6 +6,9 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"pixel_noise_px", "px", "standard deviation of one image coordinate of a track"}, &pixel_noise_px, 0.01, 100);
   visitor.Real({"gate_probability", "-", "a track is used if its innovation lies in this chi-square quantile; 1 opens the gate"},
                &gate_probability, 0.5, 1.0);
+  visitor.Real({"max_gated_share", "-",
+                "when the gate refuses more, the state is suspect and not the tracks: all are used, down-weighted to the gate"},
+               &max_gated_share, 0, 1);
   visitor.Real({"max_relative_depth_deviation", "-",
                 "parallax gate: a track waits until its depth is known this well; linearisation fails above 0.05"},
                &max_relative_depth_deviation, 1e-4, 10);
@@ -15,6 +18,12 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
                       {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
   visitor.Real({"robust_scale_sigma", "sigma", "whitened residual norm at which the kernel sets in"}, &robust_scale_sigma,
                0.1, 1e3);
+  visitor.Boolean({"rest_updates", "-", "standing still is a measurement of zero velocity; tracks without parallax say nothing"},
+                  &rest_updates);
+  visitor.Real({"rest_window_s", "s", "rest must last this long before it counts"}, &rest_window_s, 0.1, 10);
+  visitor.Real({"rest_max_flow_px", "px", "image flow over the window that is still rest"}, &rest_max_flow_px, 0.01, 20);
+  visitor.Real({"rest_velocity_std_mps", "m/s", "trust in zero velocity at rest"}, &rest_velocity_std_mps, 1e-5, 1);
+  visitor.Real({"rest_rate_std_radps", "rad/s", "trust in zero angular rate at rest"}, &rest_rate_std_radps, 1e-6, 1);
 }
 
 void ImuConfig::Describe(ConfigVisitor& visitor) {

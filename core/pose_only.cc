@@ -98,6 +98,11 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Vector2d> 
   return std::isfinite(depth->depth) && depth->p_W.allFinite();
 }
 
+bool DepthIsDetermined(const PoseOnlyDepth& depth, int other_views, double sigma, double max_relative_deviation) {
+  const double parallax = depth.normal - 4 * other_views * sigma * sigma;
+  return parallax * max_relative_deviation * max_relative_deviation > sigma * sigma;
+}
+
 bool PoseOnlyModel::Evaluate(std::span<const Pose> T_WC, std::span<const Vector2d> z, PoseOnlyDepth* depth,
                              Eigen::VectorXd* residual, DynamicJacobian* jacobian,
                              DynamicJacobian* noise_jacobian) const {

@@ -24,6 +24,12 @@ struct PoseOnlyDepth {
 bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Eigen::Vector2d> z, int base, DepthViews views,
                           PoseOnlyDepth* depth);
 
+/// Parallax gate: true when the depth's relative deviation sigma / sqrt(A^T A) is below `max_relative_deviation`. Noise alone
+/// makes A^T A about 4 sigma^2 for each of the `other_views`, which is subtracted first: otherwise a long track at rest would
+/// pass. `sigma`: standard deviation on the normalised plane.
+[[nodiscard]] bool DepthIsDetermined(const PoseOnlyDepth& depth, int other_views, double sigma,
+                                     double max_relative_deviation);
+
 /// Multi-view pose-only reprojection (paper eq. 5-7, 5-8): residual of every view against the landmark that ALL poses and
 /// observations define. Residual 2N (the base's two rows vanish), Jacobian through the depth: total derivatives.
 struct PoseOnlyModel {

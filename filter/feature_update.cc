@@ -68,9 +68,8 @@ TrackOutcome FeatureUpdate::Triangulate(Eigen::Vector3d* p_W) const {
   if (!ComputePoseOnlyDepth(poses_, points_, 0, views, &depth)) {
     return TrackOutcome::kWaiting;
   }
-  // sigma / sqrt(A^T A): relative deviation of the depth.
-  const double deviation = observations_.back().deviation();
-  if (deviation * deviation > vision_.max_relative_depth_deviation * vision_.max_relative_depth_deviation * depth.normal) {
+  const int other_views = views == DepthViews::kTwo ? 1 : static_cast<int>(poses_.size()) - 1;
+  if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(), vision_.max_relative_depth_deviation)) {
     return TrackOutcome::kWaiting;
   }
   if (depth.depth < vision_.min_depth_m || depth.depth > vision_.max_depth_m) {

@@ -19,6 +19,9 @@ ImuNoise Scale(const ImuNoise& noise, const ImuConfig& config) {
           noise.accel_random_walk_mps3_sqrthz * config.random_walk_scale};
 }
 
+// Fewer refusals are a matter of tracks, whatever their share.
+constexpr int kMinRefusedForConsensus = 8;
+
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -33,11 +36,13 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       gate_(config.vision.gate_probability),
       state_(config.filter.error, rig.T_BC, config.filter.window + 1),
       update_(config.filter, config.vision, config.filter.window + 1),
+      rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s) {}
 
 Status FilterEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));
   tracks_.Clear();
+  rest_.Clear();
   imu_.DropBefore(initial.stamp_ns);
   statistics_ = {};
   initialized_ = true;
@@ -53,6 +58,7 @@ Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
   ALIDADE_RETURN_IF_ERROR(imu_.Interval(state_.stamp_ns(), stamp_ns, &interval_));
   state_.Propagate(interval_, noise_, gravity_W_);
   imu_.DropBefore(stamp_ns);
+  rest_.AddImu(interval_);
   return Status::Ok();
 }
 
@@ -72,14 +78,20 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
       tracks_.AddFrame(rig_.camera, config_.vision.pixel_noise_px, serial_, frame.observations);
   const int leaving = ChooseLeavingClone();
   const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
-  UpdateWithDueTracks(leaving_serial);
+  bool finite = true;
+  if (config_.vision.rest_updates) {
+    const RestVerdict rest = rest_.AddFrame(frame, state_.clones().back().T_WC.rotation);
+    statistics_.at_rest = rest.no_translation;
+    finite = UpdateAtRest(rest);
+  }
+  finite = finite && UpdateWithDueTracks(leaving_serial);
   tracks_.RemoveEnded(serial_);
   if (leaving >= 0) {
     tracks_.RemoveClone(leaving_serial);
     state_.RemoveClone(static_cast<size_t>(leaving));
   }
   statistics_.update_ms = MillisecondsSince(propagated);
-  if (!state_.AllFinite()) {
+  if (!finite || !state_.AllFinite()) {
     initialized_ = false;
     return Status::Diverged("filter: state is not finite after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
   }
@@ -130,7 +142,31 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
   return track.last_serial != serial_ || track.views.front().serial == leaving_serial;
 }
 
-void FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
+bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
+  if (!rest.no_translation) {
+    return true;
+  }
+  const int rows = rest.no_rotation ? 6 : 3;
+  const double velocity_weight = 1 / config_.vision.rest_velocity_std_mps;
+  const double rate_weight = 1 / config_.vision.rest_rate_std_radps;
+  rest_rows_.setZero(rows, state_.covariance().dimension());
+  rest_innovation_.resize(rows);
+  rest_rows_.topLeftCorner<3, 9>() =
+      velocity_weight * ChartJacobian(state_.convention(), state_.nav()).bottomRows<3>();
+  rest_innovation_.head<3>() = -velocity_weight * state_.nav().v_WB;
+  if (rest.no_rotation) {
+    rest_rows_.block<3, 3>(3, 9) = rate_weight * Eigen::Matrix3d::Identity();
+    rest_innovation_.tail<3>() = rate_weight * (rest_.MeanGyro() - state_.bias().gyro);
+  }
+  state_.covariance().Prepare(rest_rows_);
+  if (!state_.covariance().Apply(rest_rows_, rest_innovation_, &correction_, nullptr)) {
+    return false;
+  }
+  state_.Correct(correction_);
+  return true;
+}
+
+bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   std::vector<Track>& tracks = tracks_.tracks();
   update_.Begin(state_);
   appended_.clear();
@@ -152,44 +188,62 @@ void FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     }
   }
   if (appended_.empty()) {
-    return;
+    return true;
   }
   state_.covariance().Prepare(update_.jacobian());
   GateBlocks();
-  statistics_.nis = state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_);
+  if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_, &statistics_.nis)) {
+    return false;
+  }
   state_.Correct(correction_);
   for (size_t block = 0; block < appended_.size(); ++block) {
     RetireViews(&tracks[appended_[block]], accepted_[block]);
   }
+  return true;
+}
+
+void FilterEstimator::MeasureBlocks() {
+  const Eigen::Ref<const Eigen::MatrixXd> prepared = update_.jacobian();
+  const Eigen::Ref<const Eigen::VectorXd> innovation = update_.innovation();
+  block_nis_.clear();
+  for (const FeatureUpdate::Block& block : update_.blocks()) {
+    const auto rows = prepared.middleRows(block.first, block.rows);
+    const auto y = innovation.segment(block.first, block.rows);
+    gate_matrix_.noalias() = rows * rows.transpose();
+    gate_matrix_.diagonal().array() += 1.0;
+    block_nis_.push_back(y.dot(gate_matrix_.llt().solve(y)));
+  }
 }
 
 void FilterEstimator::GateBlocks() {
+  MeasureBlocks();
   accepted_.assign(appended_.size(), true);
+  int refused = 0;
+  for (size_t i = 0; i < appended_.size(); ++i) {
+    accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
+    refused += accepted_[i] ? 0 : 1;
+  }
+  const bool state_is_suspect =
+      refused >= kMinRefusedForConsensus && refused > config_.vision.max_gated_share * static_cast<double>(appended_.size());
   Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
   Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();
   for (size_t i = 0; i < appended_.size(); ++i) {
     const FeatureUpdate::Block& block = update_.blocks()[i];
-    auto rows = prepared.middleRows(block.first, block.rows);
-    auto y = innovation.segment(block.first, block.rows);
-    gate_matrix_.noalias() = rows * rows.transpose();
-    gate_matrix_.diagonal().array() += 1.0;
-    const double nis = y.dot(gate_matrix_.llt().solve(y));
-    if (!std::isfinite(nis) || !gate_.Accepts(nis, block.rows)) {
-      accepted_[i] = false;
-      rows.setZero();
-      y.setZero();
-      ++statistics_.features_gated;
-      continue;
+    double weight = 0;
+    if (accepted_[i]) {
+      // The kernel acts on an observation's two rows; a track's rows share one weight of the same mean square.
+      weight = RobustWeight(config_.vision.robust_kernel, config_.vision.robust_scale_sigma,
+                            2 * block_nis_[i] / block.rows);
+    } else if (state_is_suspect && std::isfinite(block_nis_[i])) {
+      accepted_[i] = true;
+      weight = gate_.Threshold(block.rows) / block_nis_[i];
     }
-    // The kernel acts on an observation's two rows; a track's rows share one weight of the same mean square.
-    const double weight = RobustWeight(config_.vision.robust_kernel, config_.vision.robust_scale_sigma,
-                                       2 * nis / block.rows);
+    ++(accepted_[i] ? statistics_.features_used : statistics_.features_gated);
+    statistics_.nis_dof += accepted_[i] ? block.rows : 0;
     if (weight < 1) {
-      rows *= std::sqrt(weight);
-      y *= std::sqrt(weight);
+      prepared.middleRows(block.first, block.rows) *= std::sqrt(weight);
+      innovation.segment(block.first, block.rows) *= std::sqrt(weight);
     }
-    ++statistics_.features_used;
-    statistics_.nis_dof += block.rows;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/estimator.h"
 #include "core/imu_buffer.h"
+#include "core/rest_detector.h"
 #include "core/robust.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
@@ -32,8 +33,13 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] int ChooseLeavingClone() const;
   /// True when the track's views are to be used in this frame.
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
-  void UpdateWithDueTracks(int leaving_serial);
-  /// Gates every appended track; a refused one has its rows zeroed.
+  /// False when a number is not finite; the state is then lost.
+  bool UpdateWithDueTracks(int leaving_serial);
+  /// Zero velocity and zero angular rate, as far as the rest detector says so. False as above.
+  bool UpdateAtRest(const RestVerdict& rest);
+  /// Normalised innovation squared of every appended track, against the state before the update.
+  void MeasureBlocks();
+  /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   void GateBlocks();
   /// What a track keeps after its views were used (base re-use) or refused.
   void RetireViews(Track* track, bool used) const;
@@ -46,6 +52,7 @@ class FilterEstimator : public Estimator {
   FilterState state_;
   FeatureUpdate update_;
   TrackStore tracks_;
+  RestDetector rest_;
   ImuBuffer imu_;
   FrameStatistics statistics_;
   bool initialized_ = false;
@@ -54,8 +61,11 @@ class FilterEstimator : public Estimator {
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;
   std::vector<bool> accepted_;
+  std::vector<double> block_nis_;
   Eigen::MatrixXd gate_matrix_;
   Eigen::VectorXd correction_;
+  Eigen::MatrixXd rest_rows_;
+  Eigen::VectorXd rest_innovation_;
 };
 
 }  // namespace alidade

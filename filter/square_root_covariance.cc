@@ -177,8 +177,8 @@ void SquareRootCovariance::Prepare(Eigen::Ref<MatrixXd> rows_in_place) const {
               rows_in_place.data(), static_cast<int>(rows_in_place.outerStride()));
 }
 
-double SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows,
-                                   const Eigen::Ref<const VectorXd>& y, VectorXd* correction) {
+bool SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows,
+                                 const Eigen::Ref<const VectorXd>& y, VectorXd* correction, double* nis) {
   const int rows = static_cast<int>(prepared_rows.rows());
   const int lda = static_cast<int>(prepared_rows.outerStride());
   const int n = dimension_;
@@ -189,26 +189,34 @@ double SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_ro
   }
   const int active = n - first;
   correction->setZero(n);
+  if (nis != nullptr) {
+    *nis = y.squaredNorm();
+  }
   if (active == 0) {
-    return y.squaredNorm();
+    return true;
   }
   const double* a = prepared_rows.data() + static_cast<Index>(first) * lda;
   double* m = information_.data();
   const int ldm = capacity();
   cblas_dsyrk(CblasColMajor, CblasUpper, CblasTrans, active, rows, 1.0, a, lda, 0.0, m, ldm);
-  for (Index i = 0; i < active; ++i) {
-    information_(i, i) += 1.0;
+  auto diagonal = information_.diagonal().head(active);
+  if (!diagonal.allFinite() || !y.allFinite()) {
+    return false;
   }
+  diagonal.array() += 1.0;
   int info = 0;
   LAPACK_dpotrf("U", &active, m, &ldm, &info);
-  CHECK_EQ(info, 0) << "I + A^T A lost positivity: the rows are not finite";
+  CHECK_EQ(info, 0) << "I + A^T A of finite rows lost positivity";
   cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, n, active, 1.0, m, ldm,
               factor_.data() + static_cast<Index>(first) * capacity(), capacity());
   auto b = projected_.head(active);
   cblas_dgemv(CblasColMajor, CblasTrans, rows, active, 1.0, a, lda, y.data(), 1, 0.0, b.data(), 1);
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasTrans, CblasNonUnit, active, m, ldm, b.data(), 1);
   correction->noalias() = factor_.block(0, first, n, active) * b;
-  return y.squaredNorm() - b.squaredNorm();
+  if (nis != nullptr) {
+    *nis -= b.squaredNorm();
+  }
+  return true;
 }
 
 Matrix15d SquareRootCovariance::CoreCovariance() const {

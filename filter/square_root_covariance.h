@@ -31,10 +31,11 @@ class SquareRootCovariance {
   /// Kalman update with unit-noise rows H over the whole error (rows x dimension()) and innovation y = measured -
   /// predicted. Prepare computes A = H S, in place; rows may then be gated or re-weighted in A and y before Apply.
   void Prepare(Eigen::Ref<Eigen::MatrixXd> rows_in_place) const;
-  /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. Returns y^T (A A^T + I)^-1 y, the normalised
-  /// innovation squared. Numerically singular M cannot occur: it is at least the identity.
-  double Apply(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows, const Eigen::Ref<const Eigen::VectorXd>& y,
-               Eigen::VectorXd* correction);
+  /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1 y, the
+  /// normalised innovation squared. False, with nothing changed, when a row is not finite: M is at least the identity, so
+  /// nothing else can stop its factorisation.
+  bool Apply(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows, const Eigen::Ref<const Eigen::VectorXd>& y,
+             Eigen::VectorXd* correction, double* nis);
 
   [[nodiscard]] int dimension() const { return dimension_; }
   [[nodiscard]] int capacity() const { return static_cast<int>(factor_.rows()); }

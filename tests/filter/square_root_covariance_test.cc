@@ -107,7 +107,9 @@ TEST_F(SquareRootCovarianceTest, UpdateIsTheKalmanUpdate) {
     dense_ = (MatrixXd::Identity(n, n) - gain * h) * dense_;
     root_.Prepare(h);
     VectorXd correction;
-    EXPECT_NEAR(root_.Apply(h, y, &correction), nis, 1e-9 * nis);
+    double measured = 0;
+    ASSERT_TRUE(root_.Apply(h, y, &correction, &measured));
+    EXPECT_NEAR(measured, nis, 1e-9 * nis);
     EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
     ExpectEqual();
   }
@@ -119,9 +121,19 @@ TEST_F(SquareRootCovarianceTest, ZeroedRowsDoNothing) {
   MatrixXd h = MatrixXd::Zero(5, root_.dimension());
   VectorXd correction;
   root_.Prepare(h);
-  EXPECT_EQ(root_.Apply(h, VectorXd::Zero(5), &correction), 0.0);
+  ASSERT_TRUE(root_.Apply(h, VectorXd::Zero(5), &correction, nullptr));
   EXPECT_EQ(correction.norm(), 0.0);
   EXPECT_EQ((root_.Covariance() - before).norm(), 0.0);
+}
+
+TEST_F(SquareRootCovarianceTest, RowsThatAreNotFiniteAreRefusedAndChangeNothing) {
+  const MatrixXd before = root_.Covariance();
+  MatrixXd h = MatrixXd::Ones(3, root_.dimension());
+  h(1, 2) = std::nan("");
+  VectorXd correction;
+  root_.Prepare(h);
+  EXPECT_FALSE(root_.Apply(h, VectorXd::Zero(3), &correction, nullptr));
+  EXPECT_EQ(root_.Covariance(), before);
 }
 
 TEST_F(SquareRootCovarianceTest, StaysPositiveWhereTheSubtractiveFormDoesNot) {
@@ -131,7 +143,7 @@ TEST_F(SquareRootCovarianceTest, StaysPositiveWhereTheSubtractiveFormDoesNot) {
     MatrixXd h = 1e9 * RandomMatrix(&random_, 30, root_.dimension());
     VectorXd correction;
     root_.Prepare(h);
-    root_.Apply(h, VectorXd::Zero(30), &correction);
+    ASSERT_TRUE(root_.Apply(h, VectorXd::Zero(30), &correction, nullptr));
   }
   const MatrixXd p = root_.Covariance();
   ASSERT_TRUE(p.allFinite());

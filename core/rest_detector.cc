@@ -1,0 +1,148 @@
+#include "core/rest_detector.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kMinCommonTracks = 12;
+
+struct CommonTrack {
+  Vector2d before;
+  Vector2d flow;
+};
+
+std::vector<CommonTrack> FindCommon(const CameraModel& camera, const TrackFrame& before, const TrackFrame& now,
+                                    const Eigen::Matrix3d& R_now_before) {
+  std::vector<CommonTrack> common;
+  auto old = before.observations.begin();
+  for (const TrackObservation& seen : now.observations) {
+    while (old != before.observations.end() && old->track_id < seen.track_id) {
+      ++old;
+    }
+    if (old != before.observations.end() && old->track_id == seen.track_id) {
+      Vector2d ideal;
+      Vector2d turned;
+      if (camera.Unproject(old->pixel, &ideal) && camera.Project(R_now_before * ideal.homogeneous(), &turned)) {
+        common.push_back({turned, seen.pixel - turned});
+      }
+    }
+  }
+  return common;
+}
+
+/// Standard deviation of one axis, root mean square over the axes.
+struct ImuSpread {
+  double gyro = 0;
+  double accel = 0;
+};
+
+ImuSpread MeasureSpread(const std::deque<ImuSample>& samples) {
+  Vector3d mean_gyro = Vector3d::Zero();
+  Vector3d mean_accel = Vector3d::Zero();
+  for (const ImuSample& sample : samples) {
+    mean_gyro += sample.gyro / static_cast<double>(samples.size());
+    mean_accel += sample.accel / static_cast<double>(samples.size());
+  }
+  ImuSpread spread;
+  for (const ImuSample& sample : samples) {
+    spread.gyro += (sample.gyro - mean_gyro).squaredNorm();
+    spread.accel += (sample.accel - mean_accel).squaredNorm();
+  }
+  const double axes = 3.0 * static_cast<double>(samples.size());
+  return {std::sqrt(spread.gyro / axes), std::sqrt(spread.accel / axes)};
+}
+
+}  // namespace
+
+RestDetector::RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera)
+    : vision_(vision),
+      init_(init),
+      camera_(camera),
+      image_center_(0.5 * camera.width_px(), 0.5 * camera.height_px()),
+      image_radius_px_(0.5 * std::hypot(camera.width_px(), camera.height_px())) {}
+
+void RestDetector::Clear() {
+  frames_.clear();
+  imu_.clear();
+}
+
+void RestDetector::AddImu(std::span<const ImuSample> samples) {
+  for (const ImuSample& sample : samples) {
+    if (imu_.empty() || imu_.back().stamp_ns < sample.stamp_ns) {
+      imu_.push_back(sample);
+    }
+  }
+}
+
+RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC) {
+  frames_.push_back({frame, R_WC});
+  const TimeNs window_ns = SecondsToNs(vision_.rest_window_s);
+  const TimeNs start_ns = frame.stamp_ns - window_ns;
+  while (frames_.size() > 2 && frames_[1].frame.stamp_ns <= start_ns) {
+    frames_.pop_front();
+  }
+  while (!imu_.empty() && imu_.front().stamp_ns < imu_.back().stamp_ns - window_ns) {
+    imu_.pop_front();
+  }
+  const OrientedFrame& before = frames_.front();
+  RestVerdict verdict;
+  const ImuSpread spread = MeasureSpread(imu_);
+  if (frames_.size() < 2 || before.frame.stamp_ns > start_ns || imu_.size() < 5 ||
+      spread.accel > init_.static_max_accel_std_mps2) {
+    return verdict;
+  }
+  verdict.no_translation = FlowIsZero(before.frame, frame, R_WC.transpose() * before.R_WC);
+  verdict.no_rotation = verdict.no_translation && spread.gyro < init_.static_max_gyro_std_radps &&
+                        FlowIsZero(before.frame, frame, Matrix3d::Identity());
+  return verdict;
+}
+
+Vector3d RestDetector::MeanGyro() const {
+  Vector3d sum = Vector3d::Zero();
+  for (const ImuSample& sample : imu_) {
+    sum += sample.gyro;
+  }
+  return sum / std::max<double>(1, static_cast<double>(imu_.size()));
+}
+
+bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before) const {
+  std::vector<CommonTrack> common = FindCommon(camera_, before, now, R_now_before);
+  if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
+    return false;  // too few to tell, or half of them new: the image changes
+  }
+  // Mismatches among many still tracks must not look like motion: keep the half with the smallest flow.
+  const auto middle = common.begin() + static_cast<std::ptrdiff_t>(common.size() / 2);
+  std::nth_element(common.begin(), middle, common.end(), [](const CommonTrack& a, const CommonTrack& b) {
+    return a.flow.squaredNorm() < b.flow.squaredNorm();
+  });
+  const double median = middle->flow.norm();
+  // The half with the smallest flow would hide a zoom (it lives near the centre), so its median is bounded first.
+  if (median > vision_.rest_max_flow_px + 2 * vision_.pixel_noise_px) {
+    return false;
+  }
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  const double outlier = 3 * median + vision_.rest_max_flow_px;
+  for (const CommonTrack& track : common) {
+    if (track.flow.norm() > outlier) {
+      continue;
+    }
+    const Vector2d x = (track.before - image_center_) / image_radius_px_;
+    Eigen::Matrix<double, 2, 4> design;  // shift, zoom, roll; the last two in pixels at the image's corner
+    design << 1, 0, x.x(), -x.y(), 0, 1, x.y(), x.x();
+    normal += design.transpose() * design;
+    right += design.transpose() * track.flow;
+  }
+  const Eigen::LDLT<Eigen::Matrix4d> solver(normal);
+  const Eigen::Vector4d flow = solver.solve(right);
+  return flow.allFinite() && flow.cwiseAbs().maxCoeff() < vision_.rest_max_flow_px;
+}
+
+}  // namespace alidade

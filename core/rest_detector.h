@@ -1,0 +1,58 @@
+#pragma once
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/measurement_log.h"
+
+namespace alidade {
+
+/// What a RestDetector found.
+struct RestVerdict {
+  bool no_translation = false;  ///< v = 0 may be used
+  bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
+};
+
+/// Tells from tracks and IMU together whether the rig stands still. A track at rest has no parallax and is refused by the
+/// gate of depth, so that without this a resting estimator drifts with its accelerometer; tracks alone cannot tell a shift
+/// from a turn, an IMU alone cannot tell rest from constant velocity.
+///
+/// No translation: the image flow since the oldest frame of the window, freed of the rig's turn, fitted by shift, zoom and
+/// roll over the common tracks, stays below VisionConfig::rest_max_flow_px at the image's corner, and the specific force
+/// spreads less than InitConfig allows. No rotation: so does the flow as it is, and the angular rate. Neglected: motion so
+/// slow or scenery so far that it moves tracks by less than the limit in the window.
+class RestDetector {
+ public:
+  RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);
+
+  /// Inertial samples since the previous frame (ends included).
+  void AddImu(std::span<const ImuSample> samples);
+  /// Verdict on the window that ends with this frame. R_WC: the camera's estimated attitude; only its change within the
+  /// window matters.
+  RestVerdict AddFrame(const TrackFrame& frame, const Eigen::Matrix3d& R_WC);
+  void Clear();
+
+  /// Mean angular rate [rad/s] over the window; the gyroscope's bias when at rest.
+  [[nodiscard]] Eigen::Vector3d MeanGyro() const;
+
+ private:
+  struct OrientedFrame {
+    TrackFrame frame;
+    Eigen::Matrix3d R_WC;
+  };
+  /// R_now_before: turn of the camera between the frames; identity takes the flow as it is.
+  [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
+                                const Eigen::Matrix3d& R_now_before) const;
+
+  VisionConfig vision_;
+  InitConfig init_;
+  CameraModel camera_;
+  Eigen::Vector2d image_center_;
+  double image_radius_px_;
+  std::deque<OrientedFrame> frames_;
+  std::deque<ImuSample> imu_;
+};
+
+}  // namespace alidade
