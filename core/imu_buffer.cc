@@ -78,7 +78,10 @@ void ImuBuffer::DropBefore(TimeNs stamp_ns) {
   while (samples_.size() >= 2 && samples_[1].stamp_ns <= stamp_ns) {
     samples_.pop_front();
   }
-  consumed_before_ns_ = std::max(consumed_before_ns_, stamp_ns);
+  // Without a sample at or before the stamp, the one that comes before it is still needed.
+  if (!samples_.empty() && samples_.front().stamp_ns <= stamp_ns) {
+    consumed_before_ns_ = std::max(consumed_before_ns_, stamp_ns);
+  }
 }
 
 }  // namespace alidade

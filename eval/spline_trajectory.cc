@@ -16,10 +16,11 @@ constexpr double kMarginSeconds = 0.5;
 // Weight of a squared second difference of control points against a squared residual: decides where no sample
 // does, and elsewhere moves the spline by far less than any sample's noise.
 constexpr double kEvenness = 1e-6;
-// Weight of the third difference at either end. The outermost control point counts for 1/120 at most and only
-// at the very end: held by that alone it would swing by radians, and the fit of a real flight would not
-// settle. Tied to its neighbours it moves the spline by 1/120 of a third difference, which is next to
-// nothing.
+// Weight of the second (rotation) or third (position) difference at either end. The outermost control point
+// counts for 1/120 at most and only at the very end: held by that alone it would swing by radians, and the
+// fit of a real flight would not settle. Tied to its neighbours it moves the spline by 1/120 of that
+// difference. Rotation takes the lower order because it must settle even where the recording ends with a hard
+// landing.
 constexpr double kEndStiffness = 1e-2;
 constexpr int kMaxIterations = 100;
 constexpr double kSettledRadians = 1e-9;
@@ -103,17 +104,22 @@ Status CheckSamples(const Trajectory& samples, double spacing_s) {
 }  // namespace
 
 /// The normal matrix of a least-squares fit of spline coefficients, and the product of its right-hand side.
-/// Position and rotation share it: both residuals are sum_j b_j(x) (change of control point i + j) to first
-/// order.
+/// Position and rotation have the same form: both residuals are sum_j b_j(x) (change of control point i + j)
+/// to first order.
 class SplineTrajectory::NormalEquations {
  public:
-  explicit NormalEquations(std::size_t control_count)
+  NormalEquations(std::size_t control_count, int end_order)
       : right_(Eigen::MatrixXd::Zero(Count(control_count), 3)) {
     for (std::size_t i = 0; i + 2 < control_count; ++i) {
       wishes_.push_back({i, {1, -2, 1, 0}, 3, kEvenness});
     }
-    wishes_.push_back({0, {-1, 3, -3, 1}, 4, kEndStiffness});
-    wishes_.push_back({control_count - 4, {-1, 3, -3, 1}, 4, kEndStiffness});
+    if (end_order == 2) {
+      wishes_.push_back({0, {1, -2, 1, 0}, 3, kEndStiffness});
+      wishes_.push_back({control_count - 3, {1, -2, 1, 0}, 3, kEndStiffness});
+    } else {
+      wishes_.push_back({0, {-1, 3, -3, 1}, 4, kEndStiffness});
+      wishes_.push_back({control_count - 4, {-1, 3, -3, 1}, 4, kEndStiffness});
+    }
     for (const Wish& wish : wishes_) {
       const Eigen::Index i = Count(wish.first);
       for (std::size_t a = 0; a < wish.count; ++a) {
@@ -218,33 +224,40 @@ void SplineTrajectory::PlaceControlPoints(const Trajectory& samples) {
 }
 
 Status SplineTrajectory::Solve(const Trajectory& samples) {
-  NormalEquations equations(positions_.size());
-  for (const TrajectoryPoint& point : samples.points) {
-    const Place place = Locate(SecondsBetween(start_ns_, point.stamp_ns), spacing_s_, positions_.size());
-    equations.AddRow(place, Basis(place.x).value);
+  NormalEquations position(positions_.size(), 3);
+  NormalEquations rotation(rotations_.size(), 2);
+  for (NormalEquations* equations : {&position, &rotation}) {
+    for (const TrajectoryPoint& point : samples.points) {
+      const Place place = Locate(SecondsBetween(start_ns_, point.stamp_ns), spacing_s_, positions_.size());
+      equations->AddRow(place, Basis(place.x).value);
+    }
+    if (!equations->Factorize()) {
+      return Status::Input("spline: the samples do not determine the control points");
+    }
   }
-  if (!equations.Factorize()) {
-    return Status::Input("spline: the samples do not determine the control points");
-  }
+  SolvePosition(samples, &position);
+  return SolveRotation(samples, &rotation);
+}
+
+void SplineTrajectory::SolvePosition(const Trajectory& samples, NormalEquations* equations) {
   // The position is linear: one step, and one more takes off the rounding of the first.
   for (int iteration = 0; iteration < 2; ++iteration) {
-    equations.ClearRight();
+    equations->ClearRight();
     std::vector<Eigen::Vector3d> steps;
     for (std::size_t i = 1; i < positions_.size(); ++i) {
       steps.emplace_back(positions_[i] - positions_[i - 1]);
     }
-    equations.AddWishes(steps);
+    equations->AddWishes(steps);
     for (const TrajectoryPoint& point : samples.points) {
       const double time_s = SecondsBetween(start_ns_, point.stamp_ns);
       const Place place = Locate(time_s, spacing_s_, positions_.size());
-      equations.AddRight(place, Basis(place.x).value, point.nav.p_WB - At(time_s).nav.p_WB);
+      equations->AddRight(place, Basis(place.x).value, point.nav.p_WB - At(time_s).nav.p_WB);
     }
-    const Eigen::MatrixXd step = equations.Solve();
+    const Eigen::MatrixXd step = equations->Solve();
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       positions_[i] += step.row(static_cast<Eigen::Index>(i)).transpose();
     }
   }
-  return SolveRotation(samples, &equations);
 }
 
 Status SplineTrajectory::SolveRotation(const Trajectory& samples, NormalEquations* equations) {

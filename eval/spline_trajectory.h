@@ -31,11 +31,11 @@ struct SplineFit {
 class SplineTrajectory final : public ContinuousTrajectory {
  public:
   /// Least squares over all points, with a faint wish for even spacing that decides where there are none and
-  /// a wish for a small third difference at the ends. Knots every `knot_spacing_s` (or a little closer, so
-  /// that they divide the duration): shorter follows faster motion and more of the samples' noise; 0.1 s
-  /// suits hand-held and flown truth. Time 0 is the first point. Errors (kInput): fewer than two points, a
-  /// spacing that is not positive, a trajectory shorter than the spacing, stamps out of order, a number that
-  /// is not finite, a rotation that turns too fast for the spacing (the fit does not settle).
+  /// a wish for little change of the motion at the very ends. Knots every `knot_spacing_s` (or a little
+  /// closer, so that they divide the duration): shorter follows faster motion and more of the samples' noise;
+  /// 0.1 s suits hand-held and flown truth. Time 0 is the first point. Errors (kInput): fewer than two
+  /// points, a spacing that is not positive, a trajectory shorter than the spacing, stamps out of order, a
+  /// number that is not finite, a rotation that turns too fast for the spacing (the fit does not settle).
   static Result<SplineTrajectory> Fit(const Trajectory& samples, double knot_spacing_s);
 
   /// Outside the samples, up to half a second, velocity and angular rate stay as at that end; farther out the
@@ -54,6 +54,7 @@ class SplineTrajectory final : public ContinuousTrajectory {
   [[nodiscard]] Kinematics Inside(double time_s) const;
   void PlaceControlPoints(const Trajectory& samples);
   Status Solve(const Trajectory& samples);
+  void SolvePosition(const Trajectory& samples, NormalEquations* equations);
   Status SolveRotation(const Trajectory& samples, NormalEquations* equations);
   void MeasureFit(const Trajectory& samples);
 

@@ -255,5 +255,17 @@ TEST(ImuBufferTest, RefusesWhatIsNotFiniteOrTooOld) {
   EXPECT_EQ(buffer.statistics().rejected, 2);
 }
 
+TEST(ImuBufferTest, AnEmptyBufferThatDropsStillTakesTheSampleBeforeTheStamp) {
+  // An estimator that starts between two samples is told its stamp first and gets the samples afterwards.
+  ImuBuffer buffer(0.5);
+  buffer.DropBefore(SecondsToNs(1.15));
+  EXPECT_TRUE(buffer.Add(At(1.1, 1)).ok());
+  EXPECT_TRUE(buffer.Add(At(1.2, 1)).ok());
+  std::vector<ImuSample> samples;
+  EXPECT_TRUE(buffer.Interval(SecondsToNs(1.15), SecondsToNs(1.2), &samples).ok());
+  buffer.DropBefore(SecondsToNs(1.15));
+  EXPECT_FALSE(buffer.Add(At(1.12, 1)).ok());
+}
+
 }  // namespace
 }  // namespace alidade

@@ -129,6 +129,15 @@ TEST(SplineTrajectoryTest, RealFlightsSettleAtEverySpacing) {
   }
 }
 
+TEST(SplineTrajectoryTest, AHardLandingAtTheEndSettles) {
+  ALIDADE_SKIP_WITHOUT_SHARED_DATA();
+  const std::string folder =
+      test::SharedDir() + "/data/euroc/MH_05_difficult/mav0/state_groundtruth_estimate0/";
+  Trajectory samples = ReadTrajectory(folder + "data.csv").value();
+  samples.points.erase(samples.points.begin(), samples.points.end() - 4000);
+  EXPECT_TRUE(SplineTrajectory::Fit(samples, 0.1).ok());
+}
+
 TEST(SplineTrajectoryTest, BadSamplesAreInputErrors) {
   const Trajectory good = SampleFigureEight(2, 100);
   const auto code = [](const Trajectory& samples, double spacing_s) {
