@@ -33,6 +33,13 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
   if (!dataset_digest.ok()) {
     return dataset_digest.status();
   }
+  if (!sequence_.truth.empty()) {
+    Result<Trajectory> truth = ReadTrajectory(sequence_.truth);
+    if (!truth.ok()) {
+      return truth.status();
+    }
+    dataset->truth = std::move(*truth);
+  }
   Result<MeasurementLog> log = MakeLog(*dataset, frontend_, options);
   if (!log.ok()) {
     return log.status();

@@ -97,6 +97,8 @@ class PlanParser {
         node, "sequences",
         {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &sequence.name); }},
          {"path", [&](const Node& n) { return reader_.ExistingPath(n, "path", true, &sequence.dataset); }},
+         {"truth",
+          [&](const Node& n) { return reader_.ExistingPath(n, "truth", false, &sequence.truth); }},
          {"config",
           [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
          {"seeds", [&](const Node& n) { return reader_.Seeds(n, "seeds", &sequence.seeds); }},
@@ -106,6 +108,9 @@ class PlanParser {
     }
     if (!sequence.dataset.empty() && !sequence.settings.empty()) {
       return reader_.Fault(node, "sequences", "`set` beside `config` only: a dataset has no settings");
+    }
+    if (sequence.dataset.empty() && !sequence.truth.empty()) {
+      return reader_.Fault(node, "sequences", "`truth` beside `path` only: a simulation has its own");
     }
     if (sequence.name.empty()) {
       const std::filesystem::path source = sequence.dataset.empty() ? sequence.config : sequence.dataset;

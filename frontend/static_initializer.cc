@@ -19,6 +19,7 @@ constexpr double kMaxRestingRateRadps = 0.2;
 constexpr double kMaxGravityErrorMps2 = 2.0;
 // Slow rotations change the specific force without spreading it much.
 constexpr double kDriftOfSpreadLimit = 0.5;
+constexpr double kShownToHiddenBias = 1.5;
 constexpr double kGravityStdMps2 = 0.02;
 constexpr double kGyroBiasFloorRadps = 1e-4;  // the Earth's own rate
 constexpr size_t kBlocks = 10;
@@ -158,8 +159,10 @@ NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const Imu
   jacobian << gravity_mps2 * Skew(up), Matrix3d::Identity();
   Matrix6d information = jacobian.transpose() * weight * jacobian;
   information.topLeftCorner<3, 3>() += along / (config.yaw_std_rad * config.yaw_std_rad);
-  information.bottomRightCorner<3, 3>() +=
-      Matrix3d::Identity() / (config.accel_bias_std_mps2 * config.accel_bias_std_mps2);
+  // The one component of b_a that rest shows is a sample of the population of the two it hides.
+  const double accel_bias_std =
+      std::max(config.accel_bias_std_mps2, kShownToHiddenBias * std::abs(magnitude - gravity_mps2));
+  information.bottomRightCorner<3, 3>() += Matrix3d::Identity() / (accel_bias_std * accel_bias_std);
   const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
   const double walk = noise.gyro_random_walk_radps2_sqrthz;
   const double gyro_variance =

@@ -86,7 +86,7 @@ TEST_P(EveryStrategy, TruthStaysInsideTheCovariance) {
   EXPECT_LT(nees, 11.0);
 }
 
-TEST(FilterEstimatorTest, PaperReuseIsOverconfidentAndTheRemediesAreNot) {
+TEST(FilterEstimatorTest, PaperReuseIsOverconfidentAndInflationIsNot) {
   const auto mean_nees = [](BaseReuse reuse) {
     double nees = 0;
     for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -97,9 +97,7 @@ TEST(FilterEstimatorTest, PaperReuseIsOverconfidentAndTheRemediesAreNot) {
     }
     return nees;
   };
-  const double paper = mean_nees(BaseReuse::kPaper);
-  EXPECT_GT(paper, 1.2 * mean_nees(BaseReuse::kInflate));
-  EXPECT_GT(paper, 1.2 * mean_nees(BaseReuse::kDisjoint));
+  EXPECT_GT(mean_nees(BaseReuse::kPaper), 1.2 * mean_nees(BaseReuse::kInflate));
 }
 
 TEST(FilterEstimatorTest, SameInputSameBits) {
