@@ -13,7 +13,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-// A point closer to the image plane than this is not a landmark any camera here resolves; it also keeps 1/z bounded.
+// A point closer to the image plane than this is not a landmark any camera here resolves; it also keeps 1/z
+// bounded.
 constexpr double kMinDepthM = 1e-3;
 // tan(89.9 deg): the normalised plane itself ends at 90 degrees off axis.
 constexpr double kMaxRadius = 572.0;
@@ -58,13 +59,14 @@ int CoefficientCount(DistortionModel model) {
 }
 
 Result<CameraModel> CameraModel::Create(DistortionModel model, const Vector4d& fu_fv_cu_cv,
-                                        const std::vector<double>& coefficients, int width_px, int height_px) {
+                                        const std::vector<double>& coefficients, int width_px,
+                                        int height_px) {
   if (!fu_fv_cu_cv.allFinite() || fu_fv_cu_cv[0] <= 0 || fu_fv_cu_cv[1] <= 0) {
     return Status::Input("intrinsics: expected finite fu, fv, cu, cv with positive focal lengths [px]");
   }
   if (width_px <= 0 || height_px <= 0) {
-    return Status::Input("resolution: expected positive width and height [px], found " + std::to_string(width_px) +
-                         " x " + std::to_string(height_px));
+    return Status::Input("resolution: expected positive width and height [px], found " +
+                         std::to_string(width_px) + " x " + std::to_string(height_px));
   }
   const int expected = CoefficientCount(model);
   if (static_cast<int>(coefficients.size()) != expected) {
@@ -123,11 +125,13 @@ void CameraModel::BoundDomain() {
   double corner = 0;
   for (const double u : {0.0, static_cast<double>(width_px_)}) {
     for (const double v : {0.0, static_cast<double>(height_px_)}) {
-      const Vector2d distorted = (Vector2d(u, v) - intrinsics_.tail<2>()).cwiseQuotient(intrinsics_.head<2>());
+      const Vector2d distorted =
+          (Vector2d(u, v) - intrinsics_.tail<2>()).cwiseQuotient(intrinsics_.head<2>());
       corner = std::max(corner, distorted.norm());
     }
   }
-  // March outwards in angle until the radial map stops growing; the tangential terms are too small to move the bound.
+  // March outwards in angle until the radial map stops growing; the tangential terms are too small to move
+  // the bound.
   constexpr int kSteps = 2000;
   const double max_angle = std::atan(kMaxRadius);
   max_radius_ = 0;
@@ -179,7 +183,8 @@ bool CameraModel::Distort(const Vector2d& ideal, Vector2d* distorted, Matrix2d* 
     *distorted += Vector2d(2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y);
     if (jacobian != nullptr) {
       Matrix2d tangential;
-      tangential << 2 * p1 * y + 6 * p2 * x, 2 * p1 * x + 2 * p2 * y, 2 * p1 * x + 2 * p2 * y, 6 * p1 * y + 2 * p2 * x;
+      tangential << 2 * p1 * y + 6 * p2 * x, 2 * p1 * x + 2 * p2 * y, 2 * p1 * x + 2 * p2 * y,
+          6 * p1 * y + 2 * p2 * x;
       *jacobian += tangential;
     }
   }
@@ -211,7 +216,8 @@ bool CameraModel::Undistort(const Vector2d& distorted, Vector2d* ideal) const {
   if (!(r_d <= max_distorted_radius_)) {
     return false;
   }
-  // Newton on the radius alone, bisecting when it leaves the bracket: converges for every one-to-one radial map.
+  // Newton on the radius alone, bisecting when it leaves the bracket: converges for every one-to-one radial
+  // map.
   double low = 0;
   double high = max_radius_;
   double radius = std::min(r_d, max_radius_);

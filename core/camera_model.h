@@ -14,10 +14,11 @@ namespace alidade {
 /// u = fu x_d + cu, v = fv y_d + cv. With r^2 = x^2 + y^2:
 ///
 ///   none               x_d = x
-///   radial-tangential  x_d = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2), likewise y (Brown; OpenCV order
-///                      k1 k2 p1 p2)
-///   equidistant        t = atan(r), x_d = x/r t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8) (Kannala, Brandt 2006)
+///   radial-tangential  x_d = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2), likewise y (Brown)
+///   equidistant        t = atan(r), x_d = x/r t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8)
 ///   fov                r_d = atan(2 r tan(w/2)) / w, x_d = x/r r_d (Devernay, Faugeras 2001)
+///
+/// Radial-tangential coefficients come in OpenCV's order k1 k2 p1 p2; equidistant is Kannala, Brandt 2006.
 enum class DistortionModel { kNone, kRadialTangential, kEquidistant, kFov };
 
 [[nodiscard]] std::optional<DistortionModel> ParseDistortionModel(std::string_view name);
@@ -25,30 +26,33 @@ enum class DistortionModel { kNone, kRadialTangential, kEquidistant, kFov };
 /// Number of coefficients the model takes.
 [[nodiscard]] int CoefficientCount(DistortionModel model);
 
-/// Pinhole camera with a lens model. Immutable after Create, which bounds the domain to where the distortion is
-/// one-to-one and at most half again as far from the principal point as the image's farthest corner; outside it every call answers false instead of a plausible number.
+/// Pinhole camera with a lens model. Immutable after Create, which bounds the domain to where the distortion
+/// is one-to-one and at most half again as far from the principal point as the image's farthest corner;
+/// outside it every call answers false instead of a plausible number.
 class CameraModel {
  public:
   /// An ideal camera of focal length 1: pixels are normalised coordinates.
   CameraModel() = default;
 
-  /// Errors (kInput): non-positive focal length or resolution, wrong number of coefficients, non-finite numbers,
-  /// fov w outside (0, pi).
+  /// Errors (kInput): non-positive focal length or resolution, wrong number of coefficients, non-finite
+  /// numbers, fov w outside (0, pi).
   static Result<CameraModel> Create(DistortionModel model, const Eigen::Vector4d& fu_fv_cu_cv,
                                     const std::vector<double>& coefficients, int width_px, int height_px);
 
-  /// Point in the camera frame [m] -> pixel. jacobian: d pixel / d p_C, 2x3. False when the point is behind the camera
-  /// or outside the lens model's domain; outputs are then untouched. The pixel may lie outside the image.
+  /// Point in the camera frame [m] -> pixel. jacobian: d pixel / d p_C, 2x3. False when the point is behind
+  /// the camera or outside the lens model's domain; outputs are then untouched. The pixel may lie outside the
+  /// image.
   bool Project(const Eigen::Vector3d& p_C, Eigen::Vector2d* pixel,
                Eigen::Matrix<double, 2, 3>* jacobian = nullptr) const;
 
-  /// Pixel -> normalised plane. pixel_jacobian: d pixel / d normalised at the answer, 2x2 (whitens pixel noise on the
-  /// normalised plane). False when no point of the domain maps to this pixel.
+  /// Pixel -> normalised plane. pixel_jacobian: d pixel / d normalised at the answer, 2x2 (whitens pixel
+  /// noise on the normalised plane). False when no point of the domain maps to this pixel.
   bool Unproject(const Eigen::Vector2d& pixel, Eigen::Vector2d* normalized,
                  Eigen::Matrix2d* pixel_jacobian = nullptr) const;
 
   /// Ideal -> distorted normalised coordinates, with the 2x2 Jacobian. False outside the domain.
-  bool Distort(const Eigen::Vector2d& ideal, Eigen::Vector2d* distorted, Eigen::Matrix2d* jacobian = nullptr) const;
+  bool Distort(const Eigen::Vector2d& ideal, Eigen::Vector2d* distorted,
+               Eigen::Matrix2d* jacobian = nullptr) const;
 
   [[nodiscard]] bool InImage(const Eigen::Vector2d& pixel, double border_px = 0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px && pixel.x() <= width_px_ - 1 - border_px &&

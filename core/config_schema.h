@@ -18,9 +18,9 @@ struct KeyDoc {
   std::string_view reason;  ///< why the default is what it is, or what the key trades
 };
 
-/// Walks the keys of a configuration struct. Each struct lists its keys ONCE, in Describe(ConfigVisitor&); parsing,
-/// validation, printing and documentation are visitors over that one list, so no option is written twice.
-/// Ranges are inclusive. A visitor that reads never leaves a value outside its range.
+/// Walks the keys of a configuration struct. Each struct lists its keys ONCE, in Describe(ConfigVisitor&);
+/// parsing, validation, printing and documentation are visitors over that one list, so no option is written
+/// twice. Ranges are inclusive. A visitor that reads never leaves a value outside its range.
 class ConfigVisitor {
  public:
   virtual ~ConfigVisitor() = default;

@@ -8,12 +8,13 @@ using Eigen::Vector3d;
 
 Matrix3d RetractRotation(ErrorConvention convention, const Matrix3d& rotation, const Vector3d& theta) {
   const Matrix3d delta = so3::Exp(theta);
-  return convention == ErrorConvention::kRightInvariant ? Matrix3d(delta * rotation) : Matrix3d(rotation * delta);
+  return convention == ErrorConvention::kRightInvariant ? Matrix3d(delta * rotation)
+                                                        : Matrix3d(rotation * delta);
 }
 
 /// A vector that the rotation couples to (position or velocity), after the rotation error `theta`.
-Vector3d RetractVector(ErrorConvention convention, const Matrix3d& rotation, const Vector3d& x, const Vector3d& theta,
-                       const Vector3d& xi) {
+Vector3d RetractVector(ErrorConvention convention, const Matrix3d& rotation, const Vector3d& x,
+                       const Vector3d& theta, const Vector3d& xi) {
   switch (convention) {
     case ErrorConvention::kRightInvariant:
       return so3::Exp(theta) * x + xi;
@@ -30,8 +31,8 @@ Vector3d LocalRotation(ErrorConvention convention, const Matrix3d& estimate, con
                                                         : so3::Log(estimate.transpose() * truth);
 }
 
-Vector3d LocalVector(ErrorConvention convention, const Matrix3d& estimate, const Matrix3d& truth, const Vector3d& x,
-                     const Vector3d& x_truth) {
+Vector3d LocalVector(ErrorConvention convention, const Matrix3d& estimate, const Matrix3d& truth,
+                     const Vector3d& x, const Vector3d& x_truth) {
   switch (convention) {
     case ErrorConvention::kRightInvariant:
       return x_truth - truth * (estimate.transpose() * x);
@@ -45,8 +46,8 @@ Vector3d LocalVector(ErrorConvention convention, const Matrix3d& estimate, const
 
 /// Fills C (or its inverse) for one rotation and `count` coupled vectors.
 template <int kSize>
-Eigen::Matrix<double, kSize, kSize> Chart(ErrorConvention convention, const Matrix3d& rotation, const Vector3d* vectors,
-                                          bool inverse) {
+Eigen::Matrix<double, kSize, kSize> Chart(ErrorConvention convention, const Matrix3d& rotation,
+                                          const Vector3d* vectors, bool inverse) {
   Eigen::Matrix<double, kSize, kSize> c = Eigen::Matrix<double, kSize, kSize>::Identity();
   if (convention == ErrorConvention::kSo3xRn) {
     return c;
@@ -126,7 +127,8 @@ Pose Retract(ErrorConvention convention, const Pose& estimate, const Vector6d& x
 Vector6d Local(ErrorConvention convention, const Pose& estimate, const Pose& truth) {
   Vector6d xi;
   xi.head<3>() = LocalRotation(convention, estimate.rotation, truth.rotation);
-  xi.tail<3>() = LocalVector(convention, estimate.rotation, truth.rotation, estimate.translation, truth.translation);
+  xi.tail<3>() =
+      LocalVector(convention, estimate.rotation, truth.rotation, estimate.translation, truth.translation);
   return xi;
 }
 

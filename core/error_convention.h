@@ -14,8 +14,8 @@ namespace alidade {
 ///   so3xrn           R = R^ Exp(theta),  x = x^ + xi_x
 ///
 /// Biases are additive in all three. All measurement Jacobians are taken in ONE canonical chart
-/// zeta = (phi, dp, dv): R = R^ Exp(phi), p = p^ + dp, v = v^ + dv (that is so3xrn); a convention contributes only its
-/// chart Jacobian C = d zeta / d xi at 0, so that H_xi = J_zeta C and P_zeta = C P_xi C^T.
+/// zeta = (phi, dp, dv): R = R^ Exp(phi), p = p^ + dp, v = v^ + dv (that is so3xrn); a convention contributes
+/// only its chart Jacobian C = d zeta / d xi at 0, so that H_xi = J_zeta C and P_zeta = C P_xi C^T.
 enum class ErrorConvention { kRightInvariant, kLeftInvariant, kSo3xRn };
 
 [[nodiscard]] std::optional<ErrorConvention> ParseErrorConvention(std::string_view name);

@@ -21,29 +21,32 @@ struct FrameStatistics {
   int features_degenerate = 0;   ///< depth negative or out of range
   int satellites_used = 0;
   int satellites_gated = 0;
-  int iterations = 0;            ///< of the smoother's solver
-  bool at_rest = false;          ///< the frame was used as a zero-velocity measurement
-  double nis = 0;                ///< normalised innovation squared of the applied rows
-  int nis_dof = 0;               ///< rows applied
+  int iterations = 0;    ///< of the smoother's solver
+  bool at_rest = false;  ///< the frame was used as a zero-velocity measurement
+  double nis = 0;        ///< normalised innovation squared of the applied rows
+  int nis_dof = 0;       ///< rows applied
   double propagate_ms = 0;
   double update_ms = 0;
 };
 
 /// A back end: consumes one measurement log in time order and tells state and covariance after each frame.
 ///
-/// Single-threaded and deterministic: equal calls give equal bits (the *_ms statistics aside). Before AddFrame(f) the
-/// caller has added every IMU sample up to and including the first one at or after the frame's IMU time.
+/// Single-threaded and deterministic: equal calls give equal bits (the *_ms statistics aside). Before
+/// AddFrame(f) the caller has added every IMU sample up to and including the first one at or after the
+/// frame's IMU time.
 class Estimator {
  public:
   virtual ~Estimator() = default;
 
-  /// Starts (or restarts) at `initial`; its covariance is in the canonical chart. The first frame may carry the same
-  /// stamp. Errors (kInput): not finite, not a rotation, covariance not symmetric positive semi-definite.
+  /// Starts (or restarts) at `initial`; its covariance is in the canonical chart. The first frame may carry
+  /// the same stamp. Errors (kInput): not finite, not a rotation, covariance not symmetric positive
+  /// semi-definite.
   virtual Status Initialize(const NavEstimate& initial) = 0;
   /// Buffers a sample. Samples may arrive out of order or twice; a non-finite one is kInput and is dropped.
   virtual Status AddImu(const ImuSample& sample) = 0;
-  /// Propagates to the frame and updates with its tracks. kInput: the frame was skipped (not after the last one, or no
-  /// IMU reaches it) and the state is as before. kDiverged: the state is lost; Initialize restarts.
+  /// Propagates to the frame and updates with its tracks. kInput: the frame was skipped (not after the last
+  /// one, or no IMU reaches it) and the state is as before. kDiverged: the state is lost; Initialize
+  /// restarts.
   virtual Status AddFrame(const TrackFrame& frame) = 0;
 
   /// State after the last accepted frame. Precondition: initialised.

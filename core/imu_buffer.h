@@ -23,12 +23,13 @@ class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s) : max_gap_s_(max_gap_s) {}
 
-  /// Sorts the sample in. kInput: a component is not finite, or the sample is older than the last consumed interval.
+  /// Sorts the sample in. kInput: a component is not finite, or the sample is older than the last consumed
+  /// interval.
   Status Add(const ImuSample& sample);
 
-  /// Samples that cover [from, to]: linearly interpolated at both ends, all measured ones between. kInput: to <= from, or
-  /// the buffer does not reach both ends (the message gives the missing milliseconds). A gap longer than the limit is
-  /// counted and bridged by interpolation.
+  /// Samples that cover [from, to]: linearly interpolated at both ends, all measured ones between. kInput: to
+  /// <= from, or the buffer does not reach both ends (the message gives the missing milliseconds). A gap
+  /// longer than the limit is counted and bridged by interpolation.
   Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* samples);
 
   /// Forgets samples that no interval starting at or after `stamp_ns` needs.

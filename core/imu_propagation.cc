@@ -9,8 +9,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Rows3x15 = Eigen::Matrix<double, 3, 15>;
 
-/// d (Gamma_m(phi) a) / d phi, m in {1, 2}: term-by-term derivative of Gamma_m = I/m! + a [phi]x + b [phi]x^2, whose
-/// coefficients are power series in |phi|^2.
+/// d (Gamma_m(phi) a) / d phi, m in {1, 2}: term-by-term derivative of Gamma_m = I/m! + a [phi]x + b
+/// [phi]x^2, whose coefficients are power series in |phi|^2.
 Matrix3d GammaVectorDerivative(const Vector3d& phi, const Vector3d& v, int m) {
   const double t2 = phi.squaredNorm();
   double a = 0;
@@ -69,8 +69,8 @@ void AddSymmetric(Matrix15d* q, int row, int col, const Matrix3d& block) {
 }
 
 /// Integral of the noise response over the step; R a is held at its value in the step's middle.
-void AddStepNoise(const Matrix3d& R_mid, const Matrix3d& R_end, const Vector3d& accel, double dt, const ImuNoise& noise,
-                  Matrix15d* q) {
+void AddStepNoise(const Matrix3d& R_mid, const Matrix3d& R_end, const Vector3d& accel, double dt,
+                  const ImuNoise& noise, Matrix15d* q) {
   const double g2 = noise.gyro_noise_density_radps_sqrthz * noise.gyro_noise_density_radps_sqrthz;
   const double a2 = noise.accel_noise_density_mps2_sqrthz * noise.accel_noise_density_mps2_sqrthz;
   const double wg2 = noise.gyro_random_walk_radps2_sqrthz * noise.gyro_random_walk_radps2_sqrthz;
@@ -78,8 +78,8 @@ void AddStepNoise(const Matrix3d& R_mid, const Matrix3d& R_end, const Vector3d& 
   const Matrix3d I = Matrix3d::Identity();
   const double dt2 = dt * dt;
   const double dt3 = dt2 * dt;
-  const Matrix3d A = R_mid * Skew(accel);                // velocity gained per attitude error (frame of the middle)
-  const Matrix3d to_end = R_end.transpose() * R_mid;     // attitude error of the middle, seen from the end
+  const Matrix3d A = R_mid * Skew(accel);  // velocity gained per attitude error (frame of the middle)
+  const Matrix3d to_end = R_end.transpose() * R_mid;  // attitude error of the middle, seen from the end
   const Matrix3d AtE = A * to_end.transpose();
   const Matrix3d AAt = A * A.transpose();
   // Gyroscope white noise: phi: -1, v: A s, p: A s^2/2 after a lag s.
@@ -139,8 +139,8 @@ void PropagateImu(std::span<const ImuSample> samples, const ImuBias& bias, const
   for (size_t k = 0; k + 1 < samples.size(); ++k) {
     const Vector3d omega = 0.5 * (samples[k].gyro + samples[k + 1].gyro) - bias.gyro;
     const Vector3d accel = 0.5 * (samples[k].accel + samples[k + 1].accel) - bias.accel;
-    PropagateStep(omega, accel, SecondsBetween(samples[k].stamp_ns, samples[k + 1].stamp_ns), noise, gravity_W, state,
-                  transition);
+    PropagateStep(omega, accel, SecondsBetween(samples[k].stamp_ns, samples[k + 1].stamp_ns), noise,
+                  gravity_W, state, transition);
   }
 }
 

@@ -3,8 +3,9 @@
 namespace alidade {
 
 bool InverseDepthModel::Evaluate(const Pose& T_WC_base, const Pose& T_WC, double inverse_depth,
-                                 Eigen::Vector2d* residual, PoseJacobian* jacobian_base, PoseJacobian* jacobian_view,
-                                 Eigen::Vector2d* jacobian_rho, Eigen::Matrix2d* jacobian_bearing) const {
+                                 Eigen::Vector2d* residual, PoseJacobian* jacobian_base,
+                                 PoseJacobian* jacobian_view, Eigen::Vector2d* jacobian_rho,
+                                 Eigen::Matrix2d* jacobian_bearing) const {
   const Eigen::Vector3d ray = z_base.homogeneous();
   const Eigen::Vector3d ray_W = T_WC_base.rotation * ray;
   const Eigen::Vector3d shift_W = T_WC_base.translation - T_WC.translation;

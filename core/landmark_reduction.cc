@@ -75,7 +75,8 @@ bool RefineLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObserv
   if (!(p_base.z() > 0)) {
     return false;
   }
-  Vector3d m(p_base.x() / p_base.z(), p_base.y() / p_base.z(), 1.0 / p_base.z());  // (x, y, rho) in the base view
+  // (x, y, rho) in the base view.
+  Vector3d m(p_base.x() / p_base.z(), p_base.y() / p_base.z(), 1.0 / p_base.z());
   // Cost, and when asked for the normal equations; a landmark behind a view costs infinitely much.
   const auto linearize = [&](const Vector3d& at, Matrix3d* normal, Vector3d* gradient) {
     double cost = 0;

@@ -53,7 +53,8 @@ double InverseJacobianCoefficient(double theta) {
   return (1 - 0.5 * theta / std::tan(0.5 * theta)) / t2;
 }
 
-/// Off-diagonal block Q(phi, rho) of the SE(3) left Jacobian, Barfoot, "State estimation for robotics", eq. 7.86.
+/// Off-diagonal block Q(phi, rho) of the SE(3) left Jacobian, Barfoot, "State estimation for robotics",
+/// eq. 7.86.
 Matrix3d BarfootQ(const Vector3d& phi, const Vector3d& rho) {
   const double theta = phi.norm();
   const double t2 = theta * theta;
@@ -90,7 +91,9 @@ Matrix3d Gamma(const Vector3d& phi, int m) {
   return Matrix3d::Identity() / std::tgamma(m + 1.0) + ab[0] * p + ab[1] * (p * p);
 }
 
-Matrix3d Exp(const Vector3d& phi) { return Gamma(phi, 0); }
+Matrix3d Exp(const Vector3d& phi) {
+  return Gamma(phi, 0);
+}
 
 Eigen::Quaterniond ExpQuaternion(const Vector3d& phi) {
   const double half = 0.5 * phi.norm();
@@ -111,16 +114,22 @@ Vector3d Log(const Matrix3d& rotation) {
   return 2.0 * std::atan2(n, q.w()) / n * q.vec();
 }
 
-Matrix3d LeftJacobian(const Vector3d& phi) { return Gamma(phi, 1); }
+Matrix3d LeftJacobian(const Vector3d& phi) {
+  return Gamma(phi, 1);
+}
 
-Matrix3d RightJacobian(const Vector3d& phi) { return Gamma(-phi, 1); }
+Matrix3d RightJacobian(const Vector3d& phi) {
+  return Gamma(-phi, 1);
+}
 
 Matrix3d LeftJacobianInverse(const Vector3d& phi) {
   const Matrix3d p = Skew(phi);
   return Matrix3d::Identity() - 0.5 * p + InverseJacobianCoefficient(phi.norm()) * (p * p);
 }
 
-Matrix3d RightJacobianInverse(const Vector3d& phi) { return LeftJacobianInverse(-phi); }
+Matrix3d RightJacobianInverse(const Vector3d& phi) {
+  return LeftJacobianInverse(-phi);
+}
 
 Matrix3d Normalize(const Matrix3d& m) {
   const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -157,7 +166,9 @@ Matrix6d LeftJacobian(const Vector6d& xi) {
   return j;
 }
 
-Matrix6d RightJacobian(const Vector6d& xi) { return LeftJacobian(-xi); }
+Matrix6d RightJacobian(const Vector6d& xi) {
+  return LeftJacobian(-xi);
+}
 
 Matrix6d Adjoint(const Eigen::Matrix4d& transform) {
   const Matrix3d r = transform.topLeftCorner<3, 3>();
@@ -201,7 +212,9 @@ Matrix9d LeftJacobian(const Vector9d& xi) {
   return j;
 }
 
-Matrix9d RightJacobian(const Vector9d& xi) { return LeftJacobian(-xi); }
+Matrix9d RightJacobian(const Vector9d& xi) {
+  return LeftJacobian(-xi);
+}
 
 Matrix9d Adjoint(const Matrix5d& element) {
   const Matrix3d r = element.topLeftCorner<3, 3>();

@@ -35,8 +35,9 @@ namespace so3 {
 [[nodiscard]] Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& phi);
 [[nodiscard]] Eigen::Matrix3d LeftJacobianInverse(const Eigen::Vector3d& phi);
 [[nodiscard]] Eigen::Matrix3d RightJacobianInverse(const Eigen::Vector3d& phi);
-/// Gamma_m(phi) = sum_k [phi]x^k / (k + m)!; Gamma_0 = Exp, Gamma_1 = J_l, Gamma_2 and Gamma_3 integrate specific force
-/// over a constant rotation rate (Bloesch et al. 2012, Hartley et al. 2020 appendix). Shape 3x3, m in 0..3.
+/// Gamma_m(phi) = sum_k [phi]x^k / (k + m)!; Gamma_0 = Exp, Gamma_1 = J_l, Gamma_2 and Gamma_3 integrate
+/// specific force over a constant rotation rate (Bloesch et al. 2012, Hartley et al. 2020 appendix). Shape
+/// 3x3, m in 0..3.
 [[nodiscard]] Eigen::Matrix3d Gamma(const Eigen::Vector3d& phi, int m);
 /// The rotation matrix nearest to `m` in the Frobenius norm.
 [[nodiscard]] Eigen::Matrix3d Normalize(const Eigen::Matrix3d& m);

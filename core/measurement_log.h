@@ -10,7 +10,8 @@
 
 namespace alidade {
 
-/// One tracked feature in one frame. Ids are unique in a log: a track that ends never comes back under its id.
+/// One tracked feature in one frame. Ids are unique in a log: a track that ends never comes back under its
+/// id.
 struct TrackObservation {
   std::int64_t track_id = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< raw (distorted) image coordinates [px]
@@ -20,18 +21,20 @@ struct TrackObservation {
 struct TrackFrame {
   TimeNs stamp_ns = 0;
   std::vector<TrackObservation> observations;
-  double frontend_ms = 0;  ///< wall time the front end spent on this frame; 0 when the tracks were read from a file
+  /// Wall time the front end spent on this frame; 0 when the tracks were read from a file.
+  double frontend_ms = 0;
 };
 
 /// What is known about the rig before a run; constant unless an estimator calibrates online.
 struct RigCalibration {
   CameraModel camera;
-  Pose T_BC;                       ///< camera to body (IMU): p_B = T_BC * p_C
+  Pose T_BC;  ///< camera to body (IMU): p_B = T_BC * p_C
   ImuNoise imu_noise;
-  double camera_time_offset_s = 0; ///< t_imu = t_camera + offset
+  double camera_time_offset_s = 0;  ///< t_imu = t_camera + offset
 };
 
-/// The one input every estimator of a comparison reads: IMU and tracks, time-ordered, with the rig's calibration.
+/// The one input every estimator of a comparison reads: IMU and tracks, time-ordered, with the rig's
+/// calibration.
 struct MeasurementLog {
   RigCalibration rig;
   std::vector<ImuSample> imu;      ///< strictly increasing stamps

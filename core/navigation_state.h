@@ -10,7 +10,9 @@ struct Pose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
-  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation * p + translation; }
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
+    return rotation * p + translation;
+  }
   [[nodiscard]] Pose operator*(const Pose& other) const {
     return {rotation * other.rotation, rotation * other.translation + translation};
   }
@@ -37,8 +39,8 @@ struct NavEstimate {
   TimeNs stamp_ns = 0;
   NavState nav;
   ImuBias bias;
-  /// Covariance in the canonical chart (phi, dp, dv, dbg, dba): R = R^ Exp(phi), the rest additive. Units rad, m, m/s,
-  /// rad/s, m/s^2. See core/error_convention.h.
+  /// Covariance in the canonical chart (phi, dp, dv, dbg, dba): R = R^ Exp(phi), the rest additive. Units
+  /// rad, m, m/s, rad/s, m/s^2. See core/error_convention.h.
   Matrix15d covariance = Matrix15d::Zero();
 };
 

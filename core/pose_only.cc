@@ -41,8 +41,8 @@ struct DepthDerivative {
   Eigen::RowVectorXd observations;  // 1 x 2N
 };
 
-DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const Vector2d> z, int base, DepthViews views,
-                                   const PoseOnlyDepth& depth) {
+DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const Vector2d> z, int base,
+                                   DepthViews views, const PoseOnlyDepth& depth) {
   const int count = static_cast<int>(T_WC.size());
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
   const Vector3d z_b = z[static_cast<size_t>(base)].homogeneous();
@@ -54,7 +54,8 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const V
     }
     const Pose& view = T_WC[static_cast<size_t>(i)];
     const DepthRow row = MakeRow(view, z[static_cast<size_t>(i)], base_view, base_ray_W);
-    // dd = [ (b - 2 d A)^T dA + A^T db ] / A^T A, with dA = [z]x dray - [ray]x dz and db = -[z]x dshift + [shift]x dz.
+    // dd = [ (b - 2 d A)^T dA + A^T db ] / A^T A, with dA = [z]x dray - [ray]x dz and
+    // db = -[z]x dshift + [shift]x dz.
     const Vector3d weight_a = (row.b - 2 * depth.depth * row.a) / depth.normal;
     const Vector3d weight_b = row.a / depth.normal;
     const Eigen::RowVector3d to_ray = weight_a.transpose() * Skew(row.z);
@@ -64,7 +65,8 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const V
     derivative.poses.segment<3>(6 * i + 3) -= to_shift * Rt;
     derivative.poses.segment<3>(6 * base) -= to_ray * Rt * base_view.rotation * Skew(z_b);
     derivative.poses.segment<3>(6 * base + 3) += to_shift * Rt;
-    const Eigen::RowVector3d to_z = -weight_a.transpose() * Skew(row.ray) + weight_b.transpose() * Skew(row.shift);
+    const Eigen::RowVector3d to_z =
+        -weight_a.transpose() * Skew(row.ray) + weight_b.transpose() * Skew(row.shift);
     derivative.observations.segment<2>(2 * i) += to_z.head<2>();
     derivative.observations.segment<2>(2 * base) += (to_ray * Rt * base_view.rotation).head<2>();
   }
@@ -84,7 +86,8 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Vector2d> 
   double right_side = 0;
   for (int i = 0; i < count; ++i) {
     if (GivesDepth(i, base, count, views)) {
-      const DepthRow row = MakeRow(T_WC[static_cast<size_t>(i)], z[static_cast<size_t>(i)], base_view, base_ray_W);
+      const DepthRow row =
+          MakeRow(T_WC[static_cast<size_t>(i)], z[static_cast<size_t>(i)], base_view, base_ray_W);
       normal += row.a.squaredNorm();
       right_side += row.a.dot(row.b);
     }
@@ -98,7 +101,8 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Vector2d> 
   return std::isfinite(depth->depth) && depth->p_W.allFinite();
 }
 
-bool DepthIsDetermined(const PoseOnlyDepth& depth, int other_views, double sigma, double max_relative_deviation) {
+bool DepthIsDetermined(const PoseOnlyDepth& depth, int other_views, double sigma,
+                       double max_relative_deviation) {
   const double parallax = depth.normal - 4 * other_views * sigma * sigma;
   return parallax * max_relative_deviation * max_relative_deviation > sigma * sigma;
 }

@@ -77,8 +77,7 @@ void PreintegrationModel::Evaluate(const NavState& state_i, const ImuBias& bias_
   const double T = pre.duration_s();
   const Preintegration::Increments measured = pre.Corrected(bias_i);
   const Matrix3d Rt = state_i.R_WB.transpose();
-  const Vector3d alpha =
-      Rt * (state_j.p_WB - state_i.p_WB - state_i.v_WB * T - 0.5 * T * T * gravity_W);
+  const Vector3d alpha = Rt * (state_j.p_WB - state_i.p_WB - state_i.v_WB * T - 0.5 * T * T * gravity_W);
   const Vector3d beta = Rt * (state_j.v_WB - state_i.v_WB - T * gravity_W);
   const Vector3d theta = so3::Log(measured.gamma.transpose() * Rt * state_j.R_WB);
   residual->segment<3>(0) = alpha - measured.alpha;

@@ -30,7 +30,9 @@ double ChiSquareGate::Threshold(int dof) const {
                                                      : ChiSquareQuantile(dof, probability_);
 }
 
-bool ChiSquareGate::Accepts(double nis, int dof) const { return nis <= Threshold(dof); }
+bool ChiSquareGate::Accepts(double nis, int dof) const {
+  return nis <= Threshold(dof);
+}
 
 double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm) {
   switch (kernel) {

@@ -22,7 +22,8 @@ class ChiSquareGate {
   std::vector<double> thresholds_;
 };
 
-/// IRLS weight in (0, 1] of a whitened residual with squared norm s: Huber min(1, k / |r|), Cauchy 1 / (1 + s / k^2).
+/// IRLS weight in (0, 1] of a whitened residual with squared norm s:
+/// Huber min(1, k / |r|), Cauchy 1 / (1 + s / k^2).
 [[nodiscard]] double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm);
 
 }  // namespace alidade

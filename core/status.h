@@ -9,15 +9,15 @@ namespace alidade {
 /// What kind of failure a Status carries. Each maps to one exit code of the command line (see eval/cli).
 enum class StatusCode {
   kOk,
-  kUsage,    ///< the caller asked for something that does not exist
-  kConfig,   ///< a configuration key is missing, unknown, ill-typed or out of range
-  kInput,    ///< a file or a measurement is missing, torn, unordered, not finite or degenerate
-  kDiverged, ///< an estimator lost its state or never found it
-  kOutput,   ///< a result could not be written
+  kUsage,     ///< the caller asked for something that does not exist
+  kConfig,    ///< a configuration key is missing, unknown, ill-typed or out of range
+  kInput,     ///< a file or a measurement is missing, torn, unordered, not finite or degenerate
+  kDiverged,  ///< an estimator lost its state or never found it
+  kOutput,    ///< a result could not be written
 };
 
-/// An error as a value: a code and a message that names file, line or key, the value found and what was expected.
-/// Programmer mistakes are CHECKs instead; bad input is always a Status.
+/// An error as a value: a code and a message that names file, line or key, the value found and what was
+/// expected. Programmer mistakes are CHECKs instead; bad input is always a Status.
 class [[nodiscard]] Status {
  public:
   Status() = default;
@@ -43,8 +43,8 @@ class [[nodiscard]] Status {
 template <typename T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : value_(std::move(value)) {}           // NOLINT(google-explicit-constructor)
-  Result(Status status) : status_(std::move(status)) {}   // NOLINT(google-explicit-constructor)
+  Result(T value) : value_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
+  Result(Status status) : status_(std::move(status)) {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] bool ok() const { return value_.has_value(); }
   [[nodiscard]] const Status& status() const { return status_; }

@@ -4,7 +4,9 @@
 
 namespace alidade {
 
-double NormalizedObservation::deviation() const { return 1.0 / std::sqrt(std::abs(sqrt_information.determinant())); }
+double NormalizedObservation::deviation() const {
+  return 1.0 / std::sqrt(std::abs(sqrt_information.determinant()));
+}
 
 bool NormalizeObservation(const CameraModel& camera, const Eigen::Vector2d& pixel, double pixel_noise_px,
                           NormalizedObservation* observation) {

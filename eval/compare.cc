@@ -29,11 +29,11 @@ struct Cell {
 std::string OneLine(const CellResult& cell) {
   char figures[128] = "";
   if (std::isfinite(cell.ate_pos_m)) {
-    std::snprintf(figures, sizeof figures, ", ATE %.3f m %.3f deg, %.2f ms a frame", cell.ate_pos_m, cell.ate_ori_deg,
-                  cell.backend_ms);
+    std::snprintf(figures, sizeof figures, ", ATE %.3f m %.3f deg, %.2f ms a frame", cell.ate_pos_m,
+                  cell.ate_ori_deg, cell.backend_ms);
   }
-  return cell.estimator + " / " + cell.sequence + " / " + std::to_string(cell.seed) + ": " + cell.status + figures +
-         (cell.message.empty() ? "" : " (" + cell.message + ")");
+  return cell.estimator + " / " + cell.sequence + " / " + std::to_string(cell.seed) + ": " + cell.status +
+         figures + (cell.message.empty() ? "" : " (" + cell.message + ")");
 }
 
 /// One comparison from a plan to its tables.
@@ -78,13 +78,16 @@ class Comparer {
         continue;
       }
       FrontendConfig frontend = config->frontend;
-      const nlohmann::ordered_json found = ConfigToJson([&](ConfigVisitor& visitor) { frontend.Describe(visitor); });
+      const nlohmann::ordered_json found =
+          ConfigToJson([&](ConfigVisitor& visitor) { frontend.Describe(visitor); });
       if (expected.is_null()) {
         expected = found;
         common = frontend;
       } else if (found != expected && !std::filesystem::exists(sequence.dataset + "/mav0/cam0/tracks.csv")) {
-        return Status::Config("estimator " + config->name + ": frontend differs from that of the other estimators, but the "
-                              "front end runs once for sequence " + sequence.name + "; expected equal settings");
+        return Status::Config("estimator " + config->name +
+                              ": frontend differs from that of the other estimators, but the "
+                              "front end runs once for sequence " +
+                              sequence.name + "; expected equal settings");
       }
     }
     return common;
@@ -128,9 +131,9 @@ class Comparer {
       }
       Cell cell{&estimator, configs_[i].get(), &sequence, input, seed, UnscoredCell()};
       cell.result.estimator = estimator.name;
-      cell.result.backend = estimator.external()                         ? "external"
+      cell.result.backend = estimator.external()                       ? "external"
                             : configs_[i]->backend == Backend::kFilter ? "filter"
-                                                                         : "smoother";
+                                                                       : "smoother";
       cell.result.sequence = sequence.name;
       cell.result.seed = seed;
       input->AddUser();
@@ -154,7 +157,8 @@ class Comparer {
       Cell& cell = cells_[i];
       RunGuarded(&cell);
       cell.input->Release();
-      Say("[" + std::to_string(++cells_done_) + "/" + std::to_string(cells_.size()) + "] " + OneLine(cell.result));
+      Say("[" + std::to_string(++cells_done_) + "/" + std::to_string(cells_.size()) + "] " +
+          OneLine(cell.result));
     }
   }
 
@@ -183,13 +187,14 @@ class Comparer {
       return Fail(cell, "the measurement log changed between two estimators");
     }
     if (cell->config == nullptr) {
-      const Result<Trajectory> estimate = ReadTrajectory(cell->estimator->trajectories.at(cell->sequence->name));
+      const Result<Trajectory> estimate =
+          ReadTrajectory(cell->estimator->trajectories.at(cell->sequence->name));
       return estimate.ok() ? ScoreTrajectory(truth, *estimate, plan_.metrics, &cell->result)
                            : Fail(cell, estimate.message());
     }
     const std::string folder = FolderOf(*cell);
-    const RunIdentity identity{*cell->config,      cell->sequence->name, data->dataset_digest,
-                               data->input_digest, cell->seed,           data->log.imu.size(),
+    const RunIdentity identity{*cell->config,          cell->sequence->name, data->dataset_digest,
+                               data->input_digest,     cell->seed,           data->log.imu.size(),
                                data->log.frames.size()};
     if (options_.resume && HoldsRun(folder, identity)) {
       ++cells_reused_;
@@ -208,7 +213,8 @@ class Comparer {
     }
     // Scored from what was written: fresh and resumed comparisons give the same figures to the last digit.
     const Result<RunResult> written = ReadRun(folder);
-    return written.ok() ? ScoreRun(truth, *written, plan_.metrics, &cell->result) : Fail(cell, written.message());
+    return written.ok() ? ScoreRun(truth, *written, plan_.metrics, &cell->result)
+                        : Fail(cell, written.message());
   }
 
   Result<CompareOutcome> Finish() {
@@ -235,7 +241,8 @@ class Comparer {
   }
 
   [[nodiscard]] std::string FolderOf(const Cell& cell) const {
-    return options_.output + "/cells/" + cell.estimator->name + "/" + cell.sequence->name + "/" + std::to_string(cell.seed);
+    return options_.output + "/cells/" + cell.estimator->name + "/" + cell.sequence->name + "/" +
+           std::to_string(cell.seed);
   }
 
   [[nodiscard]] bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }

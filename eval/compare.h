@@ -11,8 +11,9 @@ namespace alidade {
 
 struct CompareOptions {
   std::string output;
-  int jobs = 1;         ///< runs at a time; results do not depend on it, but their times do
-  bool resume = false;  ///< keep the cells that are complete and were made from the same input and configuration
+  int jobs = 1;  ///< runs at a time; results do not depend on it, but their times do
+  /// Keep the cells that are complete and were made from the same input and configuration.
+  bool resume = false;
   std::string command;  ///< how to repeat it, for the report
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& line)> progress;  ///< called by one thread at a time
@@ -25,10 +26,11 @@ struct CompareOutcome {
   bool interrupted = false;  ///< then no tables were written; complete cells are kept for resume
 };
 
-/// Runs every estimator on every sequence and seed. All estimators read one measurement log a sequence and seed (the front
-/// end runs once); its digest is taken again for each cell. Writes cells/<estimator>/<sequence>/<seed>/ and the tables and the
-/// report of eval/comparison.h. A cell that fails does not stop the others. Errors: kConfig of an estimator's or a
-/// simulation's configuration, before anything runs; kOutput.
+/// Runs every estimator on every sequence and seed. All estimators read one measurement log a sequence and
+/// seed (the front end runs once); its digest is taken again for each cell. Writes
+/// cells/<estimator>/<sequence>/<seed>/ and the tables and the report of eval/comparison.h. A cell that fails
+/// does not stop the others. Errors: kConfig of an estimator's or a simulation's configuration, before
+/// anything runs; kOutput.
 Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options);
 
 }  // namespace alidade

@@ -11,11 +11,11 @@ namespace alidade {
 
 /// Time series of one cell, thinned for plotting; all vectors have one entry a kept frame.
 struct CellSeries {
-  std::vector<double> time_s;                    ///< since the first pair
+  std::vector<double> time_s;  ///< since the first pair
   std::vector<Eigen::Vector3d> truth_position;
-  std::vector<Eigen::Vector3d> position;         ///< aligned as the plan says
-  std::vector<Vector6d> error;                   ///< (phi [rad], dp [m]) unaligned, canonical chart
-  std::vector<Vector6d> sigma;                   ///< standard deviations of the same
+  std::vector<Eigen::Vector3d> position;  ///< aligned as the plan says
+  std::vector<Vector6d> error;            ///< (phi [rad], dp [m]) unaligned, canonical chart
+  std::vector<Vector6d> sigma;            ///< standard deviations of the same
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
@@ -27,7 +27,7 @@ struct CellResult {
   std::string backend;
   std::string sequence;
   unsigned seed = 0;
-  std::string status;        ///< ok | diverged | not_initialized | failed: reason in `message`
+  std::string status;  ///< ok | diverged | not_initialized | failed: reason in `message`
   std::string message;
   std::string input_digest;
   int frames = 0;
@@ -45,7 +45,7 @@ struct CellResult {
 
 /// A published figure to print beside the measured ones.
 struct ReferenceFigure {
-  std::string source;     ///< "the paper", ...
+  std::string source;  ///< "the paper", ...
   std::string estimator;
   std::string sequence;
   std::map<std::string, double> figures;  ///< column of summary.csv -> value
@@ -61,8 +61,8 @@ struct Comparison {
 /// Writes summary.csv, aggregate.csv, tables.md, tables.tex into `folder` (contract: "What compare writes").
 Status WriteTables(const Comparison& comparison, const std::string& folder);
 
-/// One self-contained offline page: table, trajectories, errors with 3-sigma bands, NEES with its chi-square band, time
-/// per frame; selectable by estimator, sequence and seed.
+/// One self-contained offline page: table, trajectories, errors with 3-sigma bands, NEES with its chi-square
+/// band, time per frame; selectable by estimator, sequence and seed.
 Status WriteReport(const Comparison& comparison, const std::string& path);
 
 /// The table that a person reads on the terminal.

@@ -11,22 +11,25 @@
 
 namespace alidade {
 
-/// Reads a YAML mapping into whatever `describe` lists. A top-level key `base: FILE` (relative to the file) is read first.
-/// Strict: an unknown, duplicate, ill-typed or out-of-range key, an octal-looking or non-finite number is kConfig with
-/// file:line:column, the value, what was expected and the nearest known key.
+/// Reads a YAML mapping into whatever `describe` lists. A top-level key `base: FILE` (relative to the file)
+/// is read first. Strict: an unknown, duplicate, ill-typed or out-of-range key, an octal-looking or
+/// non-finite number is kConfig with file:line:column, the value, what was expected and the nearest known
+/// key.
 Status ReadConfigFile(const std::string& path, const std::function<void(ConfigVisitor&)>& describe);
 
 /// Applies "a.b=value" settings (the flag --set); the message names the setting.
-Status ApplySettings(const std::vector<std::string>& settings, const std::function<void(ConfigVisitor&)>& describe);
+Status ApplySettings(const std::vector<std::string>& settings,
+                     const std::function<void(ConfigVisitor&)>& describe);
 
 /// The flag's text "a.b=1,c=[1,2,3]" -> its settings; commas inside brackets do not split.
 [[nodiscard]] std::vector<std::string> SplitSettings(std::string_view list);
 
-/// The resolved configuration as YAML that ReadConfigFile reads back to the same values; with_docs adds unit, range and
-/// reason as a comment to every key.
+/// The resolved configuration as YAML that ReadConfigFile reads back to the same values; with_docs adds unit,
+/// range and reason as a comment to every key.
 [[nodiscard]] std::string ConfigToYaml(const std::function<void(ConfigVisitor&)>& describe, bool with_docs);
 
 /// ReadConfigFile + ApplySettings + Validate for an estimator.
-Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path, const std::vector<std::string>& settings);
+Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path,
+                                            const std::vector<std::string>& settings);
 
 }  // namespace alidade

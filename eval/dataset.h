@@ -22,23 +22,26 @@ struct Dataset {
   double imu_rate_hz = 0;
   double camera_rate_hz = 0;
   std::vector<ImuSample> imu;
-  std::vector<TrackFrame> tracks;       ///< cam0/tracks.csv, grouped by stamp; empty when there is none
-  std::vector<ImageEntry> images;       ///< cam0/data.csv; empty when there is none
-  std::vector<TimeNs> camera_stamps;    ///< cam0/timestamps.csv; empty when there is none
-  std::optional<Trajectory> truth;      ///< state_groundtruth_estimate0/{data.csv | data_pose.csv}
+  std::vector<TrackFrame> tracks;     ///< cam0/tracks.csv, grouped by stamp; empty when there is none
+  std::vector<ImageEntry> images;     ///< cam0/data.csv; empty when there is none
+  std::vector<TimeNs> camera_stamps;  ///< cam0/timestamps.csv; empty when there is none
+  std::optional<Trajectory> truth;    ///< state_groundtruth_estimate0/{data.csv | data_pose.csv}
   std::string truth_path;
 };
 
-/// Reads everything but pixels. Every fault is kInput naming file, line, value and expectation: missing file, wrong
-/// header, torn row, non-finite number, stamps not increasing, non-rigid T_BS, unknown distortion model, wrong resolution.
+/// Reads everything but pixels. Every fault is kInput naming file, line, value and expectation: missing file,
+/// wrong header, torn row, non-finite number, stamps not increasing, non-rigid T_BS, unknown distortion
+/// model, wrong resolution.
 Result<Dataset> ReadDataset(const std::string& path);
 
-/// Writes imu0, cam0 (tracks, stamps) and truth under `path`. Numbers are the shortest text that reads back equal.
+/// Writes imu0, cam0 (tracks, stamps) and truth under `path`. Numbers are the shortest text that reads back
+/// equal.
 Status WriteDataset(const Dataset& dataset, const std::string& path);
 /// Writes cam0/tracks.csv (and its sensor.yaml) alone: the output of the `track` command.
 Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path);
 
-/// SHA-256 (hex) over the log's IMU, tracks and calibration: equal digests mean identical input to every estimator.
+/// SHA-256 (hex) over the log's IMU, tracks and calibration: equal digests mean identical input to every
+/// estimator.
 [[nodiscard]] std::string DigestOf(const MeasurementLog& log);
 
 /// A finding of `check`: what is wrong or odd about a sequence, or a fact about it.

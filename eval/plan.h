@@ -41,9 +41,9 @@ struct Plan {
   std::vector<ReferenceFigure> references;
 };
 
-/// Reads a plan. `${data}` in a path or in a setting becomes `data_root`; relative paths are relative to the plan's folder.
-/// Strict: an unknown, duplicate or ill-typed key, two estimators or sequences of one name, a name that is no
-/// folder name, or a file that does not exist is kConfig with file:line:column.
+/// Reads a plan. `${data}` in a path or in a setting becomes `data_root`; relative paths are relative to the
+/// plan's folder. Strict: an unknown, duplicate or ill-typed key, two estimators or sequences of one name, a
+/// name that is no folder name, or a file that does not exist is kConfig with file:line:column.
 Result<Plan> ReadPlan(const std::string& path, const std::string& data_root);
 
 }  // namespace alidade

@@ -153,8 +153,7 @@ bool HoldsRun(const std::string& folder, const RunIdentity& identity) {
          Get(*json, "config_digest", std::string()) == DigestOf(identity.config) &&
          Get(*json, "input_digest", std::string()) == identity.input_digest &&
          Get(*json, "dataset_digest", std::string()) == identity.dataset_digest &&
-         Get(*json, "seed", std::uint64_t{0}) == identity.seed &&
-         word != "interrupted" && word != "failed";
+         Get(*json, "seed", std::uint64_t{0}) == identity.seed && word != "interrupted" && word != "failed";
 }
 
 }  // namespace alidade

@@ -7,9 +7,10 @@
 namespace alidade {
 namespace {
 
-/// One iteration is one camera frame of the figure-8 in the steady state: propagation over ten IMU samples, cloning,
-/// update, marginalisation. Arguments: window, tracks.
-void FilterFrame(benchmark::State& state, FilterLandmark landmark, UpdateTiming update, int min_observations) {
+/// One iteration is one camera frame of the figure-8 in the steady state: propagation over ten IMU samples,
+/// cloning, update, marginalisation. Arguments: window, tracks.
+void FilterFrame(benchmark::State& state, FilterLandmark landmark, UpdateTiming update,
+                 int min_observations) {
   SimulatorConfig sim;
   sim.duration_s = 40;
   sim.path_m = 52.4;
@@ -72,8 +73,12 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond);
 }
 
-BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4)->Apply(Sizes);
-BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5)->Args({25, 150})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate,
+                  4)
+    ->Apply(Sizes);
+BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5)
+    ->Args({25, 150})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace alidade

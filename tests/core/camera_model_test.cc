@@ -46,7 +46,8 @@ class EveryCamera : public ::testing::TestWithParam<CameraCase> {
  protected:
   void SetUp() override {
     const CameraCase& c = GetParam();
-    Result<CameraModel> camera = CameraModel::Create(c.model, c.intrinsics, c.coefficients, c.width, c.height);
+    Result<CameraModel> camera =
+        CameraModel::Create(c.model, c.intrinsics, c.coefficients, c.width, c.height);
     ASSERT_TRUE(camera.ok()) << camera.message();
     camera_ = *camera;
   }
@@ -101,7 +102,8 @@ TEST_P(EveryCamera, ProjectionJacobianIsNumeric) {
 TEST_P(EveryCamera, UnprojectionJacobianIsNumeric) {
   RandomStates random(7);
   for (int i = 0; i < 40; ++i) {
-    const Vector2d pixel(random.Uniform(0.2, 0.8) * camera_.width_px(), random.Uniform(0.2, 0.8) * camera_.height_px());
+    const Vector2d pixel(random.Uniform(0.2, 0.8) * camera_.width_px(),
+                         random.Uniform(0.2, 0.8) * camera_.height_px());
     Vector2d ideal;
     Eigen::Matrix2d jacobian;
     ASSERT_TRUE(camera_.Unproject(pixel, &ideal, &jacobian));
@@ -150,10 +152,12 @@ TEST(CameraModelTest, BadCalibrationsAreNamed) {
   };
   EXPECT_NE(message(DistortionModel::kNone, {-1, 1, 0, 0}, {}, 640).find("intrinsics"), std::string::npos);
   EXPECT_NE(message(DistortionModel::kNone, {1, 1, 0, 0}, {}, 0).find("resolution"), std::string::npos);
-  EXPECT_NE(message(DistortionModel::kFov, {1, 1, 0, 0}, {0.9, 0.1}, 640).find("takes 1, found 2"), std::string::npos);
-  EXPECT_NE(message(DistortionModel::kFov, {1, 1, 0, 0}, {4.0}, 640).find("(0, pi)"), std::string::npos);
-  EXPECT_NE(message(DistortionModel::kEquidistant, {1, 1, 0, 0}, {0, std::nan(""), 0, 0}, 640).find("entry 2"),
+  EXPECT_NE(message(DistortionModel::kFov, {1, 1, 0, 0}, {0.9, 0.1}, 640).find("takes 1, found 2"),
             std::string::npos);
+  EXPECT_NE(message(DistortionModel::kFov, {1, 1, 0, 0}, {4.0}, 640).find("(0, pi)"), std::string::npos);
+  EXPECT_NE(
+      message(DistortionModel::kEquidistant, {1, 1, 0, 0}, {0, std::nan(""), 0, 0}, 640).find("entry 2"),
+      std::string::npos);
 }
 
 TEST(VisualObservationTest, PixelNoiseIsWhitenedThroughTheLens) {

@@ -22,7 +22,9 @@ TEST_P(EveryConvention, LocalInvertsRetract) {
     xi << random.Vector(1.5), random.Vector(5), random.Vector(5);
     EXPECT_LT((Local(GetParam(), estimate, Retract(GetParam(), estimate, xi)) - xi).norm(), 1e-12);
     const Pose pose = random.RandomPose(10);
-    EXPECT_LT((Local(GetParam(), pose, Retract(GetParam(), pose, Vector6d(xi.head<6>()))) - xi.head<6>()).norm(), 1e-12);
+    EXPECT_LT(
+        (Local(GetParam(), pose, Retract(GetParam(), pose, Vector6d(xi.head<6>()))) - xi.head<6>()).norm(),
+        1e-12);
   }
 }
 
@@ -40,22 +42,32 @@ TEST_P(EveryConvention, ChartJacobianDifferentiatesTheCanonicalChart) {
     const auto chart = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
       return Local(ErrorConvention::kSo3xRn, estimate, Retract(GetParam(), estimate, Vector9d(xi)));
     };
-    EXPECT_EQ(test::CompareJacobians(ChartJacobian(GetParam(), estimate), test::NumericJacobian(chart, 9), 1e-9), "");
+    EXPECT_EQ(
+        test::CompareJacobians(ChartJacobian(GetParam(), estimate), test::NumericJacobian(chart, 9), 1e-9),
+        "");
   }
 }
 
 TEST_P(EveryConvention, InverseChartJacobianInverts) {
   RandomStates random(4);
   const NavState nav = random.Nav(10);
-  EXPECT_LT((ImuChartJacobian(GetParam(), nav) * InverseImuChartJacobian(GetParam(), nav) - Matrix15d::Identity()).norm(),
-            1e-12);
+  EXPECT_LT(
+      (ImuChartJacobian(GetParam(), nav) * InverseImuChartJacobian(GetParam(), nav) - Matrix15d::Identity())
+          .norm(),
+      1e-12);
   const Pose pose = random.RandomPose(10);
-  EXPECT_LT((ChartJacobian(GetParam(), pose) * InverseChartJacobian(GetParam(), pose) - Matrix6d::Identity()).norm(), 1e-12);
+  EXPECT_LT((ChartJacobian(GetParam(), pose) * InverseChartJacobian(GetParam(), pose) - Matrix6d::Identity())
+                .norm(),
+            1e-12);
 }
 
-TEST_P(EveryConvention, NamesAreReadBack) { EXPECT_EQ(ParseErrorConvention(ToString(GetParam())), GetParam()); }
+TEST_P(EveryConvention, NamesAreReadBack) {
+  EXPECT_EQ(ParseErrorConvention(ToString(GetParam())), GetParam());
+}
 
-TEST(ErrorConventionTest, UnknownNameIsRefused) { EXPECT_FALSE(ParseErrorConvention("right").has_value()); }
+TEST(ErrorConventionTest, UnknownNameIsRefused) {
+  EXPECT_FALSE(ParseErrorConvention("right").has_value());
+}
 
 // The paper's definition, eq. 3-1, written out.
 TEST(ErrorConventionTest, RightInvariantIsThePapers) {

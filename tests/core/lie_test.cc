@@ -30,7 +30,9 @@ TEST_P(So3AtAngle, ExpIsTheMatrixExponential) {
   EXPECT_LT((so3::ExpQuaternion(phi_).toRotationMatrix() - reference).norm(), 1e-13);
 }
 
-TEST_P(So3AtAngle, LogInvertsExp) { EXPECT_LT((so3::Log(so3::Exp(phi_)) - phi_).norm(), 1e-9 + 1e-15 * GetParam()); }
+TEST_P(So3AtAngle, LogInvertsExp) {
+  EXPECT_LT((so3::Log(so3::Exp(phi_)) - phi_).norm(), 1e-9 + 1e-15 * GetParam());
+}
 
 TEST_P(So3AtAngle, GammaIsItsPowerSeries) {
   for (int m = 0; m < 4; ++m) {
@@ -59,7 +61,8 @@ TEST_P(So3AtAngle, LeftAndRightJacobiansDifferentiateExp) {
 
 TEST_P(So3AtAngle, InverseJacobiansInvert) {
   EXPECT_LT((so3::LeftJacobianInverse(phi_) * so3::LeftJacobian(phi_) - Matrix3d::Identity()).norm(), 1e-11);
-  EXPECT_LT((so3::RightJacobianInverse(phi_) * so3::RightJacobian(phi_) - Matrix3d::Identity()).norm(), 1e-11);
+  EXPECT_LT((so3::RightJacobianInverse(phi_) * so3::RightJacobian(phi_) - Matrix3d::Identity()).norm(),
+            1e-11);
 }
 
 TEST(So3Test, LogIsWellDefinedAtPi) {

@@ -71,7 +71,8 @@ TEST(PoseOnlyTest, NoiseFreeViewsGiveTheLandmarkAndZeroResidual) {
     for (const DepthViews views : {DepthViews::kMulti, DepthViews::kTwo}) {
       PoseOnlyDepth depth;
       VectorXd residual;
-      ASSERT_TRUE((PoseOnlyModel{trial % 3, views}.Evaluate(scene.views, scene.z, &depth, &residual, nullptr, nullptr)));
+      ASSERT_TRUE((PoseOnlyModel{trial % 3, views}.Evaluate(scene.views, scene.z, &depth, &residual, nullptr,
+                                                            nullptr)));
       EXPECT_LT((depth.p_W - scene.point).norm(), 1e-10);
       EXPECT_LT(residual.norm(), 1e-12);
     }
@@ -95,7 +96,8 @@ TEST(PoseOnlyTest, JacobiansAreNumericInEveryConvention) {
       const auto move = [&](const VectorXd& xi) -> VectorXd {
         PoseOnlyDepth unused;
         VectorXd r;
-        EXPECT_TRUE(model.Evaluate(Move(scene.views, convention, xi), scene.z, &unused, &r, nullptr, nullptr));
+        EXPECT_TRUE(
+            model.Evaluate(Move(scene.views, convention, xi), scene.z, &unused, &r, nullptr, nullptr));
         return r;
       };
       const int count = static_cast<int>(scene.views.size());
@@ -119,7 +121,8 @@ TEST(PoseOnlyTest, JacobiansAreNumericInEveryConvention) {
   }
 }
 
-// Null space of paper eq. 4-9: a turn about gravity and a shift of all views change nothing, whatever the state.
+// Null space of paper eq. 4-9: a turn about gravity and a shift of all views change nothing, whatever the
+// state.
 TEST(PoseOnlyTest, RightInvariantRowsAnnihilateTheUnobservableDirections) {
   RandomStates random(33);
   for (int trial = 0; trial < 20; ++trial) {
@@ -173,12 +176,13 @@ TEST(InverseDepthTest, JacobiansAreNumericInEveryConvention) {
       const auto move = [&](const VectorXd& xi) -> VectorXd {
         Vector2d r;
         EXPECT_TRUE(model.Evaluate(Retract(convention, scene.views[0], Vector6d(xi.head<6>())),
-                                   Retract(convention, scene.views[1], Vector6d(xi.segment<6>(6))), rho + xi[12], &r,
-                                   nullptr, nullptr, nullptr));
+                                   Retract(convention, scene.views[1], Vector6d(xi.segment<6>(6))),
+                                   rho + xi[12], &r, nullptr, nullptr, nullptr));
         return r;
       };
       MatrixXd analytic(2, 13);
-      analytic << base * ChartJacobian(convention, scene.views[0]), view * ChartJacobian(convention, scene.views[1]), by_rho;
+      analytic << base * ChartJacobian(convention, scene.views[0]),
+          view * ChartJacobian(convention, scene.views[1]), by_rho;
       EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(move, 13), 1e-8), "");
     }
   }
@@ -222,8 +226,8 @@ TEST(LandmarkReductionTest, LinearizationIsNumeric) {
   EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(move, 27), 1e-8), "");
 }
 
-// The finding of docs/pose_only.md: on equal observations and linearisation point, the pose-only rows (total derivative
-// through the depth) and the MSCKF rows (landmark held fixed) are the same 2N-3 rows.
+// The finding of docs/pose_only.md: on equal observations and linearisation point, the pose-only rows (total
+// derivative through the depth) and the MSCKF rows (landmark held fixed) are the same 2N-3 rows.
 TEST(LandmarkReductionTest, PoseOnlyUpdateIsTheMsckfUpdate) {
   RandomStates random(37);
   for (int trial = 0; trial < 20; ++trial) {
@@ -269,8 +273,8 @@ TEST(LandmarkReductionTest, EliminationKeepsTheProjectedNormalEquations) {
     MatrixXd H = DensePoseJacobian(linearization);
     VectorXd r = linearization.residual;
     const MatrixXd F = linearization.point_jacobian;
-    const MatrixXd projector =
-        MatrixXd::Identity(2 * count, 2 * count) - F * (F.transpose() * F).ldlt().solve(MatrixXd(F.transpose()));
+    const MatrixXd projector = MatrixXd::Identity(2 * count, 2 * count) -
+                               F * (F.transpose() * F).ldlt().solve(MatrixXd(F.transpose()));
     const MatrixXd information = H.transpose() * projector * H;
     const VectorXd gradient = H.transpose() * projector * r;
     EliminateLandmark(linearization.point_jacobian, H, r);

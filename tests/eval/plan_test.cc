@@ -38,7 +38,8 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "  - {name: other, trajectories: {seq: other.tum}}\n"
       "sequences:\n"
       "  - {path: '${data}/seq', seeds: [4, 2]}\n"
-      "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: '${data}/seq'}}\n"
+      "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
+      "'${data}/seq'}}\n"
       "  - {config: sim.yaml, seeds: 9}\n"
       "metrics: {align: se3, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
       "reference:\n"
@@ -58,7 +59,8 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(4, 2));
   EXPECT_EQ(plan->sequences[1].name, "loud");
   EXPECT_THAT(plan->sequences[1].seeds, ElementsAre(1, 2, 3));
-  EXPECT_THAT(plan->sequences[1].settings, ElementsAre("pixel_noise_px=2", "hybrid_dataset=" + folder_.File("data") + "/seq"));
+  EXPECT_THAT(plan->sequences[1].settings,
+              ElementsAre("pixel_noise_px=2", "hybrid_dataset=" + folder_.File("data") + "/seq"));
   EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
   EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
   EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));

@@ -35,12 +35,14 @@ Eigen::MatrixXd NumericJacobian(const Function& f, int tangent_size, double step
   return jacobian;
 }
 
-/// Empty when the matrices agree to `tolerance` relative to their largest entry, else a message naming the worst entry.
-inline std::string CompareJacobians(const Eigen::MatrixXd& analytic, const Eigen::MatrixXd& numeric, double tolerance) {
+/// Empty when the matrices agree to `tolerance` relative to their largest entry, else a message naming the
+/// worst entry.
+inline std::string CompareJacobians(const Eigen::MatrixXd& analytic, const Eigen::MatrixXd& numeric,
+                                    double tolerance) {
   std::ostringstream message;
   if (analytic.rows() != numeric.rows() || analytic.cols() != numeric.cols()) {
-    message << "shapes differ: " << analytic.rows() << "x" << analytic.cols() << " against " << numeric.rows() << "x"
-            << numeric.cols();
+    message << "shapes differ: " << analytic.rows() << "x" << analytic.cols() << " against " << numeric.rows()
+            << "x" << numeric.cols();
     return message.str();
   }
   if (!analytic.allFinite()) {
@@ -58,7 +60,7 @@ inline std::string CompareJacobians(const Eigen::MatrixXd& analytic, const Eigen
   return message.str();
 }
 
-inline constexpr ErrorConvention kAllConventions[] = {ErrorConvention::kRightInvariant,
-                                                      ErrorConvention::kLeftInvariant, ErrorConvention::kSo3xRn};
+inline constexpr ErrorConvention kAllConventions[] = {
+    ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant, ErrorConvention::kSo3xRn};
 
 }  // namespace alidade::test

@@ -13,14 +13,17 @@ class RandomStates {
   explicit RandomStates(unsigned seed) : random_(seed, "test states") {}
 
   double Uniform(double low, double high) { return random_.Uniform(low, high); }
-  Eigen::Vector3d Vector(double scale) { return {Uniform(-scale, scale), Uniform(-scale, scale), Uniform(-scale, scale)}; }
+  Eigen::Vector3d Vector(double scale) {
+    return {Uniform(-scale, scale), Uniform(-scale, scale), Uniform(-scale, scale)};
+  }
   Eigen::Matrix3d Rotation() { return so3::Exp(Vector(1.8)); }
   Pose RandomPose(double scale) { return {Rotation(), Vector(scale)}; }
   NavState Nav(double scale) { return {Rotation(), Vector(scale), Vector(2)}; }
   ImuBias Bias() { return {Vector(0.02), Vector(0.2)}; }
 
   /// `count` cameras within `baseline` of each other that all look at `point`, roughly `distance` away.
-  std::vector<Pose> CamerasLookingAt(const Eigen::Vector3d& point, int count, double distance, double baseline) {
+  std::vector<Pose> CamerasLookingAt(const Eigen::Vector3d& point, int count, double distance,
+                                     double baseline) {
     std::vector<Pose> views;
     const Eigen::Vector3d direction = Vector(1).normalized();
     for (int i = 0; i < count; ++i) {

@@ -44,8 +44,8 @@ inline const TrajectoryPoint& TruthAt(const Dataset& dataset, TimeNs stamp_ns) {
 inline NavEstimate DrawInitialState(const Dataset& dataset, unsigned seed, double scale = 1) {
   const TrajectoryPoint& truth = TruthAt(dataset, dataset.tracks.front().stamp_ns);
   Vector15d deviation;
-  deviation << Eigen::Vector3d::Constant(2e-3), Eigen::Vector3d::Constant(1e-3), Eigen::Vector3d::Constant(1e-2),
-      Eigen::Vector3d::Constant(2e-3), Eigen::Vector3d::Constant(2e-2);
+  deviation << Eigen::Vector3d::Constant(2e-3), Eigen::Vector3d::Constant(1e-3),
+      Eigen::Vector3d::Constant(1e-2), Eigen::Vector3d::Constant(2e-3), Eigen::Vector3d::Constant(2e-2);
   RandomStream random(seed, "initial state");
   Vector15d error;
   for (int i = 0; i < 15; ++i) {
@@ -74,8 +74,7 @@ inline ScenarioResult RunScenario(const Dataset& dataset, const NavEstimate& ini
     result.status = estimator->AddFrame(frame);
     result.last = estimator->Latest();
     const NavState& truth = TruthAt(dataset, result.last.stamp_ns).nav;
-    const Vector6d error =
-        Local(ErrorConvention::kSo3xRn, result.last.nav, truth).head<6>();
+    const Vector6d error = Local(ErrorConvention::kSo3xRn, result.last.nav, truth).head<6>();
     const Matrix6d covariance = result.last.covariance.topLeftCorner<6, 6>();
     result.nees_pose += error.dot(covariance.ldlt().solve(error));
     result.rmse_orientation_rad += error.head<3>().squaredNorm();
