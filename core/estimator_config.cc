@@ -22,6 +22,8 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
                   &rest_updates);
   visitor.Real({"rest_window_s", "s", "rest must last this long before it counts"}, &rest_window_s, 0.1, 10);
   visitor.Real({"rest_max_flow_px", "px", "image flow over the window that is still rest"}, &rest_max_flow_px, 0.01, 20);
+  visitor.Real({"rest_max_accel_std_mps2", "m/s^2", "spread of specific force that is still rest; running rotors shake"},
+               &rest_max_accel_std_mps2, 1e-3, 20);
   visitor.Real({"rest_velocity_std_mps", "m/s", "trust in zero velocity at rest"}, &rest_velocity_std_mps, 1e-5, 1);
   visitor.Real({"rest_rate_std_radps", "rad/s", "trust in zero angular rate at rest"}, &rest_rate_std_radps, 1e-6, 1);
 }

@@ -25,6 +25,7 @@ struct VisionConfig {
   bool rest_updates = true;
   double rest_window_s = 0.5;
   double rest_max_flow_px = 1.0;
+  double rest_max_accel_std_mps2 = 1.0;
   double rest_velocity_std_mps = 0.02;
   double rest_rate_std_radps = 0.005;
 

@@ -95,7 +95,7 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC
   RestVerdict verdict;
   const ImuSpread spread = MeasureSpread(imu_);
   if (frames_.size() < 2 || before.frame.stamp_ns > start_ns || imu_.size() < 5 ||
-      spread.accel > init_.static_max_accel_std_mps2) {
+      spread.accel > vision_.rest_max_accel_std_mps2) {
     return verdict;
   }
   verdict.no_translation = FlowIsZero(before.frame, frame, R_WC.transpose() * before.R_WC);

@@ -85,7 +85,7 @@ std::string StatusText(const RunResult& result) {
   std::string text =
       "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
       "dof,"
-      "observations_invalid,features_waiting,features_degenerate,iterations\n";
+      "observations_invalid,features_waiting,features_degenerate,iterations,at_rest\n";
   for (const RunRecord& record : result.records) {
     const FrameStatistics& s = record.statistics;
     text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
@@ -95,7 +95,8 @@ std::string StatusText(const RunResult& result) {
     }
     text += "," + ShortestDouble(s.nis);
     for (const int count :
-         {s.nis_dof, s.observations_invalid, s.features_waiting, s.features_degenerate, s.iterations}) {
+         {s.nis_dof, s.observations_invalid, s.features_waiting, s.features_degenerate, s.iterations,
+          s.at_rest ? 1 : 0}) {
       text += "," + std::to_string(count);
     }
     text += '\n';

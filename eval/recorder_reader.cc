@@ -112,6 +112,9 @@ Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
     ALIDADE_RETURN_IF_ERROR(row.ReadInt64(column, "count", &value));
     *count = static_cast<int>(value);
   }
+  std::int64_t at_rest = 0;
+  ALIDADE_RETURN_IF_ERROR(row.ReadInt64(13, "at_rest", &at_rest));
+  s.at_rest = at_rest != 0;
   return row.ReadReal(7, "nis", &s.nis);
 }
 
@@ -142,7 +145,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
-  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 13, &result, ReadStatusRow));
+  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 14, &result, ReadStatusRow));
   return result;
 }
 

@@ -6,6 +6,7 @@ cd "$(dirname "$0")/.."
 
 preset=${1:-release}
 shift || true
+scripts/install_dependencies.sh --with-tests-of-report || exit 1
 if ! scripts/build.sh "$preset"; then
   echo "the build failed"
   echo "0 passed, 1 failed"

@@ -67,6 +67,7 @@ TEST_F(RecorderTest, WritesTheFormatsOfTheContract) {
 TEST_F(RecorderTest, ReadsBackWhatItWrote) {
   result_.records[2].statistics.features_used = 42;
   result_.records[3].statistics.iterations = 5;
+  result_.records[3].statistics.at_rest = true;
   result_.frames_skipped = 3;
   result_.skip_report = "why";
   ASSERT_TRUE(WriteRun(identity_, result_, folder_.File("run")).ok());
@@ -92,6 +93,7 @@ TEST_F(RecorderTest, ReadsBackWhatItWrote) {
     EXPECT_EQ(a.statistics.tracks_in, b.statistics.tracks_in);
     EXPECT_EQ(a.statistics.features_used, b.statistics.features_used);
     EXPECT_EQ(a.statistics.iterations, b.statistics.iterations);
+    EXPECT_EQ(a.statistics.at_rest, b.statistics.at_rest);
     EXPECT_EQ(a.statistics.nis, b.statistics.nis);
     EXPECT_EQ(a.frontend_ms, b.frontend_ms);
     EXPECT_EQ(a.backend_ms, b.backend_ms);
