@@ -109,6 +109,19 @@ TEST(FilterEstimatorTest, SameInputSameBits) {
   EXPECT_EQ(first.last.covariance, second.last.covariance);
 }
 
+TEST(FilterEstimatorTest, StandingStillStays) {
+  SimulatorConfig sim = ShortFigureEight();
+  sim.rest_s = 25;
+  sim.duration_s = 27.5;  // it sets off in the last two seconds
+  const Dataset dataset = test::SimulateOrDie(sim, 10);
+  EstimatorConfig config = FilterPreset(FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4);
+  const ScenarioResult result = RunFilter(config, dataset, 10);
+  ASSERT_TRUE(result.status.ok());
+  EXPECT_LT(result.max_position_m, 0.02);
+  config.vision.rest_updates = false;
+  EXPECT_GT(RunFilter(config, dataset, 10).max_position_m, 0.1) << "without the rest updates nothing holds it";
+}
+
 TEST(FilterEstimatorTest, OutliersAreGated) {
   SimulatorConfig sim = ShortFigureEight();
   sim.outlier_rate = 0.05;

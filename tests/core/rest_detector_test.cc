@@ -1,0 +1,86 @@
+#include "core/rest_detector.h"
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// A camera that looks at 80 landmarks four metres away, with 1 px noise, at 20 Hz; the IMU runs at 200 Hz.
+class RestDetectorTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    camera_ = *CameraModel::Create(DistortionModel::kNone, {460, 460, 376, 240}, {}, 752, 480);
+    for (int i = 0; i < 80; ++i) {
+      landmarks_.push_back(Vector3d(random_.Uniform(-3, 3), random_.Uniform(-1.8, 1.8), random_.Uniform(3, 5)));
+    }
+  }
+
+  /// Verdict after one second of motion at the given velocity and camera turn rate (about y); `spread` shakes the IMU.
+  RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread, double bias = 0.01) {
+    RestDetector detector(VisionConfig(), InitConfig(), camera_);
+    RestVerdict verdict;
+    for (int k = 0; k <= 20; ++k) {
+      const double t = 0.05 * k;
+      std::vector<ImuSample> imu;
+      for (int i = 0; i <= 10 && k > 0; ++i) {
+        const Vector3d shake = accel_spread * random_.Normal3();
+        imu.push_back({SecondsToNs(t - 0.05 + 0.005 * i), Vector3d(0, turn_rate + bias, 0) + 0.003 * random_.Normal3(),
+                       Vector3d(0, 0, 9.81) + shake});
+      }
+      detector.AddImu(imu);
+      const Matrix3d R_WC = so3::Exp(Vector3d(0, turn_rate * t, 0));
+      TrackFrame frame;
+      frame.stamp_ns = SecondsToNs(t);
+      for (size_t i = 0; i < landmarks_.size(); ++i) {
+        Vector2d pixel;
+        if (camera_.Project(R_WC.transpose() * (landmarks_[i] - velocity * t), &pixel)) {
+          frame.observations.push_back(
+              {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
+        }
+      }
+      verdict = detector.AddFrame(frame, R_WC);
+      mean_gyro_ = detector.MeanGyro();
+    }
+    return verdict;
+  }
+
+  RandomStream random_{1, "rest detector"};
+  CameraModel camera_;
+  std::vector<Vector3d> landmarks_;
+  Vector3d mean_gyro_;
+};
+
+TEST_F(RestDetectorTest, StandingStillIsRest) {
+  const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0, 0.1);
+  EXPECT_TRUE(verdict.no_translation);
+  EXPECT_TRUE(verdict.no_rotation);
+  EXPECT_NEAR(mean_gyro_.y(), 0.01, 0.001) << "the gyroscope's bias";
+}
+
+TEST_F(RestDetectorTest, ATurnOnTheSpotIsNoTranslation) {
+  const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0.05, 0.1);
+  EXPECT_TRUE(verdict.no_translation);
+  EXPECT_FALSE(verdict.no_rotation);
+}
+
+TEST_F(RestDetectorTest, ConstantVelocityIsNotRest) {
+  for (const Vector3d& velocity : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0, 0, 0.2)}) {
+    EXPECT_FALSE(AfterOneSecond(velocity, 0, 0.01).no_translation) << velocity.transpose();
+  }
+}
+
+TEST_F(RestDetectorTest, ShakingIsNotRest) { EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 2.0).no_translation); }
+
+TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {
+  RestDetector detector(VisionConfig(), InitConfig(), camera_);
+  EXPECT_FALSE(detector.AddFrame({}, Matrix3d::Identity()).no_translation);
+}
+
+}  // namespace
+}  // namespace alidade
