@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/rest_model.h"
+
 namespace alidade {
 namespace {
 
@@ -146,18 +148,14 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   if (!rest.no_translation) {
     return true;
   }
-  const int rows = rest.no_rotation ? 6 : 3;
-  const double velocity_weight = 1 / config_.vision.rest_velocity_std_mps;
-  const double rate_weight = 1 / config_.vision.rest_rate_std_radps;
+  Vector6d residual;
+  RestModel::Jacobian jacobian;
+  MakeRestMeasurement(rest, rest_.MeanGyro(), config_.vision)
+      .Evaluate(state_.nav(), state_.bias(), &residual, &jacobian);
+  const int rows = rest.no_rotation ? RestModel::kRows : 3;
   rest_rows_.setZero(rows, state_.covariance().dimension());
-  rest_innovation_.resize(rows);
-  rest_rows_.topLeftCorner<3, 9>() =
-      velocity_weight * ChartJacobian(state_.convention(), state_.nav()).bottomRows<3>();
-  rest_innovation_.head<3>() = -velocity_weight * state_.nav().v_WB;
-  if (rest.no_rotation) {
-    rest_rows_.block<3, 3>(3, 9) = rate_weight * Eigen::Matrix3d::Identity();
-    rest_innovation_.tail<3>() = rate_weight * (rest_.MeanGyro() - state_.bias().gyro);
-  }
+  rest_rows_.leftCols<15>() = (jacobian * ImuChartJacobian(state_.convention(), state_.nav())).topRows(rows);
+  rest_innovation_ = -residual.head(rows);
   state_.covariance().Prepare(rest_rows_);
   if (!state_.covariance().Apply(rest_rows_, rest_innovation_, &correction_, nullptr)) {
     return false;

@@ -7,8 +7,9 @@ using Eigen::Vector2d;
 using RowMatrix2x9 = Eigen::Matrix<double, 2, 9, Eigen::RowMajor>;
 using RowMatrix2x3 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
 
-// Whitened residual of a landmark behind the camera: far beyond any gate, far below overflow.
-constexpr double kBehindSigma = 1e4;
+// Whitened residual of a landmark behind the camera: far beyond any gate, yet not so large that it hides the
+// rest of the cost, to which the solver's tolerance is relative.
+constexpr double kBehindSigma = 100;
 
 void StoreNav(const Eigen::Matrix2d& whitening, const InverseDepthModel::PoseJacobian& camera,
               const NavState& state, const Pose& T_BC, double* tangent) {

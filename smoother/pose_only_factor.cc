@@ -7,8 +7,9 @@ namespace alidade {
 namespace {
 
 constexpr int kMaxLandmarkIterations = 30;
-// Squared whitened residual of a track whose landmark falls behind a view: the solver refuses such a step.
-constexpr double kBehindChiSquare = 1e8;
+// Squared whitened residual of a track whose landmark falls behind a view, so that the solver refuses such a
+// step. Not larger: the tolerance of the solver is relative to the whole cost.
+constexpr double kBehindChiSquare = 1e4;
 
 }  // namespace
 

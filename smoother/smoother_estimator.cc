@@ -17,19 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
-constexpr size_t kMinViews = 2;
-// The filter linearises a track once and needs its depth to vision.max_relative_depth_deviation; here every
-// solve linearises again, so a track may enter earlier. It is still held to this multiple when it is
-// marginalised, linearised for good.
-constexpr double kParallaxSlack = 10;
-constexpr int kMaxLandmarkIterations = 30;
-// Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
-// as uncertain as it is large.
-constexpr double kUnknownInverseDepth = 0.2;
-constexpr double kDepthPriorRelative = 1.0;
-constexpr size_t kMinKnownDepths = 10;
-
 double MillisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -76,7 +63,8 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       solve_options_{config.smoother, config.vision, rig.T_BC, GravityInWorld(config.imu.gravity_mps2)},
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
-      imu_(config.imu.max_gap_s) {}
+      imu_(config.imu.max_gap_s),
+      rest_(config.vision, config.init, rig.camera) {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(CheckInitial(initial));
@@ -92,6 +80,7 @@ Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   window_.AddFrame(std::move(frame));
   prior_ = std::move(prior);
   imu_.DropBefore(initial.stamp_ns);
+  rest_.Clear();
   latest_ = initial;
   statistics_ = {};
   initialized_ = true;
@@ -119,6 +108,7 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   statistics_.observations_invalid =
       window_.AddObservations(rig_.camera, config_.vision.pixel_noise_px, frame.observations);
   window_.Prune();
+  DetectRest(frame);
   if (window_.size() > 1) {
     std::vector<WindowTrack*> tracks = SelectTracks();
     ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
@@ -134,6 +124,7 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
   }
   ALIDADE_RETURN_IF_ERROR(imu_.Interval(window_.newest().stamp_ns, stamp_ns, &interval_));
   imu_.DropBefore(stamp_ns);
+  rest_.AddImu(interval_);
   std::unique_ptr<WindowFrame> dropped;
   if (!NewestIsKeyframe()) {
     dropped = window_.RemoveNewest();
@@ -151,7 +142,10 @@ bool SmootherEstimator::NewestIsKeyframe() const {
   }
   const FrameParallax parallax =
       ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), rig_.T_BC);
-  return parallax.common < config_.smoother.keyframe_min_tracked ||
+  const auto seen = std::count_if(window_.tracks().begin(), window_.tracks().end(),
+                                  [](const auto& item) { return item.second.alive; });
+  // Most tracks without a view in the last keyframe would lose the one view they have.
+  return parallax.common < config_.smoother.keyframe_min_tracked || 2 * parallax.common < seen ||
          parallax.mean * rig_.camera.mean_focal_px() >= config_.smoother.keyframe_parallax_px;
 }
 
@@ -174,6 +168,18 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   window_.AddFrame(std::move(frame));
 }
 
+void SmootherEstimator::DetectRest(const TrackFrame& frame) {
+  if (!config_.vision.rest_updates) {
+    return;
+  }
+  WindowFrame& newest = window_.newest();
+  const RestVerdict verdict = rest_.AddFrame(frame, newest.nav_state().R_WB * rig_.T_BC.rotation);
+  statistics_.at_rest = verdict.no_translation;
+  if (verdict.no_translation) {
+    newest.rest = MakeRestMeasurement(verdict, rest_.MeanGyro(), config_.vision);
+  }
+}
+
 void SmootherEstimator::MarginalizeOldestFrame() {
   const WindowFrame* oldest = &window_.frame(0);
   const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
@@ -193,79 +199,6 @@ void SmootherEstimator::MarginalizeOldestFrame() {
   window_.Prune();
 }
 
-bool SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) {
-  if (track->has_landmark) {
-    return true;
-  }
-  double relative_deviation = 0;
-  if (!InitializeLandmark(track->views, geometry, &track->landmark, &relative_deviation) ||
-      relative_deviation > kParallaxSlack * config_.vision.max_relative_depth_deviation) {
-    ++statistics_.features_waiting;
-    return false;
-  }
-  if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark) ||
-      !DepthInRange(track->landmark)) {
-    ++statistics_.features_degenerate;
-    return false;
-  }
-  track->has_landmark = true;
-  track->depth_prior = {};
-  return true;
-}
-
-bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
-  return landmark.z() >= 1 / config_.vision.max_depth_m && landmark.z() <= 1 / config_.vision.min_depth_m;
-}
-
-double SmootherEstimator::TypicalInverseDepth() const {
-  std::vector<double> known;
-  for (const auto& [id, track] : window_.tracks()) {
-    if (track.has_landmark) {
-      known.push_back(track.landmark.z());
-    }
-  }
-  if (known.size() < kMinKnownDepths) {
-    return kUnknownInverseDepth;
-  }
-  std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
-  return known[known.size() / 2];
-}
-
-std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
-  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
-  std::vector<WindowTrack*> selected;
-  std::vector<WindowTrack*> without_depth;
-  for (auto& [id, track] : window_.tracks()) {
-    if (track.views.size() >= kMinViews) {
-      (PrepareLandmark(geometry, &track) ? selected : without_depth).push_back(&track);
-    }
-  }
-  const double typical = TypicalInverseDepth();
-  // With enough depths known the others add little, and the assumed one would only bias them: they wait.
-  const bool enough = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked;
-  for (WindowTrack* track : without_depth) {
-    if (enough) {
-      track->depth_prior = {};
-      continue;
-    }
-    track->depth_prior = {typical, 1 / (kDepthPriorRelative * typical)};
-    track->landmark << track->views.front().observation.z, typical;
-    if (SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark,
-                      track->depth_prior) &&
-        DepthInRange(track->landmark)) {
-      selected.push_back(track);
-    }
-  }
-  const size_t limit = static_cast<size_t>(config_.smoother.max_landmarks);
-  if (selected.size() > limit) {
-    std::stable_sort(selected.begin(), selected.end(), [](const WindowTrack* a, const WindowTrack* b) {
-      return a->views.size() > b->views.size();
-    });
-    selected.resize(limit);
-  }
-  return selected;
-}
-
 Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   for (int i = 1; i < window_.size(); ++i) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
@@ -277,22 +210,12 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   statistics_.iterations = report->iterations;
 
   const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
+  GateTracks(geometry, *tracks);
   PoseSystem vision(window_.size());
-  for (WindowTrack* track : *tracks) {
-    const bool solved = SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
-                                      &track->landmark, track->depth_prior);
-    if (!solved || !DepthInRange(track->landmark)) {
-      ++statistics_.features_degenerate;
-      track->Restart();
-      continue;
+  for (const WindowTrack* track : *tracks) {
+    if (track->views.size() >= kMinViews) {
+      AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision, track->depth_prior);
     }
-    const int dof = 2 * static_cast<int>(track->views.size()) - 3;
-    if (!gate_.Accepts(TrackChiSquare(track->views, geometry, track->landmark), dof)) {
-      ++statistics_.features_gated;
-      track->Restart();
-      continue;
-    }
-    AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision, track->depth_prior);
   }
   statistics_.features_used = vision.tracks;
   statistics_.nis = vision.chi2;

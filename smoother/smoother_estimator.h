@@ -5,6 +5,7 @@
 
 #include "core/estimator.h"
 #include "core/imu_buffer.h"
+#include "core/rest_detector.h"
 #include "core/robust.h"
 #include "smoother/track_system.h"
 #include "smoother/window_solver.h"
@@ -21,8 +22,11 @@ namespace alidade {
 ///              track still seen starts anew with its next observation. (Re-anchoring it and using its
 ///              observations again, as VINS-Mono does, would count them twice.) A track without parallax only
 ///              loses its oldest view.
-///           3. IMU prediction of the new frame, landmarks of new tracks, solve.
-///           4. Chi-square gate on each track at the solution: a refused track forgets its observations.
+///           3. IMU prediction of the new frame, rest measurement when it stands still, landmarks of new
+///              tracks, solve.
+///           4. Chi-square gate on each track at the solution: a refused track forgets its observations. When
+///              the gate refuses more than vision.max_gated_share the state is suspect and not the tracks:
+///              they stay, their information scaled down to the gate.
 ///           5. Covariance of the newest state.
 /// The first prior is the covariance of Initialize, which also fixes the gauge (yaw and position).
 class SmootherEstimator final : public Estimator {
@@ -41,6 +45,7 @@ class SmootherEstimator final : public Estimator {
  private:
   Status BeginFrame(TimeNs stamp_ns);
   [[nodiscard]] bool NewestIsKeyframe() const;
+  void DetectRest(const TrackFrame& frame);
   void MarginalizeOldestFrame();
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
@@ -48,8 +53,13 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
+  void GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
   Status UpdateLatest(const PoseSystem& vision);
   [[nodiscard]] Status Lost(const std::string& message);
+
+  // Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
+  static constexpr size_t kMinViews = 2;
+  static constexpr int kMaxLandmarkIterations = 30;
 
   EstimatorConfig config_;
   RigCalibration rig_;
@@ -58,6 +68,7 @@ class SmootherEstimator final : public Estimator {
   ObservationKernel kernel_;
   ChiSquareGate gate_;
   ImuBuffer imu_;
+  RestDetector rest_;
   Window window_;
   LinearPrior prior_;
   NavEstimate latest_;

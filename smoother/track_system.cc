@@ -83,6 +83,70 @@ double EvaluateLandmark(std::span<const WindowView> views, std::span<const Frame
   return cost;
 }
 
+/// Row of the depth prior on rho, the inverse depth in the base view: d rho = drho - rho dz_b, z_b the depth
+/// of (x, y, 1) there.
+void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vector3d& landmark,
+                   TrackWorkspace* workspace) {
+  const double rho = landmark.z();
+  const Vector3d ray = landmark.head<2>().homogeneous();
+  Eigen::Matrix<double, 1, 6> camera;
+  camera << -rho * Skew(ray).row(2), rho * rho * base.T_WC.rotation.col(2).transpose();
+  const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
+  const double residual = prior.sqrt_information * (rho - prior.mean);
+  workspace->prior_hessian.noalias() = pose.transpose() * pose;
+  workspace->prior_gradient.noalias() = pose.transpose() * residual;
+  workspace->coupling[0].col(2).noalias() += pose.transpose() * prior.sqrt_information;
+  workspace->landmark_hessian(2, 2) += prior.sqrt_information * prior.sqrt_information;
+  workspace->landmark_gradient.z() += prior.sqrt_information * residual;
+  workspace->robust_cost += residual * residual;
+}
+
+/// Weighted rows of every view over its own pose and the landmark. False behind a view.
+bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                    const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace) {
+  // The landmark's three coordinates are taken in the base camera's frame as it is NOW, which then stands
+  // still: a point of the world. So every row, the base's too, concerns one pose, and rho = 0 is regular.
+  const Pose base = Geometry(geometry, views.front()).T_WC;
+  const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
+  const double rho = landmark.z();
+  workspace->rows.resize(views.size());
+  workspace->coupling.resize(views.size());
+  workspace->reduced.resize(views.size());
+  workspace->landmark_hessian.setZero();
+  workspace->landmark_gradient.setZero();
+  workspace->robust_cost = 0;
+  workspace->chi2 = 0;
+  for (size_t k = 0; k < views.size(); ++k) {
+    const FrameGeometry& frame = Geometry(geometry, views[k]);
+    const NormalizedObservation& observation = views[k].observation;
+    const Vector3d shift_W = base.translation - frame.T_WC.translation;
+    const Vector3d q = frame.T_WC.rotation.transpose() * (ray_W + rho * shift_W);
+    if (!(q.z() > kMinViewDepth)) {
+      return false;
+    }
+    const Vector2d predicted = q.hnormalized();
+    Matrix2x3 perspective;
+    perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
+    const Matrix2x3 weighted = observation.sqrt_information * (perspective / q.z());
+    const Matrix2x3 to_world = weighted * frame.T_WC.rotation.transpose();
+    Matrix2x3 to_landmark;
+    to_landmark << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
+    Eigen::Matrix<double, 2, 6> camera;
+    camera << weighted * Skew(q), -rho * to_world;
+    TrackWorkspace::Rows& rows = workspace->rows[k];
+    rows.pose.noalias() = camera * frame.camera_from_body;
+    rows.residual = observation.sqrt_information * (predicted - observation.z);
+    const double s = rows.residual.squaredNorm();
+    rows.weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
+    workspace->robust_cost += kernel.Rho(s);
+    workspace->chi2 += s;
+    workspace->coupling[k].noalias() = rows.weight * rows.pose.transpose() * to_landmark;
+    workspace->landmark_hessian.noalias() += rows.weight * to_landmark.transpose() * to_landmark;
+    workspace->landmark_gradient.noalias() += rows.weight * to_landmark.transpose() * rows.residual;
+  }
+  return true;
+}
+
 }  // namespace
 
 double ObservationKernel::Rho(double s) const {
@@ -149,85 +213,41 @@ bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeome
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior) {
-  if (!(landmark.z() > 0) ||
-      !std::isfinite(EvaluateLandmark(views, geometry, kernel, landmark, {}, nullptr))) {
+  if (!LinearizeViews(views, geometry, kernel, landmark, workspace)) {
     return false;
   }
-  const Pose& base = Geometry(geometry, views.front()).T_WC;
-  const Vector3d p_W =
-      base * Vector3d(landmark.x() / landmark.z(), landmark.y() / landmark.z(), 1 / landmark.z());
-  workspace->coupling.resize(views.size());
-  workspace->reduced.resize(views.size());
-  Matrix3d point_hessian = Matrix3d::Zero();
-  Vector3d point_gradient = Vector3d::Zero();
-  // Two passes: nothing may be added before the landmark is known to be determined.
-  std::vector<TrackWorkspace::Rows>& rows = workspace->rows;
-  rows.resize(views.size());
-  double robust_cost = 0;
-  double chi2 = 0;
-  for (size_t k = 0; k < views.size(); ++k) {
-    const FrameGeometry& frame = Geometry(geometry, views[k]);
-    const NormalizedObservation& observation = views[k].observation;
-    const Vector3d p_C = frame.T_WC.rotation.transpose() * (p_W - frame.T_WC.translation);
-    const Vector2d predicted = p_C.hnormalized();
-    Matrix2x3 perspective;
-    perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-    const Matrix2x3 weighted = observation.sqrt_information * (perspective / p_C.z());
-    const Matrix2x3 to_point = weighted * frame.T_WC.rotation.transpose();
-    Eigen::Matrix<double, 2, 6> camera;
-    camera << weighted * Skew(p_C), -to_point;
-    rows[k].pose.noalias() = camera * frame.camera_from_body;
-    rows[k].residual = observation.sqrt_information * (predicted - observation.z);
-    const double s = rows[k].residual.squaredNorm();
-    rows[k].weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
-    robust_cost += kernel.Rho(s);
-    chi2 += s;
-    workspace->coupling[k].noalias() = rows[k].weight * rows[k].pose.transpose() * to_point;
-    point_hessian.noalias() += rows[k].weight * to_point.transpose() * to_point;
-    point_gradient.noalias() += rows[k].weight * to_point.transpose() * rows[k].residual;
-  }
-  // The depth prior as one more row of the base view: rho = 1 / z in its camera frame, d rho = -rho^2 dz.
-  Eigen::Matrix<double, 1, 6> prior_pose = Eigen::Matrix<double, 1, 6>::Zero();
-  double prior_residual = 0;
+  workspace->prior_hessian.setZero();
+  workspace->prior_gradient.setZero();
   if (prior.sqrt_information > 0) {
-    const FrameGeometry& frame = Geometry(geometry, views.front());
-    const Vector3d p_C = frame.T_WC.rotation.transpose() * (p_W - frame.T_WC.translation);
-    const double slope = -prior.sqrt_information * landmark.z() * landmark.z();
-    const Eigen::RowVector3d prior_point = slope * frame.T_WC.rotation.col(2).transpose();
-    Eigen::Matrix<double, 1, 6> camera;
-    camera << slope * Skew(p_C).row(2), -prior_point;
-    prior_pose.noalias() = camera * frame.camera_from_body;
-    prior_residual = prior.sqrt_information * (landmark.z() - prior.mean);
-    robust_cost += prior_residual * prior_residual;
-    workspace->coupling[0].noalias() += prior_pose.transpose() * prior_point;
-    point_hessian.noalias() += prior_point.transpose() * prior_point;
-    point_gradient += prior_point.transpose() * prior_residual;
+    AddDepthPrior(prior, Geometry(geometry, views.front()), landmark, workspace);
   }
-  const Eigen::LLT<Matrix3d> factor(point_hessian);
-  if (factor.info() != Eigen::Success ||
-      !(factor.matrixLLT().diagonal().minCoeff() > 1e-7 * factor.matrixLLT().diagonal().maxCoeff())) {
+  // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
+  const Vector3d scale = workspace->landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Matrix3d> factor(scale.asDiagonal() * workspace->landmark_hessian * scale.asDiagonal());
+  if (!scale.allFinite() || factor.info() != Eigen::Success ||
+      !(factor.matrixLLT().diagonal().minCoeff() > 1e-7)) {
     return false;
   }
-  const Vector3d reduced_gradient = factor.matrixL().solve(point_gradient);
-  const Matrix3d inverse_transposed = factor.matrixL().solve(Matrix3d::Identity()).transpose();
+  const Vector3d reduced_gradient = factor.matrixL().solve(scale.asDiagonal() * workspace->landmark_gradient);
+  const Matrix3d scaled = scale.asDiagonal();
+  const Matrix3d inverse_transposed = factor.matrixL().solve(scaled).transpose();
   const int base_row = 6 * views.front().frame->index;
-  system->hessian.block<6, 6>(base_row, base_row).noalias() += prior_pose.transpose() * prior_pose;
-  system->gradient.segment<6>(base_row) += prior_pose.transpose() * prior_residual;
+  system->hessian.block<6, 6>(base_row, base_row) += workspace->prior_hessian;
+  system->gradient.segment<6>(base_row) += workspace->prior_gradient;
   for (size_t k = 0; k < views.size(); ++k) {
     const int row = 6 * views[k].frame->index;
+    const TrackWorkspace::Rows& rows = workspace->rows[k];
     workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
-    system->hessian.block<6, 6>(row, row).noalias() +=
-        rows[k].weight * rows[k].pose.transpose() * rows[k].pose;
-    system->gradient.segment<6>(row).noalias() +=
-        rows[k].weight * rows[k].pose.transpose() * rows[k].residual;
+    system->hessian.block<6, 6>(row, row).noalias() += rows.weight * rows.pose.transpose() * rows.pose;
+    system->gradient.segment<6>(row).noalias() += rows.weight * rows.pose.transpose() * rows.residual;
     system->gradient.segment<6>(row).noalias() -= workspace->reduced[k] * reduced_gradient;
     for (size_t l = 0; l <= k; ++l) {
       system->hessian.block<6, 6>(row, 6 * views[l].frame->index).noalias() -=
           workspace->reduced[k] * workspace->reduced[l].transpose();
     }
   }
-  system->robust_cost += robust_cost;
-  system->chi2 += chi2;
+  system->robust_cost += workspace->robust_cost;
+  system->chi2 += workspace->chi2;
   system->dof += 2 * static_cast<int>(views.size()) - 3;
   ++system->tracks;
   return true;
@@ -239,7 +259,7 @@ double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGe
 }
 
 bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                        Vector3d* landmark, double* relative_deviation) {
+                        double max_relative_deviation, Vector3d* landmark) {
   std::vector<Pose> poses;
   std::vector<Vector2d> z;
   for (const WindowView& view : views) {
@@ -251,8 +271,9 @@ bool InitializeLandmark(std::span<const WindowView> views, std::span<const Frame
     return false;
   }
   *landmark << z.front(), 1.0 / depth.depth;
-  *relative_deviation = views.front().observation.deviation() / std::sqrt(depth.normal);
-  return landmark->allFinite();
+  const int other_views = static_cast<int>(views.size()) - 1;
+  return landmark->allFinite() &&
+         DepthIsDetermined(depth, other_views, views.front().observation.deviation(), max_relative_deviation);
 }
 
 void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,

@@ -50,7 +50,13 @@ struct TrackWorkspace {
   };
   std::vector<Rows> rows;
   std::vector<Eigen::Matrix<double, 6, 3>> coupling;  ///< B_k^T A_k
-  std::vector<Eigen::Matrix<double, 6, 3>> reduced;   ///< coupling times L^-T, so that H -= reduced reduced^T
+  Eigen::Matrix3d landmark_hessian;
+  Eigen::Vector3d landmark_gradient;
+  Matrix6d prior_hessian;   ///< of the depth prior, over the base view's pose
+  Vector6d prior_gradient;  ///< likewise
+  double robust_cost = 0;
+  double chi2 = 0;
+  std::vector<Eigen::Matrix<double, 6, 3>> reduced;  ///< coupling times L^-T, so that H -= reduced reduced^T
 };
 
 /// Landmark of the track with the poses held fixed: damped, iteratively re-weighted Gauss-Newton over (x, y,
@@ -61,8 +67,8 @@ bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeome
                    const DepthPrior& prior = {});
 
 /// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its
-/// optimum is stepped there to first order. False (system untouched): behind a view, rho <= 0, or the
-/// landmark is not determined.
+/// optimum is stepped there to first order. rho <= 0 (a point at infinity, or beyond) is regular.
+/// False (system untouched): behind a view, or the landmark is not determined.
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior = {});
@@ -71,10 +77,10 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
 [[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,
                                     std::span<const FrameGeometry> geometry, const Eigen::Vector3d& landmark);
 
-/// First value of a landmark from the pose-only depth (core/pose_only.h), with its relative deviation sigma /
-/// sqrt(A^T A). False without parallax.
+/// First value of a landmark from the pose-only depth (core/pose_only.h). False without parallax: when the
+/// depth's relative deviation exceeds `max_relative_deviation` (DepthIsDetermined).
 bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                        Eigen::Vector3d* landmark, double* relative_deviation);
+                        double max_relative_deviation, Eigen::Vector3d* landmark);
 
 /// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H
 /// (lower triangle given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.

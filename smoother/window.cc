@@ -1,5 +1,6 @@
 #include "smoother/window.h"
 
+#include <cmath>
 #include <utility>
 
 #include "core/check.h"
@@ -23,6 +24,12 @@ double WindowFrame::mean_step_s() const {
   return imu.size() < 2 ? 0.0
                         : SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns) /
                               static_cast<double>(imu.size() - 1);
+}
+
+void WindowTrack::ScaleInformation(double factor) {
+  for (WindowView& view : views) {
+    view.observation.sqrt_information *= std::sqrt(factor);
+  }
 }
 
 void Window::Clear() {
@@ -78,6 +85,7 @@ void Window::RemoveOldest() {
     if (!track.views.empty() && track.views.front().frame == oldest) {
       track.views.erase(track.views.begin());
       track.has_landmark = false;  // its coordinates were those of the base
+      track.depth_prior = {};
     }
   }
   frames_.erase(frames_.begin());

@@ -9,6 +9,7 @@
 
 #include "core/measurement_log.h"
 #include "core/preintegration.h"
+#include "core/rest_model.h"
 #include "core/visual_observation.h"
 
 namespace alidade {
@@ -22,6 +23,7 @@ struct WindowFrame {
   std::array<double, 6> bias{};
   std::vector<ImuSample> imu;                    ///< from the previous frame to this one; empty in the first
   std::optional<Preintegration> preintegration;  ///< of `imu`, at the previous frame's bias
+  std::optional<RestMeasurement> rest;           ///< set when the rig stood still in this frame
 
   [[nodiscard]] NavState nav_state() const;
   [[nodiscard]] ImuBias imu_bias() const;
@@ -53,10 +55,13 @@ struct WindowTrack {
   DepthPrior depth_prior;     ///< stands in for parallax while has_landmark is false
   bool alive = false;         ///< seen in the newest frame
 
+  /// Multiplies the information of all observations so far.
+  void ScaleInformation(double factor);
   /// Forgets all observations; the next one starts the track anew.
   void Restart() {
     views.clear();
     has_landmark = false;
+    depth_prior = {};
   }
 };
 

@@ -14,6 +14,7 @@
 #include "smoother/imu_factor.h"
 #include "smoother/inverse_depth_factor.h"
 #include "smoother/pose_only_factor.h"
+#include "smoother/rest_factor.h"
 
 namespace alidade {
 namespace {
@@ -73,6 +74,7 @@ struct SolveStore {
   ObservationKernel kernel;
   std::unique_ptr<ceres::LossFunction> loss;
   std::deque<LiftedCost<ImuFactor>> imu;
+  std::deque<LiftedCost<RestFactor>> rest;
   std::deque<LiftedCost<InverseDepthFactor>> inverse_depth;
   std::deque<LiftedCost<BaseBearingFactor>> base_bearing;
   std::deque<LiftedCost<DepthPriorFactor>> depth_prior;
@@ -115,6 +117,16 @@ Status AddImu(const WindowSolveOptions& options, const Window& window, SolveStor
                               store->Bias(i + 1));
   }
   return Status::Ok();
+}
+
+void AddRest(const Window& window, SolveStore* store, ceres::Problem* problem) {
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    if (frame->rest) {
+      store->rest.emplace_back(RestFactor(*frame->rest));
+      problem->AddResidualBlock(&store->rest.back(), nullptr, store->Nav(frame->index),
+                                store->Bias(frame->index));
+    }
+  }
 }
 
 void AddInverseDepth(const WindowSolveOptions& options, SolveStore* store, ceres::Problem* problem) {
@@ -187,6 +199,7 @@ Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const L
   }
   AddPrior(prior, &store, &problem);
   ALIDADE_RETURN_IF_ERROR(AddImu(options, *window, &store, &problem));
+  AddRest(*window, &store, &problem);
   if (options.smoother.landmark == SmootherLandmark::kInverseDepth) {
     AddInverseDepth(options, &store, &problem);
   } else if (!tracks.empty()) {

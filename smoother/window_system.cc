@@ -57,6 +57,17 @@ void AddPriorHessian(const LinearPrior& prior, MatrixXd* hessian) {
       .rankUpdate(jacobian.transpose());
 }
 
+/// Rows of a frame's rest measurement over its 15 canonical coordinates; zero when it has none.
+struct RestRows {
+  explicit RestRows(const WindowFrame& frame) {
+    if (frame.rest) {
+      frame.rest->Evaluate(frame.nav_state(), frame.imu_bias(), &residual, &jacobian);
+    }
+  }
+  RestModel::Jacobian jacobian = RestModel::Jacobian::Zero();
+  Vector6d residual = Vector6d::Zero();
+};
+
 }  // namespace
 
 bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
@@ -71,6 +82,8 @@ bool NewestCovariance(const Window& window, const LinearPrior& prior, const Pose
     hessian.block<15, 15>(15 * i + 15, 15 * i + 15).noalias() += imu.second.transpose() * imu.second;
   }
   for (Index i = 0; i < size; ++i) {
+    const RestRows rest(window.frame(static_cast<int>(i)));
+    hessian.block<15, 15>(15 * i, 15 * i).noalias() += rest.jacobian.transpose() * rest.jacobian;
     for (Index j = 0; j <= i; ++j) {
       hessian.block<6, 6>(15 * i, 15 * j) += vision.hessian.block<6, 6>(6 * i, 6 * j);
     }
@@ -94,7 +107,8 @@ LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, co
   const Index columns = column(frames);
   const Index prior_rows = prior.jacobian.rows();
   const Index vision_rows = vision.hessian.rows();
-  MatrixXd stack = MatrixXd::Zero(std::max(prior_rows + 15 + vision_rows, columns + 1), columns + 1);
+  MatrixXd stack =
+      MatrixXd::Zero(std::max(prior_rows + 15 + vision_rows + RestModel::kRows, columns + 1), columns + 1);
   VectorXd prior_residual = prior.residual;
   for (size_t i = 0; i < prior.anchors.size(); ++i) {
     const LinearPrior::Anchor& anchor = prior.anchors[i];
@@ -124,6 +138,11 @@ LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, co
         vision_jacobian.middleCols<6>(6 * i) * ChartJacobian(convention, window.frame(i).nav_state().T_WB());
   }
   stack.col(columns).segment(prior_rows + 15, vision_rows) = vision_residual;
+
+  const RestRows rest(window.frame(0));
+  stack.block<RestModel::kRows, 15>(prior_rows + 15 + vision_rows, 0) =
+      rest.jacobian * ImuChartJacobian(convention, window.frame(0).nav_state());
+  stack.col(columns).segment<RestModel::kRows>(prior_rows + 15 + vision_rows) = rest.residual;
 
   const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(stack);
   LinearPrior next;

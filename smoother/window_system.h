@@ -8,15 +8,15 @@
 namespace alidade {
 
 /// Covariance of the newest frame (canonical chart, phi dp dv dbg dba) from the Gauss-Newton Hessian of the
-/// window at its present states: prior, IMU and `vision` (all landmarks eliminated, kernels included). False
-/// when it is not positive definite.
+/// window at its present states: prior, IMU, rest and `vision` (all landmarks eliminated, kernels included).
+/// False when it is not positive definite.
 bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                       const Eigen::Vector3d& gravity_W, Matrix15d* covariance);
 
-/// Marginalises the oldest frame: the old prior, the IMU factor to the next frame and `vision` (the tracks
-/// that leave with it) are stacked as whitened rows, linearised at the present states, and QR eliminates the
-/// frame's 15 columns. What remains is the exact Schur complement as a square root; nothing is inverted, so
-/// directions without information need no care.
+/// Marginalises the oldest frame: the old prior, its rest measurement, the IMU factor to the next frame and
+/// `vision` (the tracks that leave with it) are stacked as whitened rows, linearised at the present states,
+/// and QR eliminates the frame's 15 columns. What remains is the exact Schur complement as a square root;
+/// nothing is inverted, so directions without information need no care.
 ///
 /// The new prior is anchored at the present states. The old prior's rows are carried over with their Jacobian
 /// unchanged (first estimates): re-linearising them would let a direction that was never observed leak in.

@@ -84,10 +84,8 @@ TEST(TrackSystemTest, ExactObservationsGiveTheExactLandmarkFromThePoseOnlyDepth)
   const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, fixture.T_BC);
   for (const WindowTrack* track : fixture.tracks()) {
     Eigen::Vector3d landmark;
-    double deviation = 0;
-    ASSERT_TRUE(InitializeLandmark(track->views, geometry, &landmark, &deviation));
+    ASSERT_TRUE(InitializeLandmark(track->views, geometry, 1, &landmark));
     EXPECT_LT((landmark - track->landmark).norm(), 1e-9);
-    EXPECT_GT(deviation, 0);
     EXPECT_LT(TrackChiSquare(track->views, geometry, landmark), 1e-12);
   }
 }
@@ -103,8 +101,7 @@ TEST(TrackSystemTest, WithoutBaselineThereIsNoLandmark) {
     view.observation = track.views.front().observation;
   }
   Eigen::Vector3d landmark;
-  double deviation = 0;
-  EXPECT_FALSE(InitializeLandmark(track.views, geometry, &landmark, &deviation));
+  EXPECT_FALSE(InitializeLandmark(track.views, geometry, 1, &landmark));
   PoseSystem system(3);
   TrackWorkspace workspace;
   EXPECT_FALSE(AddTrack(track.views, geometry, {}, track.landmark, &workspace, &system));

@@ -64,6 +64,21 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
     system.hessian.block<30, 30>(15 * i, 15 * i) += j.transpose() * weight * j;
     system.gradient.segment<30>(15 * i) += j.transpose() * weight * r;
   }
+  for (int i = 0; i < frames; ++i) {
+    const WindowFrame& frame = fixture.window.frame(i);
+    if (frame.rest) {
+      // Zero velocity and gyro bias by their definitions, in the columns they touch.
+      const Matrix15d c = ImuChartJacobian(prior.convention, frame.nav_state());
+      const double wv = 50 * 50;
+      const double wb = 200 * 200;
+      const Eigen::Matrix<double, 3, 15> jv = c.middleRows<3>(6);
+      const Eigen::Matrix<double, 3, 15> jb = c.middleRows<3>(9);
+      system.hessian.block<15, 15>(15 * i, 15 * i) += wv * jv.transpose() * jv + wb * jb.transpose() * jb;
+      system.gradient.segment<15>(15 * i) +=
+          wv * jv.transpose() * frame.nav_state().v_WB +
+          wb * jb.transpose() * (frame.imu_bias().gyro - frame.rest->model.mean_gyro_radps);
+    }
+  }
   const Eigen::MatrixXd full = vision.hessian.selfadjointView<Eigen::Lower>();
   for (int i = 0; i < frames; ++i) {
     const Matrix6d ci = ChartJacobian(prior.convention, fixture.window.frame(i).nav_state().T_WB());
@@ -76,6 +91,14 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
   return system;
 }
 
+/// The first two frames stood still (deviations 0.02 m/s and 0.005 rad/s).
+void AddRest(WindowFixture* fixture) {
+  for (int i = 0; i < 2; ++i) {
+    fixture->window.frame(i).rest =
+        MakeRestMeasurement({true, true}, Eigen::Vector3d(0.01, -0.02, 0.03 * i), VisionConfig());
+  }
+}
+
 class MarginalizationTest : public testing::TestWithParam<ErrorConvention> {};
 
 // GIVEN a window whose oldest frame leaves, WHEN what remains is solved with the prior, THEN the linear
@@ -83,6 +106,7 @@ class MarginalizationTest : public testing::TestWithParam<ErrorConvention> {};
 TEST_P(MarginalizationTest, PriorEqualsTheBatchOnTheLinearProblem) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     WindowFixture fixture(seed, 4, 12, 1.0);
+    AddRest(&fixture);
     LinearPrior prior;
     ASSERT_TRUE(MakeInitialPrior(GetParam(), fixture.window.frame(0), SomeCovariance(), &prior));
     prior.residual = Vector15d::Constant(0.3);
@@ -134,6 +158,7 @@ TEST_P(MarginalizationTest, PriorEqualsTheBatchOnTheLinearProblem) {
 
 TEST_P(MarginalizationTest, NewestCovarianceIsTheInverseOfTheFullHessian) {
   WindowFixture fixture(3, 4, 12, 1.0);
+  AddRest(&fixture);
   LinearPrior prior;
   ASSERT_TRUE(MakeInitialPrior(GetParam(), fixture.window.frame(0), SomeCovariance(), &prior));
   const PoseSystem vision = Vision(fixture, 0, 3);

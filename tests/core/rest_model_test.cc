@@ -1,0 +1,65 @@
+#include "core/rest_model.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/jacobian_checker.h"
+#include "tests/support/random_states.h"
+
+namespace alidade {
+namespace {
+
+TEST(RestModelTest, VanishesOnARigAtRest) {
+  const NavState state{so3::Exp({0.1, 0.2, 2.0}), {1, 2, 3}, Eigen::Vector3d::Zero()};
+  const ImuBias bias{{0.01, -0.02, 0.003}, {0.1, 0.2, 0.3}};
+  Vector6d residual;
+  RestModel{bias.gyro}.Evaluate(state, bias, &residual, nullptr);
+  EXPECT_EQ(residual.norm(), 0);
+}
+
+TEST(RestModelTest, JacobianAgreesWithCentralDifferencesInAllConventions) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::RandomStates random(seed);
+    const NavState state{random.Rotation(), random.Vector(5), random.Vector(2)};
+    const ImuBias bias = random.Bias();
+    const RestModel model{random.Vector(0.1)};
+    Vector6d residual;
+    RestModel::Jacobian jacobian;
+    model.Evaluate(state, bias, &residual, &jacobian);
+    Vector6d alone;
+    model.Evaluate(state, bias, &alone, nullptr);
+    EXPECT_EQ(residual, alone);
+    for (const ErrorConvention convention : test::kAllConventions) {
+      const auto displaced = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
+        const ImuBias moved{bias.gyro + xi.segment<3>(9), bias.accel + xi.segment<3>(12)};
+        Vector6d r;
+        model.Evaluate(Retract(convention, state, xi.head<9>()), moved, &r, nullptr);
+        return r;
+      };
+      EXPECT_EQ(test::CompareJacobians(jacobian * ImuChartJacobian(convention, state),
+                                       test::NumericJacobian(displaced, 15), 1e-8),
+                "")
+          << ToString(convention) << " seed " << seed;
+    }
+  }
+}
+
+TEST(RestModelTest, WhitensWithTheConfiguredDeviationsAndLeavesATurningRigItsRate) {
+  VisionConfig vision;
+  vision.rest_velocity_std_mps = 0.5;
+  vision.rest_rate_std_radps = 0.1;
+  const NavState state{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), {1, 2, 3}};
+  const ImuBias bias{{0.3, 0.2, 0.1}, Eigen::Vector3d::Zero()};
+  const Eigen::Vector3d mean_gyro(0.1, 0.1, 0.1);
+  Vector6d residual;
+  RestModel::Jacobian jacobian;
+  MakeRestMeasurement({true, true}, mean_gyro, vision).Evaluate(state, bias, &residual, &jacobian);
+  EXPECT_LT((residual - (Vector6d() << 2, 4, 6, 2, 1, 0).finished()).norm(), 1e-12);
+  EXPECT_DOUBLE_EQ(jacobian(0, 6), 2);
+  EXPECT_DOUBLE_EQ(jacobian(3, 9), 10);
+  MakeRestMeasurement({true, false}, mean_gyro, vision).Evaluate(state, bias, &residual, &jacobian);
+  EXPECT_EQ(residual.tail<3>().norm(), 0);
+  EXPECT_EQ(jacobian.bottomRows<3>().norm(), 0);
+}
+
+}  // namespace
+}  // namespace alidade
