@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "core/format.h"
 #include "eval/metrics.h"
+#include "eval/trajectory_interpolation.h"
 
 namespace alidade {
 namespace {
@@ -21,21 +22,11 @@ struct Candidate {
 };
 
 std::string Seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return Format("%.6g", value);
 }
 
 TimeNs Distance(TimeNs a, TimeNs b) {
   return a < b ? b - a : a - b;
-}
-
-/// Index of the first truth row at or after `stamp_ns`; size() when there is none.
-std::size_t LowerBound(const std::vector<TrajectoryPoint>& points, TimeNs stamp_ns) {
-  const auto found =
-      std::lower_bound(points.begin(), points.end(), stamp_ns,
-                       [](const TrajectoryPoint& point, TimeNs stamp) { return point.stamp_ns < stamp; });
-  return static_cast<std::size_t>(found - points.begin());
 }
 
 /// One-to-one pairs, nearest first, sorted by time. An estimate competes only for the truth rows on either
@@ -45,7 +36,7 @@ std::vector<Candidate> MatchNearest(const Trajectory& truth, const Trajectory& e
   candidates.reserve(2 * estimate.points.size());
   for (std::size_t e = 0; e < estimate.points.size(); ++e) {
     const TimeNs stamp = estimate.points[e].stamp_ns;
-    const std::size_t after = LowerBound(truth.points, stamp);
+    const std::size_t after = FirstAtOrAfter(truth.points, stamp);
     for (std::size_t t = after == 0 ? 0 : after - 1; t <= after && t < truth.points.size(); ++t) {
       const TimeNs distance = Distance(stamp, truth.points[t].stamp_ns);
       if (distance <= max_dt_ns) {
@@ -71,27 +62,12 @@ std::vector<Candidate> MatchNearest(const Trajectory& truth, const Trajectory& e
   return matches;
 }
 
-/// Truth at `stamp_ns` between two rows: linear in position, velocity and biases, geodesic in rotation.
-TrajectoryPoint Interpolate(const TrajectoryPoint& before, const TrajectoryPoint& after, TimeNs stamp_ns) {
-  const double fraction =
-      SecondsBetween(before.stamp_ns, stamp_ns) / SecondsBetween(before.stamp_ns, after.stamp_ns);
-  TrajectoryPoint point = before;
-  point.stamp_ns = stamp_ns;
-  point.nav.p_WB += fraction * (after.nav.p_WB - before.nav.p_WB);
-  point.nav.v_WB += fraction * (after.nav.v_WB - before.nav.v_WB);
-  point.bias.gyro += fraction * (after.bias.gyro - before.bias.gyro);
-  point.bias.accel += fraction * (after.bias.accel - before.bias.accel);
-  const Eigen::Vector3d turn = so3::Log(before.nav.R_WB.transpose() * after.nav.R_WB);
-  point.nav.R_WB = before.nav.R_WB * so3::Exp(fraction * turn);
-  return point;
-}
-
 /// Every estimate that has a truth row at its stamp or lies between two rows at most `max_gap_ns` apart.
 std::vector<StatePair> PairByInterpolation(const Trajectory& truth, const Trajectory& estimate,
                                            TimeNs max_gap_ns) {
   std::vector<StatePair> pairs;
   for (const TrajectoryPoint& point : estimate.points) {
-    const std::size_t after = LowerBound(truth.points, point.stamp_ns);
+    const std::size_t after = FirstAtOrAfter(truth.points, point.stamp_ns);
     if (after == truth.points.size()) {
       break;
     }
@@ -172,7 +148,7 @@ std::string OffsetHint(const Trajectory& truth, const Trajectory& estimate) {
 std::string GapHint(const Trajectory& truth, const Trajectory& estimate) {
   std::vector<TimeNs> gaps;
   for (const TrajectoryPoint& point : estimate.points) {
-    const std::size_t after = LowerBound(truth.points, point.stamp_ns);
+    const std::size_t after = FirstAtOrAfter(truth.points, point.stamp_ns);
     if (after > 0 && after < truth.points.size()) {
       gaps.push_back(truth.points[after].stamp_ns - truth.points[after - 1].stamp_ns);
     }

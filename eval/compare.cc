@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/format.h"
 #include "eval/cell_score.h"
 #include "eval/compare_input.h"
 #include "eval/config_json.h"
@@ -27,11 +28,10 @@ struct Cell {
 };
 
 std::string OneLine(const CellResult& cell) {
-  char figures[128] = "";
-  if (std::isfinite(cell.ate_pos_m)) {
-    std::snprintf(figures, sizeof figures, ", ATE %.3f m %.3f deg, %.2f ms a frame", cell.ate_pos_m,
-                  cell.ate_ori_deg, cell.backend_ms);
-  }
+  const std::string figures = std::isfinite(cell.ate_pos_m)
+                                  ? Format(", ATE %.3f m %.3f deg, %.2f ms a frame", cell.ate_pos_m,
+                                           cell.ate_ori_deg, cell.backend_ms)
+                                  : std::string();
   return cell.estimator + " / " + cell.sequence + " / " + std::to_string(cell.seed) + ": " + cell.status +
          figures + (cell.message.empty() ? "" : " (" + cell.message + ")");
 }

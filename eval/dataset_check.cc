@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "core/format.h"
 #include "eval/dataset.h"
 
 namespace alidade {
@@ -12,14 +13,6 @@ namespace {
 using Severity = DatasetFinding::Severity;
 
 constexpr double kStandardGravity = 9.80665;
-
-/// printf into a string: findings are sentences with rounded figures.
-template <typename... Args>
-std::string Format(const char* format, Args... args) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, args...);
-  return text;
-}
 
 class Findings {
  public:

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "core/format.h"
 #include "eval/evaluate.h"
 
 namespace alidade {
@@ -84,15 +85,8 @@ Json NeesJson(const NeesResult& nees) {
   return object;
 }
 
-template <typename... Arguments>
-void Append(std::string& text, const char* format, Arguments... arguments) {
-  char line[200];
-  std::snprintf(line, sizeof line, format, arguments...);
-  text += line;
-}
-
 void AppendAte(std::string& text, const std::string& name, const AteResult& ate) {
-  Append(text, "%-22s%14.6f%14.6f%14.6f\n", name.c_str(), ate.pos_m, ate.ori_deg, ate.pos_max_m);
+  text += Format("%-22s%14.6f%14.6f%14.6f\n", name.c_str(), ate.pos_m, ate.ori_deg, ate.pos_max_m);
 }
 
 }  // namespace
@@ -100,39 +94,39 @@ void AppendAte(std::string& text, const std::string& name, const AteResult& ate)
 std::string FormatEvaluationText(const Evaluation& evaluation) {
   const AssociationOptions& association = evaluation.options.association;
   std::string text;
-  Append(text, "pairs      %zu of %zu estimate and %zu truth rows (%s %g s)\n", evaluation.pairs.size(),
-         evaluation.estimate_rows, evaluation.truth_rows,
-         association.interpolate ? "interpolated over at most" : "nearest within",
-         association.interpolate ? association.max_gap_s : association.max_dt_s);
-  Append(text, "duration   %.3f s, truth path %.3f m\n", evaluation.duration_s, evaluation.path_m);
+  text += Format("pairs      %zu of %zu estimate and %zu truth rows (%s %g s)\n", evaluation.pairs.size(),
+                 evaluation.estimate_rows, evaluation.truth_rows,
+                 association.interpolate ? "interpolated over at most" : "nearest within",
+                 association.interpolate ? association.max_gap_s : association.max_dt_s);
+  text += Format("duration   %.3f s, truth path %.3f m\n", evaluation.duration_s, evaluation.path_m);
   if (evaluation.options.alignment == Alignment::kSim3) {
-    Append(text, "scale      %.6f\n", evaluation.transform.scale);
+    text += Format("scale      %.6f\n", evaluation.transform.scale);
   }
-  Append(text, "\n%-22s%14s%14s%14s\n", "absolute error", "rmse [m]", "rmse [deg]", "max [m]");
+  text += Format("\n%-22s%14s%14s%14s\n", "absolute error", "rmse [m]", "rmse [deg]", "max [m]");
   AppendAte(text, "unaligned", evaluation.unaligned);
   AppendAte(text, "aligned (" + std::string(ToString(evaluation.options.alignment)) + ")", evaluation.ate);
 
   if (!evaluation.rpe.empty()) {
-    Append(text, "\n%-22s%14s%14s%14s\n", "relative error over", "rmse [m]", "rmse [deg]", "count");
+    text += Format("\n%-22s%14s%14s%14s\n", "relative error over", "rmse [m]", "rmse [deg]", "count");
   }
   for (const RpeResult& rpe : evaluation.rpe) {
-    char distance[32];
-    std::snprintf(distance, sizeof distance, "%g m", rpe.distance_m);
+    const std::string distance = Format("%g m", rpe.distance_m);
     if (rpe.count == 0) {
-      Append(text, "%-22s%14s%14s%14d\n", distance, "-", "-", 0);
+      text += Format("%-22s%14s%14s%14d\n", distance.c_str(), "-", "-", 0);
     } else {
-      Append(text, "%-22s%14.6f%14.6f%14d\n", distance, rpe.pos_rmse_m, rpe.ori_rmse_deg, rpe.count);
+      text +=
+          Format("%-22s%14.6f%14.6f%14d\n", distance.c_str(), rpe.pos_rmse_m, rpe.ori_rmse_deg, rpe.count);
     }
   }
 
   if (evaluation.nees) {
-    Append(text, "\n%-22s%14s%14s   95 %% band, were the pairs independent\n", "NEES (unaligned)", "mean",
-           "expected");
+    text += Format("\n%-22s%14s%14s   95 %% band, were the pairs independent\n", "NEES (unaligned)", "mean",
+                   "expected");
     for (const NeesLine& line : NeesLines(*evaluation.nees)) {
-      Append(text, "%-22s%14.4f%14d   %.4f to %.4f (%zu pairs)\n", line.name, line.mean, line.dof,
-             line.band.first, line.band.second, line.count);
+      text += Format("%-22s%14.4f%14d   %.4f to %.4f (%zu pairs)\n", line.name, line.mean, line.dof,
+                     line.band.first, line.band.second, line.count);
     }
-    Append(text, "%-22s%14.4f%14s\n", "inside 3 sigma", evaluation.nees->coverage_3sigma, "0.9973");
+    text += Format("%-22s%14.4f%14s\n", "inside 3 sigma", evaluation.nees->coverage_3sigma, "0.9973");
   }
   return text;
 }

@@ -1,45 +1,9 @@
 #include "eval/truth_start.h"
 
-#include <algorithm>
-
 #include "core/random.h"
+#include "eval/trajectory_interpolation.h"
 
 namespace alidade {
-namespace {
-
-constexpr double kMaxGapS = 0.1;
-
-}  // namespace
-
-Result<TrajectoryPoint> InterpolateTruth(const Trajectory& truth, TimeNs stamp_ns) {
-  const std::vector<TrajectoryPoint>& points = truth.points;
-  const auto after =
-      std::lower_bound(points.begin(), points.end(), stamp_ns,
-                       [](const TrajectoryPoint& p, TimeNs stamp) { return p.stamp_ns < stamp; });
-  if (after != points.end() && after->stamp_ns == stamp_ns) {
-    return *after;
-  }
-  if (after == points.begin() || after == points.end()) {
-    return Status::Input("truth does not cover " + FormatSeconds(stamp_ns) + " s" +
-                         (points.empty() ? std::string(": it is empty")
-                                         : ": it spans " + FormatSeconds(points.front().stamp_ns) + " s to " +
-                                               FormatSeconds(points.back().stamp_ns) + " s"));
-  }
-  const TrajectoryPoint& a = *(after - 1);
-  const TrajectoryPoint& b = *after;
-  if (SecondsBetween(a.stamp_ns, b.stamp_ns) > kMaxGapS) {
-    return Status::Input("truth has a gap around " + FormatSeconds(stamp_ns) + " s");
-  }
-  const double w = SecondsBetween(a.stamp_ns, stamp_ns) / SecondsBetween(a.stamp_ns, b.stamp_ns);
-  TrajectoryPoint point;
-  point.stamp_ns = stamp_ns;
-  point.nav.R_WB = a.nav.R_WB * so3::Exp(w * so3::Log(a.nav.R_WB.transpose() * b.nav.R_WB));
-  point.nav.p_WB = (1 - w) * a.nav.p_WB + w * b.nav.p_WB;
-  point.nav.v_WB = (1 - w) * a.nav.v_WB + w * b.nav.v_WB;
-  point.bias.gyro = (1 - w) * a.bias.gyro + w * b.bias.gyro;
-  point.bias.accel = (1 - w) * a.bias.accel + w * b.bias.accel;
-  return point;
-}
 
 Result<NavEstimate> StartFromTruth(const InitConfig& config, const Trajectory& truth, TimeNs stamp_ns,
                                    unsigned seed) {

@@ -5,10 +5,6 @@
 
 namespace alidade {
 
-/// Truth at `stamp_ns`, interpolated between its neighbouring rows (rotation geodesic, the rest linear).
-/// kInput: the stamp lies outside the truth or in a gap longer than 0.1 s.
-Result<TrajectoryPoint> InterpolateTruth(const Trajectory& truth, TimeNs stamp_ns);
-
 /// The start of init.method truth: truth at `stamp_ns` with the prior of `config`, moved off the truth by an
 /// error drawn from that prior (unless config.perturb_truth is off), so that the very first NEES is a
 /// chi-square sample.

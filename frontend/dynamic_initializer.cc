@@ -1,8 +1,8 @@
 #include "frontend/dynamic_initializer.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "core/format.h"
 #include "frontend/alignment_refinement.h"
 #include "frontend/dynamic_window.h"
 #include "frontend/gyro_alignment.h"
@@ -21,12 +21,6 @@ constexpr double kMaxBiasPriorSigma = 4.0;
 constexpr double kMaxGyroBiasRadps = 0.3;
 constexpr double kMaxRejectedFraction = 0.6;
 
-std::string Format(const char* format, double found, double limit) {
-  char text[160];
-  std::snprintf(text, sizeof(text), format, found, limit);
-  return text;
-}
-
 /// Empty when the solution may be used.
 std::string ReasonAgainst(const RefinedAlignment& refined, double max_scale_std) {
   if (refined.reprojection_chi2 > kMaxReprojectionChi2) {
@@ -38,7 +32,7 @@ std::string ReasonAgainst(const RefinedAlignment& refined, double max_scale_std)
                   kMaxInertialChi2);
   }
   if (refined.rejected_tracks > kMaxRejectedFraction * (refined.tracks + refined.rejected_tracks)) {
-    return Format("moving: %.0f tracks do not fit, %.0f do", refined.rejected_tracks, refined.tracks);
+    return Format("moving: %d tracks do not fit, %d do", refined.rejected_tracks, refined.tracks);
   }
   if (refined.newest.bias.gyro.norm() > kMaxGyroBiasRadps) {
     return Format("moving: gyro bias %.3f rad/s is implausible, limit %.1f", refined.newest.bias.gyro.norm(),
@@ -63,8 +57,8 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   DynamicWindow window;
   ALIDADE_RETURN_IF_ERROR(BuildDynamicWindow(config, rig.camera, frames, imu, &window));
   if (static_cast<int>(window.tracks.size()) < kMinTracks) {
-    return Status::Diverged(Format("moving: %.0f tracks shared by frames of the window, need %.0f",
-                                   static_cast<double>(window.tracks.size()), kMinTracks));
+    return Status::Diverged(Format("moving: %zu tracks shared by frames of the window, need %d",
+                                   window.tracks.size(), kMinTracks));
   }
   std::vector<Preintegration> preintegrations = PreintegrateWindow(window, ImuBias(), rig.imu_noise);
   const GyroAlignment gyro = AlignGyro(window, preintegrations, rig);
@@ -94,9 +88,7 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   if (const std::string reason = ReasonAgainst(*refined, max_scale_std); !reason.empty()) {
     return Status::Diverged(reason);
   }
-  char text[320];
-  std::snprintf(
-      text, sizeof(text),
+  const std::string report = Format(
       "in motion: %zu frames over %.2f s, %d tracks (%d refused), parallax %.0f px, scale known to %.1f %%, "
       "reprojection chi2 %.2f, inertial chi2 %.2f, free gravity %.2f m/s^2, speed %.2f m/s, %d iterations",
       window.stamps_ns.size(), SecondsBetween(window.stamps_ns.front(), window.stamps_ns.back()),
@@ -104,7 +96,7 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
       refined->reprojection_chi2, refined->inertial_chi2, linear->free_gravity_mps2,
       refined->newest.nav.v_WB.norm(), refined->iterations);
   return DynamicSolution{
-      refined->newest, text, {window.stamps_ns, refined->states, refined->relative_scale_std}};
+      refined->newest, report, {window.stamps_ns, refined->states, refined->relative_scale_std}};
 }
 
 }  // namespace alidade

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
+
+#include "core/format.h"
 
 namespace alidade {
 namespace {
@@ -65,17 +66,14 @@ std::vector<WindowTrack> CollectTracks(const EstimatorConfig& config, const Came
 Status BuildDynamicWindow(const EstimatorConfig& config, const CameraModel& camera,
                           const std::deque<TrackFrame>& frames, ImuBuffer* imu, DynamicWindow* window) {
   *window = DynamicWindow();
-  char text[160];
   const double span_s = frames.empty() ? 0 : SecondsBetween(frames.front().stamp_ns, frames.back().stamp_ns);
   if (static_cast<int>(frames.size()) < config.init.dynamic_min_frames) {
-    std::snprintf(text, sizeof(text), "moving: %zu frames of %d", frames.size(),
-                  config.init.dynamic_min_frames);
-    return Status::Diverged(text);
+    return Status::Diverged(
+        Format("moving: %zu frames of %d", frames.size(), config.init.dynamic_min_frames));
   }
   if (span_s < 0.95 * config.init.dynamic_window_s) {
-    std::snprintf(text, sizeof(text), "moving: %.2f s of %.2f s collected", span_s,
-                  config.init.dynamic_window_s);
-    return Status::Diverged(text);
+    return Status::Diverged(
+        Format("moving: %.2f s of %.2f s collected", span_s, config.init.dynamic_window_s));
   }
   const std::vector<size_t> selected = SelectFrames(config.init, frames);
   for (const size_t index : selected) {

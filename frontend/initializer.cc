@@ -1,11 +1,11 @@
 #include "frontend/initializer.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <deque>
 #include <optional>
 #include <vector>
 
+#include "core/format.h"
 #include "core/imu_buffer.h"
 #include "frontend/dynamic_initializer.h"
 #include "frontend/dynamic_window.h"
@@ -98,27 +98,25 @@ std::optional<TrackMotion> Initializer::Implementation::MotionOverWindow() const
 RestAssessment Initializer::Implementation::Assess(ImuSpread* spread) {
   const TimeNs newest = frames.back().stamp_ns;
   if (imu.samples().empty()) {
-    return {RestVerdict::kTooShort, "no imu sample yet"};
+    return {StaticVerdict::kTooShort, "no imu sample yet"};
   }
   const TimeNs from =
       std::max(imu.samples().front().stamp_ns, newest - SecondsToNs(config.init.static_window_s));
   std::vector<ImuSample> samples;
   if (const Status status = imu.Interval(from, newest, &samples); !status.ok()) {
-    return {RestVerdict::kTooShort, status.message()};
+    return {StaticVerdict::kTooShort, status.message()};
   }
   if (const double longest_s = LongestStep(samples); longest_s > config.imu.max_gap_s) {
-    char text[96];
-    std::snprintf(text, sizeof(text), "imu is silent for %.3f s, limit %.3f", longest_s,
-                  config.imu.max_gap_s);
-    return {RestVerdict::kTooShort, text};
+    return {StaticVerdict::kTooShort,
+            Format("imu is silent for %.3f s, limit %.3f", longest_s, config.imu.max_gap_s)};
   }
   *spread = MeasureImuSpread(samples);
   RestAssessment assessment = AssessRest(config.init, config.imu.gravity_mps2, *spread, MotionOverWindow());
   const bool has_tracks = !frames.back().observations.empty();
   const double seen_s = SecondsBetween(frames.front().stamp_ns, newest);
-  if (assessment.verdict == RestVerdict::kAtRest && has_tracks &&
+  if (assessment.verdict == StaticVerdict::kAtRest && has_tracks &&
       seen_s < 0.5 * config.init.static_window_s) {
-    return {RestVerdict::kTooShort, "at rest by the imu; tracks cover too short a time to confirm it"};
+    return {StaticVerdict::kTooShort, "at rest by the imu; tracks cover too short a time to confirm it"};
   }
   return assessment;
 }
@@ -126,20 +124,17 @@ RestAssessment Initializer::Implementation::Assess(ImuSpread* spread) {
 Result<NavEstimate> Initializer::Implementation::TryStatic(RestAssessment* assessment) {
   ImuSpread spread;
   *assessment = Assess(&spread);
-  if (assessment->verdict != RestVerdict::kAtRest) {
+  if (assessment->verdict != StaticVerdict::kAtRest) {
     return Status::Diverged(assessment->reason);
   }
   const NavEstimate estimate =
       StateAtRest(config.init, config.imu.gravity_mps2, rig.imu_noise, spread, frames.back().stamp_ns);
-  char text[256];
-  std::snprintf(
-      text, sizeof(text),
+  report = Format(
       "at rest for %.2f s: gyro spread %.2g rad/s, accelerometer spread %.2g m/s^2, |f| %.4f m/s^2, gyro "
       "bias (%.4f, %.4f, %.4f) rad/s",
       spread.duration_s, spread.gyro_std_radps, spread.accel_std_mps2, spread.mean_accel.norm(),
       spread.mean_gyro.x(), spread.mean_gyro.y(), spread.mean_gyro.z());
   method = "static";
-  report = text;
   return estimate;
 }
 
@@ -209,13 +204,13 @@ Result<NavEstimate> Initializer::AddFrame(const TrackFrame& frame) {
   }
   self.frames.push_back(std::move(in_imu_time));
   self.Trim();
-  RestAssessment assessment{RestVerdict::kMoving, {}};
+  RestAssessment assessment{StaticVerdict::kMoving, {}};
   Result<NavEstimate> estimate = Status::Diverged("not tried");
   if (method != InitMethod::kDynamic) {
     estimate = self.TryStatic(&assessment);
   }
   // A short rest is waited for: a static start is the better one.
-  if (method != InitMethod::kStatic && assessment.verdict == RestVerdict::kMoving) {
+  if (method != InitMethod::kStatic && assessment.verdict == StaticVerdict::kMoving) {
     estimate = self.TryDynamic();
   }
   if (estimate.ok()) {

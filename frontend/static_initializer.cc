@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/check.h"
+#include "core/format.h"
 
 namespace alidade {
 namespace {
@@ -26,12 +26,6 @@ constexpr size_t kBlocks = 10;
 constexpr int kMinCommonTracks = 8;
 // At rest the tracker keeps its tracks.
 constexpr double kMinCommonFraction = 0.2;
-
-std::string Format(const char* format, double found, double limit) {
-  char text[160];
-  std::snprintf(text, sizeof(text), format, found, limit);
-  return text;
-}
 
 /// Variance of a mean over the interval: white noise of the sheet, or the slower motion that the blocks show.
 double VarianceOfMean(double density, double mean_std, double duration_s) {
@@ -56,8 +50,7 @@ double MeanDeviation(std::span<const ImuSample> samples, Vector3d ImuSample::*si
 
 std::string ReasonFromTracks(const InitConfig& config, const TrackMotion& motion) {
   if (motion.common < kMinCommonTracks || motion.common < kMinCommonFraction * motion.candidates) {
-    return Format("moving: only %.0f of %.0f tracks persist over the window", motion.common,
-                  motion.candidates);
+    return Format("moving: only %d of %d tracks persist over the window", motion.common, motion.candidates);
   }
   if (motion.motion_px > config.static_max_parallax_px) {
     return Format("moving: tracks move %.2f px, limit %.2f", motion.motion_px, config.static_max_parallax_px);
@@ -125,14 +118,14 @@ RestAssessment AssessRest(const InitConfig& config, double gravity_mps2, const I
     reason = ReasonFromTracks(config, *motion);
   }
   if (!reason.empty()) {
-    return {RestVerdict::kMoving, reason};
+    return {StaticVerdict::kMoving, reason};
   }
   // The interval's ends are interpolated to the frame, so that only rounding may be missing.
   if (spread.duration_s < config.static_window_s - 1e-6) {
-    return {RestVerdict::kTooShort,
+    return {StaticVerdict::kTooShort,
             Format("at rest for %.2f s of %.2f s", spread.duration_s, config.static_window_s)};
   }
-  return {RestVerdict::kAtRest, {}};
+  return {StaticVerdict::kAtRest, {}};
 }
 
 NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const ImuNoise& noise,

@@ -27,9 +27,9 @@ struct ImuSpread {
 /// Needs at least two samples.
 [[nodiscard]] ImuSpread MeasureImuSpread(std::span<const ImuSample> samples);
 
-enum class RestVerdict { kAtRest, kTooShort, kMoving };
+enum class StaticVerdict { kAtRest, kTooShort, kMoving };
 struct RestAssessment {
-  RestVerdict verdict = RestVerdict::kTooShort;
+  StaticVerdict verdict = StaticVerdict::kTooShort;
   std::string reason;  ///< why not at rest, with the figure and its limit
 };
 

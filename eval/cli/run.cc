@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "core/format.h"
 #include "eval/cli/command.h"
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
@@ -42,10 +43,9 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
 }
 
 std::string Summary(const RunResult& result) {
-  char times[96];
   const double frames = static_cast<double>(std::max<size_t>(result.records.size(), 1));
-  std::snprintf(times, sizeof times, "%.1f s wall, %.1f s CPU, %.2f ms CPU a frame", result.wall_s,
-                result.cpu_s, 1e3 * result.cpu_s / frames);
+  const std::string times = Format("%.1f s wall, %.1f s CPU, %.2f ms CPU a frame", result.wall_s,
+                                   result.cpu_s, 1e3 * result.cpu_s / frames);
   return StatusWord(result) + ": " + std::to_string(result.records.size()) + " frames, " +
          std::to_string(result.frames_skipped) + " skipped, start: " + result.init_method + ", " + times;
 }

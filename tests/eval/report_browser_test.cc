@@ -10,23 +10,19 @@
 #include <sstream>
 
 #include "tests/eval/synthetic_comparison.h"
+#include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
 
+using test::ReadFile;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
 constexpr const char* kBrowser = "/usr/bin/chromium";
 constexpr int kPlots = 13;
-
-std::string ReadFile(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// The page after its scripts have run, and what the browser's console said.
 struct Visit {

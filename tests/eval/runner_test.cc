@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/error_convention.h"
+#include "eval/trajectory_interpolation.h"
 #include "eval/truth_start.h"
 #include "tests/eval/fake_estimator.h"
 

@@ -9,6 +9,7 @@
 #include "eval/gyro_agreement.h"
 #include "eval/recorded_motion.h"
 #include "eval/sim_camera.h"
+#include "eval/trajectory_interpolation.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,22 +21,6 @@ Result<SimulatorConfig> HybridConfig(const std::string& folder) {
                              {"hybrid_dataset=" + folder});
 }
 
-/// Truth between its rows: straight and evenly turning, so independent of the spline.
-std::optional<Pose> TruthAt(const Trajectory& truth, TimeNs stamp_ns) {
-  const auto after =
-      std::lower_bound(truth.points.begin(), truth.points.end(), stamp_ns,
-                       [](const TrajectoryPoint& point, TimeNs stamp) { return point.stamp_ns < stamp; });
-  if (after == truth.points.begin() || after == truth.points.end()) {
-    return std::nullopt;
-  }
-  const TrajectoryPoint& a = *(after - 1);
-  const double w = SecondsBetween(a.stamp_ns, stamp_ns) / SecondsBetween(a.stamp_ns, after->stamp_ns);
-  Pose T_WB;
-  T_WB.rotation = a.nav.R_WB * so3::Exp(w * so3::Log(a.nav.R_WB.transpose() * after->nav.R_WB));
-  T_WB.translation = (1 - w) * a.nav.p_WB + w * after->nav.p_WB;
-  return T_WB;
-}
-
 /// Median over the frames of the rms error of one image coordinate against the landmarks seen from the
 /// recorded truth: the pixel noise, and what truth noise adds to it.
 double MedianReprojectionError(const SimulatorConfig& config, const Dataset& dataset, unsigned seed) {
@@ -45,12 +30,13 @@ double MedianReprojectionError(const SimulatorConfig& config, const Dataset& dat
                                                 recorded.motion.start_ns(), dataset.camera_stamps, seed);
   std::vector<double> errors;
   for (const TrackFrame& frame : dataset.tracks) {
-    const std::optional<Pose> T_WB =
-        TruthAt(*dataset.truth, frame.stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s));
-    if (!T_WB.has_value() || frame.observations.empty()) {
+    // Straight and evenly turning between the rows, so independent of the spline.
+    const Result<TrajectoryPoint> truth =
+        InterpolateTruth(*dataset.truth, frame.stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s));
+    if (!truth.ok() || frame.observations.empty()) {
       continue;
     }
-    const Pose T_CW = (*T_WB * dataset.rig.T_BC).Inverse();
+    const Pose T_CW = (truth->nav.T_WB() * dataset.rig.T_BC).Inverse();
     double squares = 0;
     for (const TrackObservation& observation : frame.observations) {
       const int landmark = tracks.landmark_of_track[static_cast<std::size_t>(observation.track_id)];

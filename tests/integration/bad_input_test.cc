@@ -34,7 +34,7 @@ class BadInput : public testing::Test {
     std::filesystem::copy(folder_.File("seq"), folder_.File("torn_imu"),
                           std::filesystem::copy_options::recursive);
     folder_.Write("torn_imu/mav0/imu0/data.csv",
-                  ReadText(folder_.File("seq/mav0/imu0/data.csv")) + "2000000000000,1,2\n");
+                  ReadFile(folder_.File("seq/mav0/imu0/data.csv")) + "2000000000000,1,2\n");
     std::filesystem::copy(folder_.File("seq"), folder_.File("no_truth"),
                           std::filesystem::copy_options::recursive);
     std::filesystem::remove_all(folder_.File("no_truth/mav0/state_groundtruth_estimate0"));
@@ -110,7 +110,7 @@ TEST_F(BadInput, EstimatorThatNeverStartsKeepsItsOutputsAndExits5) {
               " --set=init.method=static --output " + out + " --quiet");
   EXPECT_EQ(result.code, 5) << result.output;
   EXPECT_THAT(result.output, HasSubstr("not initialised"));
-  EXPECT_THAT(ReadText(out + "/run.json"), HasSubstr("\"not_initialized\""));
+  EXPECT_THAT(ReadFile(out + "/run.json"), HasSubstr("\"not_initialized\""));
   EXPECT_TRUE(std::filesystem::exists(out + "/states.csv"));
 }
 

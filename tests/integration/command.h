@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
+
+#include "tests/support/read_file.h"
 
 namespace alidade::test {
 
@@ -34,13 +34,6 @@ inline CommandResult Alidade(const std::string& words) {
   return result;
 }
 
-inline std::string ReadText(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 /// Path below the folder -> content, for all files that equal runs must write equally: timing.csv is left
 /// out, run.json ends before its times.
 inline std::map<std::string, std::string> ComparableFiles(const std::string& folder) {
@@ -50,7 +43,7 @@ inline std::map<std::string, std::string> ComparableFiles(const std::string& fol
     if (!entry.is_regular_file() || name == "timing.csv") {
       continue;
     }
-    std::string text = ReadText(entry.path());
+    std::string text = ReadFile(entry.path());
     if (name == "run.json") {
       text = text.substr(0, text.find("\"times\""));
     }

@@ -61,11 +61,11 @@ TEST_F(CompareCommand, ResultsDoNotDependOnTheNumberOfJobs) {
   ASSERT_EQ(one.code, 0) << one.output;
   ASSERT_EQ(Compare("two", "--jobs=2").code, 0);
   EXPECT_EQ(ComparableFiles(folder_.File("one/cells")), ComparableFiles(folder_.File("two/cells")));
-  const std::string summary = WithoutTimes(ReadText(folder_.File("one/summary.csv")));
+  const std::string summary = WithoutTimes(ReadFile(folder_.File("one/summary.csv")));
   EXPECT_THAT(summary, HasSubstr("alidade_filter,filter,short,2,ok,"));
-  EXPECT_EQ(summary, WithoutTimes(ReadText(folder_.File("two/summary.csv"))));
+  EXPECT_EQ(summary, WithoutTimes(ReadFile(folder_.File("two/summary.csv"))));
   for (const char* file : {"aggregate.csv", "tables.md", "tables.tex", "report.html"}) {
-    EXPECT_FALSE(ReadText(folder_.File(std::string("one/") + file)).empty()) << file;
+    EXPECT_FALSE(ReadFile(folder_.File(std::string("one/") + file)).empty()) << file;
   }
 }
 
@@ -73,18 +73,18 @@ TEST_F(CompareCommand, ResultsDoNotDependOnTheNumberOfJobs) {
 // are not touched, and the tables are those of the first time.
 TEST_F(CompareCommand, ResumeRunsOnlyWhatIsMissing) {
   ASSERT_EQ(Compare("out").code, 0);
-  const std::string summary = ReadText(folder_.File("out/summary.csv"));
+  const std::string summary = ReadFile(folder_.File("out/summary.csv"));
   const std::string kept = folder_.File("out/cells/alidade_filter/short/1/run.json");
-  const std::string kept_text = ReadText(kept);
+  const std::string kept_text = ReadFile(kept);
   const auto kept_time = std::filesystem::last_write_time(kept);
   std::filesystem::remove_all(folder_.File("out/cells/alidade_filter/short/2"));
   folder_.Write("out/cells/vins_mono_class/short/1/run.json", "{");
   EXPECT_EQ(Compare("out").code, 6);  // neither --resume nor --overwrite
   const CommandResult resumed = Compare("out", "--resume");
   ASSERT_EQ(resumed.code, 0) << resumed.output;
-  EXPECT_EQ(ReadText(kept), kept_text);
+  EXPECT_EQ(ReadFile(kept), kept_text);
   EXPECT_EQ(std::filesystem::last_write_time(kept), kept_time);
-  EXPECT_EQ(WithoutTimes(ReadText(folder_.File("out/summary.csv"))), WithoutTimes(summary));
+  EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("out/summary.csv"))), WithoutTimes(summary));
 }
 
 TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
@@ -101,7 +101,7 @@ TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
                     Source("configs/datasets/figure8_short.yaml") + ", set: {duration_s: 5, path_m: 6.5}}\n");
   const CommandResult result = Compare("out");
   EXPECT_EQ(result.code, 7) << result.output;
-  const std::string summary = ReadText(folder_.File("out/summary.csv"));
+  const std::string summary = ReadFile(folder_.File("out/summary.csv"));
   EXPECT_THAT(summary, HasSubstr("moving,filter,figure8_short,1,not_initialized,"));
   EXPECT_THAT(summary, HasSubstr("good,filter,figure8_short,1,ok,"));
 }

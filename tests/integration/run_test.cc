@@ -65,14 +65,14 @@ TEST(Run, BackendSwitchLeavesTheInputDigestUnchanged) {
   const Sequence& sequence = Sequence::Get();
   ASSERT_EQ(sequence.Run("alidade_filter", folder.File("filter"), "--backend filter").code, 0);
   ASSERT_EQ(sequence.Run("alidade_filter", folder.File("smoother"), "--backend=smoother").code, 0);
-  const auto filter = nlohmann::json::parse(ReadText(folder.File("filter/run.json")));
-  const auto smoother = nlohmann::json::parse(ReadText(folder.File("smoother/run.json")));
+  const auto filter = nlohmann::json::parse(ReadFile(folder.File("filter/run.json")));
+  const auto smoother = nlohmann::json::parse(ReadFile(folder.File("smoother/run.json")));
   EXPECT_EQ(filter["backend"], "filter");
   EXPECT_EQ(smoother["backend"], "smoother");
   EXPECT_EQ(filter["input_digest"], smoother["input_digest"]);
   EXPECT_EQ(filter["dataset_digest"], smoother["dataset_digest"]);
   EXPECT_NE(filter["config_digest"], smoother["config_digest"]);
-  EXPECT_NE(ReadText(folder.File("filter/states.csv")), ReadText(folder.File("smoother/states.csv")));
+  EXPECT_NE(ReadFile(folder.File("filter/states.csv")), ReadFile(folder.File("smoother/states.csv")));
 }
 
 TEST(Run, EvaluatesWhatItWrote) {
@@ -95,7 +95,7 @@ TEST(Run, SettingsMayBeRepeated) {
       sequence.Run("alidade_filter", folder.File("a"), "--set filter.window=9,vision.pixel_noise_px=1.5")
           .code,
       0);
-  const auto config = nlohmann::json::parse(ReadText(folder.File("a/run.json")))["config"];
+  const auto config = nlohmann::json::parse(ReadFile(folder.File("a/run.json")))["config"];
   EXPECT_EQ(config["filter"]["window"], 9);
   EXPECT_EQ(config["vision"]["pixel_noise_px"], 1.5);
   EXPECT_EQ(config["init"]["method"], "truth");

@@ -11,6 +11,7 @@
 #include "core/estimator.h"
 #include "core/random.h"
 #include "eval/simulator.h"
+#include "eval/trajectory_interpolation.h"
 
 namespace alidade::test {
 
@@ -34,10 +35,9 @@ inline Dataset SimulateOrDie(const SimulatorConfig& config, unsigned seed) {
 /// The true state at a stamp that the truth holds exactly (camera stamps of the simulator do).
 inline const TrajectoryPoint& TruthAt(const Dataset& dataset, TimeNs stamp_ns) {
   const auto& points = dataset.truth->points;
-  const auto found = std::lower_bound(points.begin(), points.end(), stamp_ns,
-                                      [](const TrajectoryPoint& p, TimeNs t) { return p.stamp_ns < t; });
-  EXPECT_TRUE(found != points.end() && found->stamp_ns == stamp_ns);
-  return *found;
+  const std::size_t found = FirstAtOrAfter(points, stamp_ns);
+  EXPECT_TRUE(found < points.size() && points[found].stamp_ns == stamp_ns);
+  return points[found];
 }
 
 /// The truth at the first frame, displaced by a draw from the prior it comes with.
