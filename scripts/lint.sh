@@ -23,19 +23,22 @@ find_tool() {
   exit 77
 }
 
-# Tracked files and new ones that git does not ignore.
+# Our headers and sources below the given folders or files.
 sources() {
-  git ls-files --cached --others --exclude-standard -- "$@" | sort -u | while read -r file; do
-    [[ -f "$file" ]] && echo "$file"
-  done
+  find "$@" \( -name '*.h' -o -name '*.cc' \) -type f | sort
 }
+
+folders=()
+for folder in core eval filter frontend gnss smoother tests; do
+  [[ -d "$folder" ]] && folders+=("$folder")
+done
 
 case "$mode" in
   format|fix)
     tool=$(find_tool clang-format)
     options=(--dry-run -Werror)
     [[ "$mode" == fix ]] && options=(-i)
-    sources '*.h' '*.cc' | xargs "$tool" "${options[@]}"
+    sources "${folders[@]}" | xargs "$tool" "${options[@]}"
     ;;
   tidy)
     tool=$(find_tool clang-tidy)
@@ -43,12 +46,9 @@ case "$mode" in
       echo "build/compile_commands.json is missing: cmake --preset release" >&2
       exit 1
     fi
-    patterns=()
-    for path in "${@:-.}"; do
-      [[ -d "$path" ]] && patterns+=(":(glob)${path#./}/**/*.cc") || patterns+=("$path")
-    done
-    [[ ${#patterns[@]} -eq 1 && "${patterns[0]}" == ":(glob)./**/*.cc" ]] && patterns=('*.cc')
-    sources "${patterns[@]}" | xargs -P "$(nproc)" -n 1 "$tool" -p build --quiet --extra-arg=-Wno-unknown-warning-option
+    [[ $# -gt 0 ]] && folders=("$@")
+    sources "${folders[@]}" | grep '\.cc$' |
+      xargs -P "$(nproc)" -n 1 "$tool" -p build --quiet --extra-arg=-Wno-unknown-warning-option
     ;;
   *)
     echo "usage: $0 [format | fix | tidy [folder or file ...]]" >&2
