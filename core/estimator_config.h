@@ -11,7 +11,8 @@ namespace alidade {
 enum class Backend { kFilter, kSmoother };
 enum class RobustKernel { kNone, kHuber, kCauchy };
 
-/// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not settings.
+/// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not
+/// settings.
 struct VisionConfig {
   double pixel_noise_px = 1.0;
   double gate_probability = 0.99;
@@ -88,10 +89,10 @@ enum class FilterLandmark { kPoseOnlyMulti, kPoseOnlyTwo, kMsckf };
 enum class UpdateTiming { kImmediate, kDelayedAll, kAtL };
 /// What happens to the base observation after an immediate update (docs/pose_only.md).
 enum class BaseReuse {
-  kPaper,    ///< re-used with its plain noise: double counts, as the paper writes it
-  kInflate,  ///< re-used with its standard deviation scaled by base_inflation
-  kLimit,    ///< at most max_base_rounds rounds a base
-  kDisjoint, ///< never re-used: a new base each round
+  kPaper,     ///< re-used with its plain noise: double counts, as the paper writes it
+  kInflate,   ///< re-used with its standard deviation scaled by base_inflation
+  kLimit,     ///< at most max_base_rounds rounds a base
+  kDisjoint,  ///< never re-used: a new base each round
 };
 enum class ClonePolicy { kOldest, kKeepBases };
 

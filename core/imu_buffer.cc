@@ -8,9 +8,13 @@
 namespace alidade {
 namespace {
 
-bool Earlier(const ImuSample& sample, TimeNs stamp_ns) { return sample.stamp_ns < stamp_ns; }
+bool Earlier(const ImuSample& sample, TimeNs stamp_ns) {
+  return sample.stamp_ns < stamp_ns;
+}
 
-std::string Milliseconds(TimeNs duration_ns) { return std::to_string(static_cast<double>(duration_ns) * 1e-6) + " ms"; }
+std::string Milliseconds(TimeNs duration_ns) {
+  return std::to_string(static_cast<double>(duration_ns) * 1e-6) + " ms";
+}
 
 }  // namespace
 
@@ -52,8 +56,9 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
                          FormatSeconds(from_ns) + " s");
   }
   if (samples_.empty() || samples_.back().stamp_ns < to_ns) {
-    return Status::Input("no imu sample reaches " + FormatSeconds(to_ns) + " s" +
-                         (samples_.empty() ? "" : "; missing " + Milliseconds(to_ns - samples_.back().stamp_ns)));
+    return Status::Input(
+        "no imu sample reaches " + FormatSeconds(to_ns) + " s" +
+        (samples_.empty() ? "" : "; missing " + Milliseconds(to_ns - samples_.back().stamp_ns)));
   }
   if (samples_.front().stamp_ns > from_ns) {
     return Status::Input("imu starts " + Milliseconds(samples_.front().stamp_ns - from_ns) + " after " +

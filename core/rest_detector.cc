@@ -18,8 +18,8 @@ struct CommonTrack {
   Vector2d flow;
 };
 
-std::vector<CommonTrack> FindCommon(const CameraModel& camera, const TrackFrame& before, const TrackFrame& now,
-                                    const Eigen::Matrix3d& R_now_before) {
+std::vector<CommonTrack> FindCommon(const CameraModel& camera, const TrackFrame& before,
+                                    const TrackFrame& now, const Eigen::Matrix3d& R_now_before) {
   std::vector<CommonTrack> common;
   auto old = before.observations.begin();
   for (const TrackObservation& seen : now.observations) {
@@ -29,7 +29,8 @@ std::vector<CommonTrack> FindCommon(const CameraModel& camera, const TrackFrame&
     if (old != before.observations.end() && old->track_id == seen.track_id) {
       Vector2d ideal;
       Vector2d turned;
-      if (camera.Unproject(old->pixel, &ideal) && camera.Project(R_now_before * ideal.homogeneous(), &turned)) {
+      if (camera.Unproject(old->pixel, &ideal) &&
+          camera.Project(R_now_before * ideal.homogeneous(), &turned)) {
         common.push_back({turned, seen.pixel - turned});
       }
     }
@@ -112,7 +113,8 @@ Vector3d RestDetector::MeanGyro() const {
   return sum / std::max<double>(1, static_cast<double>(imu_.size()));
 }
 
-bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before) const {
+bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now,
+                              const Matrix3d& R_now_before) const {
   std::vector<CommonTrack> common = FindCommon(camera_, before, now, R_now_before);
   if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
     return false;  // too few to tell, or half of them new: the image changes
@@ -123,7 +125,8 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
     return a.flow.squaredNorm() < b.flow.squaredNorm();
   });
   const double median = middle->flow.norm();
-  // The half with the smallest flow would hide a zoom (it lives near the centre), so its median is bounded first.
+  // The half with the smallest flow would hide a zoom (it lives near the centre), so its median is bounded
+  // first.
   if (median > vision_.rest_max_flow_px + 2 * vision_.pixel_noise_px) {
     return false;
   }

@@ -15,23 +15,23 @@ struct RestVerdict {
   bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
 };
 
-/// Tells from tracks and IMU together whether the rig stands still. A track at rest has no parallax and is refused by the
-/// gate of depth, so that without this a resting estimator drifts with its accelerometer; tracks alone cannot tell a shift
-/// from a turn, an IMU alone cannot tell rest from constant velocity.
+/// Tells from tracks and IMU together whether the rig stands still. A track at rest has no parallax and is
+/// refused by the gate of depth, so that without this a resting estimator drifts with its accelerometer;
+/// tracks alone cannot tell a shift from a turn, an IMU alone cannot tell rest from constant velocity.
 ///
-/// No translation: the image flow since the oldest frame of the window, freed of the rig's turn, fitted by shift, zoom and
-/// roll over the common tracks, stays below VisionConfig::rest_max_flow_px at the image's corner, and the specific force
-/// spreads less than rest_max_accel_std_mps2. No rotation: so does the flow as it is, and the angular rate spreads less than
-/// InitConfig allows. Neglected: motion so
-/// slow or scenery so far that it moves tracks by less than the limit in the window.
+/// No translation: the image flow since the oldest frame of the window, freed of the rig's turn, fitted by
+/// shift, zoom and roll over the common tracks, stays below VisionConfig::rest_max_flow_px at the image's
+/// corner, and the specific force spreads less than rest_max_accel_std_mps2. No rotation: so does the flow as
+/// it is, and the angular rate spreads less than InitConfig allows. Neglected: motion so slow or scenery so
+/// far that it moves tracks by less than the limit in the window.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);
 
   /// Inertial samples since the previous frame (ends included).
   void AddImu(std::span<const ImuSample> samples);
-  /// Verdict on the window that ends with this frame. R_WC: the camera's estimated attitude; only its change within the
-  /// window matters.
+  /// Verdict on the window that ends with this frame. R_WC: the camera's estimated attitude; only its change
+  /// within the window matters.
   RestVerdict AddFrame(const TrackFrame& frame, const Eigen::Matrix3d& R_WC);
   void Clear();
 

@@ -23,9 +23,9 @@ struct PlanEstimator {
 /// One input of a comparison: a dataset folder or a simulation, once a seed.
 struct PlanSequence {
   std::string name;
-  std::string dataset;                ///< folder in the extended ASL layout; empty for a simulation
-  std::string truth;                  ///< trajectory file to score against instead of the dataset's own; may be empty
-  std::string config;                 ///< simulation config; empty for a dataset
+  std::string dataset;  ///< folder in the extended ASL layout; empty for a simulation
+  std::string truth;    ///< trajectory file to score against instead of the dataset's own; may be empty
+  std::string config;   ///< simulation config; empty for a dataset
   std::vector<std::string> settings;  ///< over the simulation config
   std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws
 };

@@ -94,9 +94,8 @@ std::string StatusText(const RunResult& result) {
       text += "," + std::to_string(count);
     }
     text += "," + ShortestDouble(s.nis);
-    for (const int count :
-         {s.nis_dof, s.observations_invalid, s.features_waiting, s.features_degenerate, s.iterations,
-          s.at_rest ? 1 : 0}) {
+    for (const int count : {s.nis_dof, s.observations_invalid, s.features_waiting, s.features_degenerate,
+                            s.iterations, s.at_rest ? 1 : 0}) {
       text += "," + std::to_string(count);
     }
     text += '\n';

@@ -69,7 +69,8 @@ TrackOutcome FeatureUpdate::Triangulate(Eigen::Vector3d* p_W) const {
     return TrackOutcome::kWaiting;
   }
   const int other_views = views == DepthViews::kTwo ? 1 : static_cast<int>(poses_.size()) - 1;
-  if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(), vision_.max_relative_depth_deviation)) {
+  if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(),
+                         vision_.max_relative_depth_deviation)) {
     return TrackOutcome::kWaiting;
   }
   if (depth.depth < vision_.min_depth_m || depth.depth > vision_.max_depth_m) {

@@ -17,8 +17,9 @@ enum class TrackOutcome {
   kDegenerate,  ///< behind a camera, out of the depth range, or no parallax at all
 };
 
-/// Turns tracks into whitened, landmark-free rows over the filter's error: depth by the configured strategy, linearisation,
-/// elimination to 2N-3 rows (core/landmark_reduction.h), chained through extrinsics and error convention.
+/// Turns tracks into whitened, landmark-free rows over the filter's error: depth by the configured strategy,
+/// linearisation, elimination to 2N-3 rows (core/landmark_reduction.h), chained through extrinsics and error
+/// convention.
 class FeatureUpdate {
  public:
   FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones);

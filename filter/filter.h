@@ -6,7 +6,8 @@
 
 namespace alidade {
 
-/// The sliding-window EKF: error convention, landmark strategy and update timing by configuration (FilterConfig).
+/// The sliding-window EKF: error convention, landmark strategy and update timing by configuration
+/// (FilterConfig).
 [[nodiscard]] std::unique_ptr<Estimator> MakeFilter(const EstimatorConfig& config, const RigCalibration& rig);
 
 }  // namespace alidade

@@ -51,7 +51,9 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   return Status::Ok();
 }
 
-Status FilterEstimator::AddImu(const ImuSample& sample) { return imu_.Add(sample); }
+Status FilterEstimator::AddImu(const ImuSample& sample) {
+  return imu_.Add(sample);
+}
 
 Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
   if (stamp_ns == state_.stamp_ns() && state_.clones().empty()) {
@@ -95,7 +97,8 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   statistics_.update_ms = MillisecondsSince(propagated);
   if (!finite || !state_.AllFinite()) {
     initialized_ = false;
-    return Status::Diverged("filter: state is not finite after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+    return Status::Diverged("filter: state is not finite after the frame at " +
+                            FormatSeconds(frame.stamp_ns) + " s");
   }
   return Status::Ok();
 }
@@ -109,8 +112,9 @@ int FilterEstimator::ChooseLeavingClone() const {
     return 0;
   }
   // The newest clones hold views that still wait for their first update: they are not candidates.
-  const size_t candidates = clones.size() - static_cast<size_t>(std::min<int>(config_.filter.min_observations,
-                                                                              static_cast<int>(clones.size()) - 1));
+  const size_t candidates =
+      clones.size() - static_cast<size_t>(std::min<int>(config_.filter.min_observations,
+                                                        static_cast<int>(clones.size()) - 1));
   size_t best = 0;
   int best_bases = INT_MAX;
   for (size_t i = 0; i < candidates; ++i) {
@@ -222,14 +226,16 @@ void FilterEstimator::GateBlocks() {
     refused += accepted_[i] ? 0 : 1;
   }
   const bool state_is_suspect =
-      refused >= kMinRefusedForConsensus && refused > config_.vision.max_gated_share * static_cast<double>(appended_.size());
+      refused >= kMinRefusedForConsensus &&
+      refused > config_.vision.max_gated_share * static_cast<double>(appended_.size());
   Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
   Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();
   for (size_t i = 0; i < appended_.size(); ++i) {
     const FeatureUpdate::Block& block = update_.blocks()[i];
     double weight = 0;
     if (accepted_[i]) {
-      // The kernel acts on an observation's two rows; a track's rows share one weight of the same mean square.
+      // The kernel acts on an observation's two rows; a track's rows share one weight of the same mean
+      // square.
       weight = RobustWeight(config_.vision.robust_kernel, config_.vision.robust_scale_sigma,
                             2 * block_nis_[i] / block.rows);
     } else if (state_is_suspect && std::isfinite(block_nis_[i])) {
@@ -253,8 +259,9 @@ void FilterEstimator::RetireViews(Track* track, bool used) const {
     return;
   }
   ++track->base_rounds;
-  const bool base_exhausted = filter.base_reuse == BaseReuse::kDisjoint ||
-                              (filter.base_reuse == BaseReuse::kLimit && track->base_rounds >= filter.max_base_rounds);
+  const bool base_exhausted =
+      filter.base_reuse == BaseReuse::kDisjoint ||
+      (filter.base_reuse == BaseReuse::kLimit && track->base_rounds >= filter.max_base_rounds);
   if (base_exhausted) {
     track->views.clear();
     track->base_rounds = 0;

@@ -12,8 +12,8 @@
 
 namespace alidade {
 
-/// The filter back end. One frame: propagate, clone, attach observations, choose the clone that will leave, update with
-/// every track that is due (FilterConfig::update), let that clone go.
+/// The filter back end. One frame: propagate, clone, attach observations, choose the clone that will leave,
+/// update with every track that is due (FilterConfig::update), let that clone go.
 class FilterEstimator : public Estimator {
  public:
   FilterEstimator(const EstimatorConfig& config, const RigCalibration& rig);

@@ -35,7 +35,8 @@ void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& 
   ImuTransition transition;
   PropagateImu(samples, bias_, noise, gravity_W, &nav_, &transition);
   const Matrix15d to_error = InverseImuChartJacobian(convention_, nav_);
-  covariance_.Propagate(to_error * transition.phi * from_error, to_error * transition.q * to_error.transpose());
+  covariance_.Propagate(to_error * transition.phi * from_error,
+                        to_error * transition.q * to_error.transpose());
   stamp_ns_ = samples.back().stamp_ns;
 }
 

@@ -15,9 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Makes the leading `size` rows of [square | extra] upper triangular in `square` by Householder reflections from the right,
-/// bottom row first; rows [0, size) of both blocks take part, `extra` ends as zero (and is not written back).
-/// square: size x size, zero below its diagonal already where `triangular` says so.
+/// Makes the leading `size` rows of [square | extra] upper triangular in `square` by Householder reflections
+/// from the right, bottom row first; rows [0, size) of both blocks take part, `extra` ends as zero (and is
+/// not written back). square: size x size, zero below its diagonal already where `triangular` says so.
 void FoldColumns(Eigen::Ref<MatrixXd> square, Eigen::Ref<MatrixXd> extra, VectorXd* scratch) {
   const Index size = square.rows();
   const Index width = extra.cols();

@@ -25,7 +25,8 @@ struct Track {
 /// Live tracks sorted by id. Storage of ended tracks is re-used, so that the steady state does not allocate.
 class TrackStore {
  public:
-  /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's domain.
+  /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's
+  /// domain.
   int AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
                const std::vector<TrackObservation>& observations);
   /// Removes tracks that have ended (not seen by `serial`) and those without views.

@@ -23,13 +23,14 @@ std::vector<ImuSample> RandomSamples(RandomStates* random, int count, double rat
   std::vector<ImuSample> samples;
   const Vector3d omega = random->Vector(max_rate);
   for (int i = 0; i < count; ++i) {
-    samples.push_back({SecondsToNs(i / rate_hz), omega + random->Vector(0.3), Vector3d(0, 0, kGravity) + random->Vector(3)});
+    samples.push_back({SecondsToNs(i / rate_hz), omega + random->Vector(0.3),
+                       Vector3d(0, 0, kGravity) + random->Vector(3)});
   }
   return samples;
 }
 
-Vector15d LocalWithBias(ErrorConvention convention, const NavState& a, const ImuBias& bias_a, const NavState& b,
-                        const ImuBias& bias_b) {
+Vector15d LocalWithBias(ErrorConvention convention, const NavState& a, const ImuBias& bias_a,
+                        const NavState& b, const ImuBias& bias_b) {
   Vector15d xi;
   xi << Local(convention, a, b), bias_b.gyro - bias_a.gyro, bias_b.accel - bias_a.accel;
   return xi;
@@ -53,7 +54,8 @@ TEST(ImuPropagationTest, TransitionIsNumericInEveryConvention) {
       };
       const Matrix15d analytic =
           InverseImuChartJacobian(convention, end) * transition.phi * ImuChartJacobian(convention, start);
-      EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(propagate, 15), 1e-8), "") << ToString(convention);
+      EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(propagate, 15), 1e-8), "")
+          << ToString(convention);
     }
   }
 }
@@ -92,8 +94,10 @@ TEST(ImuPropagationTest, NoiseCovarianceMatchesMonteCarlo) {
   for (int draw = 0; draw < kDraws; ++draw) {
     NavState state = start;
     for (size_t k = 0; k + 1 < samples.size(); ++k) {  // independent noise on each step's mean
-      const Vector3d omega = 0.5 * (samples[k].gyro + samples[k + 1].gyro) + 1e-2 * root_rate * draws.Normal3();
-      const Vector3d accel = 0.5 * (samples[k].accel + samples[k + 1].accel) + 5e-2 * root_rate * draws.Normal3();
+      const Vector3d omega =
+          0.5 * (samples[k].gyro + samples[k + 1].gyro) + 1e-2 * root_rate * draws.Normal3();
+      const Vector3d accel =
+          0.5 * (samples[k].accel + samples[k + 1].accel) + 5e-2 * root_rate * draws.Normal3();
       PropagateStep(omega, accel, 1 / kRate, noise, GravityInWorld(kGravity), &state, nullptr);
     }
     const Vector9d error = Local(ErrorConvention::kSo3xRn, end, state);
@@ -128,8 +132,8 @@ TEST(PreintegrationTest, AgreesWithPropagationUpToTheIntegrationRule) {
   Preintegration preintegration(bias, {});
   preintegration.Add(samples);
   Vector15d residual;
-  PreintegrationModel{&preintegration, GravityInWorld(kGravity)}.Evaluate(start, bias, end, bias, &residual, nullptr,
-                                                                         nullptr);
+  PreintegrationModel{&preintegration, GravityInWorld(kGravity)}.Evaluate(start, bias, end, bias, &residual,
+                                                                          nullptr, nullptr);
   EXPECT_LT(residual.norm(), 2e-5);  // midpoint rule against the closed form
   EXPECT_LT(residual.segment<3>(6).norm(), 1e-12);
 }
@@ -158,7 +162,8 @@ TEST(PreintegrationTest, ResidualJacobiansAreNumericInEveryConvention) {
       const auto move_i = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
         Vector15d r;
         model.Evaluate(Retract(convention, i, Vector9d(xi.head<9>())),
-                       {bias_i.gyro + xi.segment<3>(9), bias_i.accel + xi.tail<3>()}, j, bias_j, &r, nullptr, nullptr);
+                       {bias_i.gyro + xi.segment<3>(9), bias_i.accel + xi.tail<3>()}, j, bias_j, &r, nullptr,
+                       nullptr);
         return r;
       };
       const auto move_j = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
@@ -167,8 +172,12 @@ TEST(PreintegrationTest, ResidualJacobiansAreNumericInEveryConvention) {
                        {bias_j.gyro + xi.segment<3>(9), bias_j.accel + xi.tail<3>()}, &r, nullptr, nullptr);
         return r;
       };
-      EXPECT_EQ(test::CompareJacobians(jacobian_i * ImuChartJacobian(convention, i), test::NumericJacobian(move_i, 15), 1e-7), "");
-      EXPECT_EQ(test::CompareJacobians(jacobian_j * ImuChartJacobian(convention, j), test::NumericJacobian(move_j, 15), 1e-7), "");
+      EXPECT_EQ(test::CompareJacobians(jacobian_i * ImuChartJacobian(convention, i),
+                                       test::NumericJacobian(move_i, 15), 1e-7),
+                "");
+      EXPECT_EQ(test::CompareJacobians(jacobian_j * ImuChartJacobian(convention, j),
+                                       test::NumericJacobian(move_j, 15), 1e-7),
+                "");
     }
   }
 }
@@ -201,7 +210,9 @@ TEST(PreintegrationTest, CovarianceIsSymmetricPositive) {
   EXPECT_GT(smallest, 0);
 }
 
-ImuSample At(double seconds, double value) { return {SecondsToNs(seconds), Vector3d::Constant(value), Vector3d::Constant(-value)}; }
+ImuSample At(double seconds, double value) {
+  return {SecondsToNs(seconds), Vector3d::Constant(value), Vector3d::Constant(-value)};
+}
 
 TEST(ImuBufferTest, SortsAndDropsDuplicates) {
   ImuBuffer buffer(0.5);
@@ -235,8 +246,10 @@ TEST(ImuBufferTest, SaysWhatIsMissing) {
   EXPECT_FALSE(buffer.Interval(0, 10, &samples).ok());
   ASSERT_TRUE(buffer.Add(At(1.0, 1)).ok());
   ASSERT_TRUE(buffer.Add(At(1.2, 1)).ok());
-  EXPECT_NE(buffer.Interval(SecondsToNs(1.1), SecondsToNs(1.3), &samples).message().find("missing 100.0"), std::string::npos);
-  EXPECT_NE(buffer.Interval(SecondsToNs(0.9), SecondsToNs(1.1), &samples).message().find("starts 100.0"), std::string::npos);
+  EXPECT_NE(buffer.Interval(SecondsToNs(1.1), SecondsToNs(1.3), &samples).message().find("missing 100.0"),
+            std::string::npos);
+  EXPECT_NE(buffer.Interval(SecondsToNs(0.9), SecondsToNs(1.1), &samples).message().find("starts 100.0"),
+            std::string::npos);
   EXPECT_FALSE(buffer.Interval(SecondsToNs(1.1), SecondsToNs(1.1), &samples).ok());
   ASSERT_TRUE(buffer.Interval(SecondsToNs(1.0), SecondsToNs(1.2), &samples).ok());
   EXPECT_EQ(buffer.statistics().gaps, 1);

@@ -17,12 +17,15 @@ class RestDetectorTest : public ::testing::Test {
   void SetUp() override {
     camera_ = *CameraModel::Create(DistortionModel::kNone, {460, 460, 376, 240}, {}, 752, 480);
     for (int i = 0; i < 80; ++i) {
-      landmarks_.push_back(Vector3d(random_.Uniform(-3, 3), random_.Uniform(-1.8, 1.8), random_.Uniform(3, 5)));
+      landmarks_.push_back(
+          Vector3d(random_.Uniform(-3, 3), random_.Uniform(-1.8, 1.8), random_.Uniform(3, 5)));
     }
   }
 
-  /// Verdict after one second of motion at the given velocity and camera turn rate (about y); `spread` shakes the IMU.
-  RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread, double bias = 0.01) {
+  /// Verdict after one second of motion at the given velocity and camera turn rate (about y); `spread` shakes
+  /// the IMU.
+  RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread,
+                             double bias = 0.01) {
     RestDetector detector(VisionConfig(), InitConfig(), camera_);
     RestVerdict verdict;
     for (int k = 0; k <= 20; ++k) {
@@ -30,7 +33,8 @@ class RestDetectorTest : public ::testing::Test {
       std::vector<ImuSample> imu;
       for (int i = 0; i <= 10 && k > 0; ++i) {
         const Vector3d shake = accel_spread * random_.Normal3();
-        imu.push_back({SecondsToNs(t - 0.05 + 0.005 * i), Vector3d(0, turn_rate + bias, 0) + 0.003 * random_.Normal3(),
+        imu.push_back({SecondsToNs(t - 0.05 + 0.005 * i),
+                       Vector3d(0, turn_rate + bias, 0) + 0.003 * random_.Normal3(),
                        Vector3d(0, 0, 9.81) + shake});
       }
       detector.AddImu(imu);
@@ -75,7 +79,9 @@ TEST_F(RestDetectorTest, ConstantVelocityIsNotRest) {
   }
 }
 
-TEST_F(RestDetectorTest, ShakingIsNotRest) { EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 2.0).no_translation); }
+TEST_F(RestDetectorTest, ShakingIsNotRest) {
+  EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 2.0).no_translation);
+}
 
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {
   RestDetector detector(VisionConfig(), InitConfig(), camera_);

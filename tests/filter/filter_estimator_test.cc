@@ -27,7 +27,8 @@ EstimatorConfig FilterPreset(FilterLandmark landmark, UpdateTiming update, int m
   return config;
 }
 
-ScenarioResult RunFilter(const EstimatorConfig& config, const Dataset& dataset, unsigned seed, double scale = 1) {
+ScenarioResult RunFilter(const EstimatorConfig& config, const Dataset& dataset, unsigned seed,
+                         double scale = 1) {
   const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig);
   return test::RunScenario(dataset, test::DrawInitialState(dataset, seed, scale), filter.get());
 }
@@ -42,15 +43,17 @@ struct Strategy {
 class EveryStrategy : public ::testing::TestWithParam<std::tuple<Strategy, ErrorConvention>> {};
 INSTANTIATE_TEST_SUITE_P(
     Strategies, EveryStrategy,
-    ::testing::Combine(::testing::Values(Strategy{"multi", FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4},
-                                         Strategy{"two", FilterLandmark::kPoseOnlyTwo, UpdateTiming::kImmediate, 4},
-                                         Strategy{"two_delayed", FilterLandmark::kPoseOnlyTwo, UpdateTiming::kDelayedAll, 4},
-                                         Strategy{"msckf", FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5},
-                                         Strategy{"at_l", FilterLandmark::kMsckf, UpdateTiming::kAtL, 10}),
-                       ::testing::Values(ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant,
-                                         ErrorConvention::kSo3xRn)),
+    ::testing::Combine(
+        ::testing::Values(Strategy{"multi", FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4},
+                          Strategy{"two", FilterLandmark::kPoseOnlyTwo, UpdateTiming::kImmediate, 4},
+                          Strategy{"two_delayed", FilterLandmark::kPoseOnlyTwo, UpdateTiming::kDelayedAll, 4},
+                          Strategy{"msckf", FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5},
+                          Strategy{"at_l", FilterLandmark::kMsckf, UpdateTiming::kAtL, 10}),
+        ::testing::Values(ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant,
+                          ErrorConvention::kSo3xRn)),
     [](const auto& test_case) {
-      return std::string(std::get<0>(test_case.param).name) + "_" + std::string(ToString(std::get<1>(test_case.param)));
+      return std::string(std::get<0>(test_case.param).name) + "_" +
+             std::string(ToString(std::get<1>(test_case.param)));
     });
 
 TEST_P(EveryStrategy, NoiseFreeDataKeepTheTruth) {
@@ -120,7 +123,8 @@ TEST(FilterEstimatorTest, StandingStillStays) {
   ASSERT_TRUE(result.status.ok());
   EXPECT_LT(result.max_position_m, 0.05);
   config.vision.rest_updates = false;
-  EXPECT_GT(RunFilter(config, dataset, 10).max_position_m, 0.1) << "without the rest updates nothing holds it";
+  EXPECT_GT(RunFilter(config, dataset, 10).max_position_m, 0.1)
+      << "without the rest updates nothing holds it";
 }
 
 TEST(FilterEstimatorTest, OutliersAreGated) {
