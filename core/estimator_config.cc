@@ -48,6 +48,13 @@ void ImuConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"max_gap_s", "s", "a longer silence of the IMU is reported as a gap"}, &max_gap_s, 0.01, 10);
 }
 
+ImuNoise ImuConfig::Scaled(const ImuNoise& sheet) const {
+  return {sheet.gyro_noise_density_radps_sqrthz * noise_scale,
+          sheet.accel_noise_density_mps2_sqrthz * noise_scale,
+          sheet.gyro_random_walk_radps2_sqrthz * random_walk_scale,
+          sheet.accel_random_walk_mps3_sqrthz * random_walk_scale};
+}
+
 void InitConfig::Describe(ConfigVisitor& visitor) {
   visitor.Enumeration(
       {"method", "-", "truth needs ground truth (simulation); auto takes static at rest, else dynamic"},

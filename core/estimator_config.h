@@ -4,6 +4,7 @@
 
 #include "core/config_schema.h"
 #include "core/error_convention.h"
+#include "core/imu_sample.h"
 #include "core/status.h"
 
 namespace alidade {
@@ -40,6 +41,8 @@ struct ImuConfig {
   double random_walk_scale = 1.0;
   double max_gap_s = 0.5;
 
+  /// The sensor sheet's noise as far as it is trusted.
+  [[nodiscard]] ImuNoise Scaled(const ImuNoise& sheet) const;
   void Describe(ConfigVisitor& visitor);
 };
 

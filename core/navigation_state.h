@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/lie.h"
+#include "core/status.h"
 #include "core/time.h"
 
 namespace alidade {
@@ -43,5 +44,12 @@ struct NavEstimate {
   /// rad, m, m/s, rad/s, m/s^2. See core/error_convention.h.
   Matrix15d covariance = Matrix15d::Zero();
 };
+
+/// True when every number of it is finite.
+[[nodiscard]] bool IsFinite(const NavEstimate& estimate);
+
+/// What an estimator can start from. kInput: a number is not finite, R_WB is no rotation, or the covariance
+/// is not symmetric positive semi-definite (to 1e-6, 1e-9 and 1e-12 relative).
+Status CheckInitialState(const NavEstimate& initial);
 
 }  // namespace alidade

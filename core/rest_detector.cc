@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/imu_statistics.h"
+
 namespace alidade {
 namespace {
 
@@ -36,28 +38,6 @@ std::vector<CommonTrack> FindCommon(const CameraModel& camera, const TrackFrame&
     }
   }
   return common;
-}
-
-/// Standard deviation of one axis, root mean square over the axes.
-struct ImuSpread {
-  double gyro = 0;
-  double accel = 0;
-};
-
-ImuSpread MeasureSpread(const std::deque<ImuSample>& samples) {
-  Vector3d mean_gyro = Vector3d::Zero();
-  Vector3d mean_accel = Vector3d::Zero();
-  for (const ImuSample& sample : samples) {
-    mean_gyro += sample.gyro / static_cast<double>(samples.size());
-    mean_accel += sample.accel / static_cast<double>(samples.size());
-  }
-  ImuSpread spread;
-  for (const ImuSample& sample : samples) {
-    spread.gyro += (sample.gyro - mean_gyro).squaredNorm();
-    spread.accel += (sample.accel - mean_accel).squaredNorm();
-  }
-  const double axes = 3.0 * static_cast<double>(samples.size());
-  return {std::sqrt(spread.gyro / axes), std::sqrt(spread.accel / axes)};
 }
 
 }  // namespace
@@ -94,23 +74,19 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC
   }
   const OrientedFrame& before = frames_.front();
   RestVerdict verdict;
-  const ImuSpread spread = MeasureSpread(imu_);
+  const ImuStatistics imu = MeasureImu(imu_);
   if (frames_.size() < 2 || before.frame.stamp_ns > start_ns || imu_.size() < 5 ||
-      spread.accel > vision_.rest_max_accel_std_mps2) {
+      imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
     return verdict;
   }
   verdict.no_translation = FlowIsZero(before.frame, frame, R_WC.transpose() * before.R_WC);
-  verdict.no_rotation = verdict.no_translation && spread.gyro < init_.static_max_gyro_std_radps &&
+  verdict.no_rotation = verdict.no_translation && imu.gyro_std_radps < init_.static_max_gyro_std_radps &&
                         FlowIsZero(before.frame, frame, Matrix3d::Identity());
   return verdict;
 }
 
 Vector3d RestDetector::MeanGyro() const {
-  Vector3d sum = Vector3d::Zero();
-  for (const ImuSample& sample : imu_) {
-    sum += sample.gyro;
-  }
-  return sum / std::max<double>(1, static_cast<double>(imu_.size()));
+  return MeasureImu(imu_).mean_gyro;
 }
 
 bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now,

@@ -1,7 +1,6 @@
 #include "eval/image_pipeline.h"
 
-#include <chrono>
-
+#include "core/stopwatch.h"
 #include "frontend/klt_tracker.h"
 
 namespace alidade {
@@ -24,7 +23,7 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
            (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
       tracker.AddImu(dataset.imu[next_imu++]);
     }
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     const Result<GreyImage> grey = ReadGreyImage(image.path);
     if (!grey.ok()) {
       return grey.status();
@@ -34,8 +33,7 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
     if (!frame.ok()) {
       return Status(frame.code(), image.path + ": " + frame.message());
     }
-    frame->frontend_ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    frame->frontend_ms = stopwatch.ElapsedMs();
     frames.push_back(std::move(*frame));
     if (options.progress) {
       options.progress(frames.size(), dataset.images.size());

@@ -2,8 +2,7 @@
 
 #include <time.h>
 
-#include <chrono>
-
+#include "core/stopwatch.h"
 #include "eval/truth_start.h"
 #include "filter/filter.h"
 #include "frontend/initializer.h"
@@ -12,21 +11,10 @@
 namespace alidade {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 double ThreadCpuSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * kNsToSeconds;
-}
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-bool IsFinite(const NavEstimate& estimate) {
-  return estimate.nav.R_WB.allFinite() && estimate.nav.p_WB.allFinite() && estimate.nav.v_WB.allFinite() &&
-         estimate.bias.gyro.allFinite() && estimate.bias.accel.allFinite() && estimate.covariance.allFinite();
 }
 
 /// One pass of one estimator over one log.
@@ -41,7 +29,7 @@ class Run {
         initializer_(config, log.rig) {}
 
   RunResult Execute() {
-    const Clock::time_point wall_start = Clock::now();
+    const Stopwatch wall;
     const double cpu_start = ThreadCpuSeconds();
     for (size_t i = 0; i < log_.frames.size() && result_.status.ok(); ++i) {
       if (options_.stop != nullptr && options_.stop->load()) {
@@ -56,7 +44,7 @@ class Run {
     if (result_.status.ok() && !initialized_ && !result_.interrupted) {
       result_.status = Status::Diverged("not initialised before the sequence ended: " + Reason());
     }
-    result_.wall_s = SecondsSince(wall_start);
+    result_.wall_s = wall.ElapsedS();
     result_.cpu_s = ThreadCpuSeconds() - cpu_start;
     return std::move(result_);
   }
@@ -67,13 +55,13 @@ class Run {
   }
 
   void ProcessFrame(const TrackFrame& frame) {
-    const Clock::time_point start = Clock::now();
+    const Stopwatch stopwatch;
     DeliverImu(ImuStamp(frame));
     if (!initialized_) {
       TryInitialize(frame);
     }
     if (initialized_) {
-      AddFrame(frame, start);
+      AddFrame(frame, stopwatch);
     } else if (result_.status.ok() &&
                SecondsBetween(log_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
       result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
@@ -151,7 +139,7 @@ class Run {
     return start;
   }
 
-  void AddFrame(const TrackFrame& frame, Clock::time_point start) {
+  void AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch) {
     Status status = estimator_.AddFrame(frame);
     if (status.code() == StatusCode::kInput) {
       result_.skip_report = result_.frames_skipped++ == 0 ? status.message() : result_.skip_report;
@@ -170,7 +158,7 @@ class Run {
     }
     record.statistics = estimator_.last_statistics();
     record.frontend_ms = frame.frontend_ms;
-    record.backend_ms = 1e3 * SecondsSince(start);
+    record.backend_ms = stopwatch.ElapsedMs();
     result_.records.push_back(std::move(record));
   }
 

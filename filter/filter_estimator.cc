@@ -2,38 +2,27 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <chrono>
 #include <climits>
 #include <cmath>
 #include <string>
 
 #include "core/rest_model.h"
+#include "core/stopwatch.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::Index;
 
-ImuNoise Scale(const ImuNoise& noise, const ImuConfig& config) {
-  return {noise.gyro_noise_density_radps_sqrthz * config.noise_scale,
-          noise.accel_noise_density_mps2_sqrthz * config.noise_scale,
-          noise.gyro_random_walk_radps2_sqrthz * config.random_walk_scale,
-          noise.accel_random_walk_mps3_sqrthz * config.random_walk_scale};
-}
-
 // Fewer refusals are a matter of tracks, whatever their share.
 constexpr int kMinRefusedForConsensus = 8;
-
-double MillisecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 }  // namespace
 
 FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibration& rig)
     : config_(config),
       rig_(rig),
-      noise_(Scale(rig.imu_noise, config.imu)),
+      noise_(config.imu.Scaled(rig.imu_noise)),
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
       state_(config.filter.error, rig.T_BC, config.filter.window + 1),
@@ -72,12 +61,12 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   }
   statistics_ = {};
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch stopwatch;
   ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
   ++serial_;
   state_.AddClone(serial_);
-  statistics_.propagate_ms = MillisecondsSince(start);
-  const auto propagated = std::chrono::steady_clock::now();
+  statistics_.propagate_ms = stopwatch.ElapsedMs();
+  stopwatch.Restart();
   statistics_.observations_invalid =
       tracks_.AddFrame(rig_.camera, config_.vision.pixel_noise_px, serial_, frame.observations);
   const int leaving = ChooseLeavingClone();
@@ -94,7 +83,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     tracks_.RemoveClone(leaving_serial);
     state_.RemoveClone(static_cast<size_t>(leaving));
   }
-  statistics_.update_ms = MillisecondsSince(propagated);
+  statistics_.update_ms = stopwatch.ElapsedMs();
   if (!finite || !state_.AllFinite()) {
     initialized_ = false;
     return Status::Diverged("filter: state is not finite after the frame at " +

@@ -11,14 +11,7 @@ FilterState::FilterState(ErrorConvention convention, const Pose& T_BC, int max_c
 }
 
 Status FilterState::Reset(const NavEstimate& initial) {
-  if (!initial.nav.R_WB.allFinite() || !initial.nav.p_WB.allFinite() || !initial.nav.v_WB.allFinite() ||
-      !initial.bias.gyro.allFinite() || !initial.bias.accel.allFinite()) {
-    return Status::Input("initial state is not finite");
-  }
-  if ((initial.nav.R_WB.transpose() * initial.nav.R_WB - Eigen::Matrix3d::Identity()).norm() > 1e-6 ||
-      initial.nav.R_WB.determinant() < 0) {
-    return Status::Input("initial attitude is not a rotation");
-  }
+  ALIDADE_RETURN_IF_ERROR(CheckInitialState(initial));
   const Matrix15d to_error = InverseImuChartJacobian(convention_, initial.nav);
   const Matrix15d transformed = to_error * initial.covariance * to_error.transpose();
   ALIDADE_RETURN_IF_ERROR(covariance_.Reset(0.5 * (transformed + transformed.transpose())));

@@ -46,11 +46,7 @@ struct Initializer::Implementation {
   Implementation(const EstimatorConfig& config_in, const RigCalibration& rig_in)
       : config(config_in), rig(rig_in), imu(config_in.imu.max_gap_s) {
     // The sheet's noise, trusted as far as the configuration says: the same numbers as in the back ends.
-    ImuNoise& noise = rig.imu_noise;
-    noise.gyro_noise_density_radps_sqrthz *= config.imu.noise_scale;
-    noise.accel_noise_density_mps2_sqrthz *= config.imu.noise_scale;
-    noise.gyro_random_walk_radps2_sqrthz *= config.imu.random_walk_scale;
-    noise.accel_random_walk_mps3_sqrthz *= config.imu.random_walk_scale;
+    rig.imu_noise = config.imu.Scaled(rig.imu_noise);
   }
 
   TimeNs first_stamp_ns = 0;  // of the first frame: how long the search has been going on

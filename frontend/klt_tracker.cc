@@ -1,7 +1,6 @@
 #include "frontend/klt_tracker.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "frontend/corner_grid.h"
 #include "frontend/epipolar_rejection.h"
 #include "frontend/gyro_rotation.h"
@@ -277,7 +277,7 @@ void KltTracker::AddImu(const ImuSample& sample) {
 
 Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey, int width_px,
                                      int height_px) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   Implementation& tracker = *implementation_;
   ALIDADE_RETURN_IF_ERROR(tracker.CheckInput(stamp_ns, grey, width_px, height_px));
   tracker.statistics = TrackerStatistics{.imu_ignored = tracker.statistics.imu_ignored};
@@ -295,8 +295,7 @@ Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey,
   tracker.statistics.mean_track_length =
       length_sum / static_cast<double>(std::max<size_t>(1, tracker.tracks.size()));
   TrackFrame frame = tracker.Observations(stamp_ns);
-  frame.frontend_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  frame.frontend_ms = stopwatch.ElapsedMs();
   return frame;
 }
 

@@ -87,27 +87,15 @@ std::string ReasonFromImu(const InitConfig& config, double gravity_mps2, const I
 
 ImuSpread MeasureImuSpread(std::span<const ImuSample> samples) {
   CHECK_GE(samples.size(), 2U);
-  ImuSpread spread;
+  ImuSpread spread{MeasureImu(samples)};
   spread.samples = static_cast<int>(samples.size());
   spread.duration_s = SecondsBetween(samples.front().stamp_ns, samples.back().stamp_ns);
-  const double count = static_cast<double>(samples.size());
-  Vector3d half_mean[2] = {Vector3d::Zero(), Vector3d::Zero()};
   const size_t half = samples.size() / 2;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    spread.mean_gyro += samples[i].gyro / count;
-    spread.mean_accel += samples[i].accel / count;
-    half_mean[i < half ? 0 : 1] +=
-        samples[i].accel / static_cast<double>(i < half ? half : samples.size() - half);
-  }
-  spread.accel_drift_mps2 = (half_mean[1] - half_mean[0]).norm();
-  for (const ImuSample& sample : samples) {
-    spread.gyro_std_radps += (sample.gyro - spread.mean_gyro).squaredNorm() / (3 * count);
-    spread.accel_std_mps2 += (sample.accel - spread.mean_accel).squaredNorm() / (3 * count);
-  }
+  const Vector3d first_half = MeasureImu(samples.first(half)).mean_accel;
+  const Vector3d second_half = MeasureImu(samples.subspan(half)).mean_accel;
+  spread.accel_drift_mps2 = (second_half - first_half).norm();
   spread.gyro_mean_std_radps = MeanDeviation(samples, &ImuSample::gyro, spread.mean_gyro);
   spread.accel_mean_std_mps2 = MeanDeviation(samples, &ImuSample::accel, spread.mean_accel);
-  spread.gyro_std_radps = std::sqrt(spread.gyro_std_radps);
-  spread.accel_std_mps2 = std::sqrt(spread.accel_std_mps2);
   return spread;
 }
 

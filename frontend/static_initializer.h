@@ -5,22 +5,18 @@
 #include <string>
 
 #include "core/estimator_config.h"
-#include "core/imu_sample.h"
+#include "core/imu_statistics.h"
 #include "core/navigation_state.h"
 #include "frontend/track_motion.h"
 
 namespace alidade {
 
 /// What the IMU did over an interval.
-struct ImuSpread {
+struct ImuSpread : ImuStatistics {
   double duration_s = 0;
   int samples = 0;
-  Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean_accel = Eigen::Vector3d::Zero();
-  double gyro_std_radps = 0;  ///< one axis, root mean square over the axes
-  double accel_std_mps2 = 0;  ///< likewise
-  double gyro_mean_std_radps =
-      0;  ///< of the mean, one axis, from the scatter of ten block means: counts slow vibration
+  /// Of the mean, one axis, from the scatter of ten block means: counts slow vibration.
+  double gyro_mean_std_radps = 0;
   double accel_mean_std_mps2 = 0;  ///< likewise
   double accel_drift_mps2 = 0;     ///< between the means of the two halves: a slow rotation shows here
 };

@@ -1,56 +1,17 @@
 #include "smoother/smoother_estimator.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "core/imu_propagation.h"
+#include "core/stopwatch.h"
 #include "smoother/imu_factor.h"
 #include "smoother/nav_state_manifold.h"
 #include "smoother/smoother.h"
 #include "smoother/window_system.h"
 
 namespace alidade {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double MillisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-ImuNoise ScaledNoise(const ImuNoise& noise, const ImuConfig& config) {
-  return {noise.gyro_noise_density_radps_sqrthz * config.noise_scale,
-          noise.accel_noise_density_mps2_sqrthz * config.noise_scale,
-          noise.gyro_random_walk_radps2_sqrthz * config.random_walk_scale,
-          noise.accel_random_walk_mps3_sqrthz * config.random_walk_scale};
-}
-
-Status CheckInitial(const NavEstimate& initial) {
-  const NavState& nav = initial.nav;
-  if (!nav.R_WB.allFinite() || !nav.p_WB.allFinite() || !nav.v_WB.allFinite() ||
-      !initial.bias.gyro.allFinite() || !initial.bias.accel.allFinite() || !initial.covariance.allFinite()) {
-    return Status::Input("smoother: initial state is not finite");
-  }
-  const double off = (nav.R_WB * nav.R_WB.transpose() - Eigen::Matrix3d::Identity()).norm();
-  if (off > 1e-6 || nav.R_WB.determinant() < 0) {
-    return Status::Input("smoother: initial R_WB is not a rotation; |R R^T - I| is " + std::to_string(off));
-  }
-  const double scale = initial.covariance.cwiseAbs().maxCoeff();
-  if ((initial.covariance - initial.covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) {
-    return Status::Input("smoother: initial covariance is not symmetric");
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix15d> eigen(initial.covariance, Eigen::EigenvaluesOnly);
-  if (eigen.eigenvalues()[0] < -1e-12 * scale) {
-    return Status::Input("smoother: initial covariance has the negative eigenvalue " +
-                         std::to_string(eigen.eigenvalues()[0]));
-  }
-  return Status::Ok();
-}
-
-}  // namespace
 
 std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const RigCalibration& rig) {
   return std::make_unique<SmootherEstimator>(config, rig);
@@ -59,7 +20,7 @@ std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const Rig
 SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCalibration& rig)
     : config_(config),
       rig_(rig),
-      noise_(ScaledNoise(rig.imu_noise, config.imu)),
+      noise_(config.imu.Scaled(rig.imu_noise)),
       solve_options_{config.smoother, config.vision, rig.T_BC, GravityInWorld(config.imu.gravity_mps2)},
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
@@ -67,7 +28,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       rest_(config.vision, config.init, rig.camera) {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {
-  ALIDADE_RETURN_IF_ERROR(CheckInitial(initial));
+  ALIDADE_RETURN_IF_ERROR(CheckInitialState(initial));
   auto frame = std::make_unique<WindowFrame>();
   frame->stamp_ns = initial.stamp_ns;
   PackNavState(initial.nav, frame->nav.data());
@@ -100,11 +61,11 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   if (!initialized_) {
     return Status::Diverged("smoother: not initialised");
   }
-  const Clock::time_point start = Clock::now();
+  const Stopwatch stopwatch;
   statistics_ = {};
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
   ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
-  statistics_.propagate_ms = MillisecondsSince(start);
+  statistics_.propagate_ms = stopwatch.ElapsedMs();
   statistics_.observations_invalid =
       window_.AddObservations(rig_.camera, config_.vision.pixel_noise_px, frame.observations);
   window_.Prune();
@@ -113,7 +74,7 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
     std::vector<WindowTrack*> tracks = SelectTracks();
     ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
   }
-  statistics_.update_ms = MillisecondsSince(start) - statistics_.propagate_ms;
+  statistics_.update_ms = stopwatch.ElapsedMs() - statistics_.propagate_ms;
   return Status::Ok();
 }
 
