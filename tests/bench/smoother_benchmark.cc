@@ -1,0 +1,88 @@
+#include <benchmark/benchmark.h>
+
+#include "eval/simulator.h"
+#include "smoother/smoother.h"
+#include "tests/support/scenario.h"
+
+namespace alidade {
+namespace {
+
+/// One iteration is one camera frame of the figure-8 in the steady state: marginalisation or removal of a
+/// frame, prediction, solve, gate, covariance. Arguments: window, tracks. At most 8 solver iterations.
+void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKernel kernel,
+                   ErrorConvention error) {
+  SimulatorConfig sim;
+  sim.duration_s = 40;
+  sim.path_m = 52.4;
+  sim.max_features = static_cast<int>(state.range(1));
+  sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
+  const Dataset dataset = test::SimulateOrDie(sim, 1);
+  EstimatorConfig config;
+  config.backend = Backend::kSmoother;
+  config.vision.robust_kernel = kernel;
+  config.smoother.error = error;
+  config.smoother.landmark = landmark;
+  config.smoother.window = static_cast<int>(state.range(0));
+  config.smoother.max_landmarks = sim.max_features;
+  config.smoother.max_iterations = 8;
+  const NavEstimate initial = test::DrawInitialState(dataset, 1);
+  constexpr size_t kWarmUpFrames = 60;
+  std::unique_ptr<Estimator> smoother;
+  size_t frame = dataset.tracks.size();
+  size_t imu = 0;
+  double used = 0;
+  double rows = 0;
+  double solver_iterations = 0;
+  const auto feed_imu = [&] {
+    while (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.tracks[frame].stamp_ns) {
+      (void)smoother->AddImu(dataset.imu[imu++]);
+    }
+  };
+  for (auto _ : state) {
+    state.PauseTiming();
+    if (frame == dataset.tracks.size()) {
+      smoother = MakeSmoother(config, dataset.rig);
+      (void)smoother->Initialize(initial);
+      imu = 0;
+      for (frame = 0; frame < kWarmUpFrames; ++frame) {
+        feed_imu();
+        (void)smoother->AddFrame(dataset.tracks[frame]);
+      }
+    }
+    feed_imu();
+    state.ResumeTiming();
+    const Status status = smoother->AddFrame(dataset.tracks[frame]);
+    benchmark::DoNotOptimize(status.ok());
+    used += smoother->last_statistics().features_used;
+    rows += smoother->last_statistics().nis_dof;
+    solver_iterations += smoother->last_statistics().iterations;
+    ++frame;
+  }
+  state.counters["used"] = benchmark::Counter(used, benchmark::Counter::kAvgIterations);
+  state.counters["rows"] = benchmark::Counter(rows, benchmark::Counter::kAvgIterations);
+  state.counters["solver"] = benchmark::Counter(solver_iterations, benchmark::Counter::kAvgIterations);
+}
+
+void Sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const int window : {5, 10, 20, 30}) {
+    benchmark->Args({window, 150});
+  }
+  for (const int tracks : {50, 100, 200, 400}) {
+    benchmark->Args({10, tracks});
+  }
+  benchmark->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(SmootherFrame, pose_only, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
+                  ErrorConvention::kRightInvariant)
+    ->Apply(Sizes);
+BENCHMARK_CAPTURE(SmootherFrame, inverse_depth, SmootherLandmark::kInverseDepth, RobustKernel::kHuber,
+                  ErrorConvention::kRightInvariant)
+    ->Apply(Sizes);
+BENCHMARK_CAPTURE(SmootherFrame, vins_mono_class, SmootherLandmark::kInverseDepth, RobustKernel::kCauchy,
+                  ErrorConvention::kSo3xRn)
+    ->Args({10, 150})
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace alidade
