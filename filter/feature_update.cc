@@ -24,6 +24,7 @@ void FeatureUpdate::Begin(const FilterState& state) {
   rows_ = 0;
   dimension_ = state.covariance().dimension();
   blocks_.clear();
+  traces_.clear();
   if (jacobian_.cols() < state.covariance().capacity()) {
     jacobian_.resize(jacobian_.rows(), state.covariance().capacity());
   }
@@ -97,8 +98,14 @@ TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track)
     return TrackOutcome::kDegenerate;
   }
   const Index views = static_cast<Index>(poses_.size());
-  auto dense = track_jacobian_.topLeftCorner(2 * views, 6 * views);
+  // Tracing eliminates the landmark from the identity too: what is left maps the observations' noise.
+  const Index columns = (tracing_ ? 8 : 6) * views;
+  if (track_jacobian_.cols() < columns) {
+    track_jacobian_.resize(track_jacobian_.rows(), 8 * track_jacobian_.rows() / 2);
+  }
+  auto dense = track_jacobian_.topLeftCorner(2 * views, columns);
   dense.setZero();
+  dense.rightCols(columns - 6 * views).setIdentity();
   for (Index k = 0; k < views; ++k) {
     dense.block<2, 6>(2 * k, 6 * k).noalias() =
         linearization_.pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
@@ -113,7 +120,21 @@ TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track)
   innovation_.segment(rows_, kept) = -linearization_.residual.tail(kept);
   blocks_.push_back({rows_, static_cast<int>(kept)});
   rows_ += static_cast<int>(kept);
+  if (tracing_) {
+    Trace(track, dense.bottomRightCorner(kept, 2 * views));
+  }
   return TrackOutcome::kReady;
+}
+
+void FeatureUpdate::Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise) {
+  TracedBlock trace{blocks_.back().first, blocks_.back().rows, track.id, {}, noise};
+  for (size_t k = 0; k < track.views.size(); ++k) {
+    trace.serials.push_back(track.views[k].serial);
+    // Rows are whitened by what the update assumes, which for a re-used base may be more than its noise.
+    trace.noise.middleCols<2>(2 * static_cast<Index>(k)) *=
+        observations_[k].sqrt_information * track.views[k].observation.sqrt_information.inverse();
+  }
+  traces_.push_back(std::move(trace));
 }
 
 }  // namespace alidade

@@ -24,6 +24,8 @@ class FeatureUpdate {
  public:
   FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones);
 
+  /// Whether traces() is kept.
+  void SetTracing(bool tracing) { tracing_ = tracing; }
   void Begin(const FilterState& state);
   /// Appends the rows of a track that all of its views define.
   TrackOutcome Append(const FilterState& state, const Track& track);
@@ -34,6 +36,8 @@ class FeatureUpdate {
     int rows = 0;
   };
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  /// One a block, when tracing.
+  [[nodiscard]] const std::vector<TracedBlock>& traces() const { return traces_; }
   [[nodiscard]] int rows() const { return rows_; }
   /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I).
   [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> jacobian() { return jacobian_.topLeftCorner(rows_, dimension_); }
@@ -44,12 +48,16 @@ class FeatureUpdate {
   bool GatherViews(const FilterState& state, const Track& track);
   TrackOutcome Triangulate(Eigen::Vector3d* p_W) const;
   void Reserve(int additional_rows);
+  /// The trace of the block that Append just added; `noise` holds its 2N - 3 rows.
+  void Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise);
 
   FilterConfig filter_;
   VisionConfig vision_;
   int rows_ = 0;
   int dimension_ = 0;
   std::vector<Block> blocks_;
+  bool tracing_ = false;
+  std::vector<TracedBlock> traces_;
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd innovation_;
   // Scratch of one track.

@@ -40,6 +40,12 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   return Status::Ok();
 }
 
+void FilterEstimator::SetObserver(FilterObserver* observer) {
+  observer_ = observer;
+  state_.SetObserver(observer);
+  update_.SetTracing(observer != nullptr);
+}
+
 Status FilterEstimator::AddImu(const ImuSample& sample) {
   return imu_.Add(sample);
 }
@@ -88,6 +94,9 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     initialized_ = false;
     return Status::Diverged("filter: state is not finite after the frame at " +
                             FormatSeconds(frame.stamp_ns) + " s");
+  }
+  if (observer_ != nullptr) {
+    observer_->OnFrame(state_);
   }
   return Status::Ok();
 }
@@ -149,6 +158,9 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   rest_rows_.setZero(rows, state_.covariance().dimension());
   rest_rows_.leftCols<15>() = (jacobian * ImuChartJacobian(state_.convention(), state_.nav())).topRows(rows);
   rest_innovation_ = -residual.head(rows);
+  if (observer_ != nullptr) {
+    observer_->OnUpdate(state_, {rest_rows_, rest_innovation_, {}});
+  }
   state_.covariance().Prepare(rest_rows_);
   if (!state_.covariance().Apply(rest_rows_, rest_innovation_, &correction_, nullptr)) {
     return false;
@@ -181,8 +193,14 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   if (appended_.empty()) {
     return true;
   }
+  if (observer_ != nullptr) {
+    observed_ = {update_.jacobian(), update_.innovation(), update_.traces()};
+  }
   state_.covariance().Prepare(update_.jacobian());
   GateBlocks();
+  if (observer_ != nullptr) {
+    observer_->OnUpdate(state_, observed_);
+  }
   if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_, &statistics_.nis)) {
     return false;
   }
@@ -236,6 +254,11 @@ void FilterEstimator::GateBlocks() {
     if (weight < 1) {
       prepared.middleRows(block.first, block.rows) *= std::sqrt(weight);
       innovation.segment(block.first, block.rows) *= std::sqrt(weight);
+      if (observer_ != nullptr) {
+        observed_.jacobian.middleRows(block.first, block.rows) *= std::sqrt(weight);
+        observed_.innovation.segment(block.first, block.rows) *= std::sqrt(weight);
+        observed_.blocks[i].noise *= std::sqrt(weight);
+      }
     }
   }
 }

@@ -26,6 +26,8 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
 
   [[nodiscard]] const FilterState& state() const { return state_; }
+  /// Null, the default, observes nothing. It must outlive the filter.
+  void SetObserver(FilterObserver* observer);
 
  private:
   Status PropagateTo(TimeNs stamp_ns);
@@ -55,6 +57,8 @@ class FilterEstimator : public Estimator {
   RestDetector rest_;
   ImuBuffer imu_;
   FrameStatistics statistics_;
+  FilterObserver* observer_ = nullptr;
+  FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
   int serial_ = 0;
   // Scratch kept between frames.

@@ -19,6 +19,9 @@ Status FilterState::Reset(const NavEstimate& initial) {
   bias_ = initial.bias;
   stamp_ns_ = initial.stamp_ns;
   clones_.clear();
+  if (observer_ != nullptr) {
+    observer_->OnReset(*this);
+  }
   return Status::Ok();
 }
 
@@ -28,14 +31,21 @@ void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& 
   ImuTransition transition;
   PropagateImu(samples, bias_, noise, gravity_W, &nav_, &transition);
   const Matrix15d to_error = InverseImuChartJacobian(convention_, nav_);
-  covariance_.Propagate(to_error * transition.phi * from_error,
-                        to_error * transition.q * to_error.transpose());
+  const Matrix15d phi = to_error * transition.phi * from_error;
+  const Matrix15d q = to_error * transition.q * to_error.transpose();
+  covariance_.Propagate(phi, q);
+  if (observer_ != nullptr) {
+    observer_->OnPropagate(phi, q);
+  }
   stamp_ns_ = samples.back().stamp_ns;
 }
 
 void FilterState::AddClone(int serial) {
   // In every convention the error of a pose is the first six components of the navigation error.
   covariance_.CloneCore(0, 6);
+  if (observer_ != nullptr) {
+    observer_->OnClone(0, 6);
+  }
   Clone clone;
   clone.serial = serial;
   clone.stamp_ns = stamp_ns_;
@@ -46,7 +56,11 @@ void FilterState::AddClone(int serial) {
 
 void FilterState::RemoveClone(size_t index) {
   CHECK_LT(index, clones_.size());
-  covariance_.Remove(CloneOffset(index), 6);
+  const int first = CloneOffset(index);
+  covariance_.Remove(first, 6);
+  if (observer_ != nullptr) {
+    observer_->OnRemove(first, 6);
+  }
   clones_.erase(clones_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 

@@ -6,6 +6,7 @@
 #include "core/error_convention.h"
 #include "core/imu_propagation.h"
 #include "core/measurement_log.h"
+#include "filter/filter_observer.h"
 #include "filter/square_root_covariance.h"
 
 namespace alidade {
@@ -25,6 +26,9 @@ struct Clone {
 class FilterState {
  public:
   FilterState(ErrorConvention convention, const Pose& T_BC, int max_clones);
+
+  /// Null, the default, observes nothing. It must outlive the state.
+  void SetObserver(FilterObserver* observer) { observer_ = observer; }
 
   /// `initial.covariance` is in the canonical chart.
   Status Reset(const NavEstimate& initial);
@@ -62,6 +66,7 @@ class FilterState {
   ImuBias bias_;
   std::vector<Clone> clones_;
   SquareRootCovariance covariance_;
+  FilterObserver* observer_ = nullptr;
 };
 
 }  // namespace alidade

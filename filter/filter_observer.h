@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/lie.h"
+
+namespace alidade {
+
+class FilterState;
+
+/// What one track contributed to an update.
+struct TracedBlock {
+  int first = 0;  ///< of its rows in FilterRows
+  int rows = 0;
+  std::int64_t track_id = 0;
+  std::vector<int> serials;  ///< clones whose observations entered, base first
+  /// rows x 2 serials.size(): the rows' noise is this times the noise of the observations, whitened by their
+  /// true standard deviation (weights of base re-use, gate and kernel included).
+  Eigen::MatrixXd noise;
+};
+
+/// The rows of one update as the filter applies them: y = H xi + n, n ~ N(0, I) as the filter believes.
+struct FilterRows {
+  Eigen::MatrixXd jacobian;         ///< rows x error dimension, weighted; a refused track's rows are zero
+  Eigen::VectorXd innovation;       ///< weighted likewise
+  std::vector<TracedBlock> blocks;  ///< empty where no track made the rows
+};
+
+/// Sees every linear operation the filter performs on its error, with the matrices it really uses. The error
+/// is [core 15 | clones, newest first | further blocks]. Default functions do nothing, and a filter without
+/// observer does no extra work.
+class FilterObserver {
+ public:
+  virtual ~FilterObserver() = default;
+
+  /// The error is the core alone again.
+  virtual void OnReset(const FilterState& /*state*/) {}
+  /// core <- phi core + w, w ~ N(0, q).
+  virtual void OnPropagate(const Matrix15d& /*phi*/, const Matrix15d& /*q*/) {}
+  /// A copy of the core's rows [first, first + size) enters directly after the core.
+  virtual void OnClone(int /*first*/, int /*size*/) {}
+  /// A landmark enters as rows [first, first + 3): `rows` (3 x dimension with the landmark) are the
+  /// unit-noise measurements that define it; their 3 x 3 block at `first` is invertible.
+  virtual void OnAddLandmark(int /*first*/, const Eigen::MatrixXd& /*rows*/) {}
+  /// The rows [first, first + size) leave.
+  virtual void OnRemove(int /*first*/, int /*size*/) {}
+  /// An update is about to be applied to `state`.
+  virtual void OnUpdate(const FilterState& /*state*/, const FilterRows& /*rows*/) {}
+  /// A frame is done.
+  virtual void OnFrame(const FilterState& /*state*/) {}
+};
+
+}  // namespace alidade

@@ -1,0 +1,139 @@
+#include "filter/filter_observer.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include "filter/filter.h"
+#include "filter/filter_state.h"
+#include "tests/support/scenario.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Repeats with plain covariance algebra what it is told, and compares at the end of every frame.
+class CovarianceReplay : public FilterObserver {
+ public:
+  void OnReset(const FilterState& state) override { p_ = state.covariance().Covariance(); }
+  void OnPropagate(const Matrix15d& phi, const Matrix15d& q) override {
+    MatrixXd map = MatrixXd::Identity(p_.rows(), p_.rows());
+    map.topLeftCorner<15, 15>() = phi;
+    p_ = map * p_ * map.transpose();
+    p_.topLeftCorner<15, 15>() += q;
+  }
+  void OnClone(int first, int size) override {
+    MatrixXd map = MatrixXd::Zero(p_.rows() + size, p_.rows());
+    map.topLeftCorner<15, 15>().setIdentity();
+    map.block(15, first, size, size).setIdentity();
+    map.bottomRightCorner(p_.rows() - 15, p_.rows() - 15).setIdentity();
+    p_ = map * p_ * map.transpose();
+  }
+  void OnRemove(int first, int size) override {
+    MatrixXd map = MatrixXd::Zero(p_.rows() - size, p_.rows());
+    map.leftCols(first).topRows(first).setIdentity();
+    const Index tail = p_.rows() - first - size;
+    map.bottomRightCorner(tail, tail).setIdentity();
+    p_ = map * p_ * map.transpose();
+  }
+  void OnUpdate(const FilterState& state, const FilterRows& rows) override {
+    ASSERT_EQ(rows.jacobian.cols(), state.covariance().dimension());
+    MatrixXd innovation_covariance = rows.jacobian * p_ * rows.jacobian.transpose();
+    innovation_covariance.diagonal().array() += 1;
+    const MatrixXd cross = rows.jacobian * p_;
+    p_ -= cross.transpose() * innovation_covariance.llt().solve(cross);
+    ++updates_;
+    CheckNoise(rows);
+  }
+  void OnFrame(const FilterState& state) override {
+    const MatrixXd filter = state.covariance().Covariance();
+    ASSERT_EQ(filter.rows(), p_.rows());
+    // A clone is a copy, so P is singular for a moment: compare in correlation units.
+    const Eigen::VectorXd scale = filter.diagonal().cwiseSqrt().cwiseInverse();
+    worst_ =
+        std::max(worst_, (scale.asDiagonal() * (filter - p_) * scale.asDiagonal()).cwiseAbs().maxCoeff());
+    ++frames_;
+  }
+
+  int frames() const { return frames_; }
+  int updates() const { return updates_; }
+  int inflated() const { return inflated_; }
+  int plain() const { return plain_; }
+  double worst() const { return worst_; }
+
+ private:
+  /// Without a weight the rows are orthonormal combinations of the observations' noise; a base that counts
+  /// half leaves less than that.
+  void CheckNoise(const FilterRows& rows) {
+    for (const TracedBlock& block : rows.blocks) {
+      ASSERT_EQ(block.noise.rows(), block.rows);
+      ASSERT_EQ(block.noise.cols(), static_cast<Index>(2 * block.serials.size()));
+      const MatrixXd gram = block.noise * block.noise.transpose();
+      const MatrixXd identity = MatrixXd::Identity(block.rows, block.rows);
+      const bool unit = (gram - identity).cwiseAbs().maxCoeff() < 1e-9;
+      plain_ += unit ? 1 : 0;
+      inflated_ += unit ? 0 : 1;
+      EXPECT_LT(gram.trace(), block.rows + 1e-9);
+    }
+  }
+
+  MatrixXd p_;
+  int frames_ = 0;
+  int updates_ = 0;
+  int inflated_ = 0;
+  int plain_ = 0;
+  double worst_ = 0;
+};
+
+CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel) {
+  SimulatorConfig sim;
+  sim.duration_s = 8;
+  sim.path_m = 10;
+  const Dataset dataset = test::SimulateOrDie(sim, 3);
+  EstimatorConfig config;
+  config.filter.base_reuse = reuse;
+  config.filter.window = 12;
+  config.vision.robust_kernel = kernel;
+  config.vision.gate_probability = kernel == RobustKernel::kNone ? 1.0 : 0.99;
+  CovarianceReplay replay;
+  const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig, &replay);
+  const test::ScenarioResult result =
+      test::RunScenario(dataset, test::DrawInitialState(dataset, 3), filter.get());
+  EXPECT_TRUE(result.status.ok()) << result.status.message();
+  EXPECT_EQ(result.frames, replay.frames());
+  return replay;
+}
+
+TEST(FilterObserverTest, WhatIsObservedIsWhatTheFilterDoes) {
+  const CovarianceReplay replay = Replay(BaseReuse::kInflate, RobustKernel::kHuber);
+  EXPECT_GT(replay.updates(), 60);
+  EXPECT_LT(replay.worst(), 1e-6);
+}
+
+TEST(FilterObserverTest, TheNoiseOfARowIsThatOfItsObservations) {
+  const CovarianceReplay disjoint = Replay(BaseReuse::kDisjoint, RobustKernel::kNone);
+  EXPECT_GT(disjoint.plain(), 500);
+  EXPECT_EQ(disjoint.inflated(), 0);
+  EXPECT_GT(Replay(BaseReuse::kInflate, RobustKernel::kNone).inflated(), 500);
+}
+
+TEST(FilterObserverTest, ObservingChangesNothing) {
+  SimulatorConfig sim;
+  sim.duration_s = 5;
+  sim.path_m = 6;
+  const Dataset dataset = test::SimulateOrDie(sim, 4);
+  const EstimatorConfig config;
+  CovarianceReplay replay;
+  const std::unique_ptr<Estimator> observed = MakeFilter(config, dataset.rig, &replay);
+  const std::unique_ptr<Estimator> alone = MakeFilter(config, dataset.rig);
+  const NavEstimate initial = test::DrawInitialState(dataset, 4);
+  const test::ScenarioResult with = test::RunScenario(dataset, initial, observed.get());
+  const test::ScenarioResult without = test::RunScenario(dataset, initial, alone.get());
+  EXPECT_EQ(with.last.nav.p_WB, without.last.nav.p_WB);
+  EXPECT_EQ(with.last.covariance, without.last.covariance);
+}
+
+}  // namespace
+}  // namespace alidade
