@@ -19,10 +19,10 @@ struct DynamicSolution {
 };
 
 /// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),
-/// velocity, gravity and accelerometer bias in closed form (linear_alignment.h), maximum likelihood over the
-/// window (alignment_refinement.h), then the checks that accept it. Stamps of `frames` are in IMU time.
-/// max_scale_std: relative standard deviation of the scale up to which the solution is accepted. Error
-/// (kDiverged): why there is no solution yet, with the figure and its limit.
+/// velocity and gravity in closed form (linear_alignment.h), maximum likelihood over the window,
+/// accelerometer bias included (alignment_refinement.h), then the checks that accept it. Stamps of `frames`
+/// are in IMU time. max_scale_std: relative standard deviation of the scale up to which the solution is
+/// accepted. Error (kDiverged): why there is no solution yet, with the figure and its limit.
 Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
                                           const std::deque<TrackFrame>& frames, double max_scale_std,
                                           ImuBuffer* imu);

@@ -2,13 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <regex>
-#include <sstream>
 
+#include "tests/eval/headless_browser.h"
 #include "tests/eval/synthetic_comparison.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
@@ -16,60 +13,30 @@
 namespace alidade {
 namespace {
 
+using test::HeadlessBrowser;
+using test::PageVisit;
 using test::ReadFile;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr const char* kBrowser = "/usr/bin/chromium";
 constexpr int kPlots = 13;
-
-/// The page after its scripts have run, and what the browser's console said.
-struct Visit {
-  std::string dom;
-  std::string console;
-
-  /// Attribute of the root element; empty without it.
-  [[nodiscard]] std::string Mark(const std::string& name) const {
-    std::smatch match;
-    const std::string head = dom.substr(0, dom.find("<head"));
-    return std::regex_search(head, match, std::regex("data-" + name + "=\"([^\"]*)\"")) ? match[1].str() : "";
-  }
-};
 
 class ReportInBrowser : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(kBrowser)) {
-      GTEST_SKIP() << "no " << kBrowser << ": install the Debian package chromium";
+    if (!std::filesystem::exists(HeadlessBrowser::kChromium)) {
+      GTEST_SKIP() << "no " << HeadlessBrowser::kChromium << ": install the Debian package chromium";
     }
     ASSERT_TRUE(WriteReport(test::SyntheticComparison(300), folder_.File("report.html")).ok());
     page_ = ReadFile(folder_.File("report.html"));
   }
 
   /// Opens `page` with `address` ("#...") appended to its location.
-  Visit Open(const std::string& page, const std::string& address = "") {
-    folder_.Write("visited.html", page);
-    const std::string command =
-        "timeout 100 " + std::string(kBrowser) +
-        " --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run"
-        " --user-data-dir=" +
-        folder_.File("profile") +
-        " --enable-logging=stderr --v=0 --virtual-time-budget=5000 --dump-dom"
-        " 'file://" +
-        folder_.File("visited.html") + address + "' 2>" + folder_.File("stderr");
-    Visit visit;
-    FILE* pipe = popen(command.c_str(), "r");
-    std::array<char, 4096> buffer;
-    for (size_t n = 0; pipe != nullptr && (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-      visit.dom.append(buffer.data(), n);
-    }
-    EXPECT_EQ(pipe == nullptr ? -1 : pclose(pipe), 0) << ReadFile(folder_.File("stderr"));
-    std::ifstream log(folder_.File("stderr"));
-    for (std::string line; std::getline(log, line);) {
-      visit.console += line.find("CONSOLE") != std::string::npos ? line + "\n" : "";
-    }
-    return visit;
+  PageVisit Open(const std::string& page, const std::string& address = "") {
+    const Result<PageVisit> visit = HeadlessBrowser().Open(folder_.Write("visited.html", page), address);
+    EXPECT_TRUE(visit.ok()) << visit.message();
+    return visit.ok() ? *visit : PageVisit();
   }
 
   /// The page with `script` run after its own scripts.
@@ -82,7 +49,7 @@ class ReportInBrowser : public ::testing::Test {
   std::string page_;
 };
 
-void ExpectWhole(const Visit& visit) {
+void ExpectWhole(const PageVisit& visit) {
   EXPECT_THAT(visit.console, IsEmpty());
   EXPECT_EQ(visit.Mark("errors"), "");
   EXPECT_EQ(visit.Mark("ready"), "true");
@@ -90,7 +57,7 @@ void ExpectWhole(const Visit& visit) {
 }
 
 TEST_F(ReportInBrowser, GivenAComparisonThenEveryPlotIsDrawnWithoutAComplaint) {
-  const Visit visit = Open(page_);
+  const PageVisit visit = Open(page_);
   ExpectWhole(visit);
   // Three estimators in ten plots of lines, and the truth in two; three bands in each of six error plots.
   EXPECT_EQ(visit.Mark("lines"), "35");
@@ -101,7 +68,7 @@ TEST_F(ReportInBrowser, GivenAComparisonThenEveryPlotIsDrawnWithoutAComplaint) {
 }
 
 TEST_F(ReportInBrowser, GivenAFailedRunThenItsReasonIsToldAndTheOthersAreDrawn) {
-  const Visit visit = Open(page_, "#sequence=V1_01_easy&seed=2");
+  const PageVisit visit = Open(page_, "#sequence=V1_01_easy&seed=2");
   ExpectWhole(visit);
   EXPECT_EQ(visit.Mark("lines"), "24");
   EXPECT_THAT(visit.dom, HasSubstr("&lt;/script&gt;&lt;b&gt;\"torn\" row, expected 4 columns</li>"));
@@ -109,7 +76,7 @@ TEST_F(ReportInBrowser, GivenAFailedRunThenItsReasonIsToldAndTheOthersAreDrawn) 
 }
 
 TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
-  const Visit visit = Open(page_, "#sequence=figure8&seed=all");
+  const PageVisit visit = Open(page_, "#sequence=figure8&seed=all");
   ExpectWhole(visit);
   EXPECT_EQ(visit.Mark("lines"), "41");  // two more estimates of each estimator in top view and height
   EXPECT_THAT(visit.dom, HasSubstr("the mean of 2 independent runs"));
@@ -130,7 +97,7 @@ TEST_F(ReportInBrowser, GivenAnExternalTrajectoryThenWhatItLacksIsLeftOut) {
   std::fill(cell.series.nees_pose.begin(), cell.series.nees_pose.end(), std::nan(""));
   std::fill(cell.series.error.begin(), cell.series.error.end(), Vector6d::Zero());
   ASSERT_TRUE(WriteReport(comparison, folder_.File("external.html")).ok());
-  const Visit visit = Open(ReadFile(folder_.File("external.html")));
+  const PageVisit visit = Open(ReadFile(folder_.File("external.html")));
   ExpectWhole(visit);
   EXPECT_EQ(visit.Mark("lines"), "10");  // two trajectories and their truth, six errors
   EXPECT_EQ(visit.Mark("bands"), "0");
@@ -139,13 +106,13 @@ TEST_F(ReportInBrowser, GivenAnExternalTrajectoryThenWhatItLacksIsLeftOut) {
 
 TEST_F(ReportInBrowser, GivenNothingToCompareThenThePageSaysSoInsteadOfFailing) {
   ASSERT_TRUE(WriteReport(Comparison{}, folder_.File("empty.html")).ok());
-  const Visit visit = Open(ReadFile(folder_.File("empty.html")));
+  const PageVisit visit = Open(ReadFile(folder_.File("empty.html")));
   EXPECT_THAT(visit.console, IsEmpty());
   EXPECT_THAT(visit.dom, HasSubstr("no runs"));
 }
 
 TEST_F(ReportInBrowser, GivenAPersonWhoPointsDragsAndSelectsThenThePlotsFollow) {
-  const Visit visit = Open(WithScript(R"(
+  const PageVisit visit = Open(WithScript(R"(
     const root = document.documentElement;
     const note = function (name, value) { root.setAttribute('data-' + name, value); };
     const overlay = function () { return document.querySelector('#plot-pos-0 .overlay'); };
@@ -181,7 +148,7 @@ TEST_F(ReportInBrowser, GivenAPersonWhoPointsDragsAndSelectsThenThePlotsFollow) 
 TEST_F(ReportInBrowser, GivenThePageThenItAsksTheNetworkForNothing) {
   EXPECT_FALSE(std::regex_search(page_.substr(0, page_.find("<script")),
                                  std::regex("(src|href)\\s*=\\s*[\"']?(https?:)?//|url\\(|@import")));
-  const Visit visit =
+  const PageVisit visit =
       Open(WithScript("document.documentElement.setAttribute('data-requests', "
                       "performance.getEntriesByType('resource').filter("
                       "function (e) { return e.name.indexOf('data:') !== 0; }).length);"));
@@ -194,7 +161,7 @@ TEST_F(ReportInBrowser, GivenAPageWithAFaultThenTheFaultIsSeen) {
   ASSERT_NE(call, std::string::npos);
   std::string broken = page_;
   broken.replace(call, 12, "noSuchThing();");
-  const Visit visit = Open(broken);
+  const PageVisit visit = Open(broken);
   EXPECT_THAT(visit.console, HasSubstr("noSuchThing"));
   EXPECT_THAT(visit.Mark("errors"), HasSubstr("noSuchThing"));
   EXPECT_EQ(visit.Mark("ready"), "");
