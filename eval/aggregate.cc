@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "eval/nees_over_time.h"
 #include "eval/output_file.h"
 
 namespace alidade {
@@ -104,6 +105,10 @@ AggregateRow AggregateCells(const std::vector<const CellResult*>& cells, const s
   row.nees_pose_band = BandOrNan(6, row.ok);
   row.nees_ori_band = BandOrNan(3, row.ok);
   row.nees_pos_band = BandOrNan(3, row.ok);
+  row.nees_inside_share = AverageNees(cells).share_inside;
+  if (const std::optional<size_t> nees = FindFigure(figures, "nees_pose")) {
+    row.nees_verdict = NeesVerdict(row.figures[*nees].mean, row.nees_pose_band);
+  }
   row.best.assign(figures.size(), false);
   return row;
 }
@@ -126,6 +131,24 @@ void MarkBest(const std::vector<Figure>& figures, AggregateRow* begin, Aggregate
     }
     for (AggregateRow* row = begin; row != end && rivals > 1; ++row) {
       row->best[i] = row->ok == most_ok && Badness(figures[i], row->figures[i].mean) == least;
+    }
+  }
+}
+
+/// Ratios of mean RMSEs to those of the same label on the baseline.
+void RelateToBaseline(const std::string& baseline, const std::vector<Figure>& figures,
+                      std::vector<AggregateRow>* rows) {
+  const std::optional<size_t> pos = FindFigure(figures, "rmse_pos_m");
+  const std::optional<size_t> ori = FindFigure(figures, "rmse_ori_deg");
+  if (baseline.empty() || !pos || !ori) {
+    return;
+  }
+  for (AggregateRow& row : *rows) {
+    for (const AggregateRow& clean : *rows) {
+      if (clean.label == row.label && clean.sequence == baseline) {
+        row.rmse_pos_ratio = row.figures[*pos].mean / clean.figures[*pos].mean;
+        row.rmse_ori_ratio = row.figures[*ori].mean / clean.figures[*ori].mean;
+      }
     }
   }
 }
@@ -165,7 +188,9 @@ std::vector<Figure> ListFigures(const Comparison& comparison) {
       {"backend_ms", "back end", "ms", Ideal::kLow, 0, 2, Positive(&CellResult::backend_ms)},
       {"backend_ms_p95", "back end p95", "ms", Ideal::kLow, 0, 2, Positive(&CellResult::backend_ms_p95)},
       {"features_per_frame", "features", "1/frame", Ideal::kNone, 0, 1,
-       Positive(&CellResult::features_per_frame)}};
+       Positive(&CellResult::features_per_frame)},
+      {"gated_share", "gated", "", Ideal::kNone, 0, 3,
+       [](const CellResult& cell) { return HasTrajectory(cell) ? cell.gated_share : kNan; }}};
   figures.insert(figures.end(), rest.begin(), rest.end());
   return figures;
 }
@@ -177,6 +202,7 @@ Statistic ComputeStatistic(const std::vector<double>& values) {
     if (!std::isnan(value)) {
       sum += value;
       ++statistic.count;
+      statistic.largest = std::isnan(statistic.largest) ? value : std::max(statistic.largest, value);
     }
   }
   statistic.mean = statistic.count > 0 ? sum / statistic.count : kNan;
@@ -204,6 +230,15 @@ double Badness(const Figure& figure, double value) {
   return kNan;
 }
 
+std::optional<size_t> FindFigure(const std::vector<Figure>& figures, const std::string& key) {
+  for (size_t i = 0; i < figures.size(); ++i) {
+    if (figures[i].key == key) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
 std::string LabelOf(const Comparison& comparison, const CellResult& cell) {
   for (const CellResult& other : comparison.cells) {
     const bool both_known = !other.backend.empty() && !cell.backend.empty();
@@ -214,28 +249,44 @@ std::string LabelOf(const Comparison& comparison, const CellResult& cell) {
   return cell.estimator;
 }
 
-std::vector<AggregateRow> Aggregate(const Comparison& comparison, const std::vector<Figure>& figures) {
-  const auto label_of = [&comparison](const CellResult& cell) { return LabelOf(comparison, cell); };
-  const std::vector<std::string> labels = Distinct(comparison.cells, label_of);
+std::vector<CellGroup> GroupCells(const Comparison& comparison) {
+  std::vector<std::string> of_cell;  // a label costs a walk over all cells: once each
+  for (const CellResult& cell : comparison.cells) {
+    of_cell.push_back(LabelOf(comparison, cell));
+  }
+  const std::vector<std::string> labels = Distinct(of_cell, [](const std::string& label) { return label; });
   const std::vector<std::string> sequences =
       Distinct(comparison.cells, [](const CellResult& cell) { return cell.sequence; });
-  std::vector<AggregateRow> rows;
+  std::vector<CellGroup> groups;
   for (const std::string& sequence : sequences) {
-    const size_t first = rows.size();
     for (const std::string& label : labels) {
-      std::vector<const CellResult*> cells;
-      for (const CellResult& cell : comparison.cells) {
-        if (cell.sequence == sequence && label_of(cell) == label) {
-          cells.push_back(&cell);
+      CellGroup group{label, sequence, {}};
+      for (size_t i = 0; i < of_cell.size(); ++i) {
+        if (of_cell[i] == label && comparison.cells[i].sequence == sequence) {
+          group.cells.push_back(&comparison.cells[i]);
         }
       }
-      if (!cells.empty()) {
-        rows.push_back(AggregateCells(cells, figures));
-        rows.back().label = label;
+      if (!group.cells.empty()) {
+        groups.push_back(std::move(group));
       }
     }
-    MarkBest(figures, rows.data() + first, rows.data() + rows.size());
   }
+  return groups;
+}
+
+std::vector<AggregateRow> Aggregate(const Comparison& comparison, const std::vector<Figure>& figures) {
+  std::vector<AggregateRow> rows;
+  for (const CellGroup& group : GroupCells(comparison)) {
+    rows.push_back(AggregateCells(group.cells, figures));
+    rows.back().label = group.label;
+  }
+  for (size_t first = 0, end = 0; first < rows.size(); first = end) {
+    while (end < rows.size() && rows[end].sequence == rows[first].sequence) {
+      ++end;
+    }
+    MarkBest(figures, rows.data() + first, rows.data() + end);
+  }
+  RelateToBaseline(comparison.baseline, figures, &rows);
   return rows;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +40,7 @@ struct Statistic {
   int count = 0;
   double mean = 0;
   double standard_error = 0;  ///< of the mean, from the sample deviation; NaN with fewer than two values
+  double largest = std::numeric_limits<double>::quiet_NaN();
 };
 [[nodiscard]] Statistic ComputeStatistic(const std::vector<double>& values);
 
@@ -55,6 +58,13 @@ struct AggregateRow {
   /// are strongly correlated, so this band is the widest that the chi-square assumption allows. NaN when ok
   /// is 0.
   std::pair<double, double> nees_pose_band, nees_ori_band, nees_pos_band;
+  /// Share of the instants at which the pose NEES averaged over the runs lies in its own 95 % band
+  /// (eval/nees_over_time.h): the sharper test. NaN without covariance.
+  double nees_inside_share = std::numeric_limits<double>::quiet_NaN();
+  std::string nees_verdict;  ///< of the mean pose NEES against its band; empty without covariance
+  /// Mean RMSE over that of the same estimator on Comparison::baseline; NaN without a baseline or a value.
+  double rmse_pos_ratio = std::numeric_limits<double>::quiet_NaN();
+  double rmse_ori_ratio = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Rows by sequence, then estimator, both in order of first appearance. `best` is marked among the rows of a
@@ -66,6 +76,18 @@ struct AggregateRow {
 /// Sequences and row labels in order of first appearance.
 [[nodiscard]] std::vector<std::string> ListSequences(const std::vector<AggregateRow>& rows);
 [[nodiscard]] std::vector<std::string> ListLabels(const std::vector<AggregateRow>& rows);
+
+/// Place of the figure `key` in the list; none when it is not there.
+[[nodiscard]] std::optional<size_t> FindFigure(const std::vector<Figure>& figures, const std::string& key);
+
+/// The cells of one aggregate row.
+struct CellGroup {
+  std::string label;
+  std::string sequence;
+  std::vector<const CellResult*> cells;
+};
+/// By sequence, then label, both in order of first appearance; they point into `comparison`.
+[[nodiscard]] std::vector<CellGroup> GroupCells(const Comparison& comparison);
 
 /// The label of a cell's aggregate row.
 [[nodiscard]] std::string LabelOf(const Comparison& comparison, const CellResult& cell);

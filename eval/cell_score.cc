@@ -130,15 +130,19 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   cell->status = StatusWord(run);
   cell->message = run.status.message();
   std::vector<double> frontend_ms, backend_ms, features;
+  double used = 0, gated = 0;
   for (const RunRecord& record : run.records) {
     frontend_ms.push_back(record.frontend_ms);
     backend_ms.push_back(record.backend_ms);
     features.push_back(record.statistics.features_used);
+    used += record.statistics.features_used;
+    gated += record.statistics.features_gated;
   }
   cell->frontend_ms = Mean(frontend_ms);
   cell->backend_ms = Mean(backend_ms);
   cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
+  cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;
   Score(truth, TrajectoryOf(run), &run, options, cell);
 }
 

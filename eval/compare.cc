@@ -225,6 +225,9 @@ class Comparer {
     comparison.title = plan_.title;
     comparison.references = plan_.references;
     comparison.command = options_.command;
+    comparison.baseline = plan_.baseline;
+    comparison.pair_figures = plan_.pair_figures;
+    comparison.pair_across = plan_.pair_across;
     for (const PlanEstimator& estimator : plan_.estimators) {
       for (Cell& cell : cells_) {
         if (cell.estimator == &estimator) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -40,6 +41,9 @@ struct CellResult {
   double nees_pose = 0, nees_ori = 0, nees_pos = 0, coverage_3sigma = 0;
   double frontend_ms = 0, backend_ms = 0, backend_ms_p95 = 0;
   double features_per_frame = 0;
+  /// Of the tracks that met the chi-square gate, those it refused; NaN when none did. On data without
+  /// outliers these are false rejections.
+  double gated_share = std::numeric_limits<double>::quiet_NaN();
   CellSeries series;
 };
 
@@ -56,9 +60,14 @@ struct Comparison {
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;
   std::string command;  ///< how to repeat it
+  /// Figures whose paired differences the tables show; pairs.csv has all of them.
+  std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
+  bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each
+  std::string baseline;      ///< sequence that RMSEs are also given relative to; may be empty
 };
 
-/// Writes summary.csv, aggregate.csv, tables.md, tables.tex into `folder` (contract: "What compare writes").
+/// Writes summary.csv, aggregate.csv, pairs.csv, nees_over_time.csv, tables.md, tables.tex into `folder`
+/// (contract: "What compare writes").
 Status WriteTables(const Comparison& comparison, const std::string& folder);
 
 /// One self-contained offline page: table, trajectories, errors with 3-sigma bands, NEES with its chi-square

@@ -41,10 +41,13 @@ class PlanParser {
           },
           true},
          {"metrics", [&](const YAML::Node& n) { return ReadMetrics(n); }},
+         {"pairs", [&](const YAML::Node& n) { return ReadPairs(n); }},
+         {"baseline", [&](const YAML::Node& n) { return reader_.Text(n, "baseline", &plan_.baseline); }},
          {"reference", [&](const YAML::Node& n) {
             return reader_.Each(n, "reference", [&](const YAML::Node& e) { return AddReference(e); });
           }}}));
     ALIDADE_RETURN_IF_ERROR(CheckTrajectoryNames(root));
+    ALIDADE_RETURN_IF_ERROR(CheckBaseline(root));
     if (plan_.title.empty()) {
       plan_.title = Stem(plan_.path);
     }
@@ -146,6 +149,20 @@ class PlanParser {
           }}});
   }
 
+  Status ReadPairs(const Node& node) {
+    return reader_.Map(node, "pairs",
+                       {{"figures",
+                         [&](const Node& n) {
+                           plan_.pair_figures.clear();
+                           return reader_.Each(n, "figures", [&](const Node& entry) {
+                             return reader_.Text(entry, "figures", &plan_.pair_figures.emplace_back());
+                           });
+                         }},
+                        {"across_sequences", [&](const Node& n) {
+                           return reader_.Boolean(n, "across_sequences", &plan_.pair_across);
+                         }}});
+  }
+
   Status ReadAlignment(const Node& node) {
     std::string name;
     ALIDADE_RETURN_IF_ERROR(reader_.Text(node, "align", &name));
@@ -194,12 +211,26 @@ class PlanParser {
     return Status::Ok();
   }
 
-  /// Trajectories are given by sequence name: a name that no sequence has would be left out silently.
-  Status CheckTrajectoryNames(const Node& root) const {
+  [[nodiscard]] std::vector<std::string> SequenceNames() const {
     std::vector<std::string> names;
     for (const PlanSequence& sequence : plan_.sequences) {
       names.push_back(sequence.name);
     }
+    return names;
+  }
+
+  Status CheckBaseline(const Node& root) const {
+    const std::vector<std::string> names = SequenceNames();
+    const bool known = std::find(names.begin(), names.end(), plan_.baseline) != names.end();
+    return plan_.baseline.empty() || known
+               ? Status::Ok()
+               : Status::Config(YamlPlace(plan_.path, root["baseline"]) + ": baseline: " + plan_.baseline +
+                                ": no such sequence" + Suggestion(plan_.baseline, names));
+  }
+
+  /// Trajectories are given by sequence name: a name that no sequence has would be left out silently.
+  Status CheckTrajectoryNames(const Node& root) const {
+    const std::vector<std::string> names = SequenceNames();
     for (const PlanEstimator& estimator : plan_.estimators) {
       for (const auto& [sequence, path] : estimator.trajectories) {
         if (std::find(names.begin(), names.end(), sequence) == names.end()) {

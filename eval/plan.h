@@ -38,6 +38,9 @@ struct Plan {
   std::vector<PlanEstimator> estimators;
   std::vector<PlanSequence> sequences;
   EvaluationOptions metrics;
+  std::vector<std::string> pair_figures = Comparison().pair_figures;
+  bool pair_across = false;
+  std::string baseline;  ///< name of the sequence that RMSEs are also given relative to; may be empty
   std::vector<ReferenceFigure> references;
 };
 

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "eval/aggregate.h"
+#include "eval/nees_over_time.h"
+#include "eval/paired.h"
 
 namespace alidade {
 namespace {
@@ -168,9 +170,58 @@ Json AggregateData(const AggregateRow& row) {
           {"diverged", row.diverged},
           {"not_initialized", row.not_initialized},
           {"failed", row.failed},
+          {"nees_verdict", row.nees_verdict},
+          {"nees_inside", Rounded(row.nees_inside_share, 4)},
           {"means", means},
           {"errors", errors},
           {"best", best}};
+}
+
+/// Of each pair: [sequence, figure, first, second (indices), pairs, lost, difference, half of its interval,
+/// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference, null too few]; sequence -1
+/// is all of them.
+Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
+              const std::vector<AggregateRow>& rows) {
+  const std::vector<std::string> sequences = ListSequences(rows);
+  const std::vector<std::string> labels = ListLabels(rows);
+  const auto place = [](const std::vector<std::string>& names, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  };
+  Json list = Json::array();
+  for (const PairedDifference& pair : ComparePairs(comparison, figures)) {
+    const PairedT& test = pair.difference;
+    if (pair.verdict == PairVerdict::kTooFew) {
+      continue;
+    }
+    const int verdict = pair.verdict == PairVerdict::kNoDifference ? 0 : test.mean < 0 ? -1 : 1;
+    list.push_back({place(sequences, pair.sequence), pair.figure, place(labels, pair.first),
+                    place(labels, pair.second), test.count, pair.only_first + pair.only_second + pair.neither,
+                    Rounded(test.mean, 4), Rounded(0.5 * (test.high - test.low), 3), verdict});
+  }
+  return list;
+}
+
+Json NeesData(const Comparison& comparison, int most) {
+  Json list = Json::array();
+  for (const NeesCurve& curve : AverageNees(comparison)) {
+    const NeesOverTime& average = curve.average;
+    if (average.runs.empty() || *std::max_element(average.runs.begin(), average.runs.end()) < 2) {
+      continue;  // the run's own series says it
+    }
+    std::vector<double> times;
+    Json mean = Json::array();
+    for (const size_t i : KeptRows(average.mean.size(), most)) {
+      times.push_back(average.time_s[i]);
+      mean.push_back(Rounded(average.mean[i], 3));
+    }
+    list.push_back({{"estimator", curve.label},
+                    {"sequence", curve.sequence},
+                    {"t", Packed(times, 1e-3)},
+                    {"nees", mean},
+                    {"inside", Rounded(average.share_inside, 4)}});
+  }
+  return list;
 }
 
 /// 95 % bands of the mean pose NEES of 1, 2, ... runs.
@@ -188,7 +239,7 @@ Json NeesBands(int most_runs) {
 int PointsPerSeries(size_t cells) {
   // A point of one cell is 22 numbers: measured at 65 to 80 characters.
   const double budget = 4.3e6 / (80.0 * static_cast<double>(std::max<size_t>(1, cells)));
-  return static_cast<int>(std::clamp(budget, 150.0, 1000.0));
+  return static_cast<int>(std::clamp(budget, 60.0, 1000.0));
 }
 
 PackedColumn PackColumn(const std::vector<double>& values, double finest) {
@@ -236,6 +287,8 @@ std::string ReportData(const Comparison& comparison) {
     most_runs = std::max(most_runs, row.cells);
   }
   data["nees_bands"] = NeesBands(most_runs);
+  data["nees_over_time"] = NeesData(comparison, most);
+  data["pairs"] = PairData(comparison, figures, rows);
   data["references"] = Json::array();
   for (const ReferenceFigure& reference : comparison.references) {
     data["references"].push_back({{"source", reference.source},

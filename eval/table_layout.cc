@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+
+#include "eval/pair_tables.h"
 
 namespace alidade {
 namespace {
@@ -38,6 +41,33 @@ double ReferenceValue(const ReferenceFigure& reference, const std::string& key) 
   return found == reference.figures.end() ? std::nan("") : found->second;
 }
 
+std::string Percent(double share) {
+  return std::isnan(share) ? kDash : Print("%.*f", 1, 100 * share) + " %";
+}
+
+/// What the columns after the figures say, in the order of SummaryHeadings.
+std::vector<TextCell> SummaryCells(const AggregateRow& row, const std::vector<Figure>& figures,
+                                   const Comparison& comparison) {
+  const std::optional<size_t> nees = FindFigure(figures, "nees_pose");
+  std::vector<TextCell> cells = {{nees ? FormatValue(row.figures[*nees].largest, 1) : kDash},
+                                 {Percent(row.nees_inside_share)},
+                                 {row.nees_verdict.empty() ? kDash : row.nees_verdict}};
+  if (!comparison.baseline.empty()) {
+    cells.push_back({FormatValue(row.rmse_pos_ratio, 2)});
+    cells.push_back({FormatValue(row.rmse_ori_ratio, 2)});
+  }
+  return cells;
+}
+
+std::vector<std::string> SummaryHeadings(const Comparison& comparison) {
+  std::vector<std::string> headings = {"NEES worst run", "NEES in band", "NEES verdict"};
+  if (!comparison.baseline.empty()) {
+    headings.push_back("RMSE pos. / " + comparison.baseline);
+    headings.push_back("RMSE ori. / " + comparison.baseline);
+  }
+  return headings;
+}
+
 TextTable SequenceTable(const std::string& sequence, const std::vector<AggregateRow>& rows,
                         const Comparison& comparison, const std::vector<Figure>& figures,
                         const std::string& plus_minus) {
@@ -45,6 +75,8 @@ TextTable SequenceTable(const std::string& sequence, const std::vector<Aggregate
   for (const Figure& figure : figures) {
     table.header.push_back(Heading(figure));
   }
+  const std::vector<std::string> more = SummaryHeadings(comparison);
+  table.header.insert(table.header.end(), more.begin(), more.end());
   for (const AggregateRow& row : rows) {
     if (row.sequence != sequence) {
       continue;
@@ -56,6 +88,8 @@ TextTable SequenceTable(const std::string& sequence, const std::vector<Aggregate
     if (row.ok == 0 && text.cells.size() > 2) {
       text.cells[2].text = FailureText(row);
     }
+    const std::vector<TextCell> summary = SummaryCells(row, figures, comparison);
+    text.cells.insert(text.cells.end(), summary.begin(), summary.end());
     table.rows.push_back(text);
   }
   for (const ReferenceFigure& reference : comparison.references) {
@@ -66,6 +100,7 @@ TextTable SequenceTable(const std::string& sequence, const std::vector<Aggregate
     for (const Figure& figure : figures) {
       text.cells.push_back({FormatValue(ReferenceValue(reference, figure.key), figure.decimals)});
     }
+    text.cells.resize(table.header.size(), TextCell{kDash});
     table.rows.push_back(text);
   }
   return table;
@@ -83,6 +118,7 @@ void AppendReferenceRows(const std::vector<std::string>& sequences, const Compar
     done.push_back(name);
     TextRow text{{{name}}, true};
     bool any = false;
+    double sum = 0;
     for (const std::string& sequence : sequences) {
       double value = std::nan("");
       for (const ReferenceFigure& reference : comparison.references) {
@@ -91,8 +127,10 @@ void AppendReferenceRows(const std::vector<std::string>& sequences, const Compar
         }
       }
       any = any || !std::isnan(value);
+      sum += value;
       text.cells.push_back({FormatValue(value, figure.decimals)});
     }
+    text.cells.push_back({FormatValue(sum / static_cast<double>(sequences.size()), figure.decimals)});
     if (any) {
       table->rows.push_back(text);
     }
@@ -105,20 +143,27 @@ TextTable OverviewTable(size_t index, const std::vector<AggregateRow>& rows, con
   const std::vector<std::string> sequences = ListSequences(rows);
   TextTable table{"Overview: " + Heading(figure), {"estimator"}, {}};
   table.header.insert(table.header.end(), sequences.begin(), sequences.end());
+  table.header.emplace_back("mean");
   for (const std::string& label : ListLabels(rows)) {
     TextRow text{{{label}}};
+    double sum = 0;
     for (const std::string& sequence : sequences) {
       TextCell cell{kDash};
+      double value = std::nan("");
       for (const AggregateRow& row : rows) {
         if (row.label == label && row.sequence == sequence) {
           cell.text = row.ok == 0 ? FailureText(row)
                                   : FormatStatistic(row.figures[index], figure.decimals, plus_minus);
           cell.text += row.ok > 0 && row.ok < row.cells ? " (" + RunsText(row) + ")" : "";
           cell.best = row.best[index];
+          value = row.figures[index].mean;
         }
       }
+      sum += value;
       text.cells.push_back(cell);
     }
+    // Only of an estimator that has every sequence: a mean over the easy ones would flatter it.
+    text.cells.push_back({FormatValue(sum / static_cast<double>(sequences.size()), figure.decimals)});
     table.rows.push_back(text);
   }
   AppendReferenceRows(sequences, comparison, figure, &table);
@@ -164,6 +209,8 @@ std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::str
   for (const std::string& sequence : sequences) {
     tables.push_back(SequenceTable(sequence, rows, comparison, figures, plus_minus));
   }
+  const std::vector<TextTable> pairs = LayOutPairTables(comparison, figures, plus_minus);
+  tables.insert(tables.end(), pairs.begin(), pairs.end());
   return tables;
 }
 

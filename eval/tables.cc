@@ -1,37 +1,13 @@
-#include <cmath>
-
 #include "eval/comparison.h"
+#include "eval/csv_text.h"
+#include "eval/nees_over_time.h"
 #include "eval/output_file.h"
+#include "eval/pair_tables.h"
 #include "eval/table_layout.h"
 #include "eval/tables_text.h"
 
 namespace alidade {
 namespace {
-
-/// A field of a CSV file, quoted where RFC 4180 wants it.
-std::string CsvText(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + "\"";
-}
-
-/// Empty where there is no value.
-std::string CsvNumber(double value) {
-  return std::isnan(value) ? "" : ShortestDouble(value);
-}
-
-std::string JoinCsv(const std::vector<std::string>& fields) {
-  std::string line;
-  for (const std::string& field : fields) {
-    line += (line.empty() ? "" : ",") + field;
-  }
-  return line + "\n";
-}
 
 std::string SummaryCsv(const Comparison& comparison, const std::vector<Figure>& figures) {
   std::vector<std::string> header = {"estimator",    "backend", "sequence",   "seed",  "status",
@@ -67,10 +43,14 @@ std::string AggregateCsv(const Comparison& comparison, const std::vector<Figure>
   for (const Figure& figure : figures) {
     header.push_back(figure.key + "_mean");
     header.push_back(figure.key + "_se");
+    header.push_back(figure.key + "_max");
   }
   for (const char* nees : {"nees_pose", "nees_ori", "nees_pos"}) {
     header.push_back(std::string(nees) + "_band_low");
     header.push_back(std::string(nees) + "_band_high");
+  }
+  for (const char* more : {"nees_verdict", "nees_inside_share", "rmse_pos_ratio", "rmse_ori_ratio"}) {
+    header.emplace_back(more);
   }
   std::string text = JoinCsv(header);
   for (const AggregateRow& row : Aggregate(comparison, figures)) {
@@ -81,12 +61,29 @@ std::string AggregateCsv(const Comparison& comparison, const std::vector<Figure>
     for (const Statistic& statistic : row.figures) {
       fields.push_back(CsvNumber(statistic.mean));
       fields.push_back(CsvNumber(statistic.standard_error));
+      fields.push_back(CsvNumber(statistic.largest));
     }
     for (const auto& [low, high] : {row.nees_pose_band, row.nees_ori_band, row.nees_pos_band}) {
       fields.push_back(CsvNumber(low));
       fields.push_back(CsvNumber(high));
     }
+    fields.push_back(row.nees_verdict);
+    for (const double value : {row.nees_inside_share, row.rmse_pos_ratio, row.rmse_ori_ratio}) {
+      fields.push_back(CsvNumber(value));
+    }
     text += JoinCsv(fields);
+  }
+  return text;
+}
+
+std::string NeesCsv(const Comparison& comparison) {
+  std::string text = "estimator,sequence,time_s,runs,nees_pose,band_low,band_high\n";
+  for (const NeesCurve& curve : AverageNees(comparison)) {
+    for (size_t i = 0; i < curve.average.time_s.size(); ++i) {
+      text += JoinCsv({CsvText(curve.label), CsvText(curve.sequence), CsvNumber(curve.average.time_s[i]),
+                       std::to_string(curve.average.runs[i]), CsvNumber(curve.average.mean[i]),
+                       CsvNumber(curve.average.band[i].first), CsvNumber(curve.average.band[i].second)});
+    }
   }
   return text;
 }
@@ -98,6 +95,8 @@ Status WriteTables(const Comparison& comparison, const std::string& folder) {
   const std::vector<TextTable> tables = LayOutTables(comparison, " \u00b1 ");
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/summary.csv", SummaryCsv(comparison, figures)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/aggregate.csv", AggregateCsv(comparison, figures)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/pairs.csv", PairsCsv(comparison, figures)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/nees_over_time.csv", NeesCsv(comparison)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/tables.md", MarkdownText(comparison, tables)));
   return WriteFileAtomically(folder + "/tables.tex", LatexText(comparison, tables));
 }

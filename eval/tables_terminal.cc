@@ -1,7 +1,9 @@
 #include <algorithm>
 
 #include "eval/comparison.h"
+#include "eval/pair_tables.h"
 #include "eval/table_layout.h"
+#include "eval/tables_text.h"
 
 namespace alidade {
 namespace {
@@ -61,7 +63,8 @@ TextTable KeepColumns(const TextTable& table) {
     const std::string& heading = table.header[i];
     const bool drop = heading.starts_with("RPE") || heading.starts_with("front end") ||
                       heading.starts_with("back end p95") || heading.starts_with("NEES pos.") ||
-                      heading.starts_with("NEES ori.") || heading.starts_with("features");
+                      heading.starts_with("NEES ori.") || heading.starts_with("features") ||
+                      heading.starts_with("NEES in band");
     if (!drop) {
       columns.push_back(i);
       kept.header.push_back(heading);
@@ -82,17 +85,14 @@ TextTable KeepColumns(const TextTable& table) {
 std::string FormatTable(const Comparison& comparison) {
   std::string text = comparison.title.empty() ? "" : comparison.title + "\n\n";
   for (const TextTable& table : LayOutTables(comparison, "\u00b1")) {
-    // The overviews repeat what the tables of the sequences say.
-    if (!table.title.starts_with("Overview")) {
+    // The overviews repeat what the tables of the sequences say; the matrices of pairs are too wide.
+    if (!table.title.starts_with("Overview") && !table.title.starts_with(kPairTitle)) {
       text += TerminalTable(KeepColumns(table)) + "\n";
     }
   }
   text += "Means over ok runs \u00b1 standard error; * best of the column (NEES: nearest to 6, 3).\n";
-  for (const CellResult& cell : comparison.cells) {
-    if (cell.status != "ok") {
-      text += cell.estimator + " on " + cell.sequence + ", seed " + std::to_string(cell.seed) + ": " +
-              cell.status + (cell.message.empty() ? "" : ": " + cell.message) + "\n";
-    }
+  for (const std::string& line : LostRuns(comparison)) {
+    text += line + "\n";
   }
   return text;
 }

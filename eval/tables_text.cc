@@ -89,10 +89,26 @@ std::string LatexTable(const TextTable& table) {
 const char* const kReading =
     "Means over the runs that ended ok, with the standard error of the mean where there are several. RMSE is "
     "unaligned, ATE aligned as summary.csv says. The best value of a column is bold (NEES: nearest to its "
-    "degrees of "
-    "freedom, 6, 3 and 3), among the estimators with the most runs ok. Published figures are in italics.";
+    "degrees of freedom, 6, 3 and 3), among the estimators with the most runs ok. Published figures are in "
+    "italics. NEES in band: share of the instants at which the NEES averaged over the runs lies in its 95 % "
+    "chi-square band; the verdict is of the mean NEES against the band of that many independent runs. Pairs: "
+    "differences on equal input and seed, with half of their 95 % interval (Student's t); significant when "
+    "it "
+    "leaves out zero, not corrected for the number of pairs; bold when significantly better. pairs.csv has "
+    "them all.";
 
 }  // namespace
+
+std::vector<std::string> LostRuns(const Comparison& comparison) {
+  std::vector<std::string> lines;
+  for (const CellResult& cell : comparison.cells) {
+    if (cell.status != "ok") {
+      lines.push_back(cell.estimator + " on " + cell.sequence + ", seed " + std::to_string(cell.seed) + ": " +
+                      cell.status + (cell.message.empty() ? "" : ": " + cell.message));
+    }
+  }
+  return lines;
+}
 
 std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables) {
   std::string text = "# ";
@@ -100,6 +116,11 @@ std::string MarkdownText(const Comparison& comparison, const std::vector<TextTab
   for (const TextTable& table : tables) {
     text += "\n";
     text += MarkdownTable(table);
+  }
+  const std::vector<std::string> lost = LostRuns(comparison);
+  text += lost.empty() ? "\nEvery run ended ok.\n" : "\n## Runs that did not end ok\n\n";
+  for (const std::string& line : lost) {
+    text += "- " + EscapeMarkdown(line) + "\n";
   }
   return comparison.command.empty() ? text : text + "\nRepeat with:\n\n    " + comparison.command + "\n";
 }
@@ -110,6 +131,9 @@ std::string LatexText(const Comparison& comparison, const std::vector<TextTable>
   for (const TextTable& table : tables) {
     text += "\n";
     text += LatexTable(table);
+  }
+  for (const std::string& line : LostRuns(comparison)) {
+    text += "\n% Not ok: " + EscapeLatex(line);
   }
   return text;
 }

@@ -94,8 +94,12 @@
     const few = state.seed === MEAN && entries.some(function (entry) { return entry.cells.length < runs; });
     const grid = group('Consistency', 'Normalised estimation error squared of the pose (6 degrees of freedom; ideal mean 6). Shaded: where ' +
       (runs > 1 ? 'the mean of ' + runs + ' independent runs' : 'a single run') + ' lies with 95 % probability (' + report.digits(band[0]) + ' to ' +
-      report.digits(band[1]) + '). Dashed: mean over time.' + (few ? ' An estimator that lost runs has a wider band than is drawn.' : ''), true);
-    const all = lines(entries, function (series) { return series.nees; });
+      report.digits(band[1]) + '). Dashed: mean over time.' + (few ? ' An estimator that lost runs has a wider band than is drawn.' : '') +
+      (runs > 1 ? insideText(entries) : ''), true);
+    const all = state.seed !== MEAN ? lines(entries, function (series) { return series.nees; }) : entries.map(function (entry) {
+      const average = report.neesOverTime(entry.name, state.sequence);
+      return { name: entry.name, style: entry.style, width: 1.1, t: average.t, v: average.nees };
+    });
     const means = all.map(function (line) {
       return { style: line.style, value: d3.mean(line.v.filter(function (v) { return v !== null; })) };
     }).filter(function (mean) { return mean.value > 0; });
@@ -109,6 +113,14 @@
     });
     report.boxPlot(grid, spec('rpe', 'Relative position error', 'error [m]', 'm', entries,
       { x: 'length of the sub-trajectory [m]', height: 300, groups: groups }));
+  }
+
+  // How often the mean over the runs is inside its band: 95 % of the time, when the covariance is honest.
+  function insideText(entries) {
+    return ' Inside: ' + entries.map(function (entry) {
+      const curve = data.nees_over_time.find(function (c) { return c.estimator === entry.name && c.sequence === state.sequence; });
+      return entry.name + ' ' + (curve && curve.inside !== null ? (100 * curve.inside).toFixed(1) + ' %' : '\u2013');
+    }).join(', ') + '.';
   }
 
   function rpeBox(entry, distance) {
@@ -166,6 +178,7 @@
     element('sequence-note').textContent = (ran ? report.digits(ran.duration) + ' s, ' + report.digits(ran.path) + ' m, ' +
       ran.frames + ' frames. ' : '') + 'RMSE is of the raw estimate' + (ran && ran.align ? '; ATE after alignment \u201c' + ran.align + '\u201d' : '') + '.';
     element('sequence-table').innerHTML = report.sequenceTable(state.sequence);
+    report.drawPairs(state.sequence, state.figure);
     element('failures').innerHTML = cells.filter(function (cell) { return cell.status !== 'ok'; }).map(function (cell) {
       return '<li><span class="bad">' + report.escape(cell.estimator) + ', seed ' + cell.seed + ': ' +
         report.escape(cell.status.replace('_', ' ')) + '</span> ' + report.escape(cell.message) + '</li>';
@@ -248,7 +261,7 @@
     data.estimators.forEach(function (name, i) { state.off[name] = i >= 6; });
     fillSelect('figure-select', data.figures.map(function (f) { return [f.key, f.label + (f.unit ? ' [' + f.unit + ']' : '')]; }), state.figure);
     fillSelect('sequence-select', data.sequences.map(function (s) { return [s, s]; }), state.sequence);
-    d3.select('#figure-select').on('change', function () { state.figure = this.value; drawOverview(); });
+    d3.select('#figure-select').on('change', function () { state.figure = this.value; drawOverview(); report.drawPairs(state.sequence, state.figure); });
     d3.select('#sequence-select').on('change', function () { selectSequence(this.value); });
     d3.select('#seed-select').on('change', function () { state.seed = this.value; drawPlots(); });
     d3.select('#zoom-reset').on('click', function () { report.view.onZoom(null); });

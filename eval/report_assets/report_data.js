@@ -48,6 +48,12 @@ window.addEventListener('error', function (event) {
     return cell.unpacked;
   };
 
+  // The pose NEES of an estimator averaged over its runs that ended ok, instant by instant: {t, nees}.
+  report.neesOverTime = function (estimator, sequence) {
+    const curve = report.data.nees_over_time.find(function (c) { return c.estimator === estimator && c.sequence === sequence; });
+    return curve ? { t: unpack(curve.t), nees: curve.nees } : { t: [], nees: [] };
+  };
+
   // Index of the entry of the ascending list `times` nearest to `time`; -1 when there is none.
   report.nearest = function (times, time) {
     const i = d3.bisectLeft(times, time);

@@ -82,6 +82,15 @@ TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
   EXPECT_THAT(visit.dom, HasSubstr("the mean of 2 independent runs"));
 }
 
+TEST_F(ReportInBrowser, GivenSeveralSeedsThenPairsAndTheBandOverTimeAreTold) {
+  const Visit visit = Open(page_, "#sequence=figure8&seed=all");
+  EXPECT_THAT(visit.dom, HasSubstr("row \u2212 column"));
+  EXPECT_THAT(visit.dom, HasSubstr(", 2 pairs)"));
+  EXPECT_THAT(visit.dom, HasSubstr("</span><span class=\"sub\">no difference</span>"));
+  EXPECT_TRUE(
+      std::regex_search(visit.dom, std::regex("Inside: po_invio_multi [0-9.]+ %, invio_l5 [0-9.]+ %")));
+}
+
 TEST_F(ReportInBrowser, GivenAnExternalTrajectoryThenWhatItLacksIsLeftOut) {
   Comparison comparison;
   comparison.title = "external";
