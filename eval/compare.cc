@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -51,20 +52,27 @@ class Comparer {
   }
 
  private:
+  /// One configuration an estimator and sequence: a sequence may say what holds on it alone, such as its
+  /// pixel noise.
   Status LoadConfigs() {
-    for (const PlanEstimator& estimator : plan_.estimators) {
-      if (estimator.external()) {
-        configs_.push_back(nullptr);
-        continue;
+    for (const PlanSequence& sequence : plan_.sequences) {
+      for (const PlanEstimator& estimator : plan_.estimators) {
+        if (estimator.external()) {
+          configs_[&sequence].push_back(nullptr);
+          continue;
+        }
+        std::vector<std::string> settings = plan_.settings;
+        for (const std::vector<std::string>* more : {&estimator.settings, &sequence.estimator_settings}) {
+          settings.insert(settings.end(), more->begin(), more->end());
+        }
+        Result<EstimatorConfig> config = LoadEstimatorConfig(estimator.config, settings);
+        if (!config.ok()) {
+          return Status(config.code(),
+                        "estimator " + estimator.name + " on " + sequence.name + ": " + config.message());
+        }
+        config->name = estimator.name;
+        configs_[&sequence].push_back(std::make_unique<EstimatorConfig>(std::move(*config)));
       }
-      std::vector<std::string> settings = plan_.settings;
-      settings.insert(settings.end(), estimator.settings.begin(), estimator.settings.end());
-      Result<EstimatorConfig> config = LoadEstimatorConfig(estimator.config, settings);
-      if (!config.ok()) {
-        return Status(config.code(), "estimator " + estimator.name + ": " + config.message());
-      }
-      config->name = estimator.name;
-      configs_.push_back(std::make_unique<EstimatorConfig>(std::move(*config)));
     }
     return Status::Ok();
   }
@@ -73,7 +81,7 @@ class Comparer {
   Result<FrontendConfig> CommonFrontend(const PlanSequence& sequence) const {
     FrontendConfig common;
     nlohmann::ordered_json expected;
-    for (const std::unique_ptr<EstimatorConfig>& config : configs_) {
+    for (const std::unique_ptr<EstimatorConfig>& config : configs_.at(&sequence)) {
       if (config == nullptr) {
         continue;
       }
@@ -129,11 +137,12 @@ class Comparer {
       if (estimator.external() && estimator.trajectories.count(sequence.name) == 0) {
         continue;
       }
-      Cell cell{&estimator, configs_[i].get(), &sequence, input, seed, UnscoredCell()};
+      const EstimatorConfig* config = configs_.at(&sequence)[i].get();
+      Cell cell{&estimator, config, &sequence, input, seed, UnscoredCell()};
       cell.result.estimator = estimator.name;
-      cell.result.backend = estimator.external()                       ? "external"
-                            : configs_[i]->backend == Backend::kFilter ? "filter"
-                                                                       : "smoother";
+      cell.result.backend = estimator.external()                  ? "external"
+                            : config->backend == Backend::kFilter ? "filter"
+                                                                  : "smoother";
       cell.result.sequence = sequence.name;
       cell.result.seed = seed;
       input->AddUser();
@@ -260,7 +269,8 @@ class Comparer {
   const Plan& plan_;
   const CompareOptions& options_;
   PipelineOptions pipeline_;
-  std::vector<std::unique_ptr<EstimatorConfig>> configs_;  ///< one an estimator of the plan
+  /// Of each sequence, one an estimator in the plan's order; null when external.
+  std::map<const PlanSequence*, std::vector<std::unique_ptr<EstimatorConfig>>> configs_;
   std::vector<std::unique_ptr<CompareInput>> inputs_;
   std::vector<Cell> cells_;
   std::atomic<size_t> next_cell_{0};

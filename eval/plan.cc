@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "eval/paired.h"
 #include "eval/plan_reader.h"
 #include "eval/suggest.h"
 
@@ -104,7 +105,10 @@ class PlanParser {
          {"config",
           [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
          {"seeds", [&](const Node& n) { return reader_.Seeds(n, "seeds", &sequence.seeds); }},
-         {"set", [&](const Node& n) { return reader_.Settings(n, "set", &sequence.settings); }}}));
+         {"set", [&](const Node& n) { return reader_.Settings(n, "set", &sequence.settings); }},
+         {"estimator_set", [&](const Node& n) {
+            return reader_.Settings(n, "estimator_set", &sequence.estimator_settings);
+          }}}));
     if (sequence.dataset.empty() == sequence.config.empty()) {
       return reader_.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
     }
@@ -150,17 +154,32 @@ class PlanParser {
   }
 
   Status ReadPairs(const Node& node) {
-    return reader_.Map(node, "pairs",
-                       {{"figures",
-                         [&](const Node& n) {
-                           plan_.pair_figures.clear();
-                           return reader_.Each(n, "figures", [&](const Node& entry) {
-                             return reader_.Text(entry, "figures", &plan_.pair_figures.emplace_back());
-                           });
-                         }},
-                        {"across_sequences", [&](const Node& n) {
-                           return reader_.Boolean(n, "across_sequences", &plan_.pair_across);
-                         }}});
+    return reader_.Map(
+        node, "pairs",
+        {{"figures",
+          [&](const Node& n) {
+            plan_.pair_figures.clear();
+            return reader_.Each(n, "figures", [&](const Node& entry) { return AddPairFigure(entry); });
+          }},
+         {"across_sequences",
+          [&](const Node& n) { return reader_.Boolean(n, "across_sequences", &plan_.pair_across); }}});
+  }
+
+  Status AddPairFigure(const Node& node) {
+    std::string key;
+    ALIDADE_RETURN_IF_ERROR(reader_.Text(node, "figures", &key));
+    std::vector<std::string> known;
+    for (const Figure& figure : ListFigures(Comparison())) {
+      if (IsPaired(figure)) {
+        known.push_back(figure.key);
+      }
+    }
+    if (!key.starts_with("rpe_") && std::find(known.begin(), known.end(), key) == known.end()) {
+      return reader_.Fault(node, "figures",
+                           "a column of summary.csv that is not a time" + Suggestion(key, known));
+    }
+    plan_.pair_figures.push_back(key);
+    return Status::Ok();
   }
 
   Status ReadAlignment(const Node& node) {

@@ -26,7 +26,8 @@ struct PlanSequence {
   std::string dataset;  ///< folder in the extended ASL layout; empty for a simulation
   std::string truth;    ///< trajectory file to score against instead of the dataset's own; may be empty
   std::string config;   ///< simulation config; empty for a dataset
-  std::vector<std::string> settings;  ///< over the simulation config
+  std::vector<std::string> settings;            ///< over the simulation config
+  std::vector<std::string> estimator_settings;  ///< over every estimator's own, on this sequence alone
   std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws
 };
 

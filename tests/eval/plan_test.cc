@@ -40,8 +40,10 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "  - {path: '${data}/seq', seeds: [4, 2]}\n"
       "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
       "'${data}/seq'}}\n"
-      "  - {config: sim.yaml, seeds: 9}\n"
+      "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}}\n"
       "metrics: {align: se3, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
+      "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
+      "baseline: loud\n"
       "reference:\n"
       "  - {source: the paper, estimator: a, sequence: sim, figures: {ate_pos_m: 0.1}}\n",
       folder_.File("data"));
@@ -54,7 +56,11 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_THAT(plan->estimators[1].settings, ElementsAre("filter.window=10", "x.v=[1, 2, 3]"));
   EXPECT_TRUE(plan->estimators[2].external());
   EXPECT_EQ(plan->estimators[2].trajectories.at("seq"), folder_.File("other.tum"));
+  EXPECT_THAT(plan->pair_figures, ElementsAre("ate_pos_m"));
+  EXPECT_TRUE(plan->pair_across);
+  EXPECT_EQ(plan->baseline, "loud");
   ASSERT_EQ(plan->sequences.size(), 3u);
+  EXPECT_THAT(plan->sequences[2].estimator_settings, ElementsAre("vision.pixel_noise_px=2"));
   EXPECT_EQ(plan->sequences[0].name, "seq");
   EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(4, 2));
   EXPECT_EQ(plan->sequences[1].name, "loud");
@@ -111,6 +117,9 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
       {sequences + estimators + "metrics: {rpe: [0]}\n", "rpe: found"},
       {sequences + estimators + "metrics: {max_dt: .nan}\n", "max_dt: found"},
       {sequences + estimators + "metrics: {interpolate: maybe}\n", "interpolate: found"},
+      {sequences + estimators + "pairs: {figures: [rmse_pos]}\n", "did you mean 'rmse_pos_m'"},
+      {sequences + estimators + "pairs: {figures: [backend_ms]}\n", "not a time"},
+      {sequences + estimators + "baseline: sin\n", "no such sequence; did you mean 'sim'"},
       {sequences + estimators + "reference: [{source: x}]\n", "missing in reference"}};
   for (const auto& [text, expected] : faults) {
     const Result<Plan> plan = Read(text);

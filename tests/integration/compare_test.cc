@@ -59,11 +59,18 @@ class CompareCommand : public testing::Test {
 TEST_F(CompareCommand, ResultsDoNotDependOnTheNumberOfJobs) {
   const CommandResult one = Compare("one");
   ASSERT_EQ(one.code, 0) << one.output;
-  ASSERT_EQ(Compare("two", "--jobs=2").code, 0);
+  ASSERT_EQ(Compare("two", "--jobs=3").code, 0);
   EXPECT_EQ(ComparableFiles(folder_.File("one/cells")), ComparableFiles(folder_.File("two/cells")));
   const std::string summary = WithoutTimes(ReadFile(folder_.File("one/summary.csv")));
   EXPECT_THAT(summary, HasSubstr("alidade_filter,filter,short,2,ok,"));
   EXPECT_EQ(summary, WithoutTimes(ReadFile(folder_.File("two/summary.csv"))));
+  EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("one/aggregate.csv"))),
+            WithoutTimes(ReadFile(folder_.File("two/aggregate.csv"))));
+  for (const char* file : {"pairs.csv", "nees_over_time.csv"}) {
+    const std::string text = ReadFile(folder_.File(std::string("one/") + file));
+    EXPECT_THAT(text, HasSubstr("short,")) << file;
+    EXPECT_EQ(text, ReadFile(folder_.File(std::string("two/") + file))) << file;
+  }
   for (const char* file : {"aggregate.csv", "tables.md", "tables.tex", "report.html"}) {
     EXPECT_FALSE(ReadFile(folder_.File(std::string("one/") + file)).empty()) << file;
   }
@@ -87,6 +94,23 @@ TEST_F(CompareCommand, ResumeRunsOnlyWhatIsMissing) {
   EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("out/summary.csv"))), WithoutTimes(summary));
 }
 
+// GIVEN a sequence with settings for the estimators WHEN compared THEN they hold there and only there.
+TEST_F(CompareCommand, ASequenceMaySetItsOwnNoise) {
+  folder_.Write("plan.yaml",
+                "set: {init.method: truth}\nestimators: [" +
+                    Source("configs/estimators/po_invio_multi.yaml") +
+                    "]\nsequences:\n  - {config: " + Source("configs/datasets/figure8_short.yaml") +
+                    ", name: plain, set: {duration_s: 5, path_m: 6.5}}\n  - {config: " +
+                    Source("configs/datasets/figure8_short.yaml") +
+                    ", name: loud, set: {duration_s: 5, path_m: 6.5}, estimator_set: {vision.pixel_noise_px: "
+                    "2}}\n");
+  const CommandResult result = Compare("out");
+  ASSERT_EQ(result.code, 0) << result.output;
+  const std::string cells = "out/cells/po_invio_multi/";
+  EXPECT_THAT(ReadFile(folder_.File(cells + "plain/1/run.json")), HasSubstr("\"pixel_noise_px\": 1"));
+  EXPECT_THAT(ReadFile(folder_.File(cells + "loud/1/run.json")), HasSubstr("\"pixel_noise_px\": 2"));
+}
+
 TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
   folder_.Write("plan.yaml",
                 "estimators:\n"
@@ -104,6 +128,10 @@ TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
   const std::string summary = ReadFile(folder_.File("out/summary.csv"));
   EXPECT_THAT(summary, HasSubstr("moving,filter,figure8_short,1,not_initialized,"));
   EXPECT_THAT(summary, HasSubstr("good,filter,figure8_short,1,ok,"));
+  EXPECT_THAT(ReadFile(folder_.File("out/tables.md")),
+              HasSubstr("- moving on figure8\\_short, seed 1: not\\_initialized"));
+  EXPECT_THAT(ReadFile(folder_.File("out/pairs.csv")),
+              HasSubstr("figure8_short,rmse_pos_m,moving,good,0,0,1,0,"));
 }
 
 }  // namespace
