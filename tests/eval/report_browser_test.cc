@@ -83,7 +83,7 @@ TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
 }
 
 TEST_F(ReportInBrowser, GivenSeveralSeedsThenPairsAndTheBandOverTimeAreTold) {
-  const Visit visit = Open(page_, "#sequence=figure8&seed=all");
+  const PageVisit visit = Open(page_, "#sequence=figure8&seed=all");
   EXPECT_THAT(visit.dom, HasSubstr("row \u2212 column"));
   EXPECT_THAT(visit.dom, HasSubstr(", 2 pairs)"));
   EXPECT_THAT(visit.dom, HasSubstr("</span><span class=\"sub\">no difference</span>"));
