@@ -6,7 +6,11 @@ cd "$(dirname "$0")/.."
 
 preset=${1:-release}
 shift || true
-scripts/install_dependencies.sh --with-tests-of-report || exit 1
+if ! scripts/install_dependencies.sh --with-tests-of-report; then
+  echo "packages are missing"
+  echo "0 passed, 1 failed"
+  exit 1
+fi
 if ! scripts/build.sh "$preset"; then
   echo "the build failed"
   echo "0 passed, 1 failed"
