@@ -64,8 +64,10 @@ void FillSeries(const Evaluation& evaluation, CellSeries* series) {
   }
 }
 
-/// backend_ms and features_used at the stamps that FillSeries kept.
+/// backend_ms, features_used and what an audit recorded, at the stamps that FillSeries kept.
 void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+  const bool audited = std::any_of(run.records.begin(), run.records.end(),
+                                   [](const RunRecord& record) { return record.observability.has_value(); });
   std::unordered_map<TimeNs, const RunRecord*> by_stamp;
   for (const RunRecord& record : run.records) {
     by_stamp[record.estimate.stamp_ns] = &record;
@@ -76,6 +78,12 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
     const bool found = record != by_stamp.end();
     series->backend_ms.push_back(found ? record->second->backend_ms : kUnknown);
     series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
+    if (audited) {
+      const bool has = found && record->second->observability.has_value();
+      series->rank.push_back(has ? record->second->observability->rank : kUnknown);
+      series->yaw_leak.push_back(has ? record->second->observability->yaw_leak : kUnknown);
+      series->position_leak.push_back(has ? record->second->observability->position_leak : kUnknown);
+    }
   }
 }
 

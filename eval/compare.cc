@@ -202,9 +202,14 @@ class Comparer {
                            : Fail(cell, estimate.message());
     }
     const std::string folder = FolderOf(*cell);
-    const RunIdentity identity{*cell->config,          cell->sequence->name, data->dataset_digest,
-                               data->input_digest,     cell->seed,           data->log.imu.size(),
-                               data->log.frames.size()};
+    const RunIdentity identity{*cell->config,
+                               cell->sequence->name,
+                               data->dataset_digest,
+                               data->input_digest,
+                               cell->seed,
+                               data->log.imu.size(),
+                               data->log.frames.size(),
+                               plan_.audit && cell->config->backend == Backend::kFilter};
     if (options_.resume && HoldsRun(folder, identity)) {
       ++cells_reused_;
     } else {
@@ -212,6 +217,7 @@ class Comparer {
       run_options.truth = truth;
       run_options.seed = cell->seed;
       run_options.stop = options_.stop;
+      run_options.audit = identity.audited;
       const RunResult result = RunEstimator(*cell->config, data->log, run_options);
       if (result.interrupted) {
         return Fail(cell, "interrupted");

@@ -20,6 +20,10 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
+  // Of an audited filter, else empty (eval/observability.h).
+  std::vector<double> rank;
+  std::vector<double> yaw_leak;       ///< [1/rad^2]
+  std::vector<double> position_leak;  ///< [1/m^2]
 };
 
 /// One row of summary.csv: one estimator on one sequence with one seed.

@@ -44,6 +44,7 @@ class PlanParser {
          {"metrics", [&](const YAML::Node& n) { return ReadMetrics(n); }},
          {"pairs", [&](const YAML::Node& n) { return ReadPairs(n); }},
          {"baseline", [&](const YAML::Node& n) { return reader_.Text(n, "baseline", &plan_.baseline); }},
+         {"audit", [&](const YAML::Node& n) { return reader_.Boolean(n, "audit", &plan_.audit); }},
          {"reference", [&](const YAML::Node& n) {
             return reader_.Each(n, "reference", [&](const YAML::Node& e) { return AddReference(e); });
           }}}));

@@ -103,6 +103,20 @@ std::string StatusText(const RunResult& result) {
   return text;
 }
 
+std::string ObservabilityText(const RunResult& result) {
+  std::string text = "timestamp_ns,rank,yaw_leak,position_leak,yaw_gain,null_angle_rad\n";
+  for (const RunRecord& record : result.records) {
+    if (record.observability) {
+      const ObservabilityRecord& row = *record.observability;
+      text += std::to_string(row.stamp_ns) + "," + std::to_string(row.rank);
+      AppendNumbers(Eigen::Vector4d(row.yaw_leak, row.position_leak, row.yaw_gain, row.null_angle_rad), ',',
+                    &text);
+      text += '\n';
+    }
+  }
+  return text;
+}
+
 Json RunJson(const RunIdentity& identity, const RunResult& result) {
   EstimatorConfig config = identity.config;
   Json json;
@@ -115,6 +129,7 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   json["dataset"] = identity.dataset;
   json["seed"] = identity.seed;
   json["config_digest"] = DigestOf(config);
+  json["audited"] = identity.audited;
   json["dataset_digest"] = identity.dataset_digest;
   json["input_digest"] = identity.input_digest;
   json["initialization"] = {
@@ -145,6 +160,12 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "states.csv").string(), StatesText(result)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "timing.csv").string(), TimingText(result)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "status.csv").string(), StatusText(result)));
+  if (identity.audited) {
+    ALIDADE_RETURN_IF_ERROR(
+        WriteFileAtomically((path / "observability.csv").string(), ObservabilityText(result)));
+  } else {
+    std::filesystem::remove(path / "observability.csv", ignored);
+  }
   const std::string json =
       RunJson(identity, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return WriteFileAtomically((path / "run.json").string(), json);

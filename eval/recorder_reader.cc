@@ -118,6 +118,18 @@ Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
   return row.ReadReal(7, "nis", &s.nis);
 }
 
+Status ReadObservabilityRow(const CsvReader& row, RunRecord* record) {
+  ObservabilityRecord& read = record->observability.emplace();
+  read.stamp_ns = record->estimate.stamp_ns;
+  std::int64_t rank = 0;
+  ALIDADE_RETURN_IF_ERROR(row.ReadInt64(1, "rank", &rank));
+  read.rank = static_cast<int>(rank);
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(2, "yaw_leak", &read.yaw_leak));
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(3, "position_leak", &read.position_leak));
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(4, "yaw_gain", &read.yaw_gain));
+  return row.ReadReal(5, "null_angle_rad", &read.null_angle_rad);
+}
+
 }  // namespace
 
 Result<RunResult> ReadRun(const std::string& folder) {
@@ -146,6 +158,9 @@ Result<RunResult> ReadRun(const std::string& folder) {
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 14, &result, ReadStatusRow));
+  if (Get(*json, "audited", false)) {
+    ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
+  }
   return result;
 }
 
@@ -156,7 +171,8 @@ bool HoldsRun(const std::string& folder, const RunIdentity& identity) {
          Get(*json, "config_digest", std::string()) == DigestOf(identity.config) &&
          Get(*json, "input_digest", std::string()) == identity.input_digest &&
          Get(*json, "dataset_digest", std::string()) == identity.dataset_digest &&
-         Get(*json, "seed", std::uint64_t{0}) == identity.seed && word != "interrupted" && word != "failed";
+         Get(*json, "seed", std::uint64_t{0}) == identity.seed &&
+         (!identity.audited || Get(*json, "audited", false)) && word != "interrupted" && word != "failed";
 }
 
 }  // namespace alidade

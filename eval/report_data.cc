@@ -97,6 +97,16 @@ Json Quantiles(std::vector<double> values) {
   return quantiles;
 }
 
+/// Rounded leaks, empty when the run was not audited. Below the floor there is rounding alone, whose digits
+/// would only lengthen the axis.
+Json LeakData(std::vector<double> leaks, const std::vector<size_t>& kept) {
+  constexpr double kFloor = 1e-12;
+  for (double& leak : leaks) {
+    leak = std::isfinite(leak) ? std::max(leak, kFloor) : leak;
+  }
+  return leaks.empty() ? Json(Json::array()) : RoundKept(leaks, kept, 3);
+}
+
 Json SeriesData(const CellSeries& series, int most) {
   const std::vector<size_t> kept = KeptRows(series.time_s.size(), most);
   std::vector<double> times;
@@ -113,7 +123,10 @@ Json SeriesData(const CellSeries& series, int most) {
           {"nees", RoundKept(series.nees_pose, kept, 3)},
           {"ms", RoundKept(series.backend_ms, kept, 3)},
           {"ms_quantiles", Quantiles(series.backend_ms)},
-          {"features", RoundKept(series.features_used, kept, 4)}};
+          {"features", RoundKept(series.features_used, kept, 4)},
+          {"rank", series.rank.empty() ? Json(Json::array()) : RoundKept(series.rank, kept, 2)},
+          {"yaw_leak", LeakData(series.yaw_leak, kept)},
+          {"position_leak", LeakData(series.position_leak, kept)}};
 }
 
 Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
@@ -236,9 +249,9 @@ Json NeesBands(int most_runs) {
 
 }  // namespace
 
-int PointsPerSeries(size_t cells) {
-  // A point of one cell is 22 numbers: measured at 65 to 80 characters.
-  const double budget = 4.3e6 / (80.0 * static_cast<double>(std::max<size_t>(1, cells)));
+int PointsPerSeries(size_t cells, bool audited) {
+  // A point of one cell is 22 numbers: measured at 65 to 80 characters; an audit adds up to 22.
+  const double budget = 4.3e6 / ((audited ? 102.0 : 80.0) * static_cast<double>(std::max<size_t>(1, cells)));
   return static_cast<int>(std::clamp(budget, 60.0, 1000.0));
 }
 
@@ -270,7 +283,9 @@ PackedColumn PackColumn(const std::vector<double>& values, double finest) {
 std::string ReportData(const Comparison& comparison) {
   const std::vector<Figure> figures = ListFigures(comparison);
   const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
-  const int most = PointsPerSeries(comparison.cells.size());
+  const bool audited = std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                                   [](const CellResult& cell) { return !cell.series.rank.empty(); });
+  const int most = PointsPerSeries(comparison.cells.size(), audited);
   Json data = {{"title", comparison.title},
                {"command", comparison.command},
                {"points", most},

@@ -7,8 +7,9 @@
 
 namespace alidade {
 
-/// Most points of a series on the page, so that the page of `cells` cells stays below about 5 MB.
-[[nodiscard]] int PointsPerSeries(size_t cells);
+/// Most points of a series on the page, so that the page of `cells` cells, audited or not, stays below about
+/// 5 MB.
+[[nodiscard]] int PointsPerSeries(size_t cells, bool audited = false);
 
 /// A column of numbers as integers for the page: value = quantum * (running sum of `deltas`). Neighbouring
 /// values of a trajectory differ little, so that the differences take two or three characters each.

@@ -176,6 +176,19 @@ class Run {
   bool initialized_ = false;
 };
 
+/// Both lists ascend in time; a frame that was lost may be in one of them alone.
+void AttachAudit(const std::vector<ObservabilityRecord>& audited, RunResult* result) {
+  size_t next = 0;
+  for (RunRecord& record : result->records) {
+    while (next < audited.size() && audited[next].stamp_ns < record.estimate.stamp_ns) {
+      ++next;
+    }
+    if (next < audited.size() && audited[next].stamp_ns == record.estimate.stamp_ns) {
+      record.observability = audited[next];
+    }
+  }
+}
+
 }  // namespace
 
 std::string StatusWord(const RunResult& result) {
@@ -213,6 +226,13 @@ RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
 }
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options) {
+  if (options.audit && config.backend == Backend::kFilter) {
+    ObservabilityAudit audit;
+    const std::unique_ptr<Estimator> filter = MakeFilter(config, log.rig, &audit);
+    RunResult result = RunEstimator(config, log, options, filter.get());
+    AttachAudit(audit.records(), &result);
+    return result;
+  }
   const std::unique_ptr<Estimator> estimator = MakeEstimator(config, log.rig);
   return RunEstimator(config, log, options, estimator.get());
 }

@@ -3,11 +3,13 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/estimator.h"
 #include "core/measurement_log.h"
+#include "eval/observability.h"
 #include "eval/trajectory.h"
 
 namespace alidade {
@@ -19,6 +21,7 @@ struct RunRecord {
   double frontend_ms = 0;
   double backend_ms = 0;  ///< wall time of the estimator for this frame and the IMU samples before it
   std::string status = "ok";
+  std::optional<ObservabilityRecord> observability;  ///< of an audited run
 };
 
 struct RunResult {
@@ -50,6 +53,8 @@ struct RunOptions {
   unsigned seed = 1;                        ///< draws the prior of init.method truth
   const std::atomic<bool>* stop = nullptr;  ///< polled once a frame
   std::function<void(size_t frames_done, size_t frames)> progress;
+  /// Fills RunRecord::observability when the back end is the filter. Its time counts as the estimator's.
+  bool audit = false;
 };
 
 /// Feeds the log to `estimator` in time order: before each frame every IMU sample up to and including the

@@ -18,7 +18,7 @@ const std::vector<Command>& Commands() {
        RunTrack},
       {"run",
        "one estimator on one sequence",
-       {"dataset", "config", "backend", "set", "output", "seed", "overwrite", "quiet"},
+       {"dataset", "config", "backend", "set", "output", "seed", "audit", "overwrite", "quiet"},
        {"dataset", "config", "output"},
        0,
        RunRun},

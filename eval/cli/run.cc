@@ -21,7 +21,12 @@ Result<EstimatorConfig> LoadConfig() {
     }
     settings.push_back("backend=" + FLAGS_backend);
   }
-  return LoadEstimatorConfig(FLAGS_config, settings);
+  Result<EstimatorConfig> config = LoadEstimatorConfig(FLAGS_config, settings);
+  if (config.ok() && FLAGS_audit && config->backend != Backend::kFilter) {
+    return Status::Usage(
+        "run: --audit: found backend smoother, expected filter: only a filter can be audited");
+  }
+  return config;
 }
 
 Result<MeasurementLog> LogWithProgress(const Dataset& dataset, const FrontendConfig& frontend,
@@ -38,6 +43,7 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
   options.truth = dataset.truth ? &*dataset.truth : nullptr;
   options.seed = FLAGS_seed;
   options.stop = stop;
+  options.audit = FLAGS_audit;
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   return RunEstimator(config, log, options);
 }
@@ -73,8 +79,8 @@ int RunRun(const std::vector<std::string>&) {
   if (!log.ok()) {
     return stop->load() ? kExitInterrupted : Report(log.status());
   }
-  const RunIdentity identity{*config,    dataset->name,   *dataset_digest,   DigestOf(*log),
-                             FLAGS_seed, log->imu.size(), log->frames.size()};
+  const RunIdentity identity{*config,    dataset->name,   *dataset_digest,    DigestOf(*log),
+                             FLAGS_seed, log->imu.size(), log->frames.size(), FLAGS_audit};
   Say(DescribeLog(*log, identity.input_digest));
   const RunResult result = RunWithProgress(*config, *log, *dataset, stop);
   if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {

@@ -132,6 +132,24 @@
       q: found[0].q.map(function (unused, i) { return d3.mean(found, function (r) { return r.q[i]; }); }) };
   }
 
+  // Of audited filters alone: the plan's key `audit`.
+  function drawObservability(entries) {
+    const audited = entries.filter(function (entry) {
+      return (entry.series.rank || []).some(function (rank) { return rank !== null; });
+    });
+    if (!audited.length) { return; }
+    const grid = group('Observability', 'What the Jacobians that the filter used say about the initial error along directions that nothing can ' +
+      'measure. A consistent filter stays at rounding (below 1e\u221212, drawn as that) and at rank 11 of 15; information above it is invented.');
+    const leak = function (id, title, unit, key) {
+      report.timePlot(grid, spec(id, title, 'information [' + unit + '], log scale', unit, audited,
+        { log: true, lines: lines(audited, function (series) { return series[key]; }) }));
+    };
+    leak('yaw-leak', 'Information about yaw', '1/rad\u00b2', 'yaw_leak');
+    leak('position-leak', 'Information about global position', '1/m\u00b2', 'position_leak');
+    report.timePlot(grid, spec('rank', 'Rank of the observability matrix', 'rank of 15', '', audited,
+      { zero: true, lines: lines(audited, function (series) { return series.rank; }) }));
+  }
+
   function drawCost(entries) {
     const grid = group('Cost', 'Time of the back end a frame, and the features that updated the state. Boxes: quartiles and median; whiskers: 5 % to 95 %.');
     const medians = entries.map(function (entry) { return entry.series.ms_quantiles[2]; }).filter(function (m) { return m > 0; });
@@ -161,6 +179,7 @@
     drawErrors(entries, 'ori', 'Orientation error', 'deg', ['Error about body x', 'Error about body y',
       'Error about body z'], ['\u03c6x', '\u03c6y', '\u03c6z']);
     drawConsistency(entries);
+    drawObservability(entries);
     drawCost(entries);
     plots.style.minHeight = '';
     window.scrollTo(0, scroll);

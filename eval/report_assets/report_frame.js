@@ -110,7 +110,9 @@
       [1, 2, 5].forEach(function (m) { all.push(Number((m * Math.pow(10, e)).toPrecision(3))); });
     }
     const inside = all.filter(function (v) { return v >= domain[0] * 0.999 && v <= domain[1] * 1.001; });
-    const decades = inside.filter(function (v) { return /^10*$|^0\.0*1$/.test(String(v)); });
+    const decades = inside.filter(function (v) { return Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9; });
+    const every = Math.ceil(decades.length / 8);
+    if (every > 1) { return decades.filter(function (v) { return Math.round(Math.log10(v)) % every === 0; }); }
     return inside.length <= 7 ? inside : decades.length >= 2 ? decades : inside.filter(function (v, i) { return i % 2 === 0; });
   }
 

@@ -41,6 +41,7 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
       "'${data}/seq'}}\n"
       "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}}\n"
+      "audit: true\n"
       "metrics: {align: se3, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
       "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
       "baseline: loud\n"
@@ -68,6 +69,7 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_THAT(plan->sequences[1].settings,
               ElementsAre("pixel_noise_px=2", "hybrid_dataset=" + folder_.File("data") + "/seq"));
   EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
+  EXPECT_TRUE(plan->audit);
   EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
   EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
   EXPECT_EQ(plan->metrics.association.max_dt_s, 0.02);

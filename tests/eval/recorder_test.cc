@@ -131,6 +131,38 @@ TEST_F(RecorderTest, ResumesOnlyTheSameRun) {
   EXPECT_FALSE(HoldsRun(run, identity_));
 }
 
+TEST_F(RecorderTest, AnAuditIsWrittenReadBackAndAskedForOnResume) {
+  const std::string run = folder_.File("run");
+  RunIdentity audited = identity_;
+  audited.audited = true;
+  ASSERT_TRUE(WriteRun(identity_, result_, run).ok());
+  EXPECT_FALSE(HoldsRun(run, audited));
+  for (size_t i = 0; i < result_.records.size(); ++i) {
+    RunRecord& record = result_.records[i];
+    record.observability = {
+        record.estimate.stamp_ns, static_cast<int>(i), 1e-21 * static_cast<double>(i), 2, 3, 0.25};
+  }
+  ASSERT_TRUE(WriteRun(audited, result_, run).ok());
+  EXPECT_THAT(Written("observability.csv"),
+              StartsWith("timestamp_ns,rank,yaw_leak,position_leak,yaw_gain,null_angle_rad\n"));
+  EXPECT_TRUE(HoldsRun(run, audited));
+  EXPECT_TRUE(HoldsRun(run, identity_)) << "an audited run is a run";
+  const Result<RunResult> read = ReadRun(run);
+  ASSERT_TRUE(read.ok()) << read.message();
+  for (size_t i = 0; i < read->records.size(); ++i) {
+    ASSERT_TRUE(read->records[i].observability.has_value());
+    const ObservabilityRecord& row = *read->records[i].observability;
+    EXPECT_EQ(row.rank, static_cast<int>(i));
+    EXPECT_EQ(row.yaw_leak, 1e-21 * static_cast<double>(i));
+    EXPECT_EQ(row.position_leak, 2);
+    EXPECT_EQ(row.yaw_gain, 3);
+    EXPECT_EQ(row.null_angle_rad, 0.25);
+  }
+  ASSERT_TRUE(WriteRun(identity_, result_, run).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("run/observability.csv")))
+      << "a stale audit must not stay";
+}
+
 TEST_F(RecorderTest, TornTablesAreNoRun) {
   ASSERT_TRUE(WriteRun(identity_, result_, folder_.File("run")).ok());
   folder_.Write("run/status.csv", "timestamp_ns,status\n");

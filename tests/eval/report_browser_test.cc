@@ -75,6 +75,27 @@ TEST_F(ReportInBrowser, GivenAFailedRunThenItsReasonIsToldAndTheOthersAreDrawn) 
   EXPECT_THAT(visit.dom, HasSubstr("1 of 2 ok"));
 }
 
+TEST_F(ReportInBrowser, GivenAnAuditedFilterThenItsLeakageIsDrawnAndTheOthersAreLeftOut) {
+  Comparison comparison = test::SyntheticComparison(300);
+  for (CellResult& cell : comparison.cells) {
+    if (cell.estimator != "vins_mono_class") {
+      cell.series.rank.assign(cell.series.time_s.size(), 11);
+      cell.series.yaw_leak.assign(cell.series.time_s.size(), cell.estimator == "invio_l5" ? 4e3 : 3e-19);
+      cell.series.position_leak.assign(cell.series.time_s.size(), 0);
+    }
+  }
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("audited.html")).ok());
+  for (const char* address : {"", "#sequence=figure8&seed=all"}) {
+    const Visit visit = Open(ReadFile(folder_.File("audited.html")), address);
+    EXPECT_THAT(visit.console, IsEmpty());
+    EXPECT_EQ(visit.Mark("errors"), "");
+    EXPECT_EQ(visit.Mark("plots"), std::to_string(kPlots + 3));
+    EXPECT_EQ(visit.Mark("lines"), *address == '\0' ? "41" : "47");  // two filters in three more plots
+    EXPECT_THAT(visit.dom, HasSubstr("plot-yaw-leak"));
+    EXPECT_THAT(visit.dom, HasSubstr(">1e-12<")) << "rounding is drawn at the floor";
+  }
+}
+
 TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
   const PageVisit visit = Open(page_, "#sequence=figure8&seed=all");
   ExpectWhole(visit);

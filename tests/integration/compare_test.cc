@@ -111,6 +111,18 @@ TEST_F(CompareCommand, ASequenceMaySetItsOwnNoise) {
   EXPECT_THAT(ReadFile(folder_.File(cells + "loud/1/run.json")), HasSubstr("\"pixel_noise_px\": 2"));
 }
 
+TEST_F(CompareCommand, AuditedPlanRunsAgainWhatWasNotAuditedAndReportsTheFilterAlone) {
+  ASSERT_EQ(Compare("out").code, 0);
+  folder_.Write("plan.yaml", "audit: true\n" + ReadFile(plan_));
+  const CommandResult audited = Compare("out", "--resume");
+  ASSERT_EQ(audited.code, 0) << audited.output;
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("out/cells/alidade_filter/short/1/observability.csv")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("out/cells/vins_mono_class/short/1/observability.csv")));
+  const std::string report = ReadFile(folder_.File("out/report.html"));
+  EXPECT_THAT(report, HasSubstr("\"yaw_leak\":[1e-12,"));
+  EXPECT_THAT(report, HasSubstr("\"yaw_leak\":[]"));
+}
+
 TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
   folder_.Write("plan.yaml",
                 "estimators:\n"

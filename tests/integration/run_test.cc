@@ -75,6 +75,25 @@ TEST(Run, BackendSwitchLeavesTheInputDigestUnchanged) {
   EXPECT_NE(ReadFile(folder.File("filter/states.csv")), ReadFile(folder.File("smoother/states.csv")));
 }
 
+TEST(Run, AuditTellsTheInvariantErrorFromTheOrdinaryOneAndRefusesTheSmoother) {
+  TemporaryFolder folder;
+  const Sequence& sequence = Sequence::Get();
+  const auto last_rank = [&](const std::string& error) {
+    const CommandResult run =
+        sequence.Run("po_invio_multi", folder.File(error), "--audit --set=filter.error=" + error);
+    EXPECT_EQ(run.code, 0) << run.output;
+    const std::string table = ReadFile(folder.File(error + "/observability.csv"));
+    const std::string row = table.substr(table.rfind('\n', table.size() - 2) + 1);
+    return row.substr(row.find(',') + 1, 3);
+  };
+  EXPECT_EQ(last_rank("right_invariant"), "11,");
+  EXPECT_EQ(last_rank("so3xrn"), "12,");
+  const CommandResult refused =
+      sequence.Run("po_invio_multi", folder.File("no"), "--audit --backend=smoother");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.output, testing::HasSubstr("only a filter can be audited"));
+}
+
 TEST(Run, EvaluatesWhatItWrote) {
   TemporaryFolder folder;
   const Sequence& sequence = Sequence::Get();
