@@ -42,7 +42,7 @@ struct Plan {
   std::vector<std::string> pair_figures = Comparison().pair_figures;
   bool pair_across = false;
   std::string baseline;  ///< name of the sequence that RMSEs are also given relative to; may be empty
-  bool audit = false;  ///< every filter records what it claims to observe
+  bool audit = false;    ///< every filter records what it claims to observe
   std::vector<ReferenceFigure> references;
 };
 

@@ -86,7 +86,7 @@ TEST_F(ReportInBrowser, GivenAnAuditedFilterThenItsLeakageIsDrawnAndTheOthersAre
   }
   ASSERT_TRUE(WriteReport(comparison, folder_.File("audited.html")).ok());
   for (const char* address : {"", "#sequence=figure8&seed=all"}) {
-    const Visit visit = Open(ReadFile(folder_.File("audited.html")), address);
+    const PageVisit visit = Open(ReadFile(folder_.File("audited.html")), address);
     EXPECT_THAT(visit.console, IsEmpty());
     EXPECT_EQ(visit.Mark("errors"), "");
     EXPECT_EQ(visit.Mark("plots"), std::to_string(kPlots + 3));
