@@ -11,6 +11,7 @@ DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout");
 DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
 DEFINE_string(error, "right_invariant", "right_invariant | left_invariant | so3xrn: the error of Jacobians");
 DEFINE_string(estimate, "", "trajectory file to be scored");
+DEFINE_string(estimator, "", "configuration of the filter that is analysed, YAML");
 DEFINE_string(input, "", "cases, JSON; - reads standard input");
 DEFINE_bool(interpolate, false, "interpolate truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(jobs, 1, "runs at a time; more than one shares the caches, so times are no longer comparable");
@@ -31,3 +32,4 @@ DEFINE_string(set, "", "a.b=value,...: settings over the configuration file; may
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
 DEFINE_string(sp3, "", "precise orbits, SP3");
 DEFINE_string(truth, "", "ground-truth trajectory file");
+DEFINE_string(windows, "5,10,15,20,25", "clones in the window, separated by commas");
