@@ -16,6 +16,7 @@ void CovarianceAnalysis::OnReset(const FilterState& state) {
   cross_.resize(actual_.rows(), 0);
   kept_.clear();
   used_.clear();
+  met_landmark_ = false;
 }
 
 void CovarianceAnalysis::Transform(const MatrixXd& map) {
@@ -24,6 +25,9 @@ void CovarianceAnalysis::Transform(const MatrixXd& map) {
 }
 
 void CovarianceAnalysis::OnPropagate(const Matrix15d& phi, const Matrix15d& q) {
+  if (met_landmark_) {
+    return;
+  }
   actual_.topRows<15>() = (phi * actual_.topRows<15>()).eval();
   actual_.leftCols<15>() = (actual_.leftCols<15>() * phi.transpose()).eval();
   actual_.topLeftCorner<15, 15>() += q;
@@ -31,6 +35,9 @@ void CovarianceAnalysis::OnPropagate(const Matrix15d& phi, const Matrix15d& q) {
 }
 
 void CovarianceAnalysis::OnClone(int first, int size) {
+  if (met_landmark_) {
+    return;
+  }
   const Index old = actual_.rows();
   MatrixXd map = MatrixXd::Zero(old + size, old);
   map.topLeftCorner<15, 15>().setIdentity();
@@ -39,7 +46,14 @@ void CovarianceAnalysis::OnClone(int first, int size) {
   Transform(map);
 }
 
+void CovarianceAnalysis::OnAddLandmark(int /*first*/, const MatrixXd& /*rows*/) {
+  met_landmark_ = true;
+}
+
 void CovarianceAnalysis::OnRemove(int first, int size) {
+  if (met_landmark_) {
+    return;
+  }
   const Index left = actual_.rows() - size;
   MatrixXd map = MatrixXd::Zero(left, left + size);
   map.topLeftCorner(first, first).setIdentity();
@@ -57,6 +71,9 @@ int CovarianceAnalysis::FindKept(std::int64_t track_id, int serial) const {
 }
 
 void CovarianceAnalysis::OnUpdate(const FilterState& state, const FilterRows& rows) {
+  if (met_landmark_) {
+    return;
+  }
   const MatrixXd& h = rows.jacobian;
   const MatrixXd projected = h * state.covariance().Covariance();
   MatrixXd innovation = projected * h.transpose();
@@ -104,6 +121,9 @@ void CovarianceAnalysis::KeepBases(const MatrixXd& gain, const FilterRows& rows)
 }
 
 void CovarianceAnalysis::OnFrame(const FilterState& state) {
+  if (met_landmark_) {
+    return;
+  }
   CovarianceRecord record;
   record.stamp_ns = state.stamp_ns();
   const Matrix6d believed = state.covariance().CoreCovariance().topLeftCorner<6, 6>();

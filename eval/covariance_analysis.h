@@ -30,12 +30,13 @@ struct CovarianceRecord {
 /// without noise, at true states, the ratio shows the double counting alone.
 ///
 /// Of a track's observations its base alone may serve again; another that does is counted in
-/// `unmodelled_reuse`.
+/// `unmodelled_reuse`. Landmarks in the state are not modelled: the analysis ends where the first one enters.
 class CovarianceAnalysis : public FilterObserver {
  public:
   void OnReset(const FilterState& state) override;
   void OnPropagate(const Matrix15d& phi, const Matrix15d& q) override;
   void OnClone(int first, int size) override;
+  void OnAddLandmark(int first, const Eigen::MatrixXd& rows) override;
   void OnRemove(int first, int size) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
@@ -45,6 +46,7 @@ class CovarianceAnalysis : public FilterObserver {
   /// Covariance of the actual error, in the order and convention of the filter's.
   [[nodiscard]] const Eigen::MatrixXd& actual() const { return actual_; }
   [[nodiscard]] int unmodelled_reuse() const { return unmodelled_reuse_; }
+  [[nodiscard]] bool met_landmark() const { return met_landmark_; }
 
  private:
   /// A base observation whose noise may enter again; its two columns of cross_ follow its index.
@@ -62,6 +64,7 @@ class CovarianceAnalysis : public FilterObserver {
   std::vector<KeptNoise> kept_;
   std::set<std::pair<std::int64_t, int>> used_;  ///< (track, serial) of clones in the window
   int unmodelled_reuse_ = 0;
+  bool met_landmark_ = false;
   std::vector<CovarianceRecord> records_;
 };
 

@@ -81,6 +81,10 @@ Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
         "filter.update: an observation other than a base served twice; the analysis holds for "
         "the timings immediate, at_l and delayed_all");
   }
+  if (analysis.met_landmark()) {
+    return Status::Config(
+        "filter: a landmark entered the state; the analysis holds for filters without them");
+  }
   ReusePrediction mean;
   const std::vector<CovarianceRecord>& records = analysis.records();
   const size_t first = records.size() / 2;

@@ -94,6 +94,25 @@ TEST(Run, AuditTellsTheInvariantErrorFromTheOrdinaryOneAndRefusesTheSmoother) {
   EXPECT_THAT(refused.output, testing::HasSubstr("only a filter can be audited"));
 }
 
+TEST(Analyze, JointUseIsConsistentAndReuseIsNot) {
+  const std::string words = "analyze --quiet --config=" + Source("configs/datasets/figure8_short.yaml") +
+                            " --set=duration_s=4,path_m=5.2,max_features=60 --estimator=" +
+                            Source("configs/estimators/po_invio_multi.yaml");
+  const CommandResult json = Alidade(words + " --windows=8 --json");
+  ASSERT_EQ(json.code, 0) << json.output;
+  const auto rows = nlohmann::json::parse(json.output);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0]["policy"], "joint");
+  EXPECT_NEAR(rows[0]["nees_ratio"], 1, 1e-6);
+  EXPECT_EQ(rows[2]["policy"], "reuse");
+  EXPECT_GT(rows[2]["nees_ratio"], 1.1);
+  const CommandResult table = Alidade(words + " --windows=6,8");
+  EXPECT_THAT(table.output, testing::HasSubstr("| policy | 6 clones | 8 clones |\n|---|---:|---:|\n| joint"));
+  const CommandResult refused = Alidade(words + " --windows=8,wide");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.output, testing::HasSubstr("--windows: found 'wide'"));
+}
+
 TEST(Run, EvaluatesWhatItWrote) {
   TemporaryFolder folder;
   const Sequence& sequence = Sequence::Get();
