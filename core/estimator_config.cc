@@ -139,10 +139,18 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
                100);
   visitor.Integer({"max_base_rounds", "-", "rounds a base may serve when base_reuse is limit"},
                   &max_base_rounds, 1, 1000);
+  visitor.Enumeration({"track_memory", "-", "what an update keeps of the landmark; replaces base_reuse"},
+                      &track_memory,
+                      {{"none", TrackMemoryPolicy::kNone},
+                       {"window", TrackMemoryPolicy::kWindow},
+                       {"carry", TrackMemoryPolicy::kCarry}});
+  visitor.Real({"memory_depth_deviation", "-", "relative deviation of the depth that a memory needs"},
+               &memory_depth_deviation, 1e-3, 1);
   visitor.Boolean({"flush_lost_tracks", "-", "a lost track's leftover observations still update once"},
                   &flush_lost_tracks);
   visitor.Enumeration({"clone_policy", "-", "which clone leaves a full window"}, &clone_policy,
-                      {{"oldest", ClonePolicy::kOldest}, {"keep_bases", ClonePolicy::kKeepBases}});
+                      {{"oldest", ClonePolicy::kOldest}, {"keep_bases", ClonePolicy::kKeepBases},
+                       {"alternate", ClonePolicy::kAlternate}});
   visitor.Integer({"refine_iterations", "-", "Gauss-Newton steps on the landmark; landmark msckf only"},
                   &refine_iterations, 0, 50);
 }

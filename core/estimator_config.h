@@ -97,7 +97,13 @@ enum class BaseReuse {
   kLimit,     ///< at most max_base_rounds rounds a base
   kDisjoint,  ///< never re-used: a new base each round
 };
-enum class ClonePolicy { kOldest, kKeepBases };
+enum class ClonePolicy { kOldest, kKeepBases, kAlternate };
+/// What an immediate update keeps of the landmark (docs/pose_only.md).
+enum class TrackMemoryPolicy {
+  kNone,    ///< nothing but the base observation, see BaseReuse
+  kWindow,  ///< its three rows, until a clone in them leaves
+  kCarry,   ///< its three rows, carried past the window
+};
 
 struct FilterConfig {
   ErrorConvention error = ErrorConvention::kRightInvariant;
@@ -108,6 +114,8 @@ struct FilterConfig {
   BaseReuse base_reuse = BaseReuse::kInflate;
   double base_inflation = 2.0;
   int max_base_rounds = 2;
+  TrackMemoryPolicy track_memory = TrackMemoryPolicy::kNone;
+  double memory_depth_deviation = 0.02;
   bool flush_lost_tracks = true;
   ClonePolicy clone_policy = ClonePolicy::kKeepBases;
   int refine_iterations = 5;

@@ -1,5 +1,7 @@
 #include "filter/feature_update.h"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
@@ -8,14 +10,21 @@ namespace alidade {
 
 using Eigen::Index;
 
+namespace {
+
+constexpr double kLeniency = 1.5;  // the two measures of the depth's deviation differ by less
+
+}  // namespace
+
 FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones)
-    : filter_(filter), vision_(vision) {
+    : filter_(filter), vision_(vision), keeper_(filter, max_clones) {
   const auto views = static_cast<size_t>(max_clones);
   poses_.reserve(views);
   points_.reserve(views);
   observations_.reserve(views);
   offsets_.reserve(views);
   chains_.reserve(views);
+  clones_.reserve(views);
   track_jacobian_.resize(2 * max_clones, 6 * max_clones);
   Reserve(512);
 }
@@ -45,6 +54,7 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
   observations_.clear();
   offsets_.clear();
   chains_.clear();
+  clones_.clear();
   const bool inflate_base = filter_.base_reuse == BaseReuse::kInflate && track.base_rounds > 0;
   for (const TrackView& view : track.views) {
     const int index = state.FindClone(view.serial);
@@ -58,44 +68,52 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
     }
     offsets_.push_back(state.CloneOffset(static_cast<size_t>(index)));
     chains_.push_back(&clone.camera_from_error);
+    clones_.push_back(index);
   }
   return poses_.size() >= 2;
 }
 
-TrackOutcome FeatureUpdate::Triangulate(Eigen::Vector3d* p_W) const {
+TrackOutcome FeatureUpdate::Triangulate(bool to_remember, Eigen::Vector3d* p_W) const {
   PoseOnlyDepth depth;
   const DepthViews views =
       filter_.landmark == FilterLandmark::kPoseOnlyTwo ? DepthViews::kTwo : DepthViews::kMulti;
   if (!ComputePoseOnlyDepth(poses_, points_, 0, views, &depth)) {
     return TrackOutcome::kWaiting;
   }
+  // Cheaper than the exact test of a memory, which follows.
+  const double max_relative_deviation =
+      to_remember ? std::min(vision_.max_relative_depth_deviation, kLeniency * filter_.memory_depth_deviation)
+                  : vision_.max_relative_depth_deviation;
   const int other_views = views == DepthViews::kTwo ? 1 : static_cast<int>(poses_.size()) - 1;
-  if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(),
-                         vision_.max_relative_depth_deviation)) {
+  if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(), max_relative_deviation)) {
     return TrackOutcome::kWaiting;
   }
   if (depth.depth < vision_.min_depth_m || depth.depth > vision_.max_depth_m) {
     return TrackOutcome::kDegenerate;
   }
   *p_W = depth.p_W;
-  if (filter_.landmark == FilterLandmark::kMsckf &&
-      !RefineLandmark(poses_, observations_, 0, filter_.refine_iterations, p_W)) {
+  const bool refine =
+      filter_.landmark == FilterLandmark::kMsckf || filter_.track_memory != TrackMemoryPolicy::kNone;
+  if (refine && !RefineLandmark(poses_, observations_, 0, filter_.refine_iterations, p_W)) {
     return TrackOutcome::kDegenerate;
   }
   return TrackOutcome::kReady;
 }
 
-TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track) {
+TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track, bool to_remember) {
   if (!GatherViews(state, track)) {
     return TrackOutcome::kWaiting;
   }
   Eigen::Vector3d p_W;
-  const TrackOutcome outcome = Triangulate(&p_W);
+  const TrackOutcome outcome = Triangulate(to_remember, &p_W);
   if (outcome != TrackOutcome::kReady) {
     return outcome;
   }
   if (!LinearizeTrack(poses_, observations_, p_W, &linearization_)) {
     return TrackOutcome::kDegenerate;
+  }
+  if (to_remember && !keeper_.MayStart(linearization_.point_jacobian, p_W, poses_.back().translation)) {
+    return TrackOutcome::kWaiting;
   }
   const Index views = static_cast<Index>(poses_.size());
   // Tracing eliminates the landmark from the identity too: what is left maps the observations' noise.
@@ -111,19 +129,31 @@ TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track)
         linearization_.pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
   }
   EliminateLandmark(linearization_.point_jacobian, dense, linearization_.residual);
-  const Index kept = 2 * views - 3;
-  Reserve(static_cast<int>(kept));
-  jacobian_.block(rows_, 0, kept, dimension_).setZero();
+  const int kept = 2 * static_cast<int>(views) - 3;
+  AddBlock(kept);
   for (Index k = 0; k < views; ++k) {
-    jacobian_.block(rows_, offsets_[static_cast<size_t>(k)], kept, 6) = dense.block(3, 6 * k, kept, 6);
+    jacobian_.block(rows_ - kept, offsets_[static_cast<size_t>(k)], kept, 6) = dense.block(3, 6 * k, kept, 6);
   }
-  innovation_.segment(rows_, kept) = -linearization_.residual.tail(kept);
-  blocks_.push_back({rows_, static_cast<int>(kept)});
-  rows_ += static_cast<int>(kept);
+  innovation_.segment(rows_ - kept, kept) = -linearization_.residual.tail(kept);
+  StartMemory(state, dense.topRows(3), p_W);
   if (tracing_) {
     Trace(track, dense.bottomRightCorner(kept, 2 * views));
   }
   return TrackOutcome::kReady;
+}
+
+void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
+                                const Eigen::Vector3d& p_W) {
+  TrackMemory& successor = successors_[blocks_.size() - 1];
+  successor.active = false;
+  if (filter_.track_memory == TrackMemoryPolicy::kNone) {
+    return;
+  }
+  const Eigen::Matrix3d landmark_rows =
+      linearization_.point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
+  const Eigen::Vector3d move =
+      landmark_rows.triangularView<Eigen::Upper>().solve(-linearization_.residual.head<3>());
+  keeper_.Start(state, p_W + move, landmark_rows, clone_rows, clones_, &successor);
 }
 
 void FeatureUpdate::Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise) {
@@ -135,6 +165,53 @@ void FeatureUpdate::Trace(const Track& track, const Eigen::Ref<const Eigen::Matr
         observations_[k].sqrt_information * track.views[k].observation.sqrt_information.inverse();
   }
   traces_.push_back(std::move(trace));
+}
+
+TrackOutcome FeatureUpdate::AppendRemembered(const FilterState& state, const Track& track) {
+  const TrackView& view = track.views.back();
+  const int clone = state.FindClone(view.serial);
+  CHECK_GE(clone, 0) << "a track refers to a clone that left the window";
+  if (successors_.size() <= blocks_.size()) {
+    successors_.emplace_back();
+  }
+  if (!keeper_.Extend(state, track.memory, static_cast<size_t>(clone), view.observation, 1.0,
+                      &successors_[blocks_.size()])) {
+    return TrackOutcome::kDegenerate;
+  }
+  AddBlock(2);
+  for (size_t i = 0; i < state.clones().size(); ++i) {
+    jacobian_.block<2, 6>(rows_ - 2, state.CloneOffset(i)) =
+        keeper_.jacobian().middleCols<6>(6 * state.clones()[i].slot);
+  }
+  innovation_.segment<2>(rows_ - 2) = keeper_.innovation();
+  return TrackOutcome::kReady;
+}
+
+void FeatureUpdate::AddBlock(int rows) {
+  Reserve(rows);
+  jacobian_.block(rows_, 0, rows, dimension_).setZero();
+  blocks_.push_back({rows_, rows});
+  rows_ += rows;
+  if (successors_.size() < blocks_.size()) {
+    successors_.emplace_back();
+  }
+}
+
+void FeatureUpdate::Remember(const FilterState& state, size_t block, double weight, Track* track) {
+  if (filter_.track_memory == TrackMemoryPolicy::kNone) {
+    return;
+  }
+  TrackMemory& successor = successors_[block];
+  if (weight < 1 && track->memory.active) {
+    const TrackView& view = track->views.back();
+    successor.active = keeper_.Extend(state, track->memory, static_cast<size_t>(state.FindClone(view.serial)),
+                                      view.observation, std::sqrt(weight), &successor);
+  } else if (weight < 1) {
+    successor.landmark_rows *= std::sqrt(weight);
+    successor.clone_rows *= std::sqrt(weight);
+  }
+  successor.active = successor.active && keeper_.MayStay(successor, state.clones().back().T_WC.translation);
+  std::swap(track->memory, successor);
 }
 
 }  // namespace alidade

@@ -6,6 +6,7 @@
 #include "core/landmark_reduction.h"
 #include "core/pose_only.h"
 #include "filter/filter_state.h"
+#include "filter/track_memory.h"
 #include "filter/track_store.h"
 
 namespace alidade {
@@ -27,8 +28,11 @@ class FeatureUpdate {
   /// Whether traces() is kept.
   void SetTracing(bool tracing) { tracing_ = tracing; }
   void Begin(const FilterState& state);
-  /// Appends the rows of a track that all of its views define.
-  TrackOutcome Append(const FilterState& state, const Track& track);
+  /// Appends the rows of a track that all of its views define; to_remember: waits for a depth that a memory
+  /// can start from.
+  TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember);
+  /// Appends the two rows that the newest view of a remembered track adds.
+  TrackOutcome AppendRemembered(const FilterState& state, const Track& track);
 
   /// Rows of one appended track.
   struct Block {
@@ -38,6 +42,10 @@ class FeatureUpdate {
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   /// One a block, when tracing.
   [[nodiscard]] const std::vector<TracedBlock>& traces() const { return traces_; }
+  /// What the track of a block remembers once its rows were applied with the given robust weight; call before
+  /// the state is corrected.
+  void Remember(const FilterState& state, size_t block, double weight, Track* track);
+  [[nodiscard]] const TrackMemoryKeeper& keeper() const { return keeper_; }
   [[nodiscard]] int rows() const { return rows_; }
   /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I).
   [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> jacobian() { return jacobian_.topLeftCorner(rows_, dimension_); }
@@ -46,10 +54,15 @@ class FeatureUpdate {
 
  private:
   bool GatherViews(const FilterState& state, const Track& track);
-  TrackOutcome Triangulate(Eigen::Vector3d* p_W) const;
+  TrackOutcome Triangulate(bool to_remember, Eigen::Vector3d* p_W) const;
   void Reserve(int additional_rows);
   /// The trace of the block that Append just added; `noise` holds its 2N - 3 rows.
   void Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise);
+  /// What the block that Append just added leaves over, into its successor.
+  void StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
+                   const Eigen::Vector3d& p_W);
+  /// Makes room for a block of zero rows and its successor.
+  void AddBlock(int rows);
 
   FilterConfig filter_;
   VisionConfig vision_;
@@ -58,6 +71,8 @@ class FeatureUpdate {
   std::vector<Block> blocks_;
   bool tracing_ = false;
   std::vector<TracedBlock> traces_;
+  TrackMemoryKeeper keeper_;
+  std::vector<TrackMemory> successors_;  ///< of the blocks; grows, never shrinks
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd innovation_;
   // Scratch of one track.
@@ -66,6 +81,7 @@ class FeatureUpdate {
   std::vector<NormalizedObservation> observations_;
   std::vector<int> offsets_;
   std::vector<const Matrix6d*> chains_;
+  std::vector<int> clones_;
   TrackLinearization linearization_;
   Eigen::MatrixXd track_jacobian_;
 };

@@ -16,6 +16,8 @@ using Eigen::Index;
 
 // Fewer refusals are a matter of tracks, whatever their share.
 constexpr int kMinRefusedForConsensus = 8;
+// A remembered track that is refused more often in a row is taken for another point.
+constexpr int kMaxRefusals = 1;
 
 }  // namespace
 
@@ -86,6 +88,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   finite = finite && UpdateWithDueTracks(leaving_serial);
   tracks_.RemoveEnded(serial_);
   if (leaving >= 0) {
+    LeaveMemories(static_cast<size_t>(leaving));
     tracks_.RemoveClone(leaving_serial);
     state_.RemoveClone(static_cast<size_t>(leaving));
   }
@@ -109,6 +112,9 @@ int FilterEstimator::ChooseLeavingClone() const {
   if (config_.filter.clone_policy == ClonePolicy::kOldest) {
     return 0;
   }
+  if (config_.filter.clone_policy == ClonePolicy::kAlternate) {
+    return serial_ % 2 == 0 ? 0 : static_cast<int>(clones.size()) - 2;
+  }
   // The newest clones hold views that still wait for their first update: they are not candidates.
   const size_t candidates =
       clones.size() - static_cast<size_t>(std::min<int>(config_.filter.min_observations,
@@ -131,6 +137,9 @@ int FilterEstimator::ChooseLeavingClone() const {
 bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
   const FilterConfig& filter = config_.filter;
   const int views = static_cast<int>(track.views.size());
+  if (track.memory.active) {
+    return track.last_serial == serial_;
+  }
   if (views < filter.min_observations) {
     // Leftovers of a track that ends: any two rows per view beyond the landmark's three still inform.
     const bool ends = track.last_serial != serial_;
@@ -165,8 +174,39 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   if (!state_.covariance().Apply(rest_rows_, rest_innovation_, &correction_, nullptr)) {
     return false;
   }
-  state_.Correct(correction_);
+  Correct();
   return true;
+}
+
+void FilterEstimator::Correct() {
+  for (Track& track : tracks_.tracks()) {
+    if (track.memory.active) {
+      update_.keeper().Correct(state_, correction_, &track.memory);
+    }
+  }
+  state_.Correct(correction_);
+}
+
+void FilterEstimator::LeaveMemories(size_t leaving) {
+  if (config_.filter.track_memory == TrackMemoryPolicy::kNone) {
+    return;
+  }
+  const bool carry = config_.filter.track_memory == TrackMemoryPolicy::kCarry;
+  const Eigen::Index columns = 6 * state_.clones()[leaving].slot;
+  const Eigen::Vector3d& camera = state_.clones().back().T_WC.translation;
+  update_.keeper().Condition(state_, leaving, &conditional_);
+  for (Track& track : tracks_.tracks()) {
+    TrackMemory& memory = track.memory;
+    const bool concerned = memory.anchor == state_.clones()[leaving].serial ||
+                           !memory.clone_rows.middleCols<6>(columns).isZero(0);
+    if (!memory.active || !concerned) {
+      continue;
+    }
+    if (carry) {
+      update_.keeper().Carry(state_, conditional_, &memory);
+    }
+    memory.active = carry && update_.keeper().MayStay(memory, camera);
+  }
 }
 
 bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
@@ -177,7 +217,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     if (!IsDue(tracks[i], leaving_serial)) {
       continue;
     }
-    switch (update_.Append(state_, tracks[i])) {
+    switch (AppendTrack(tracks[i], leaving_serial)) {
       case TrackOutcome::kReady:
         appended_.push_back(i);
         break;
@@ -187,6 +227,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
       case TrackOutcome::kDegenerate:
         ++statistics_.features_degenerate;
         RetireViews(&tracks[i], false);
+        tracks[i].memory.active = false;
         break;
     }
   }
@@ -204,11 +245,29 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_, &statistics_.nis)) {
     return false;
   }
-  state_.Correct(correction_);
+  for (size_t block = 0; block < appended_.size(); ++block) {
+    Track& track = tracks[appended_[block]];
+    if (accepted_[block]) {
+      update_.Remember(state_, block, weights_[block], &track);
+    } else if (track.memory.active && ++track.memory.refusals > kMaxRefusals) {
+      track.memory.active = false;
+    }
+  }
+  Correct();
   for (size_t block = 0; block < appended_.size(); ++block) {
     RetireViews(&tracks[appended_[block]], accepted_[block]);
   }
   return true;
+}
+
+TrackOutcome FilterEstimator::AppendTrack(const Track& track, int leaving_serial) {
+  if (track.memory.active) {
+    return update_.AppendRemembered(state_, track);
+  }
+  // A memory wants a good depth to start from; the last chance to use the views does not.
+  const bool last_chance = track.last_serial != serial_ || track.views.front().serial == leaving_serial;
+  const bool to_remember = config_.filter.track_memory != TrackMemoryPolicy::kNone && !last_chance;
+  return update_.Append(state_, track, to_remember);
 }
 
 void FilterEstimator::MeasureBlocks() {
@@ -227,6 +286,7 @@ void FilterEstimator::MeasureBlocks() {
 void FilterEstimator::GateBlocks() {
   MeasureBlocks();
   accepted_.assign(appended_.size(), true);
+  weights_.assign(appended_.size(), 0);
   int refused = 0;
   for (size_t i = 0; i < appended_.size(); ++i) {
     accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
@@ -249,6 +309,7 @@ void FilterEstimator::GateBlocks() {
       accepted_[i] = true;
       weight = gate_.Threshold(block.rows) / block_nis_[i];
     }
+    weights_[i] = weight;
     ++(accepted_[i] ? statistics_.features_used : statistics_.features_gated);
     statistics_.nis_dof += accepted_[i] ? block.rows : 0;
     if (weight < 1) {
@@ -265,7 +326,7 @@ void FilterEstimator::GateBlocks() {
 
 void FilterEstimator::RetireViews(Track* track, bool used) const {
   const FilterConfig& filter = config_.filter;
-  if (!used || filter.update != UpdateTiming::kImmediate) {
+  if (!used || filter.update != UpdateTiming::kImmediate || filter.track_memory != TrackMemoryPolicy::kNone) {
     track->views.clear();
     track->base_rounds = 0;
     return;

@@ -43,6 +43,11 @@ class FilterEstimator : public Estimator {
   void MeasureBlocks();
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   void GateBlocks();
+  TrackOutcome AppendTrack(const Track& track, int leaving_serial);
+  /// Corrects state and memories by correction_.
+  void Correct();
+  /// What the memories become when a clone leaves.
+  void LeaveMemories(size_t leaving);
   /// What a track keeps after its views were used (base re-use) or refused.
   void RetireViews(Track* track, bool used) const;
 
@@ -66,6 +71,8 @@ class FilterEstimator : public Estimator {
   std::vector<size_t> appended_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
+  std::vector<double> weights_;
+  CloneConditional conditional_;
   Eigen::MatrixXd gate_matrix_;
   Eigen::VectorXd correction_;
   Eigen::MatrixXd rest_rows_;

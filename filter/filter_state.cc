@@ -8,6 +8,9 @@ namespace alidade {
 FilterState::FilterState(ErrorConvention convention, const Pose& T_BC, int max_clones)
     : convention_(convention), T_BC_(T_BC), covariance_(SquareRootCovariance::kCore + 6 * max_clones) {
   clones_.reserve(static_cast<size_t>(max_clones));
+  for (int slot = max_clones; slot-- > 0;) {
+    free_slots_.push_back(slot);
+  }
 }
 
 Status FilterState::Reset(const NavEstimate& initial) {
@@ -18,7 +21,10 @@ Status FilterState::Reset(const NavEstimate& initial) {
   nav_ = initial.nav;
   bias_ = initial.bias;
   stamp_ns_ = initial.stamp_ns;
-  clones_.clear();
+  while (!clones_.empty()) {
+    free_slots_.push_back(clones_.back().slot);
+    clones_.pop_back();
+  }
   if (observer_ != nullptr) {
     observer_->OnReset(*this);
   }
@@ -48,6 +54,9 @@ void FilterState::AddClone(int serial) {
   }
   Clone clone;
   clone.serial = serial;
+  CHECK(!free_slots_.empty());
+  clone.slot = free_slots_.back();
+  free_slots_.pop_back();
   clone.stamp_ns = stamp_ns_;
   clone.T_WB = nav_.T_WB();
   RefreshClone(&clone);
@@ -61,6 +70,8 @@ void FilterState::RemoveClone(size_t index) {
   if (observer_ != nullptr) {
     observer_->OnRemove(first, 6);
   }
+  covariance_.Remove(CloneOffset(index), 6);
+  free_slots_.push_back(clones_[index].slot);
   clones_.erase(clones_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 

@@ -14,6 +14,7 @@ namespace alidade {
 /// A past body pose kept in the state. `serial` counts frames and never repeats.
 struct Clone {
   int serial = 0;
+  int slot = 0;  ///< in [0, max_clones), its own as long as it lives
   TimeNs stamp_ns = 0;
   Pose T_WB;
   // Derived from T_WB and the extrinsics; refreshed after every correction.
@@ -65,6 +66,7 @@ class FilterState {
   NavState nav_;
   ImuBias bias_;
   std::vector<Clone> clones_;
+  std::vector<int> free_slots_;
   SquareRootCovariance covariance_;
   FilterObserver* observer_ = nullptr;
 };

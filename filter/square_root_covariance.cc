@@ -226,6 +226,12 @@ Matrix15d SquareRootCovariance::CoreCovariance() const {
   return covariance.selfadjointView<Eigen::Lower>();
 }
 
+Matrix6d SquareRootCovariance::PoseBlock(int row, int column) const {
+  const int tail = dimension_ - std::max(row, column);
+  return factor_.block(row, dimension_ - tail, 6, tail) *
+         factor_.block(column, dimension_ - tail, 6, tail).transpose();
+}
+
 MatrixXd SquareRootCovariance::Covariance() const {
   const MatrixXd s = factor().triangularView<Eigen::Upper>();
   return s * s.transpose();

@@ -44,6 +44,8 @@ class SquareRootCovariance {
   /// The factor, dimension() x dimension(), upper triangular.
   [[nodiscard]] auto factor() const { return factor_.topLeftCorner(dimension_, dimension_); }
   [[nodiscard]] Matrix15d CoreCovariance() const;
+  /// Covariance of the rows [row, row + 6) with [column, column + 6).
+  [[nodiscard]] Matrix6d PoseBlock(int row, int column) const;
   /// The whole covariance; for tests and reports, not for a hot path.
   [[nodiscard]] Eigen::MatrixXd Covariance() const;
   [[nodiscard]] bool AllFinite() const { return factor().allFinite(); }

@@ -15,6 +15,7 @@ Track TrackStore::TakeSpare(std::int64_t id) {
   track.views.clear();
   track.base_rounds = 0;
   track.last_serial = -1;
+  track.memory.active = false;
   return track;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/measurement_log.h"
 #include "core/visual_observation.h"
+#include "filter/track_memory.h"
 
 namespace alidade {
 
@@ -20,6 +21,7 @@ struct Track {
   std::vector<TrackView> views;
   int base_rounds = 0;   ///< updates the present base has already served
   int last_serial = -1;  ///< newest frame that saw the track
+  TrackMemory memory;
 };
 
 /// Live tracks sorted by id. Storage of ended tracks is re-used, so that the steady state does not allocate.

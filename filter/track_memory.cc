@@ -1,0 +1,199 @@
+#include "filter/track_memory.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace alidade {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+namespace {
+
+// A carried memory loses a little with every clone; it need not restart for that.
+constexpr double kStayFactor = 1.5;
+
+/// (y_m, y_1, y_2) over the errors (x_m, x_1, x_2) of three clones: in the right-invariant error everything
+/// relative to the yaw and position of clone 1, so that what follows says nothing about the unobservable
+/// directions; y_1 keeps its tilt alone (two rows). Other errors are taken as they are, less clone 1's yaw
+/// and position.
+Eigen::Matrix<double, 14, 18> RelativeErrors(ErrorConvention convention) {
+  Eigen::Matrix<double, 14, 18> rows = Eigen::Matrix<double, 14, 18>::Zero();
+  rows.topLeftCorner<6, 6>().setIdentity();
+  rows.block<2, 2>(6, 6).setIdentity();
+  rows.bottomRightCorner<6, 6>().setIdentity();
+  if (convention == ErrorConvention::kRightInvariant) {
+    for (const Index first : {Index{0}, Index{8}}) {
+      rows.block<4, 4>(first + 2, 8) -= Eigen::Matrix4d::Identity();
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones)
+    : convention_(filter.error),
+      max_depth_deviation_(filter.memory_depth_deviation),
+      columns_(6 * max_clones),
+      pose_(1),
+      observation_(1),
+      stacked_landmark_(5, 3),
+      stacked_clones_(5, columns_),
+      stacked_innovation_(5),
+      jacobian_(2, columns_) {}
+
+void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, const Matrix3d& landmark_rows,
+                              const Eigen::Ref<const MatrixXd>& clone_rows, const std::vector<int>& clones,
+                              TrackMemory* memory) const {
+  memory->active = true;
+  memory->refusals = 0;
+  memory->p_W = p_W;
+  memory->landmark_rows = landmark_rows.triangularView<Eigen::Upper>();
+  memory->clone_rows.setZero(3, columns_);
+  for (size_t k = 0; k < clones.size(); ++k) {
+    const Clone& clone = state.clones()[static_cast<size_t>(clones[k])];
+    memory->clone_rows.middleCols<6>(6 * clone.slot) = clone_rows.block<3, 6>(0, 6 * static_cast<Index>(k));
+  }
+  if (convention_ == ErrorConvention::kRightInvariant) {
+    const Clone& anchor = state.clones()[static_cast<size_t>(clones.back())];
+    memory->anchor = anchor.serial;
+    memory->clone_rows.middleCols<3>(6 * anchor.slot) -= memory->landmark_rows * Skew(p_W);
+  }
+}
+
+bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memory, size_t clone_index,
+                               const NormalizedObservation& observation, double weight,
+                               TrackMemory* extended) {
+  const Clone& clone = state.clones()[clone_index];
+  pose_[0] = clone.T_WC;
+  observation_[0] = observation;
+  observation_[0].sqrt_information *= weight;
+  if (!LinearizeTrack(pose_, observation_, memory.p_W, &linearization_)) {
+    return false;
+  }
+  stacked_landmark_.topRows<3>() = memory.landmark_rows;
+  stacked_landmark_.bottomRows<2>() = linearization_.point_jacobian;
+  stacked_clones_.topRows<3>() = memory.clone_rows;
+  stacked_clones_.bottomRows<2>().setZero();
+  stacked_clones_.block<2, 6>(3, 6 * clone.slot) = linearization_.pose_jacobians * clone.camera_from_error;
+  if (convention_ == ErrorConvention::kRightInvariant) {
+    const int anchor = state.FindClone(memory.anchor);
+    CHECK_GE(anchor, 0) << "a memory's anchor left the window";
+    stacked_clones_.block<2, 3>(3, 6 * state.clones()[static_cast<size_t>(anchor)].slot) -=
+        linearization_.point_jacobian * Skew(memory.p_W);
+  }
+  stacked_innovation_.head<3>().setZero();
+  stacked_innovation_.tail<2>() = -linearization_.residual;
+  EliminateLandmark(stacked_landmark_, stacked_clones_, stacked_innovation_);
+  *extended = memory;
+  extended->refusals = 0;
+  extended->landmark_rows = stacked_landmark_.topRows<3>().triangularView<Eigen::Upper>();
+  extended->clone_rows = stacked_clones_.topRows<3>();
+  // The rows' own innovation moves the landmark at once: t is zero in a memory.
+  extended->p_W +=
+      extended->landmark_rows.triangularView<Eigen::Upper>().solve(stacked_innovation_.head<3>());
+  jacobian_ = stacked_clones_.bottomRows<2>();
+  innovation_ = stacked_innovation_.tail<2>();
+  return extended->p_W.allFinite();
+}
+
+void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::VectorXd& correction,
+                                TrackMemory* memory) const {
+  Vector3d shift = Vector3d::Zero();
+  for (size_t i = 0; i < state.clones().size(); ++i) {
+    shift -= memory->clone_rows.middleCols<6>(6 * state.clones()[i].slot) *
+             correction.segment<6>(state.CloneOffset(i));
+  }
+  const Vector3d move = memory->landmark_rows.partialPivLu().solve(shift);
+  if (convention_ == ErrorConvention::kRightInvariant) {
+    const int anchor = state.FindClone(memory->anchor);
+    CHECK_GE(anchor, 0) << "a memory's anchor left the window";
+    const Vector3d theta = correction.segment<3>(state.CloneOffset(static_cast<size_t>(anchor)));
+    memory->p_W = so3::Exp(theta) * memory->p_W;
+  }
+  memory->p_W += move;
+}
+
+void TrackMemoryKeeper::Condition(const FilterState& state, size_t index,
+                                  CloneConditional* conditional) const {
+  const std::vector<Clone>& clones = state.clones();
+  CHECK_GE(clones.size(), 3U);
+  size_t first = 0;
+  size_t second = 0;
+  if (index == 0) {
+    first = 1;
+    second = 2;
+  } else if (index + 1 == clones.size()) {
+    first = index - 1;
+    second = index - 2;
+  } else {
+    first = index - 1;
+    second = index + 1;
+  }
+  const std::array<size_t, 3> blocks = {index, first, second};
+  Eigen::Matrix<double, 18, 18> p;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) {
+      p.block<6, 6>(6 * static_cast<Index>(i), 6 * static_cast<Index>(j)) =
+          state.covariance().PoseBlock(state.CloneOffset(blocks[i]), state.CloneOffset(blocks[j]));
+    }
+  }
+  const Eigen::Matrix<double, 14, 18> relative = RelativeErrors(convention_);
+  const Eigen::Matrix<double, 14, 14> q = relative * p * relative.transpose();
+  const Eigen::Matrix<double, 6, 8> gain =
+      q.bottomRightCorner<8, 8>().ldlt().solve(q.bottomLeftCorner<8, 6>()).transpose();
+  // x_m = x_m - y_m + gain (y_1, y_2), the first two terms being free of x_m.
+  Eigen::Matrix<double, 6, 18> mean = gain * relative.bottomRows<8>() - relative.topRows<6>();
+  conditional->leaving_serial = clones[index].serial;
+  conditional->leaving_slot = clones[index].slot;
+  conditional->neighbour_slots = {clones[first].slot, clones[second].slot};
+  conditional->gain = mean.rightCols<12>();
+  const Matrix6d rest = q.topLeftCorner<6, 6>() - gain * q.bottomLeftCorner<8, 6>();
+  conditional->covariance = 0.5 * (rest + rest.transpose());
+}
+
+void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& conditional,
+                              TrackMemory* memory) const {
+  const int leaving = 6 * conditional.leaving_slot;
+  if (convention_ == ErrorConvention::kRightInvariant && memory->anchor == conditional.leaving_serial) {
+    const Clone& newest = state.clones().back();
+    const Matrix3d lever = memory->landmark_rows * Skew(memory->p_W);
+    memory->clone_rows.middleCols<3>(leaving) += lever;
+    memory->clone_rows.middleCols<3>(6 * newest.slot) -= lever;
+    memory->anchor = newest.serial;
+  }
+  const Eigen::Matrix<double, 3, 6> rows = memory->clone_rows.middleCols<6>(leaving);
+  if (rows.isZero(0)) {
+    return;
+  }
+  for (size_t s = 0; s < conditional.neighbour_slots.size(); ++s) {
+    memory->clone_rows.middleCols<6>(6 * conditional.neighbour_slots[s]) +=
+        rows * conditional.gain.middleCols<6>(6 * static_cast<Index>(s));
+  }
+  memory->clone_rows.middleCols<6>(leaving).setZero();
+  const Matrix3d noise = Matrix3d::Identity() + rows * conditional.covariance * rows.transpose();
+  const Eigen::LLT<Matrix3d> whitener(noise);
+  whitener.matrixL().solveInPlace(memory->landmark_rows);
+  whitener.matrixL().solveInPlace(memory->clone_rows);
+}
+
+bool TrackMemoryKeeper::MayStart(const Eigen::Matrix<double, Eigen::Dynamic, 3>& point_jacobian,
+                                 const Vector3d& p_W, const Vector3d& camera_W) const {
+  const Matrix3d information = point_jacobian.transpose() * point_jacobian;
+  const Vector3d ray = p_W - camera_W;
+  return std::sqrt(ray.dot(information.ldlt().solve(ray))) < max_depth_deviation_ * ray.squaredNorm();
+}
+
+bool TrackMemoryKeeper::MayStay(const TrackMemory& memory, const Vector3d& camera_W) const {
+  const Vector3d ray = memory.p_W - camera_W;
+  return memory.landmark_rows.transpose().partialPivLu().solve(ray).norm() <
+         kStayFactor * max_depth_deviation_ * ray.squaredNorm();
+}
+
+}  // namespace alidade

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/landmark_reduction.h"
+#include "filter/filter_state.h"
+
+namespace alidade {
+
+/// What the updates of a track have left over about its landmark: three rows t = R f~ + T x + n, n ~ N(0, I),
+/// independent of everything already applied. f~ is the landmark's error, x the errors of the clones.
+///
+/// With the right-invariant error f = exp(theta_a) f^ + f~ with theta_a of an anchor clone, so that the yaw
+/// and translation columns cancel in every row even when f^ changes later; otherwise f = f^ + f~.
+struct TrackMemory {
+  bool active = false;
+  int anchor = -1;  ///< serial of the anchor clone; right-invariant only
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d landmark_rows = Eigen::Matrix3d::Identity();  ///< R
+  Eigen::Matrix<double, 3, Eigen::Dynamic> clone_rows;          ///< T: six columns a clone slot
+  int refusals = 0;                                             ///< observations refused in a row
+};
+
+/// The marginalised clone seen from its neighbours in time: x_m = G x_s + w, w ~ N(0, C).
+struct CloneConditional {
+  int leaving_serial = 0;
+  int leaving_slot = 0;
+  std::array<int, 2> neighbour_slots{};
+  Eigen::Matrix<double, 6, 12> gain = Eigen::Matrix<double, 6, 12>::Zero();  ///< G
+  Matrix6d covariance = Matrix6d::Zero();                                    ///< C
+};
+
+/// Starts, extends and carries the memories of tracks (docs/track_memory.md).
+class TrackMemoryKeeper {
+ public:
+  TrackMemoryKeeper(const FilterConfig& filter, int max_clones);
+
+  /// The memory that a first update leaves: the three landmark rows of EliminateLandmark. `dense`: rows over
+  /// six columns a view, in the order of `clones` (indices into the state's clones).
+  void Start(const FilterState& state, const Eigen::Vector3d& p_W, const Eigen::Matrix3d& landmark_rows,
+             const Eigen::Ref<const Eigen::MatrixXd>& clone_rows, const std::vector<int>& clones,
+             TrackMemory* memory) const;
+
+  /// Stacks a view's two rows under the memory's and eliminates the landmark again: the memory that follows
+  /// into `extended`, the two landmark-free rows into jacobian() and innovation().
+  bool Extend(const FilterState& state, const TrackMemory& memory, size_t clone,
+              const NormalizedObservation& observation, double weight, TrackMemory* extended);
+  /// 2 x (6 max_clones) over clone slots, and 2: the rows of the last Extend.
+  [[nodiscard]] const Eigen::Matrix<double, 2, Eigen::Dynamic>& jacobian() const { return jacobian_; }
+  [[nodiscard]] const Eigen::Vector2d& innovation() const { return innovation_; }
+
+  /// Moves the landmark to where its rows put it after the state was corrected (called before the state
+  /// itself is).
+  void Correct(const FilterState& state, const Eigen::VectorXd& correction, TrackMemory* memory) const;
+
+  /// How clone `index` follows from its neighbours.
+  void Condition(const FilterState& state, size_t index, CloneConditional* conditional) const;
+  /// Replaces the leaving clone in the rows by its conditional mean and whitens its noise away. That noise is
+  /// common to all tracks that saw the clone; it counts as each one's own.
+  void Carry(const FilterState& state, const CloneConditional& conditional, TrackMemory* memory) const;
+
+  /// Whether a landmark at p_W is known well enough for a memory that starts; `point_jacobian`: whitened rows
+  /// over p_W.
+  [[nodiscard]] bool MayStart(const Eigen::Matrix<double, Eigen::Dynamic, 3>& point_jacobian,
+                              const Eigen::Vector3d& p_W, const Eigen::Vector3d& camera_W) const;
+  /// Whether the memory's own linearisation still holds.
+  [[nodiscard]] bool MayStay(const TrackMemory& memory, const Eigen::Vector3d& camera_W) const;
+
+ private:
+  ErrorConvention convention_;
+  double max_depth_deviation_;
+  Eigen::Index columns_;
+  TrackLinearization linearization_;
+  std::vector<Pose> pose_;
+  std::vector<NormalizedObservation> observation_;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> stacked_landmark_;
+  Eigen::MatrixXd stacked_clones_;
+  Eigen::VectorXd stacked_innovation_;
+  Eigen::Matrix<double, 2, Eigen::Dynamic> jacobian_;
+  Eigen::Vector2d innovation_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace alidade

@@ -1,0 +1,299 @@
+#include "filter/track_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "core/visual_observation.h"
+#include "filter/feature_update.h"
+#include "filter/filter.h"
+#include "tests/support/scenario.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr int kFrames = 9;
+
+/// A filter state with a clone for each of the first frames of a simulation; nothing updated yet.
+FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) {
+  FilterState state(convention, dataset.rig.T_BC, kFrames + 1);
+  EXPECT_TRUE(state.Reset(test::DrawInitialState(dataset, 1)).ok());
+  ImuBuffer imu(1.0);
+  for (const ImuSample& sample : dataset.imu) {
+    EXPECT_TRUE(imu.Add(sample).ok());
+  }
+  for (int k = 0; k < kFrames; ++k) {
+    const TimeNs stamp_ns = dataset.tracks[static_cast<size_t>(k)].stamp_ns;
+    if (k > 0) {
+      std::vector<ImuSample> interval;
+      EXPECT_TRUE(imu.Interval(state.stamp_ns(), stamp_ns, &interval).ok());
+      state.Propagate(interval, dataset.rig.imu_noise, Vector3d(0, 0, -9.81));
+    }
+    state.AddClone(k);
+  }
+  return state;
+}
+
+/// The landmark seen by the estimated clones [first, last), without noise.
+Track SeenFromClones(const FilterState& state, const Vector3d& p_W, size_t first, size_t last) {
+  Track track;
+  for (size_t i = first; i < last; ++i) {
+    const Clone& clone = state.clones()[i];
+    TrackView view;
+    view.serial = clone.serial;
+    view.observation.z = (clone.T_WC.rotation.transpose() * (p_W - clone.T_WC.translation)).hnormalized();
+    view.observation.sqrt_information = 400 * Eigen::Matrix2d::Identity();
+    track.views.push_back(view);
+  }
+  track.last_serial = track.views.back().serial;
+  return track;
+}
+
+FilterConfig Remembering(ErrorConvention convention) {
+  FilterConfig config;
+  config.error = convention;
+  config.track_memory = TrackMemoryPolicy::kCarry;
+  config.memory_depth_deviation = 1;
+  return config;
+}
+
+/// All error rows, in the state's order, of a memory's clone rows.
+MatrixXd OverState(const FilterState& state, const Eigen::Ref<const MatrixXd>& over_slots) {
+  MatrixXd rows = MatrixXd::Zero(over_slots.rows(), state.covariance().dimension());
+  for (size_t i = 0; i < state.clones().size(); ++i) {
+    rows.middleCols<6>(state.CloneOffset(i)) = over_slots.middleCols<6>(6 * state.clones()[i].slot);
+  }
+  return rows;
+}
+
+class TrackMemoryTest : public ::testing::TestWithParam<ErrorConvention> {
+ protected:
+  TrackMemoryTest() : dataset_(test::SimulateOrDie(SimulatorConfig(), 1)) {}
+
+  /// A point some metres in front of the first camera.
+  [[nodiscard]] static Vector3d PointBefore(const FilterState& state) {
+    return state.clones().front().T_WC * Vector3d(0.5, -0.3, 4);
+  }
+
+  /// The memory after views [0, 5) of the track.
+  TrackMemory Begin(const FilterState& state, const Vector3d& p_W) {
+    Track track = SeenFromClones(state, p_W, 0, 5);
+    FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
+    update.Begin(state);
+    EXPECT_EQ(update.Append(state, track, true), TrackOutcome::kReady);
+    update.Remember(state, 0, 1, &track);
+    EXPECT_TRUE(track.memory.active);
+    return track.memory;
+  }
+
+  Dataset dataset_;
+  VisionConfig vision_{.max_relative_depth_deviation = 10};
+};
+INSTANTIATE_TEST_SUITE_P(Conventions, TrackMemoryTest,
+                         ::testing::Values(ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant,
+                                           ErrorConvention::kSo3xRn),
+                         [](const auto& test_case) { return std::string(ToString(test_case.param)); });
+
+TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpdate) {
+  FilterState joint = CloneEveryFrame(dataset_, GetParam());
+  FilterState sequential = joint;
+  const Vector3d p_W = PointBefore(joint);
+  VectorXd correction;
+
+  FilterConfig plain;
+  plain.error = GetParam();
+  FeatureUpdate all(plain, vision_, kFrames + 1);
+  all.Begin(joint);
+  ASSERT_EQ(all.Append(joint, SeenFromClones(joint, p_W, 0, kFrames), false), TrackOutcome::kReady);
+  joint.covariance().Prepare(all.jacobian());
+  ASSERT_TRUE(joint.covariance().Apply(all.jacobian(), all.innovation(), &correction, nullptr));
+
+  FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
+  Track track = SeenFromClones(sequential, p_W, 0, 5);
+  for (size_t seen = 5; seen <= kFrames; ++seen) {
+    update.Begin(sequential);
+    ASSERT_EQ(track.memory.active ? update.AppendRemembered(sequential, track)
+                                  : update.Append(sequential, track, true),
+              TrackOutcome::kReady);
+    update.Remember(sequential, 0, 1, &track);
+    sequential.covariance().Prepare(update.jacobian());
+    ASSERT_TRUE(sequential.covariance().Apply(update.jacobian(), update.innovation(), &correction, nullptr));
+    EXPECT_LT(correction.norm(), 1e-9);
+    if (seen < kFrames) {
+      track.views = SeenFromClones(sequential, p_W, seen, seen + 1).views;
+    }
+  }
+  const MatrixXd expected = joint.covariance().Covariance();
+  const VectorXd scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd difference = sequential.covariance().Covariance() - expected;
+  EXPECT_LT((scale.asDiagonal() * difference * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST_P(TrackMemoryTest, GivenACloneThatLeavesThenTheRowsAreTheMarginalOfItsConditional) {
+  const FilterState state = CloneEveryFrame(dataset_, GetParam());
+  const TrackMemory before = Begin(state, PointBefore(state));
+  const TrackMemoryKeeper keeper(Remembering(GetParam()), kFrames + 1);
+  CloneConditional conditional;
+  keeper.Condition(state, 0, &conditional);
+  TrackMemory after = before;
+  keeper.Carry(state, conditional, &after);
+
+  // Unknowns (f, x_m, x_1, x_2): the memory's rows, and x_m = G x_s + w.
+  MatrixXd rows = MatrixXd::Zero(9, 21);
+  const Eigen::Matrix<double, 6, 6> whiten =
+      conditional.covariance.llt().matrixL().solve(Matrix6d::Identity());
+  const auto slot_columns = [](const TrackMemory& memory, int slot) {
+    return memory.clone_rows.middleCols<6>(6 * slot);
+  };
+  rows.topLeftCorner<3, 3>() = before.landmark_rows;
+  rows.block<3, 6>(0, 3) = slot_columns(before, conditional.leaving_slot);
+  rows.block<3, 6>(0, 9) = slot_columns(before, conditional.neighbour_slots[0]);
+  rows.block<3, 6>(0, 15) = slot_columns(before, conditional.neighbour_slots[1]);
+  rows.block<6, 6>(3, 3) = whiten;
+  rows.block<6, 12>(3, 9) = -whiten * conditional.gain;
+  MatrixXd ordered(9, 21);
+  ordered << rows.middleCols(3, 6), rows.leftCols(3), rows.rightCols(12);
+  const MatrixXd information = ordered.transpose() * ordered;
+  const MatrixXd expected =
+      information.bottomRightCorner(15, 15) -
+      information.bottomLeftCorner(15, 6) *
+          information.topLeftCorner(6, 6).ldlt().solve(information.topRightCorner(6, 15));
+
+  MatrixXd carried(3, 15);
+  carried << after.landmark_rows, slot_columns(after, conditional.neighbour_slots[0]),
+      slot_columns(after, conditional.neighbour_slots[1]);
+  if (GetParam() != ErrorConvention::kRightInvariant) {  // there the anchor may have moved
+    const MatrixXd actual = carried.transpose() * carried;
+    EXPECT_LT((actual - expected).norm(), 1e-6 * expected.norm());
+  }
+  EXPECT_TRUE(slot_columns(after, conditional.leaving_slot).isZero(0));
+  EXPECT_LT(after.landmark_rows.norm(), before.landmark_rows.norm()) << "something is lost";
+  EXPECT_GT(after.landmark_rows.norm(), 0.5 * before.landmark_rows.norm()) << "but not much";
+}
+
+TEST_P(TrackMemoryTest, GivenARemovedCloneThenItIsPredictedByItsNeighbours) {
+  const FilterState state = CloneEveryFrame(dataset_, GetParam());
+  const TrackMemoryKeeper keeper(Remembering(GetParam()), kFrames + 1);
+  const MatrixXd p = state.covariance().Covariance();
+  for (const size_t leaving : {size_t{0}, size_t{3}, size_t{kFrames - 2}}) {
+    CloneConditional conditional;
+    keeper.Condition(state, leaving, &conditional);
+    const size_t first = leaving == 0 ? 1 : leaving - 1;
+    const size_t second = leaving == 0 ? 2 : leaving + 1;
+    // The deviation of x_m - G x_s in the filter's own covariance.
+    MatrixXd map = MatrixXd::Zero(6, p.rows());
+    map.middleCols<6>(state.CloneOffset(leaving)).setIdentity();
+    map.middleCols<6>(state.CloneOffset(first)) = -conditional.gain.leftCols<6>();
+    map.middleCols<6>(state.CloneOffset(second)) = -conditional.gain.rightCols<6>();
+    const MatrixXd residual = map * p * map.transpose();
+    EXPECT_LT((residual - conditional.covariance).norm(), 1e-6 * residual.norm() + 1e-14) << leaving;
+  }
+}
+
+/// Yaw about gravity and translation of the whole world, in the right-invariant error: the same for every
+/// clone and without the landmark's own position.
+MatrixXd UnobservableDirections(const FilterState& state) {
+  MatrixXd directions = MatrixXd::Zero(state.covariance().dimension() + 3, 4);
+  for (size_t i = 0; i < state.clones().size(); ++i) {
+    directions.block<4, 4>(state.CloneOffset(i) + 2, 0).setIdentity();
+  }
+  directions.bottomRightCorner<3, 3>().setIdentity();
+  return directions;
+}
+
+TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfYawAndPositionWhateverHappensToThem) {
+  const Dataset dataset = test::SimulateOrDie(SimulatorConfig(), 1);
+  FilterState state = CloneEveryFrame(dataset, ErrorConvention::kRightInvariant);
+  const FilterConfig config = Remembering(ErrorConvention::kRightInvariant);
+  const Vector3d p_W = state.clones().front().T_WC * Vector3d(0.5, -0.3, 4);
+  Track track = SeenFromClones(state, p_W, 0, 5);
+  FeatureUpdate update(config, VisionConfig{.max_relative_depth_deviation = 10}, kFrames + 1);
+  TrackMemoryKeeper keeper(config, kFrames + 1);
+  update.Begin(state);
+  ASSERT_EQ(update.Append(state, track, true), TrackOutcome::kReady);
+  update.Remember(state, 0, 1, &track);
+  const auto expect_blind = [&](const char* when) {
+    MatrixXd rows(3, state.covariance().dimension() + 3);
+    rows << OverState(state, track.memory.clone_rows), track.memory.landmark_rows;
+    EXPECT_LT((rows * UnobservableDirections(state)).norm(), 1e-8 * rows.norm()) << when;
+  };
+  expect_blind("at the start");
+  RandomStream random(3, "correction");
+  for (size_t seen = 5; seen < kFrames; ++seen) {
+    VectorXd correction(state.covariance().dimension());
+    for (Index i = 0; i < correction.size(); ++i) {
+      correction[i] = 0.02 * random.Normal();
+    }
+    keeper.Correct(state, correction, &track.memory);
+    state.Correct(correction);
+    expect_blind("after a correction");
+    const NormalizedObservation view = SeenFromClones(state, p_W, seen, seen + 1).views.back().observation;
+    TrackMemory extended;
+    ASSERT_TRUE(keeper.Extend(state, track.memory, seen, view, 1, &extended));
+    track.memory = extended;
+    expect_blind("after a view");
+    MatrixXd rows(2, state.covariance().dimension() + 3);
+    rows << OverState(state, keeper.jacobian()), Eigen::Matrix<double, 2, 3>::Zero();
+    EXPECT_LT((rows * UnobservableDirections(state)).norm(), 1e-8 * rows.norm());
+  }
+  while (state.clones().size() > 3) {
+    CloneConditional conditional;
+    keeper.Condition(state, state.clones().size() / 2 - 1, &conditional);
+    keeper.Carry(state, conditional, &track.memory);
+    state.RemoveClone(state.clones().size() / 2 - 1);
+    expect_blind("after a clone left");
+  }
+}
+
+TEST_P(TrackMemoryTest, GivenACorrectionThenTheLandmarkMovesWhereItsRowsPutIt) {
+  FilterState state = CloneEveryFrame(dataset_, GetParam());
+  TrackMemory memory = Begin(state, PointBefore(state));
+  const TrackMemoryKeeper keeper(Remembering(GetParam()), kFrames + 1);
+  // The world shifted as a whole: every clone by the same translation.
+  VectorXd correction = VectorXd::Zero(state.covariance().dimension());
+  const Vector3d shift(0.3, -0.2, 0.1);
+  for (size_t i = 0; i < state.clones().size(); ++i) {
+    const Pose& T_WB = state.clones()[i].T_WB;
+    Pose moved = T_WB;
+    moved.translation += shift;
+    correction.segment<6>(state.CloneOffset(i)) = Local(GetParam(), T_WB, moved);
+  }
+  const Vector3d before = memory.p_W;
+  keeper.Correct(state, correction, &memory);
+  EXPECT_LT((memory.p_W - before - shift).norm(), 1e-8);
+}
+
+TEST(TrackMemoryFilterTest, MemoryBeyondTheWindowBeatsTheWindowAlone) {
+  SimulatorConfig sim;
+  sim.duration_s = 60;
+  sim.path_m = 78.6;
+  EstimatorConfig config;
+  config.filter.window = 11;
+  config.filter.min_observations = 5;
+  config.filter.clone_policy = ClonePolicy::kOldest;
+  double sum[2] = {0, 0};
+  double nees = 0;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    for (const TrackMemoryPolicy policy : {TrackMemoryPolicy::kWindow, TrackMemoryPolicy::kCarry}) {
+      config.filter.track_memory = policy;
+      const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig);
+      const test::ScenarioResult result =
+          test::RunScenario(dataset, test::DrawInitialState(dataset, seed), filter.get());
+      ASSERT_TRUE(result.status.ok()) << result.status.message();
+      sum[policy == TrackMemoryPolicy::kCarry ? 1 : 0] += result.rmse_orientation_rad;
+      nees += policy == TrackMemoryPolicy::kCarry ? result.nees_pose / 3 : 0;
+    }
+  }
+  EXPECT_LT(sum[1], 0.8 * sum[0]);
+  EXPECT_LT(nees, 10);
+}
+
+}  // namespace
+}  // namespace alidade
