@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/imu_buffer.h"
 #include "core/visual_observation.h"
 #include "filter/feature_update.h"
 #include "filter/filter.h"
@@ -228,7 +229,7 @@ TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfYawAndPositionWhateverHappen
   for (size_t seen = 5; seen < kFrames; ++seen) {
     VectorXd correction(state.covariance().dimension());
     for (Index i = 0; i < correction.size(); ++i) {
-      correction[i] = 0.02 * random.Normal();
+      correction[i] = 1e-3 * random.Normal();
     }
     keeper.Correct(state, correction, &track.memory);
     state.Correct(correction);
