@@ -192,14 +192,16 @@ void FilterEstimator::LeaveMemories(size_t leaving) {
     return;
   }
   const bool carry = config_.filter.track_memory == TrackMemoryPolicy::kCarry;
+  const int leaving_serial = state_.clones()[leaving].serial;
   const Eigen::Index columns = 6 * state_.clones()[leaving].slot;
   const Eigen::Vector3d& camera = state_.clones().back().T_WC.translation;
   update_.keeper().Condition(state_, leaving, &conditional_);
   for (Track& track : tracks_.tracks()) {
     TrackMemory& memory = track.memory;
-    const bool concerned = memory.anchor == state_.clones()[leaving].serial ||
-                           !memory.clone_rows.middleCols<6>(columns).isZero(0);
-    if (!memory.active || !concerned) {
+    if (!memory.active) {
+      continue;
+    }
+    if (memory.anchor != leaving_serial && memory.clone_rows.middleCols<6>(columns).isZero(0)) {
       continue;
     }
     if (carry) {

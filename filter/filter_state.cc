@@ -70,7 +70,6 @@ void FilterState::RemoveClone(size_t index) {
   if (observer_ != nullptr) {
     observer_->OnRemove(first, 6);
   }
-  covariance_.Remove(CloneOffset(index), 6);
   free_slots_.push_back(clones_[index].slot);
   clones_.erase(clones_.begin() + static_cast<std::ptrdiff_t>(index));
 }
