@@ -30,7 +30,7 @@ class FeatureUpdate {
   void Begin(const FilterState& state);
   /// Appends the rows of a track that all of its views define; to_remember: waits for a depth that a memory
   /// can start from.
-  TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember);
+  TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember = false);
   /// Appends the two rows that the newest view of a remembered track adds.
   TrackOutcome AppendRemembered(const FilterState& state, const Track& track);
 
