@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,15 @@ struct FrameStatistics {
   double update_ms = 0;
 };
 
+/// What an estimator that looks back says of one frame when the sequence is over.
+struct FinalizedFrame {
+  NavEstimate estimate;
+  FrameStatistics statistics;
+  /// Covariance of the state given the data up to its frame alone, canonical chart like
+  /// NavEstimate::covariance; empty when it was not asked for.
+  std::optional<Matrix15d> filtering_covariance;
+};
+
 /// A back end: consumes one measurement log in time order and tells state and covariance after each frame.
 ///
 /// Single-threaded and deterministic: equal calls give equal bits (the *_ms statistics aside). Before
@@ -53,6 +64,13 @@ class Estimator {
   [[nodiscard]] virtual NavEstimate Latest() const = 0;
   [[nodiscard]] virtual bool initialized() const = 0;
   [[nodiscard]] virtual const FrameStatistics& last_statistics() const = 0;
+
+  /// Called once, when the log is at its end: revised estimates of all accepted frames, in their order; empty
+  /// for an estimator that does not look back. `stop` (may be null) is polled: when it is set the result is
+  /// empty. kDiverged: no estimate was found; those of Latest stand.
+  virtual Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* /*stop*/) {
+    return std::vector<FinalizedFrame>();
+  }
 };
 
 }  // namespace alidade

@@ -175,14 +175,36 @@ void SmootherConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer({"max_landmarks", "-", "longest tracks first"}, &max_landmarks, 10, 5000);
 }
 
+void BatchConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Enumeration({"initial", "-", "whose run gives the initial values; set in its own section"},
+                      &initial, {{"filter", BatchInitial::kFilter}, {"smoother", BatchInitial::kSmoother}});
+  visitor.Integer({"max_iterations", "-", "of one solve; a sequence takes a few solves"}, &max_iterations, 1,
+                  1000);
+  visitor.Real({"tolerance_sigma", "sigma",
+                "no state may be farther from the minimum, in its own standard deviations"},
+               &tolerance_sigma, 1e-8, 1);
+  visitor.Enumeration(
+      {"robust_kernel", "-", "of the final estimate; any but none makes it less than efficient"},
+      &robust_kernel,
+      {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
+  visitor.Real({"gate_probability", "-",
+                "chi-square gate on whole tracks at the solution; a wide one, not to cut off honest noise"},
+               &gate_probability, 0.5, 1.0);
+  visitor.Boolean(
+      {"filtering_bound", "-",
+       "also the covariance of each state given the data up to it: what online estimators can reach"},
+      &filtering_bound);
+}
+
 void GnssConfig::Describe(ConfigVisitor& visitor) {
   visitor.Boolean({"enabled", "-", "couple pseudorange and Doppler"}, &enabled);
 }
 
 void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Text({"name", "-", "name in tables and paths"}, &name);
-  visitor.Enumeration({"backend", "-", "which back end runs"}, &backend,
-                      {{"filter", Backend::kFilter}, {"smoother", Backend::kSmoother}});
+  visitor.Enumeration(
+      {"backend", "-", "which back end runs"}, &backend,
+      {{"filter", Backend::kFilter}, {"smoother", Backend::kSmoother}, {"batch", Backend::kBatch}});
   visitor.Section("vision", "noise, gates and kernels, shared by both back ends",
                   [&] { vision.Describe(visitor); });
   visitor.Section("imu", "gravity and trust in the sensor sheet", [&] { imu.Describe(visitor); });
@@ -190,6 +212,8 @@ void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("frontend", "images to tracks", [&] { frontend.Describe(visitor); });
   visitor.Section("filter", "the sliding-window invariant EKF", [&] { filter.Describe(visitor); });
   visitor.Section("smoother", "the Ceres sliding window", [&] { smoother.Describe(visitor); });
+  visitor.Section("batch", "the estimate from the whole sequence at once; a bound",
+                  [&] { batch.Describe(visitor); });
   visitor.Section("gnss", "raw GNSS", [&] { gnss.Describe(visitor); });
 }
 

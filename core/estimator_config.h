@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-enum class Backend { kFilter, kSmoother };
+enum class Backend { kFilter, kSmoother, kBatch };
 enum class RobustKernel { kNone, kHuber, kCauchy };
 
 /// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not
@@ -139,6 +139,20 @@ struct SmootherConfig {
   void Describe(ConfigVisitor& visitor);
 };
 
+/// Whose run gives the batch estimate its initial values; it is set by its own section.
+enum class BatchInitial { kFilter, kSmoother };
+
+struct BatchConfig {
+  BatchInitial initial = BatchInitial::kFilter;
+  int max_iterations = 50;
+  double tolerance_sigma = 0.01;
+  RobustKernel robust_kernel = RobustKernel::kNone;
+  double gate_probability = 0.9999;
+  bool filtering_bound = true;
+
+  void Describe(ConfigVisitor& visitor);
+};
+
 struct GnssConfig {
   bool enabled = false;
 
@@ -155,6 +169,7 @@ struct EstimatorConfig {
   FrontendConfig frontend;
   FilterConfig filter;
   SmootherConfig smoother;
+  BatchConfig batch;
   GnssConfig gnss;
 
   /// Lists every key with unit, range and reason; the order is the order of configs/base.yaml.

@@ -113,24 +113,32 @@ AggregateRow AggregateCells(const std::vector<const CellResult*>& cells, const s
   return row;
 }
 
+/// An estimate that knows the future is a bound and no rival.
+bool IsBound(const AggregateRow& row) {
+  return row.backend == "batch";
+}
+bool IsRival(const AggregateRow& row, int most_ok) {
+  return row.ok == most_ok && !IsBound(row);
+}
+
 /// Marks the best of the rows [begin, end), which are one sequence.
 void MarkBest(const std::vector<Figure>& figures, AggregateRow* begin, AggregateRow* end) {
   int most_ok = 1;
   for (const AggregateRow* row = begin; row != end; ++row) {
-    most_ok = std::max(most_ok, row->ok);
+    most_ok = IsBound(*row) ? most_ok : std::max(most_ok, row->ok);
   }
   for (size_t i = 0; i < figures.size(); ++i) {
     double least = std::numeric_limits<double>::infinity();
     int rivals = 0;
     for (const AggregateRow* row = begin; row != end; ++row) {
       const double badness = Badness(figures[i], row->figures[i].mean);
-      if (row->ok == most_ok && !std::isnan(badness)) {
+      if (IsRival(*row, most_ok) && !std::isnan(badness)) {
         least = std::min(least, badness);
         ++rivals;
       }
     }
     for (AggregateRow* row = begin; row != end && rivals > 1; ++row) {
-      row->best[i] = row->ok == most_ok && Badness(figures[i], row->figures[i].mean) == least;
+      row->best[i] = IsRival(*row, most_ok) && Badness(figures[i], row->figures[i].mean) == least;
     }
   }
 }

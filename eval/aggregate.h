@@ -69,7 +69,7 @@ struct AggregateRow {
 
 /// Rows by sequence, then estimator, both in order of first appearance. `best` is marked among the rows of a
 /// sequence with the most runs that are ok, and only where at least two of them have the value; equal values
-/// are all marked.
+/// are all marked. The batch estimate is a bound and is never marked.
 [[nodiscard]] std::vector<AggregateRow> Aggregate(const Comparison& comparison,
                                                   const std::vector<Figure>& figures);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <unordered_map>
 
 #include "core/error_convention.h"
@@ -87,6 +88,24 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
   }
 }
 
+/// Root mean squares of predicted deviations.
+void FillPredicted(const RunResult& run, CellResult* cell) {
+  double ori = 0, pos = 0, filtering_ori = 0, filtering_pos = 0;
+  for (const RunRecord& record : run.records) {
+    ori += record.estimate.covariance.diagonal().head<3>().sum();
+    pos += record.estimate.covariance.diagonal().segment<3>(3).sum();
+    const Matrix6d filtering = record.filtering_covariance.value_or(Matrix6d::Constant(kUnknown));
+    filtering_ori += filtering.diagonal().head<3>().sum();
+    filtering_pos += filtering.diagonal().tail<3>().sum();
+  }
+  const double count = static_cast<double>(run.records.size());
+  const double degrees = 180 / std::numbers::pi;
+  cell->sigma_ori_deg = degrees * std::sqrt(ori / count);
+  cell->sigma_pos_m = std::sqrt(pos / count);
+  cell->filtering_sigma_ori_deg = degrees * std::sqrt(filtering_ori / count);
+  cell->filtering_sigma_pos_m = std::sqrt(filtering_pos / count);
+}
+
 void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult* run,
            const EvaluationOptions& options, CellResult* cell) {
   cell->align = std::string(ToString(options.alignment));
@@ -151,6 +170,7 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
   cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;
+  FillPredicted(run, cell);
   Score(truth, TrajectoryOf(run), &run, options, cell);
 }
 

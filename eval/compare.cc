@@ -140,9 +140,7 @@ class Comparer {
       const EstimatorConfig* config = configs_.at(&sequence)[i].get();
       Cell cell{&estimator, config, &sequence, input, seed, UnscoredCell()};
       cell.result.estimator = estimator.name;
-      cell.result.backend = estimator.external()                  ? "external"
-                            : config->backend == Backend::kFilter ? "filter"
-                                                                  : "smoother";
+      cell.result.backend = estimator.external() ? "external" : std::string(ToString(config->backend));
       cell.result.sequence = sequence.name;
       cell.result.seed = seed;
       input->AddUser();

@@ -48,6 +48,13 @@ struct CellResult {
   /// Of the tracks that met the chi-square gate, those it refused; NaN when none did. On data without
   /// outliers these are false rejections.
   double gated_share = std::numeric_limits<double>::quiet_NaN();
+  /// Root mean square of the deviations that the run's own covariance predicts: square root of the mean trace
+  /// of the covariance of phi and of dp. NaN without covariance.
+  double sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
+  double sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
+  /// The same given the data up to each frame alone; of an estimator that looks back and knows it.
+  double filtering_sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
+  double filtering_sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
   CellSeries series;
 };
 

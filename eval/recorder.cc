@@ -39,14 +39,26 @@ std::string TumText(const RunResult& result) {
   return text;
 }
 
-std::string StatesHeader() {
-  std::string header = "timestamp_ns,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bg_x,bg_y,bg_z,ba_x,ba_y,ba_z";
+/// ",c_00,c_01,...": names of the upper triangle that AppendUpperTriangle writes.
+std::string TriangleNames() {
+  std::string names;
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) {
-      header += ",c_" + std::to_string(row) + std::to_string(column);
+      names += ",c_" + std::to_string(row) + std::to_string(column);
     }
   }
-  return header + "\n";
+  return names;
+}
+
+void AppendUpperTriangle(const Matrix6d& covariance, std::string* line) {
+  for (Eigen::Index row = 0; row < 6; ++row) {
+    AppendNumbers(covariance.row(row).segment(row, 6 - row).transpose(), ',', line);
+  }
+}
+
+std::string StatesHeader() {
+  return "timestamp_ns,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bg_x,bg_y,bg_z,ba_x,ba_y,ba_z" +
+         TriangleNames() + "\n";
 }
 
 std::string StatesText(const RunResult& result) {
@@ -60,9 +72,21 @@ std::string StatesText(const RunResult& result) {
     AppendNumbers(estimate.nav.v_WB, ',', &text);
     AppendNumbers(estimate.bias.gyro, ',', &text);
     AppendNumbers(estimate.bias.accel, ',', &text);
-    for (Eigen::Index row = 0; row < 6; ++row) {
-      AppendNumbers(estimate.covariance.row(row).segment(row, 6 - row).transpose(), ',', &text);
-    }
+    AppendUpperTriangle(estimate.covariance.topLeftCorner<6, 6>(), &text);
+    text += '\n';
+  }
+  return text;
+}
+
+bool HasBound(const RunResult& result) {
+  return !result.records.empty() && result.records.front().filtering_covariance.has_value();
+}
+
+std::string BoundText(const RunResult& result) {
+  std::string text = "timestamp_ns" + TriangleNames() + "\n";
+  for (const RunRecord& record : result.records) {
+    text += std::to_string(record.estimate.stamp_ns);
+    AppendUpperTriangle(*record.filtering_covariance, &text);
     text += '\n';
   }
   return text;
@@ -125,7 +149,7 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   json["status"] = StatusWord(result);
   json["message"] = result.status.message();
   json["estimator"] = config.name;
-  json["backend"] = config.backend == Backend::kFilter ? "filter" : "smoother";
+  json["backend"] = ToString(config.backend);
   json["dataset"] = identity.dataset;
   json["seed"] = identity.seed;
   json["config_digest"] = DigestOf(config);
@@ -165,6 +189,10 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
         WriteFileAtomically((path / "observability.csv").string(), ObservabilityText(result)));
   } else {
     std::filesystem::remove(path / "observability.csv", ignored);
+  }
+  std::filesystem::remove(path / "bound.csv", ignored);
+  if (HasBound(result)) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "bound.csv").string(), BoundText(result)));
   }
   const std::string json =
       RunJson(identity, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

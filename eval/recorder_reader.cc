@@ -130,6 +130,19 @@ Status ReadObservabilityRow(const CsvReader& row, RunRecord* record) {
   return row.ReadReal(5, "null_angle_rad", &read.null_angle_rad);
 }
 
+Status ReadBoundRow(const CsvReader& row, RunRecord* record) {
+  Matrix6d covariance;
+  size_t column = 1;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    for (Eigen::Index j = i; j < 6; ++j) {
+      ALIDADE_RETURN_IF_ERROR(row.ReadReal(column++, "covariance", &covariance(i, j)));
+      covariance(j, i) = covariance(i, j);
+    }
+  }
+  record->filtering_covariance = covariance;
+  return Status::Ok();
+}
+
 }  // namespace
 
 Result<RunResult> ReadRun(const std::string& folder) {
@@ -160,6 +173,9 @@ Result<RunResult> ReadRun(const std::string& folder) {
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 14, &result, ReadStatusRow));
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
+  }
+  if (std::filesystem::exists(In(folder, "bound.csv"))) {
+    ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "bound.csv"), 22, &result, ReadBoundRow));
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "eval/aggregate.h"
+#include "eval/efficiency.h"
 #include "eval/nees_over_time.h"
 #include "eval/paired.h"
 
@@ -215,6 +216,23 @@ Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
   return list;
 }
 
+/// `ratios`: bound over achieved, orientation and position each, as the page's headings.
+Json EfficiencyData(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const Efficiency& entry : ComputeEfficiency(comparison)) {
+    Json ratios = Json::array();
+    for (const Ratio& ratio : {entry.achieved, entry.smoothed, entry.filtered}) {
+      ratios.push_back(Rounded(ratio.ori, 4));
+      ratios.push_back(Rounded(ratio.pos, 4));
+    }
+    list.push_back({{"estimator", entry.label},
+                    {"sequence", entry.sequence},
+                    {"pairs", entry.pairs},
+                    {"ratios", ratios}});
+  }
+  return list;
+}
+
 Json NeesData(const Comparison& comparison, int most) {
   Json list = Json::array();
   for (const NeesCurve& curve : AverageNees(comparison)) {
@@ -304,6 +322,7 @@ std::string ReportData(const Comparison& comparison) {
   data["nees_bands"] = NeesBands(most_runs);
   data["nees_over_time"] = NeesData(comparison, most);
   data["pairs"] = PairData(comparison, figures, rows);
+  data["efficiency"] = EfficiencyData(comparison);
   data["references"] = Json::array();
   for (const ReferenceFigure& reference : comparison.references) {
     data["references"].push_back({{"source", reference.source},

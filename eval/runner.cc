@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include "core/check.h"
 #include "core/stopwatch.h"
 #include "eval/truth_start.h"
 #include "filter/filter.h"
@@ -43,6 +44,9 @@ class Run {
     }
     if (result_.status.ok() && !initialized_ && !result_.interrupted) {
       result_.status = Status::Diverged("not initialised before the sequence ended: " + Reason());
+    }
+    if (result_.status.ok() && !result_.interrupted) {
+      Finalize();
     }
     result_.wall_s = wall.ElapsedS();
     result_.cpu_s = ThreadCpuSeconds() - cpu_start;
@@ -162,6 +166,31 @@ class Run {
     result_.records.push_back(std::move(record));
   }
 
+  void Finalize() {
+    const Stopwatch stopwatch;
+    Result<std::vector<FinalizedFrame>> finalized = estimator_.TakeFinalized(options_.stop);
+    result_.interrupted = options_.stop != nullptr && options_.stop->load();
+    if (!finalized.ok()) {
+      result_.status = finalized.status();
+      return;
+    }
+    if (finalized->empty()) {
+      return;
+    }
+    CHECK_EQ(finalized->size(), result_.records.size());
+    const double share_ms = stopwatch.ElapsedMs() / static_cast<double>(finalized->size());
+    for (size_t i = 0; i < finalized->size(); ++i) {
+      FinalizedFrame& frame = (*finalized)[i];
+      RunRecord& record = result_.records[i];
+      record.estimate = std::move(frame.estimate);
+      record.statistics = frame.statistics;
+      record.backend_ms += share_ms;
+      if (frame.filtering_covariance) {
+        record.filtering_covariance = frame.filtering_covariance->topLeftCorner<6, 6>();
+      }
+    }
+  }
+
   [[nodiscard]] std::string Reason() const {
     return result_.init_report.empty() ? "there is no frame" : result_.init_report;
   }
@@ -191,6 +220,18 @@ void AttachAudit(const std::vector<ObservabilityRecord>& audited, RunResult* res
 
 }  // namespace
 
+std::string_view ToString(Backend backend) {
+  switch (backend) {
+    case Backend::kFilter:
+      return "filter";
+    case Backend::kSmoother:
+      return "smoother";
+    case Backend::kBatch:
+      break;
+  }
+  return "batch";
+}
+
 std::string StatusWord(const RunResult& result) {
   if (result.interrupted) {
     return "interrupted";
@@ -217,7 +258,17 @@ Trajectory TrajectoryOf(const RunResult& result) {
 }
 
 std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config, const RigCalibration& rig) {
-  return config.backend == Backend::kFilter ? MakeFilter(config, rig) : MakeSmoother(config, rig);
+  switch (config.backend) {
+    case Backend::kFilter:
+      return MakeFilter(config, rig);
+    case Backend::kSmoother:
+      return MakeSmoother(config, rig);
+    case Backend::kBatch:
+      break;
+  }
+  return MakeBatch(
+      config, rig,
+      config.batch.initial == BatchInitial::kFilter ? MakeFilter(config, rig) : MakeSmoother(config, rig));
 }
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/estimator.h"
@@ -22,6 +23,9 @@ struct RunRecord {
   double backend_ms = 0;  ///< wall time of the estimator for this frame and the IMU samples before it
   std::string status = "ok";
   std::optional<ObservabilityRecord> observability;  ///< of an audited run
+  /// Covariance of (phi, dp) given the data up to this frame alone; of an estimator that looks back and knows
+  /// it.
+  std::optional<Matrix6d> filtering_covariance;
 };
 
 struct RunResult {
@@ -44,6 +48,9 @@ struct RunResult {
 /// The rows of a result as a trajectory with covariance.
 [[nodiscard]] Trajectory TrajectoryOf(const RunResult& result);
 
+/// filter | smoother | batch
+[[nodiscard]] std::string_view ToString(Backend backend);
+
 /// The back end that `config.backend` names.
 [[nodiscard]] std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config,
                                                        const RigCalibration& rig);
@@ -59,7 +66,8 @@ struct RunOptions {
 
 /// Feeds the log to `estimator` in time order: before each frame every IMU sample up to and including the
 /// first one at or after the frame's IMU time (stamp + time offset); the frame that yields the initial state
-/// is also the first one added.
+/// is also the first one added. At the end of the log an estimator that looks back replaces its
+/// records (Estimator::TakeFinalized).
 [[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
                                      const RunOptions& options, Estimator* estimator);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "eval/efficiency.h"
 #include "eval/pair_tables.h"
 
 namespace alidade {
@@ -209,6 +210,8 @@ std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::str
   for (const std::string& sequence : sequences) {
     tables.push_back(SequenceTable(sequence, rows, comparison, figures, plus_minus));
   }
+  const std::vector<TextTable> efficiency = LayOutEfficiencyTables(comparison);
+  tables.insert(tables.end(), efficiency.begin(), efficiency.end());
   const std::vector<TextTable> pairs = LayOutPairTables(comparison, figures, plus_minus);
   tables.insert(tables.end(), pairs.begin(), pairs.end());
   return tables;

@@ -35,8 +35,8 @@ struct TextTable {
                                           const std::string& plus_minus);
 
 /// One overview each for position and orientation ATE (estimators down, sequences across; only with several
-/// sequences), then one table a sequence with its figures across, then the paired differences
-/// (eval/pair_tables.h). Reference figures follow the estimators.
+/// sequences), then one table a sequence with its figures across, then efficiencies (eval/efficiency.h) and
+/// paired differences (eval/pair_tables.h). Reference figures follow the estimators.
 [[nodiscard]] std::vector<TextTable> LayOutTables(const Comparison& comparison,
                                                   const std::string& plus_minus);
 

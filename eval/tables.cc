@@ -1,5 +1,8 @@
+#include <filesystem>
+
 #include "eval/comparison.h"
 #include "eval/csv_text.h"
+#include "eval/efficiency.h"
 #include "eval/nees_over_time.h"
 #include "eval/output_file.h"
 #include "eval/pair_tables.h"
@@ -96,6 +99,12 @@ Status WriteTables(const Comparison& comparison, const std::string& folder) {
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/summary.csv", SummaryCsv(comparison, figures)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/aggregate.csv", AggregateCsv(comparison, figures)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/pairs.csv", PairsCsv(comparison, figures)));
+  const std::vector<Efficiency> efficiency = ComputeEfficiency(comparison);
+  std::error_code ignored;
+  std::filesystem::remove(folder + "/efficiency.csv", ignored);
+  if (!efficiency.empty()) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/efficiency.csv", EfficiencyCsv(efficiency)));
+  }
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/nees_over_time.csv", NeesCsv(comparison)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/tables.md", MarkdownText(comparison, tables)));
   return WriteFileAtomically(folder + "/tables.tex", LatexText(comparison, tables));

@@ -11,4 +11,9 @@ namespace alidade {
 [[nodiscard]] std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config,
                                                       const RigCalibration& rig);
 
+/// The batch estimate (config.backend batch); see smoother/batch_estimator.h. `initial` runs alongside and
+/// gives the initial values.
+[[nodiscard]] std::unique_ptr<Estimator> MakeBatch(const EstimatorConfig& config, const RigCalibration& rig,
+                                                   std::unique_ptr<Estimator> initial);
+
 }  // namespace alidade

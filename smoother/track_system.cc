@@ -104,11 +104,7 @@ void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vec
 /// Weighted rows of every view over its own pose and the landmark. False behind a view.
 bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                     const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace) {
-  // The landmark's three coordinates are taken in the base camera's frame as it is NOW, which then stands
-  // still: a point of the world. So every row, the base's too, concerns one pose, and rho = 0 is regular.
-  const Pose base = Geometry(geometry, views.front()).T_WC;
-  const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
-  const double rho = landmark.z();
+  const Pose& base = Geometry(geometry, views.front()).T_WC;
   workspace->rows.resize(views.size());
   workspace->coupling.resize(views.size());
   workspace->reduced.resize(views.size());
@@ -117,32 +113,15 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   workspace->robust_cost = 0;
   workspace->chi2 = 0;
   for (size_t k = 0; k < views.size(); ++k) {
-    const FrameGeometry& frame = Geometry(geometry, views[k]);
-    const NormalizedObservation& observation = views[k].observation;
-    const Vector3d shift_W = base.translation - frame.T_WC.translation;
-    const Vector3d q = frame.T_WC.rotation.transpose() * (ray_W + rho * shift_W);
-    if (!(q.z() > kMinViewDepth)) {
+    ViewRows& rows = workspace->rows[k];
+    if (!LinearizeView(base, Geometry(geometry, views[k]), views[k].observation, kernel, landmark, &rows)) {
       return false;
     }
-    const Vector2d predicted = q.hnormalized();
-    Matrix2x3 perspective;
-    perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-    const Matrix2x3 weighted = observation.sqrt_information * (perspective / q.z());
-    const Matrix2x3 to_world = weighted * frame.T_WC.rotation.transpose();
-    Matrix2x3 to_landmark;
-    to_landmark << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
-    Eigen::Matrix<double, 2, 6> camera;
-    camera << weighted * Skew(q), -rho * to_world;
-    TrackWorkspace::Rows& rows = workspace->rows[k];
-    rows.pose.noalias() = camera * frame.camera_from_body;
-    rows.residual = observation.sqrt_information * (predicted - observation.z);
-    const double s = rows.residual.squaredNorm();
-    rows.weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
-    workspace->robust_cost += kernel.Rho(s);
-    workspace->chi2 += s;
-    workspace->coupling[k].noalias() = rows.weight * rows.pose.transpose() * to_landmark;
-    workspace->landmark_hessian.noalias() += rows.weight * to_landmark.transpose() * to_landmark;
-    workspace->landmark_gradient.noalias() += rows.weight * to_landmark.transpose() * rows.residual;
+    workspace->robust_cost += kernel.Rho(rows.squared_norm);
+    workspace->chi2 += rows.squared_norm;
+    workspace->coupling[k].noalias() = rows.weight * rows.pose.transpose() * rows.landmark;
+    workspace->landmark_hessian.noalias() += rows.weight * rows.landmark.transpose() * rows.landmark;
+    workspace->landmark_gradient.noalias() += rows.weight * rows.landmark.transpose() * rows.residual;
   }
   return true;
 }
@@ -173,6 +152,30 @@ std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC) 
     geometry.push_back(MakeGeometry(frame->nav_state(), T_BC));
   }
   return geometry;
+}
+
+bool LinearizeView(const Pose& base, const FrameGeometry& frame, const NormalizedObservation& observation,
+                   const ObservationKernel& kernel, const Vector3d& landmark, ViewRows* rows) {
+  const Vector3d shift_W = base.translation - frame.T_WC.translation;
+  const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
+  const double rho = landmark.z();
+  const Vector3d q = frame.T_WC.rotation.transpose() * (ray_W + rho * shift_W);
+  if (!(q.z() > kMinViewDepth)) {
+    return false;
+  }
+  const Vector2d predicted = q.hnormalized();
+  Matrix2x3 perspective;
+  perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
+  const Matrix2x3 weighted = observation.sqrt_information * (perspective / q.z());
+  const Matrix2x3 to_world = weighted * frame.T_WC.rotation.transpose();
+  rows->landmark << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
+  Eigen::Matrix<double, 2, 6> camera;
+  camera << weighted * Skew(q), -rho * to_world;
+  rows->pose.noalias() = camera * frame.camera_from_body;
+  rows->residual = observation.sqrt_information * (predicted - observation.z);
+  rows->squared_norm = rows->residual.squaredNorm();
+  rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
+  return true;
 }
 
 PoseSystem::PoseSystem(int frames)
@@ -236,7 +239,7 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   system->gradient.segment<6>(base_row) += workspace->prior_gradient;
   for (size_t k = 0; k < views.size(); ++k) {
     const int row = 6 * views[k].frame->index;
-    const TrackWorkspace::Rows& rows = workspace->rows[k];
+    const ViewRows& rows = workspace->rows[k];
     workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
     system->hessian.block<6, 6>(row, row).noalias() += rows.weight * rows.pose.transpose() * rows.pose;
     system->gradient.segment<6>(row).noalias() += rows.weight * rows.pose.transpose() * rows.residual;

@@ -41,14 +41,24 @@ struct PoseSystem {
   int tracks = 0;
 };
 
+/// The whitened rows of one view of a track, before the landmark is eliminated.
+struct ViewRows {
+  Eigen::Matrix<double, 2, 6> pose;      ///< over (phi, dp) of the view's body pose, canonical chart
+  Eigen::Matrix<double, 2, 3> landmark;  ///< over (x, y, rho)
+  Eigen::Vector2d residual;              ///< predicted - measured
+  double squared_norm = 0;               ///< of the residual
+  double weight = 1;                     ///< of both rows: the kernel's
+};
+
+/// Linearises one view. The landmark's three coordinates (x, y, rho) are taken in the base camera's frame as
+/// it is NOW, `base`, which then stands still: a point of the world. So every row, the base's too, concerns
+/// one pose, and rho = 0 is regular. False behind the view.
+bool LinearizeView(const Pose& base, const FrameGeometry& frame, const NormalizedObservation& observation,
+                   const ObservationKernel& kernel, const Eigen::Vector3d& landmark, ViewRows* rows);
+
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {
-  struct Rows {
-    Eigen::Matrix<double, 2, 6> pose;
-    Eigen::Vector2d residual;
-    double weight = 1;
-  };
-  std::vector<Rows> rows;
+  std::vector<ViewRows> rows;
   std::vector<Eigen::Matrix<double, 6, 3>> coupling;  ///< B_k^T A_k
   Eigen::Matrix3d landmark_hessian;
   Eigen::Vector3d landmark_gradient;

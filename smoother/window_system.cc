@@ -15,27 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Rows of an IMU factor between two frames over the 15 canonical coordinates of each.
-struct ImuRows {
-  Matrix15d first, second;
-  Vector15d residual;
-};
-
-ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second, const Eigen::Vector3d& gravity_W) {
-  const ImuFactor factor(&*second.preintegration, gravity_W, second.mean_step_s());
-  Eigen::Matrix<double, 15, 9, Eigen::RowMajor> nav_first, nav_second;
-  Eigen::Matrix<double, 15, 6, Eigen::RowMajor> bias_first, bias_second;
-  const std::array<const double*, 4> parameters = {first.nav.data(), first.bias.data(), second.nav.data(),
-                                                   second.bias.data()};
-  const std::array<double*, 4> jacobians = {nav_first.data(), bias_first.data(), nav_second.data(),
-                                            bias_second.data()};
-  ImuRows rows;
-  factor.Evaluate(parameters.data(), rows.residual.data(), jacobians.data());
-  rows.first << nav_first, bias_first;
-  rows.second << nav_second, bias_second;
-  return rows;
-}
-
 /// J of the prior over 15 canonical coordinates of each anchor's frame, at the present states.
 void AddPriorHessian(const LinearPrior& prior, MatrixXd* hessian) {
   const Index rows = prior.jacobian.rows();
@@ -69,6 +48,21 @@ struct RestRows {
 };
 
 }  // namespace
+
+ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second, const Eigen::Vector3d& gravity_W) {
+  const ImuFactor factor(&*second.preintegration, gravity_W, second.mean_step_s());
+  Eigen::Matrix<double, 15, 9, Eigen::RowMajor> nav_first, nav_second;
+  Eigen::Matrix<double, 15, 6, Eigen::RowMajor> bias_first, bias_second;
+  const std::array<const double*, 4> parameters = {first.nav.data(), first.bias.data(), second.nav.data(),
+                                                   second.bias.data()};
+  const std::array<double*, 4> jacobians = {nav_first.data(), bias_first.data(), nav_second.data(),
+                                            bias_second.data()};
+  ImuRows rows;
+  factor.Evaluate(parameters.data(), rows.residual.data(), jacobians.data());
+  rows.first << nav_first, bias_first;
+  rows.second << nav_second, bias_second;
+  return rows;
+}
 
 bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                       const Eigen::Vector3d& gravity_W, Matrix15d* covariance) {

@@ -7,6 +7,16 @@
 
 namespace alidade {
 
+/// Whitened rows of an IMU factor between two frames at their present states, over the 15 canonical
+/// coordinates of each.
+struct ImuRows {
+  Matrix15d first, second;
+  Vector15d residual;
+};
+/// second.preintegration must be there.
+[[nodiscard]] ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second,
+                                   const Eigen::Vector3d& gravity_W);
+
 /// Covariance of the newest frame (canonical chart, phi dp dv dbg dba) from the Gauss-Newton Hessian of the
 /// window at its present states: prior, IMU, rest and `vision` (all landmarks eliminated, kernels included).
 /// False when it is not positive definite.

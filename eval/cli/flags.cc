@@ -2,7 +2,7 @@
 
 DEFINE_string(align, "posyaw", "none | pos | posyaw | se3 | sim3: what is taken out before the ATE");
 DEFINE_bool(audit, false, "write observability.csv: what the filter claims to observe");
-DEFINE_string(backend, "", "filter | smoother: replaces the key `backend` of the configuration");
+DEFINE_string(backend, "", "filter | smoother | batch: replaces the key `backend` of the configuration");
 DEFINE_bool(check, false, "name the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK");
 DEFINE_string(config, "", "configuration file, YAML");

@@ -16,15 +16,16 @@ namespace {
 Result<EstimatorConfig> LoadConfig() {
   std::vector<std::string> settings = SplitSettings(FLAGS_set);
   if (!FLAGS_backend.empty()) {
-    if (FLAGS_backend != "filter" && FLAGS_backend != "smoother") {
-      return Status::Usage("run: --backend: found '" + FLAGS_backend + "', expected filter or smoother");
+    if (FLAGS_backend != "filter" && FLAGS_backend != "smoother" && FLAGS_backend != "batch") {
+      return Status::Usage("run: --backend: found '" + FLAGS_backend +
+                           "', expected filter, smoother or batch");
     }
     settings.push_back("backend=" + FLAGS_backend);
   }
   Result<EstimatorConfig> config = LoadEstimatorConfig(FLAGS_config, settings);
   if (config.ok() && FLAGS_audit && config->backend != Backend::kFilter) {
-    return Status::Usage(
-        "run: --audit: found backend smoother, expected filter: only a filter can be audited");
+    return Status::Usage("run: --audit: found backend " + std::string(ToString(config->backend)) +
+                         ", expected filter: only a filter can be audited");
   }
   return config;
 }

@@ -47,6 +47,14 @@ class FakeEstimator final : public Estimator {
   bool initialized() const override { return initialized_; }
   const FrameStatistics& last_statistics() const override { return statistics_; }
 
+  Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* /*stop*/) override {
+    ++finalized_calls;
+    return finalized_status.ok() ? Result<std::vector<FinalizedFrame>>(finalized) : finalized_status;
+  }
+
+  std::vector<FinalizedFrame> finalized;  ///< what TakeFinalized answers, unless finalized_status is an error
+  Status finalized_status;
+  int finalized_calls = 0;
   double time_offset_s = 0;
   int diverge_at_frame = 0;  ///< counted from 1; 0 never
   int not_finite_at_frame = 0;

@@ -101,6 +101,29 @@ TEST_F(RecorderTest, ReadsBackWhatItWrote) {
   }
 }
 
+TEST_F(RecorderTest, FilteringCovarianceHasAFileOfItsOwnOnlyWhereThereIsOne) {
+  for (size_t i = 0; i < result_.records.size(); ++i) {
+    const Vector6d column = Vector6d::LinSpaced(0.1, 0.1 + static_cast<double>(i));
+    result_.records[i].filtering_covariance = Matrix6d::Identity() + column * column.transpose();
+  }
+  ASSERT_TRUE(WriteRun(identity_, result_, folder_.File("run")).ok());
+  EXPECT_THAT(Written("bound.csv"), StartsWith("timestamp_ns,c_00,c_01,c_02,c_03,c_04,c_05,c_11"));
+  Result<RunResult> read = ReadRun(folder_.File("run"));
+  ASSERT_TRUE(read.ok()) << read.message();
+  for (size_t i = 0; i < read->records.size(); ++i) {
+    ASSERT_TRUE(read->records[i].filtering_covariance.has_value());
+    EXPECT_EQ(*read->records[i].filtering_covariance, *result_.records[i].filtering_covariance);
+  }
+  for (RunRecord& record : result_.records) {
+    record.filtering_covariance.reset();
+  }
+  ASSERT_TRUE(WriteRun(identity_, result_, folder_.File("run")).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("run/bound.csv"))) << "of an older run";
+  read = ReadRun(folder_.File("run"));
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_FALSE(read->records.front().filtering_covariance.has_value());
+}
+
 TEST_F(RecorderTest, RunThatNeverStartedReadsBackEmpty) {
   RunResult failed;
   failed.status = Status::Diverged("moving");

@@ -137,6 +137,52 @@ TEST(Runner, StopsWhenAsked) {
   EXPECT_EQ(result.records.size(), 3u);
 }
 
+// GIVEN an estimator that looks back, WHEN the log ends, THEN its revised frames replace those recorded.
+TEST(Runner, TakesTheRevisedEstimatesAtTheEnd) {
+  const RestingScene scene(0.2);
+  FakeEstimator estimator;
+  for (const TrackFrame& frame : scene.log.frames) {
+    FinalizedFrame revised;
+    revised.estimate.stamp_ns = frame.stamp_ns;
+    revised.estimate.nav.p_WB = {7, 8, 9};
+    revised.statistics.iterations = 3;
+    revised.filtering_covariance = 2 * Matrix15d::Identity();
+    estimator.finalized.push_back(revised);
+  }
+  const RunResult result = RunScene(TruthConfig(), scene, &estimator);
+  ASSERT_TRUE(result.status.ok()) << result.status.message();
+  EXPECT_EQ(estimator.finalized_calls, 1);
+  ASSERT_EQ(result.records.size(), scene.log.frames.size());
+  for (const RunRecord& record : result.records) {
+    EXPECT_EQ(record.estimate.nav.p_WB, Eigen::Vector3d(7, 8, 9));
+    EXPECT_EQ(record.statistics.iterations, 3);
+    EXPECT_EQ(record.frontend_ms, 1.5);
+    ASSERT_TRUE(record.filtering_covariance.has_value());
+    EXPECT_EQ(*record.filtering_covariance, Matrix6d(2 * Matrix6d::Identity()));
+  }
+}
+
+TEST(Runner, KeepsTheRecordsWhenThereIsNoRevision) {
+  const RestingScene scene(0.2);
+  FakeEstimator estimator;
+  estimator.finalized_status = Status::Diverged("fake: far from the minimum");
+  const RunResult result = RunScene(TruthConfig(), scene, &estimator);
+  EXPECT_EQ(StatusWord(result), "diverged");
+  EXPECT_THAT(result.status.message(), HasSubstr("far from the minimum"));
+  EXPECT_EQ(result.records.size(), scene.log.frames.size());
+
+  FakeEstimator lost;
+  lost.diverge_at_frame = 2;
+  EXPECT_FALSE(RunScene(TruthConfig(), scene, &lost).status.ok());
+  EXPECT_EQ(lost.finalized_calls, 0);
+}
+
+TEST(Runner, EveryBackendHasAName) {
+  EXPECT_EQ(ToString(Backend::kFilter), "filter");
+  EXPECT_EQ(ToString(Backend::kSmoother), "smoother");
+  EXPECT_EQ(ToString(Backend::kBatch), "batch");
+}
+
 TEST(TruthStart, DrawnErrorFitsItsCovariance) {
   const RestingScene scene;
   InitConfig config;

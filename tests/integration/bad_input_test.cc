@@ -57,7 +57,7 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {run + " --config=" + base + " --seed=x", 2, "--seed: found 'x'"},
       {run + " --config=" + base + " --seed=-1", 2, "--seed: found '-1'"},
       {run + " --config=" + base + " --seed", 2, "--seed: found no value"},
-      {run + " --config=" + base + " --backend=ekf", 2, "expected filter or smoother"},
+      {run + " --config=" + base + " --backend=ekf", 2, "expected filter, smoother or batch"},
       {run + " --config=" + base + " extra", 2, "found 'extra'"},
       {run + " --config=" + folder_.File("none.yaml"), 3, "none.yaml"},
       {run + " --config=" + folder_.File("unknown_key.yaml"), 3, "unknown_key.yaml:3:3"},

@@ -1,0 +1,135 @@
+#include "smoother/solve_store.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace alidade {
+namespace {
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
+  switch (kernel.kernel) {
+    case RobustKernel::kHuber:
+      return std::make_unique<ceres::HuberLoss>(kernel.scale_sigma);
+    case RobustKernel::kCauchy:
+      return std::make_unique<ceres::CauchyLoss>(kernel.scale_sigma);
+    case RobustKernel::kNone:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+SolveStore::SolveStore(ErrorConvention error, const ObservationKernel& kernel, const Frames& frames,
+                       const std::vector<WindowTrack*>& tracks)
+    : frames_(frames),
+      tracks_(tracks),
+      parameters_(kFrameStride * frames.size() + kLandmarkStride * tracks.size()),
+      manifold_(error),
+      kernel_(kernel),
+      loss_(MakeLoss(kernel)) {
+  for (const std::unique_ptr<WindowFrame>& frame : frames) {
+    std::copy(frame->nav.begin(), frame->nav.end(), Nav(frame->index));
+    std::copy(frame->bias.begin(), frame->bias.end(), Bias(frame->index));
+  }
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    std::copy_n(tracks[i]->landmark.data(), 3, Landmark(i));
+  }
+}
+
+std::unique_ptr<ceres::Problem> SolveStore::MakeProblem() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  auto problem = std::make_unique<ceres::Problem>(options);
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    problem->AddParameterBlock(Nav(frame->index), kNavAmbientSize, &manifold_);
+    problem->AddParameterBlock(Bias(frame->index), 6);
+  }
+  return problem;
+}
+
+void SolveStore::AddPrior(const LinearPrior& prior, ceres::Problem* problem) {
+  prior_.emplace(PriorFactor(&prior));
+  std::vector<double*> blocks;
+  for (size_t i = 0; i < prior.anchors.size(); ++i) {
+    blocks.push_back(Nav(prior.anchors[i].frame->index));
+    if (i == 0) {
+      blocks.push_back(Bias(prior.anchors[i].frame->index));
+    }
+  }
+  problem->AddResidualBlock(&*prior_, nullptr, blocks);
+}
+
+Status SolveStore::AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem) {
+  for (size_t i = 0; i + 1 < frames_.size(); ++i) {
+    const WindowFrame& next = *frames_[i + 1];
+    const ImuFactor factor(&*next.preintegration, gravity_W, next.mean_step_s());
+    if (!factor.valid()) {
+      return Status::Diverged("smoother: IMU covariance up to " + FormatSeconds(next.stamp_ns) +
+                              " s is not positive definite");
+    }
+    imu_.emplace_back(factor);
+    const int from = static_cast<int>(i);
+    problem->AddResidualBlock(&imu_.back(), nullptr, Nav(from), Bias(from), Nav(from + 1), Bias(from + 1));
+  }
+  return Status::Ok();
+}
+
+void SolveStore::AddRest(ceres::Problem* problem) {
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    if (frame->rest) {
+      rest_.emplace_back(RestFactor(*frame->rest));
+      problem->AddResidualBlock(&rest_.back(), nullptr, Nav(frame->index), Bias(frame->index));
+    }
+  }
+}
+
+void SolveStore::AddInverseDepth(const Pose& T_BC, ceres::Problem* problem) {
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    const std::vector<WindowView>& views = tracks_[i]->views;
+    base_bearing_.emplace_back(BaseBearingFactor(views.front().observation));
+    problem->AddResidualBlock(&base_bearing_.back(), loss_.get(), Landmark(i));
+    if (tracks_[i]->depth_prior.sqrt_information > 0) {
+      depth_prior_.emplace_back(DepthPriorFactor(tracks_[i]->depth_prior));
+      problem->AddResidualBlock(&depth_prior_.back(), nullptr, Landmark(i));
+    }
+    for (size_t k = 1; k < views.size(); ++k) {
+      inverse_depth_.emplace_back(InverseDepthFactor(views[k].observation, &T_BC));
+      problem->AddResidualBlock(&inverse_depth_.back(), loss_.get(), Nav(views.front().frame->index),
+                                Nav(views[k].frame->index), Landmark(i));
+    }
+  }
+}
+
+void SolveStore::AddPoseOnly(const Pose& T_BC, ceres::Problem* problem) {
+  const int frames = static_cast<int>(frames_.size());
+  std::vector<double*> blocks;
+  for (int i = 0; i < frames; ++i) {
+    blocks.push_back(Nav(i));
+  }
+  pose_only_.emplace(PoseOnlyFactor(frames, {tracks_.begin(), tracks_.end()}, T_BC, kernel_));
+  problem->AddResidualBlock(&*pose_only_, nullptr, blocks);
+}
+
+bool SolveStore::IsFinite() const {
+  return std::all_of(parameters_.begin(), parameters_.end(),
+                     [](double value) { return std::isfinite(value); });
+}
+
+void SolveStore::WriteBack() const {
+  const double* block = parameters_.data();
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    std::copy_n(block, kNavAmbientSize, frame->nav.begin());
+    std::copy_n(block + kNavAmbientSize, 6, frame->bias.begin());
+    block += kFrameStride;
+  }
+  for (WindowTrack* track : tracks_) {
+    std::copy_n(block, 3, track->landmark.data());
+    block += kLandmarkStride;
+  }
+}
+
+}  // namespace alidade

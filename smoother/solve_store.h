@@ -1,0 +1,71 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/status.h"
+#include "smoother/imu_factor.h"
+#include "smoother/inverse_depth_factor.h"
+#include "smoother/pose_only_factor.h"
+#include "smoother/prior_factor.h"
+#include "smoother/rest_factor.h"
+
+namespace alidade {
+
+/// Everything one solve hands to Ceres by pointer; it must outlive the problem it fills. All parameter blocks
+/// lie in one array in a fixed order: Ceres sorts the blocks of an elimination group by ADDRESS, so blocks
+/// scattered over the heap would make the rounding depend on its history.
+class SolveStore {
+ public:
+  using Frames = std::vector<std::unique_ptr<WindowFrame>>;
+
+  /// Copies states and landmarks; `frames` and `tracks` must outlive the store.
+  SolveStore(ErrorConvention error, const ObservationKernel& kernel, const Frames& frames,
+             const std::vector<WindowTrack*>& tracks);
+
+  [[nodiscard]] double* Nav(int frame) { return &parameters_[kFrameStride * static_cast<size_t>(frame)]; }
+  [[nodiscard]] double* Bias(int frame) { return Nav(frame) + kNavAmbientSize; }
+  [[nodiscard]] double* Landmark(size_t track) {
+    return &parameters_[kFrameStride * frames_.size() + kLandmarkStride * track];
+  }
+
+  /// A problem that owns nothing, with the blocks of all frames.
+  [[nodiscard]] std::unique_ptr<ceres::Problem> MakeProblem();
+  void AddPrior(const LinearPrior& prior, ceres::Problem* problem);
+  /// kDiverged: the covariance of an interval is not positive definite.
+  Status AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem);
+  void AddRest(ceres::Problem* problem);
+  /// T_BC must outlive the store.
+  void AddInverseDepth(const Pose& T_BC, ceres::Problem* problem);
+  void AddPoseOnly(const Pose& T_BC, ceres::Problem* problem);
+
+  /// True when every parameter is a finite number.
+  [[nodiscard]] bool IsFinite() const;
+  /// Puts the parameters back into the frames and tracks they came from.
+  void WriteBack() const;
+
+ private:
+  static constexpr size_t kFrameStride = 16;    // nav (10) and bias (6)
+  static constexpr size_t kLandmarkStride = 4;  // one spare, so that every block stays 16-byte aligned
+
+  const Frames& frames_;
+  const std::vector<WindowTrack*>& tracks_;
+  std::vector<double> parameters_;
+  NavStateManifold manifold_;
+  ObservationKernel kernel_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  std::deque<LiftedCost<ImuFactor>> imu_;
+  std::deque<LiftedCost<RestFactor>> rest_;
+  std::deque<LiftedCost<InverseDepthFactor>> inverse_depth_;
+  std::deque<LiftedCost<BaseBearingFactor>> base_bearing_;
+  std::deque<LiftedCost<DepthPriorFactor>> depth_prior_;
+  std::optional<LiftedCost<PoseOnlyFactor>> pose_only_;
+  std::optional<LiftedCost<PriorFactor>> prior_;
+};
+
+}  // namespace alidade
