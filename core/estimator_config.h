@@ -115,7 +115,7 @@ struct FilterConfig {
   double base_inflation = 2.0;
   int max_base_rounds = 2;
   TrackMemoryPolicy track_memory = TrackMemoryPolicy::kNone;
-  double memory_depth_deviation = 0.02;
+  double memory_depth_deviation = 0.015;
   bool flush_lost_tracks = true;
   ClonePolicy clone_policy = ClonePolicy::kKeepBases;
   int refine_iterations = 5;

@@ -277,6 +277,13 @@ void FilterEstimator::MeasureBlocks() {
   const Eigen::Ref<const Eigen::VectorXd> innovation = update_.innovation();
   block_nis_.clear();
   for (const FeatureUpdate::Block& block : update_.blocks()) {
+    if (block.rows == 2) {  // a remembered track: too small for the general product
+      const auto rows = prepared.middleRows<2>(block.first);
+      const auto y = innovation.segment<2>(block.first);
+      const Eigen::Matrix2d gate = rows.lazyProduct(rows.transpose()) + Eigen::Matrix2d::Identity();
+      block_nis_.push_back(y.dot(gate.llt().solve(y)));
+      continue;
+    }
     const auto rows = prepared.middleRows(block.first, block.rows);
     const auto y = innovation.segment(block.first, block.rows);
     gate_matrix_.noalias() = rows * rows.transpose();

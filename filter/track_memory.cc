@@ -43,9 +43,7 @@ TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones)
       columns_(6 * max_clones),
       pose_(1),
       observation_(1),
-      stacked_landmark_(5, 3),
-      stacked_clones_(5, columns_),
-      stacked_innovation_(5),
+      stacked_(5, columns_),
       jacobian_(2, columns_) {}
 
 void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, const Matrix3d& landmark_rows,
@@ -77,29 +75,32 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
   if (!LinearizeTrack(pose_, observation_, memory.p_W, &linearization_)) {
     return false;
   }
-  stacked_landmark_.topRows<3>() = memory.landmark_rows;
-  stacked_landmark_.bottomRows<2>() = linearization_.point_jacobian;
-  stacked_clones_.topRows<3>() = memory.clone_rows;
-  stacked_clones_.bottomRows<2>().setZero();
-  stacked_clones_.block<2, 6>(3, 6 * clone.slot) = linearization_.pose_jacobians * clone.camera_from_error;
+  Eigen::Matrix<double, 5, 3> landmark;
+  landmark << memory.landmark_rows, linearization_.point_jacobian;
+  stacked_.topRows<3>() = memory.clone_rows;
+  stacked_.bottomRows<2>().setZero();
+  stacked_.block<2, 6>(3, 6 * clone.slot) = linearization_.pose_jacobians * clone.camera_from_error;
   if (convention_ == ErrorConvention::kRightInvariant) {
     const int anchor = state.FindClone(memory.anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
-    stacked_clones_.block<2, 3>(3, 6 * state.clones()[static_cast<size_t>(anchor)].slot) -=
+    stacked_.block<2, 3>(3, 6 * state.clones()[static_cast<size_t>(anchor)].slot) -=
         linearization_.point_jacobian * Skew(memory.p_W);
   }
-  stacked_innovation_.head<3>().setZero();
-  stacked_innovation_.tail<2>() = -linearization_.residual;
-  EliminateLandmark(stacked_landmark_, stacked_clones_, stacked_innovation_);
-  *extended = memory;
+  // The reflections once, as a small matrix: the rows are few and long.
+  Eigen::Matrix<double, 5, 5> rotation = Eigen::Matrix<double, 5, 5>::Identity();
+  Eigen::Matrix<double, 5, 1> innovation;
+  innovation << Vector3d::Zero(), -linearization_.residual;
+  EliminateLandmark(landmark, rotation, innovation);
+  extended->active = true;
   extended->refusals = 0;
-  extended->landmark_rows = stacked_landmark_.topRows<3>().triangularView<Eigen::Upper>();
-  extended->clone_rows = stacked_clones_.topRows<3>();
+  extended->anchor = memory.anchor;
+  extended->landmark_rows = landmark.topRows<3>().triangularView<Eigen::Upper>();
+  extended->clone_rows.noalias() = rotation.topRows<3>().lazyProduct(stacked_);
+  jacobian_.noalias() = rotation.bottomRows<2>().lazyProduct(stacked_);
+  innovation_ = innovation.tail<2>();
   // The rows' own innovation moves the landmark at once: t is zero in a memory.
-  extended->p_W +=
-      extended->landmark_rows.triangularView<Eigen::Upper>().solve(stacked_innovation_.head<3>());
-  jacobian_ = stacked_clones_.bottomRows<2>();
-  innovation_ = stacked_innovation_.tail<2>();
+  extended->p_W =
+      memory.p_W + extended->landmark_rows.triangularView<Eigen::Upper>().solve(innovation.head<3>());
   return extended->p_W.allFinite();
 }
 

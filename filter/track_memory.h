@@ -76,9 +76,7 @@ class TrackMemoryKeeper {
   TrackLinearization linearization_;
   std::vector<Pose> pose_;
   std::vector<NormalizedObservation> observation_;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> stacked_landmark_;
-  Eigen::MatrixXd stacked_clones_;
-  Eigen::VectorXd stacked_innovation_;
+  Eigen::Matrix<double, 5, Eigen::Dynamic> stacked_;
   Eigen::Matrix<double, 2, Eigen::Dynamic> jacobian_;
   Eigen::Vector2d innovation_ = Eigen::Vector2d::Zero();
 };
