@@ -149,7 +149,8 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
   visitor.Boolean({"flush_lost_tracks", "-", "a lost track's leftover observations still update once"},
                   &flush_lost_tracks);
   visitor.Enumeration({"clone_policy", "-", "which clone leaves a full window"}, &clone_policy,
-                      {{"oldest", ClonePolicy::kOldest}, {"keep_bases", ClonePolicy::kKeepBases},
+                      {{"oldest", ClonePolicy::kOldest},
+                       {"keep_bases", ClonePolicy::kKeepBases},
                        {"alternate", ClonePolicy::kAlternate}});
   visitor.Integer({"refine_iterations", "-", "Gauss-Newton steps on the landmark; landmark msckf only"},
                   &refine_iterations, 0, 50);

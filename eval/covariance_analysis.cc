@@ -1,6 +1,7 @@
 #include "eval/covariance_analysis.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "core/error_convention.h"
@@ -72,6 +73,11 @@ int CovarianceAnalysis::FindKept(std::int64_t track_id, int serial) const {
 
 void CovarianceAnalysis::OnUpdate(const FilterState& state, const FilterRows& rows) {
   if (met_landmark_) {
+    return;
+  }
+  if (std::any_of(rows.blocks.begin(), rows.blocks.end(),
+                  [](const TracedBlock& block) { return block.serials.empty(); })) {
+    met_landmark_ = true;  // a track's memory carries one past its views
     return;
   }
   const MatrixXd& h = rows.jacobian;

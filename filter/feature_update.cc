@@ -184,6 +184,10 @@ TrackOutcome FeatureUpdate::AppendRemembered(const FilterState& state, const Tra
         keeper_.jacobian().middleCols<6>(6 * state.clones()[i].slot);
   }
   innovation_.segment<2>(rows_ - 2) = keeper_.innovation();
+  if (tracing_) {
+    // The noise of the views behind a memory is not followed.
+    traces_.push_back({blocks_.back().first, 2, track.id, {}, Eigen::MatrixXd(2, 0)});
+  }
   return TrackOutcome::kReady;
 }
 

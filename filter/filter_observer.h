@@ -15,7 +15,7 @@ struct TracedBlock {
   int first = 0;  ///< of its rows in FilterRows
   int rows = 0;
   std::int64_t track_id = 0;
-  std::vector<int> serials;  ///< clones whose observations entered, base first
+  std::vector<int> serials;  ///< clones whose observations entered, base first; empty: not followed
   /// rows x 2 serials.size(): the rows' noise is this times the noise of the observations, whitened by their
   /// true standard deviation (weights of base re-use, gate and kernel included).
   Eigen::MatrixXd noise;
