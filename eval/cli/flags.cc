@@ -4,7 +4,7 @@ DEFINE_string(align, "posyaw", "none | pos | posyaw | se3 | sim3: what is taken 
 DEFINE_bool(audit, false, "write observability.csv: what the filter claims to observe");
 DEFINE_string(backend, "", "filter | smoother | batch: replaces the key `backend` of the configuration");
 DEFINE_bool(check, false, "name the faults of a configuration file");
-DEFINE_string(clk, "", "precise clocks, RINEX CLK");
+DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(config, "", "configuration file, YAML");
 DEFINE_string(data, "", "folder that ${data} stands for in a plan");
 DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout");
@@ -30,6 +30,6 @@ DEFINE_string(rpe, "8,16,24,32,40", "distances of the relative error [m], separa
 DEFINE_uint32(seed, 1, "seed of the simulation, and of the start that init.method truth draws");
 DEFINE_string(set, "", "a.b=value,...: settings over the configuration file; may be repeated");
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
-DEFINE_string(sp3, "", "precise orbits, SP3");
+DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
 DEFINE_string(truth, "", "ground-truth trajectory file");
 DEFINE_string(windows, "5,10,15,20,25", "clones in the window, separated by commas");

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/status.h"
+
+namespace alidade {
+
+/// True when the text begins like Compact RINEX (Hatanaka).
+[[nodiscard]] bool IsCompactRinex(std::string_view text);
+
+/// Compact RINEX 1 (of RINEX 2) or 3 (of RINEX 3 and 4) -> RINEX text, blanks at line ends cut.
+/// Source: Y. Hatanaka, "A compression format and tools for GNSS observation data", Bulletin of the
+/// Geographical Survey Institute 55, 2008.
+///
+/// A fault in the middle of an arc spoils the differences that follow, so it ends the decoding with an error
+/// naming the line; a text that merely stops early gives the epochs that are whole. The result is bounded by
+/// kMaxTextBytes.
+Result<std::string> DecodeCompactRinex(const std::string& path, std::string_view text);
+
+}  // namespace alidade
