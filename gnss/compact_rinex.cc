@@ -110,7 +110,8 @@ constexpr EpochColumns kColumns3 = {31, 32, 41, 41, 15, 12};
 
 class Decoder {
  public:
-  Decoder(const std::string& path, std::string_view text) : lines_(path, text) {
+  Decoder(const std::string& path, std::string_view text, std::size_t max_bytes)
+      : lines_(path, text), max_bytes_(max_bytes) {
     if (!text.ends_with('\n')) {
       torn_line_ = 1 + std::count(text.begin(), text.end(), '\n');
     }
@@ -130,15 +131,18 @@ class Decoder {
         out_.resize(before);
         break;
       }
-      if (out_.size() > kMaxTextBytes) {
-        return lines_.Fault(Format("unpacks to more than %zu MiB", kMaxTextBytes >> 20));
-      }
     }
     return std::move(out_);
   }
 
  private:
   bool Next() { return lines_.Next() && lines_.number() != torn_line_; }
+
+  /// The fault of a text that grows beyond its bound, told where it does.
+  Status CheckSize() const {
+    return out_.size() <= max_bytes_ ? Status::Ok()
+                                     : lines_.Fault(Format("unpacks to more than %zu bytes", max_bytes_));
+  }
 
   void Emit(std::string_view line) {
     const std::size_t end = line.find_last_not_of(' ');
@@ -282,7 +286,7 @@ class Decoder {
     }
     ApplyTextDifference(rest, &arc->flags);
     EmitSatellite(name, *arc);
-    return Status::Ok();
+    return CheckSize();
   }
 
   void EmitSatellite(const std::string& name, const SatelliteArc& arc) {
@@ -306,6 +310,7 @@ class Decoder {
   }
 
   LineReader lines_;
+  std::size_t max_bytes_;
   std::ptrdiff_t torn_line_ = -1;  ///< the last line, when its end is missing
   bool modern_ = false;
   std::map<char, std::size_t> types_;
@@ -325,8 +330,9 @@ bool IsCompactRinex(std::string_view text) {
   return Field(line, 60, 20) == "CRINEX VERS   / TYPE";
 }
 
-Result<std::string> DecodeCompactRinex(const std::string& path, std::string_view text) {
-  return Decoder(path, text).Decode();
+Result<std::string> DecodeCompactRinex(const std::string& path, std::string_view text,
+                                       std::size_t max_bytes) {
+  return Decoder(path, text, max_bytes).Decode();
 }
 
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/status.h"
+#include "gnss/text_file.h"
 
 namespace alidade {
 
@@ -15,8 +16,9 @@ namespace alidade {
 /// Geographical Survey Institute 55, 2008.
 ///
 /// A fault in the middle of an arc spoils the differences that follow, so it ends the decoding with an error
-/// naming the line; a text that merely stops early gives the epochs that are whole. The result is bounded by
-/// kMaxTextBytes.
-Result<std::string> DecodeCompactRinex(const std::string& path, std::string_view text);
+/// naming the line; a text that merely stops early gives the epochs that are whole. So does a result of more
+/// than `max_bytes`.
+Result<std::string> DecodeCompactRinex(const std::string& path, std::string_view text,
+                                       std::size_t max_bytes = kMaxTextBytes);
 
 }  // namespace alidade

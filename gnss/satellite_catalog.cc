@@ -192,13 +192,16 @@ SatelliteState SatelliteCatalog::Propagate(const SatelliteFix& fix, TimeNs stamp
 }
 
 SatelliteFix SatelliteCatalog::AtTransmission(SatelliteId satellite, SignalCode signal, TimeNs tag_ns,
-                                              double pseudorange_m) const {
+                                              double pseudorange_m, bool ionosphere_free) const {
   const TimeNs by_satellite_clock = tag_ns - SecondsToNs(pseudorange_m / kSpeedOfLight);
   SatelliteFix fix = Select(satellite, signal, by_satellite_clock);
   if (fix.fault == SatelliteFault::kUnhealthy) {
     return fix;
   }
-  std::optional<SatelliteState> state = InterpolatePrecise(precise_, satellite, by_satellite_clock);
+  std::optional<SatelliteState> state;
+  if (fix.glonass == nullptr || fix.glonass->l2_delay_s || ionosphere_free) {
+    state = InterpolatePrecise(precise_, satellite, by_satellite_clock);
+  }
   fix.precise = state.has_value();
   if (!fix.precise && fix.fault != SatelliteFault::kNone) {
     return fix;

@@ -38,9 +38,11 @@ class SatelliteCatalog {
   ///
   /// Of the ephemerides within the message's age (GPS, QZSS 2 h, Galileo 4 h, BeiDou 6 h, GLONASS 30 min 30
   /// s) that with the nearest reference time is taken, of Galileo I/NAV before F/NAV; the latest of equals.
-  /// When it says that the satellite is unhealthy for `signal`, the satellite is.
+  /// When it says that the satellite is unhealthy for `signal`, the satellite is. A single GLONASS signal
+  /// (`ionosphere_free` false) whose delay against the pair of precise clocks is not broadcast keeps to the
+  /// broadcast orbit and clock: those delays are metres.
   [[nodiscard]] SatelliteFix AtTransmission(SatelliteId satellite, SignalCode signal, TimeNs tag_ns,
-                                            double pseudorange_m) const;
+                                            double pseudorange_m, bool ionosphere_free = false) const;
 
   [[nodiscard]] const NavigationData& navigation() const { return navigation_; }
   [[nodiscard]] bool has_precise() const { return !precise_.orbits.empty(); }

@@ -171,8 +171,8 @@ std::optional<SatelliteMeasurement> MeasurementBuilder::PrepareSatellite(TimeNs 
     return std::nullopt;
   }
   const SignalObservation& first = *choice.first;
-  const SatelliteFix fix =
-      catalog_->AtTransmission(observed.satellite, first.signal, tag_ns, *first.pseudorange_m);
+  const SatelliteFix fix = catalog_->AtTransmission(observed.satellite, first.signal, tag_ns,
+                                                    *first.pseudorange_m, choice.second != nullptr);
   if (fix.fault != SatelliteFault::kNone) {
     ++(fix.fault == SatelliteFault::kUnhealthy ? left_out->unhealthy : left_out->no_ephemeris);
     return std::nullopt;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnknownBiasM = 1e6;   // more than any receiver shows between systems
 constexpr double kKnownBiasFloorM = 1;  // multipath is correlated in time: a carried bias is no better
-constexpr double kRelocateM = 100;
+constexpr double kRelocateM = 1;        // the troposphere changes by 0.3 mm a metre of height
 
 std::size_t Index(GnssSystem system) {
   return static_cast<std::size_t>(system);
@@ -83,12 +83,9 @@ Result<SinglePointSolution> SinglePointSolver::Solve(const ObservationEpoch& epo
                c.no_ephemeris, c.unhealthy, c.no_signal));
   }
   State state;
-  Status status = Status::Input("");
-  if (last_E_) {
-    status = SolveFrom(*last_E_, &measurements, &state);
-  }
-  if (!status.ok()) {
-    status = SolveFrom(Eigen::Vector3d::Zero(), &measurements, &state);
+  Status status = SolveFrom(last_E_.value_or(Eigen::Vector3d::Zero()), &measurements, &state);
+  if (!status.ok() && last_E_ && SolveFrom(Eigen::Vector3d::Zero(), &measurements, &state).ok()) {
+    status = Status::Ok();  // the start was wrong
   }
   if (!status.ok()) {
     return Status::Input(FormatGpsTime(epoch.stamp_ns, 3) + ": " + status.message());
