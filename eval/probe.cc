@@ -18,17 +18,13 @@ struct Model {
   std::function<Json(const Json&, ErrorConvention)> answer;
 };
 
-Json NoGnss(const Json&, ErrorConvention) {
-  throw CaseError{"GNSS is not in this build"};
-}
-
 const std::vector<Model>& Models() {
   static const std::vector<Model> models = {{"pose_only", probe::PoseOnlyAnswer},
                                             {"inverse_depth", probe::InverseDepthAnswer},
                                             {"imu_propagation", probe::ImuPropagationAnswer},
                                             {"preintegration", probe::PreintegrationAnswer},
-                                            {"pseudorange", NoGnss},
-                                            {"doppler", NoGnss}};
+                                            {"pseudorange", probe::PseudorangeAnswer},
+                                            {"doppler", probe::DopplerAnswer}};
   return models;
 }
 

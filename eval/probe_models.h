@@ -12,5 +12,10 @@ Json PoseOnlyAnswer(const Json& input, ErrorConvention convention);
 Json InverseDepthAnswer(const Json& input, ErrorConvention convention);
 Json ImuPropagationAnswer(const Json& input, ErrorConvention convention);
 Json PreintegrationAnswer(const Json& input, ErrorConvention convention);
+/// Metres; H is 1x17 over (theta, p, v, bg, ba, clock, drift).
+Json PseudorangeAnswer(const Json& input, ErrorConvention convention);
+/// `predicted` and H are of -lambda D [m/s], `predicted_hz` is D; omega is the gyroscope's reading, so that
+/// the rate is omega - bg.
+Json DopplerAnswer(const Json& input, ErrorConvention convention);
 
 }  // namespace alidade::probe

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -196,7 +197,7 @@ TEST(Probe, BadCasesAnswerTheirErrorInPlace) {
       {"behind the base", "inverse_depth", with("inverse_depth", -0.25), "at least 0"},
       {"behind another view", "inverse_depth", turned, "behind views[1]"},
       {"stamps in seconds", "preintegration", preintegration, "integer nanoseconds"},
-      {"GNSS", "doppler", Json::object(), "not in this build"}};
+      {"no anchor", "doppler", Json::object(), "anchor_llh_deg"}};
   for (const BadCase& bad_case : bad) {
     const bool visual =
         std::string(bad_case.model) == "pose_only" || std::string(bad_case.model) == "inverse_depth";
@@ -221,6 +222,69 @@ TEST(Probe, RefusesWhatIsNoListOfCases) {
   const Result<std::string> unknown = Probe("pose_onyl", "{\"cases\": []}", ErrorConvention::kSo3xRn);
   EXPECT_EQ(unknown.code(), StatusCode::kUsage);
   EXPECT_NE(unknown.message().find("did you mean 'pose_only'"), std::string::npos) << unknown.message();
+}
+
+Json GnssCase() {
+  return {{"anchor_llh_deg", {55.5, 8.5, 70}},
+          {"state",
+           {{"q_wxyz", {1, 0, 0, 0}},
+            {"p", {10, -20, 5}},
+            {"v", {1, 2, -0.5}},
+            {"bg", {0.01, -0.02, 0.03}},
+            {"ba", {0, 0, 0}}}},
+          {"lever_arm", {0.3, -0.1, 0.2}},
+          {"omega", {0.1, 0.4, -0.2}},
+          {"clock_m", 1234.5},
+          {"drift_mps", -12.25},
+          {"satellite",
+           {{"p", {15e6, 3e6, 21.5e6}}, {"v", {1500, -2200, -700}}, {"clock_m", -3000}, {"drift_mps", 0.02}}},
+          {"iono_m", 3.25},
+          {"tropo_m", 4.75},
+          {"wavelength", 0.19}};
+}
+
+/// The equations written out once more, without the library.
+TEST(Probe, GnssPredictionsFollowTheirEquations) {
+  const Json range = Ask("pseudorange", Json::array({GnssCase()}))[0];
+  const Json rate = Ask("doppler", Json::array({GnssCase()}))[0];
+  ASSERT_TRUE(range.contains("predicted") && rate.contains("predicted")) << range << rate;
+  constexpr double kC = 299792458.0;
+  constexpr double kW = 7.2921151467e-5;
+  const double lat = 55.5 * M_PI / 180;
+  const double lon = 8.5 * M_PI / 180;
+  const double a = 6378137.0;
+  const double f = 1 / 298.257223563;
+  const double e2 = f * (2 - f);
+  const double n = a / std::sqrt(1 - e2 * std::sin(lat) * std::sin(lat));
+  const Eigen::Vector3d anchor((n + 70) * std::cos(lat) * std::cos(lon),
+                               (n + 70) * std::cos(lat) * std::sin(lon), (n * (1 - e2) + 70) * std::sin(lat));
+  Eigen::Matrix3d C;
+  C << -std::sin(lon), -std::sin(lat) * std::cos(lon), std::cos(lat) * std::cos(lon), std::cos(lon),
+      -std::sin(lat) * std::sin(lon), std::cos(lat) * std::sin(lon), 0, std::cos(lat), std::sin(lat);
+  const Eigen::Vector3d l(0.3, -0.1, 0.2);
+  const Eigen::Vector3d w = Eigen::Vector3d(0.1, 0.4, -0.2) - Eigen::Vector3d(0.01, -0.02, 0.03);
+  const Eigen::Vector3d p = anchor + C * (Eigen::Vector3d(10, -20, 5) + l);
+  const Eigen::Vector3d v = C * (Eigen::Vector3d(1, 2, -0.5) + w.cross(l));
+  const Eigen::Vector3d s(15e6, 3e6, 21.5e6);
+  const Eigen::Vector3d vs(1500, -2200, -700);
+  const Eigen::Vector3d e = (s - p).normalized();
+  EXPECT_NEAR(range["predicted"].get<double>(),
+              (s - p).norm() + kW / kC * (s.x() * p.y() - s.y() * p.x()) + 1234.5 + 3000 + 4.75 + 3.25, 1e-6);
+  const double expected =
+      (e.dot(vs - v) + kW / kC * (vs.x() * p.y() + s.x() * v.y() - vs.y() * p.x() - s.y() * v.x())) /
+          (1 + e.dot(vs) / kC) -
+      12.25 - 0.02;
+  EXPECT_NEAR(rate["predicted"].get<double>(), expected, 1e-9);
+  EXPECT_NEAR(rate["predicted_hz"].get<double>(), -expected / 0.19, 1e-8);
+  const std::vector<double> h = Flatten(range["H"]);
+  ASSERT_EQ(h.size(), 17u);
+  EXPECT_EQ(h[15], 1);
+  EXPECT_EQ(h[16], 0);
+  const Eigen::Vector3d line = -C.transpose() * e;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(h[static_cast<size_t>(3 + i)], line[i], 1e-5);
+  }
+  EXPECT_EQ(Flatten(rate["H"])[16], 1);
 }
 
 }  // namespace

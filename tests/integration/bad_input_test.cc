@@ -93,7 +93,10 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"config --check " + folder_.File("unknown_key.yaml"), 3, "did you mean"},
       {"config", 2, "--show FILE"},
       {"config --diff " + base, 2, "--diff FILE FILE2"},
-      {"spp --obs=x --nav=y --output=z", 2, "not in this build"},
+      {"spp --obs=none.rnx --nav=none.nav --output=" + folder_.File("z.pos"), 4, "none.rnx: cannot be read"},
+      {"spp --obs=x --nav=y", 2, "--output is missing"},
+      {"spp --obs=x --nav=y --output=" + folder_.File("z.pos") + " --set=systems=GX", 3, "found 'X'"},
+      {"spp --obs=x --nav=y --output=" + folder_.File("file"), 6, "--overwrite"},
   };
   for (const BadCall& call : calls) {
     const CommandResult result = Alidade(call.words);
