@@ -7,6 +7,7 @@
 #include "gnss/constants.h"
 #include "gnss/measurement_model.h"
 #include "gnss/robust_fit.h"
+#include "gnss/velocity_fit.h"
 
 namespace alidade {
 namespace {
@@ -94,7 +95,7 @@ Result<SinglePointSolution> SinglePointSolver::Solve(const ObservationEpoch& epo
   datum_ = state.datum;
   CarryBiases(state, epoch.stamp_ns);
   SinglePointSolution solution = MakeSolution(measurements, state);
-  SolveVelocity(measurements, &solution);
+  FitVelocity(measurements, ElevationMask(), options_, gate_, &solution);
   return solution;
 }
 
@@ -285,65 +286,6 @@ SinglePointSolution SinglePointSolver::MakeSolution(const EpochMeasurements& epo
     solution.used += state.active[k] ? 1 : 0;
   }
   return solution;
-}
-
-/// Velocity and drift from range rates above the mask: robust steps, a gate, robust steps again.
-void SinglePointSolver::SolveVelocity(const EpochMeasurements& epoch, SinglePointSolution* solution) const {
-  std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
-    if (epoch.satellites[k].range_rate_mps &&
-        epoch.satellites[k].direction.elevation_rad >= ElevationMask()) {
-      rows.push_back(k);
-    }
-  }
-  constexpr int kUnknowns = 4;
-  for (const bool gated : {false, true}) {
-    WhitenedRows system;
-    std::optional<RobustFit> fit;
-    for (int i = 0; i < options_.max_iterations; ++i) {
-      system.measurements = static_cast<Eigen::Index>(rows.size());
-      system.jacobian.setZero(system.measurements, kUnknowns);
-      system.residual.setZero(system.measurements);
-      for (Eigen::Index row = 0; row < system.measurements; ++row) {
-        const std::size_t k = rows[static_cast<std::size_t>(row)];
-        const double deviation = std::sqrt(epoch.satellites[k].range_rate_variance);
-        RowVector3d line;
-        double residual = 0;
-        RangeRateModel::Of(epoch.satellites[k])
-            .Evaluate(solution->position_E, solution->velocity_E, solution->drift_mps, &residual, nullptr,
-                      &line);
-        system.jacobian.row(row) << line / deviation, 1 / deviation;
-        system.residual[row] = residual / deviation;
-        solution->satellites[k].range_rate_residual_mps = residual;
-      }
-      if (fit && fit->step.norm() < 1e-6) {
-        break;
-      }
-      fit = RobustStep(system, options_.kernel, options_.kernel_scale_sigma, i > 0);
-      if (!fit) {
-        return;
-      }
-      solution->velocity_E += fit->step.head<3>();
-      solution->drift_mps += fit->step[3];
-    }
-    const double scale =
-        RobustScale({system.residual.data(), system.residual.data() + system.measurements}, kUnknowns);
-    if (gated) {
-      solution->has_velocity = true;
-      solution->velocity_covariance_E = scale * scale * fit->covariance.topLeftCorner<3, 3>();
-      for (const std::size_t k : rows) {
-        solution->satellites[k].range_rate_used = true;
-      }
-      return;
-    }
-    std::vector<std::size_t> kept;
-    for (Eigen::Index row = 0; row < system.measurements; ++row) {
-      if (gate_.Accepts(system.residual[row] * system.residual[row] / (scale * scale), 1)) {
-        kept.push_back(rows[static_cast<std::size_t>(row)]);
-      }
-    }
-    rows = kept.size() > kUnknowns ? kept : rows;
-  }
 }
 
 }  // namespace alidade

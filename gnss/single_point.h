@@ -78,7 +78,6 @@ class SinglePointSolver {
   [[nodiscard]] WhitenedRows PositionRows(const EpochMeasurements& epoch, State* state) const;
   [[nodiscard]] Status Iterate(const EpochMeasurements& epoch, State* state) const;
   [[nodiscard]] bool Gate(const EpochMeasurements& epoch, State* state) const;
-  void SolveVelocity(const EpochMeasurements& epoch, SinglePointSolution* solution) const;
   [[nodiscard]] double ElevationMask() const;
   [[nodiscard]] double BiasVariance(GnssSystem system, TimeNs stamp_ns) const;
   void CarryBiases(const State& state, TimeNs stamp_ns);
