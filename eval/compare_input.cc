@@ -55,7 +55,8 @@ Result<CompareInput::Data> CompareInput::RunSimulation() const {
     return dataset.status();
   }
   Data data;
-  data.log = {dataset->rig, std::move(dataset->imu), std::move(dataset->tracks)};
+  data.log = {dataset->rig, std::move(dataset->imu), std::move(dataset->tracks),
+              std::move(dataset->extra_cameras)};
   data.truth = std::move(dataset->truth);
   SimulatorConfig config = *simulation_;
   data.dataset_digest =

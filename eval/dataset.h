@@ -22,10 +22,11 @@ struct Dataset {
   double imu_rate_hz = 0;
   double camera_rate_hz = 0;
   std::vector<ImuSample> imu;
-  std::vector<TrackFrame> tracks;     ///< cam0/tracks.csv, grouped by stamp; empty when there is none
-  std::vector<ImageEntry> images;     ///< cam0/data.csv; empty when there is none
-  std::vector<TimeNs> camera_stamps;  ///< cam0/timestamps.csv; empty when there is none
-  std::optional<Trajectory> truth;    ///< state_groundtruth_estimate0/{data.csv | data_pose.csv}
+  std::vector<TrackFrame> tracks;          ///< cam0/tracks.csv, grouped by stamp; empty when there is none
+  std::vector<ExtraCamera> extra_cameras;  ///< cam1, cam2, ... that have tracks
+  std::vector<ImageEntry> images;          ///< cam0/data.csv; empty when there is none
+  std::vector<TimeNs> camera_stamps;       ///< cam0/timestamps.csv; empty when there is none
+  std::optional<Trajectory> truth;         ///< state_groundtruth_estimate0/{data.csv | data_pose.csv}
   std::string truth_path;
 };
 

@@ -212,6 +212,22 @@ Status ReadCameraFolder(const std::string& folder, Dataset* dataset) {
   return Status::Ok();
 }
 
+Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
+  for (int k = 1; fs::is_directory(fs::path(mav) / ("cam" + std::to_string(k))); ++k) {
+    const fs::path folder = fs::path(mav) / ("cam" + std::to_string(k));
+    if (!fs::exists(folder / "tracks.csv")) {
+      continue;
+    }
+    const Result<CameraSensor> sensor = ReadCameraSensor((folder / "sensor.yaml").string());
+    ALIDADE_RETURN_IF_ERROR(sensor.status());
+    Result<std::vector<TrackFrame>> frames = ReadTracks((folder / "tracks.csv").string());
+    ALIDADE_RETURN_IF_ERROR(frames.status());
+    dataset->extra_cameras.push_back(
+        {sensor->camera, sensor->T_BC, sensor->time_offset_s, std::move(frames).value()});
+  }
+  return Status::Ok();
+}
+
 Result<CsvReader> OpenTable(const std::string& path, const std::vector<CsvColumn>& header) {
   Result<CsvReader> csv = CsvReader::Open(path);
   if (csv.ok()) {

@@ -18,4 +18,8 @@ Result<CsvReader> OpenTable(const std::string& path, const std::vector<CsvColumn
 /// into the camera's part of `dataset`. Errors (kInput) as ReadDataset's.
 Status ReadCameraFolder(const std::string& folder, Dataset* dataset);
 
+/// Reads cam1, cam2, ... of the folder `mav`, as far as they count up, where they hold tracks.csv; one with
+/// images alone is passed over, since nothing here tracks them. Errors (kInput) as ReadDataset's.
+Status ReadExtraCameras(const std::string& mav, Dataset* dataset);
+
 }  // namespace alidade

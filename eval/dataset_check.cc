@@ -252,6 +252,10 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
   } else if (!camera_stamps.empty()) {
     findings.Warning("cam0: stamps alone, neither images nor tracks: nothing to see in them");
   }
+  if (!dataset.extra_cameras.empty()) {
+    findings.Fact(Format("%zu more cameras with tracks: recorded, but estimators read cam0 alone",
+                         dataset.extra_cameras.size()));
+  }
   CheckTruth(dataset, &findings);
   return findings.Take();
 }

@@ -98,6 +98,7 @@ Result<Dataset> ReadDataset(const std::string& path) {
       MeasuredRate(dataset.imu.front().stamp_ns, dataset.imu.back().stamp_ns, dataset.imu.size()));
   if (fs::is_directory(mav / "cam0")) {
     ALIDADE_RETURN_IF_ERROR(ReadCameraFolder((mav / "cam0").string(), &dataset));
+    ALIDADE_RETURN_IF_ERROR(ReadExtraCameras(mav.string(), &dataset));
   }
   ALIDADE_RETURN_IF_ERROR(ReadTruth(mav / "state_groundtruth_estimate0", &dataset));
   return dataset;

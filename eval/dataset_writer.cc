@@ -116,6 +116,17 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
   if (const std::vector<TimeNs> stamps = StampsToWrite(dataset); !stamps.empty()) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((camera / "timestamps.csv").string(), StampsCsv(stamps)));
   }
+  for (size_t k = 0; k < dataset.extra_cameras.size(); ++k) {
+    const ExtraCamera& extra = dataset.extra_cameras[k];
+    const fs::path folder = mav / ("cam" + std::to_string(k + 1));
+    RigCalibration rig = dataset.rig;
+    rig.camera = extra.camera;
+    rig.T_BC = extra.T_BC;
+    rig.camera_time_offset_s = extra.camera_time_offset_s;
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((folder / "sensor.yaml").string(),
+                                                CameraSensorYaml(rig, dataset.camera_rate_hz)));
+    ALIDADE_RETURN_IF_ERROR(WriteTracks(extra.frames, (folder / "tracks.csv").string()));
+  }
   if (dataset.truth.has_value()) {
     const char* name = dataset.truth->has_velocity ? "data.csv" : "data_pose.csv";
     ALIDADE_RETURN_IF_ERROR(

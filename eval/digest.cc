@@ -49,14 +49,18 @@ class Hasher {
   std::string block_;
 };
 
+void AddCamera(const CameraModel& camera, const Pose& T_BC, Hasher* hasher) {
+  hasher->Add(static_cast<std::int64_t>(camera.model()));
+  hasher->Add(std::int64_t{camera.width_px()});
+  hasher->Add(std::int64_t{camera.height_px()});
+  hasher->Add(camera.intrinsics());
+  hasher->Add(camera.coefficients());
+  hasher->Add(T_BC.rotation);
+  hasher->Add(T_BC.translation);
+}
+
 void AddRig(const RigCalibration& rig, Hasher* hasher) {
-  hasher->Add(static_cast<std::int64_t>(rig.camera.model()));
-  hasher->Add(std::int64_t{rig.camera.width_px()});
-  hasher->Add(std::int64_t{rig.camera.height_px()});
-  hasher->Add(rig.camera.intrinsics());
-  hasher->Add(rig.camera.coefficients());
-  hasher->Add(rig.T_BC.rotation);
-  hasher->Add(rig.T_BC.translation);
+  AddCamera(rig.camera, rig.T_BC, hasher);
   hasher->Add(rig.imu_noise.gyro_noise_density_radps_sqrthz);
   hasher->Add(rig.imu_noise.accel_noise_density_mps2_sqrthz);
   hasher->Add(rig.imu_noise.gyro_random_walk_radps2_sqrthz);
@@ -64,26 +68,35 @@ void AddRig(const RigCalibration& rig, Hasher* hasher) {
   hasher->Add(rig.camera_time_offset_s);
 }
 
+/// Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
+void AddFrames(const std::vector<TrackFrame>& frames, Hasher* hasher) {
+  hasher->Add(static_cast<std::uint64_t>(frames.size()));
+  for (const TrackFrame& frame : frames) {
+    hasher->Add(std::int64_t{frame.stamp_ns});
+    hasher->Add(static_cast<std::uint64_t>(frame.observations.size()));
+    for (const TrackObservation& observation : frame.observations) {
+      hasher->Add(observation.track_id);
+      hasher->Add(observation.pixel);
+    }
+  }
+}
+
 }  // namespace
 
 std::string DigestOf(const MeasurementLog& log) {
   Hasher hasher;
   AddRig(log.rig, &hasher);
-  // Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
   hasher.Add(static_cast<std::uint64_t>(log.imu.size()));
   for (const ImuSample& sample : log.imu) {
     hasher.Add(std::int64_t{sample.stamp_ns});
     hasher.Add(sample.gyro);
     hasher.Add(sample.accel);
   }
-  hasher.Add(static_cast<std::uint64_t>(log.frames.size()));
-  for (const TrackFrame& frame : log.frames) {
-    hasher.Add(std::int64_t{frame.stamp_ns});
-    hasher.Add(static_cast<std::uint64_t>(frame.observations.size()));
-    for (const TrackObservation& observation : frame.observations) {
-      hasher.Add(observation.track_id);
-      hasher.Add(observation.pixel);
-    }
+  AddFrames(log.frames, &hasher);
+  for (const ExtraCamera& extra : log.extra_cameras) {
+    AddCamera(extra.camera, extra.T_BC, &hasher);
+    hasher.Add(extra.camera_time_offset_s);
+    AddFrames(extra.frames, &hasher);
   }
   return hasher.Hex();
 }

@@ -44,7 +44,7 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
 
 Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
                                const PipelineOptions& options) {
-  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
+  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras};
   if (!log.frames.empty()) {
     return log;
   }

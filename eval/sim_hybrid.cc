@@ -102,8 +102,10 @@ Result<Dataset> SimulateHybrid(const SimulatorConfig& config, unsigned seed) {
   dataset.imu = real->imu;
   TrimImu(stamps.front(), stamps.back() + SecondsToNs(real->rig.camera_time_offset_s), &dataset.imu);
   dataset.camera_stamps = stamps;
-  dataset.tracks =
-      SimulateTracks(config, motion, dataset.rig, *landmarks, motion.start_ns(), stamps, seed).frames;
+  dataset.extra_cameras = MakeExtraCameras(config, dataset.rig);
+  TakeTracks(SimulateTracks(config, motion, dataset.rig, *landmarks, motion.start_ns(), stamps, seed,
+                            dataset.extra_cameras),
+             &dataset);
   dataset.truth = std::move(recorded->samples);
   dataset.truth_path = recorded->path;
   return dataset;

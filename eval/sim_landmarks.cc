@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 
 #include "core/random.h"
@@ -11,6 +13,7 @@ namespace alidade {
 namespace {
 
 constexpr int kMaxTriesPerLandmark = 100;
+constexpr double kMaxThrown = 1e7;
 
 /// Positions of the body about `spacing_m` apart.
 std::vector<Eigen::Vector3d> SamplePath(const ContinuousTrajectory& trajectory, double spacing_m) {
@@ -87,6 +90,84 @@ class Room {
   double depth_m_;
 };
 
+/// Positions of the body by the cell of a grid, so that only near ones are searched.
+class PathGrid {
+ public:
+  PathGrid(const std::vector<Eigen::Vector3d>& path, double cell_m) : cell_m_(cell_m) {
+    for (const Eigen::Vector3d& point : path) {
+      cells_[CellOf(point)].push_back(point);
+    }
+  }
+
+  /// Distance to the path; infinite when that is more than a cell.
+  [[nodiscard]] double DistanceTo(const Eigen::Vector3d& p_W) const {
+    double squared = std::numeric_limits<double>::infinity();
+    const Cell centre = CellOf(p_W);
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          const auto found = cells_.find({centre[0] + x, centre[1] + y, centre[2] + z});
+          for (std::size_t i = 0; found != cells_.end() && i < found->second.size(); ++i) {
+            squared = std::min(squared, (found->second[i] - p_W).squaredNorm());
+          }
+        }
+      }
+    }
+    return std::sqrt(squared);
+  }
+
+ private:
+  using Cell = std::array<int, 3>;
+
+  [[nodiscard]] Cell CellOf(const Eigen::Vector3d& point) const {
+    Cell cell;
+    for (int i = 0; i < 3; ++i) {
+      cell[static_cast<std::size_t>(i)] = static_cast<int>(std::floor(point[i] / cell_m_));
+    }
+    return cell;
+  }
+
+  double cell_m_;
+  std::map<Cell, std::vector<Eigen::Vector3d>> cells_;
+};
+
+/// Landmarks evenly in the box around the path; kept are those between the two distances from it. Their
+/// number, not their density, is left to chance.
+Result<std::vector<Eigen::Vector3d>> FillVolume(const SimulatorConfig& config,
+                                                const std::vector<Eigen::Vector3d>& path,
+                                                std::uint64_t seed) {
+  Eigen::Vector3d low = path.front(), high = path.front();
+  for (const Eigen::Vector3d& point : path) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  low.array() -= config.landmark_max_distance_m;
+  high.array() += config.landmark_max_distance_m;
+  const double wanted = config.landmark_density_per_m3 * (high - low).prod();
+  if (!(wanted <= kMaxThrown)) {
+    return Status::Config("landmark_density_per_m3: " + std::to_string(config.landmark_density_per_m3) +
+                          " makes more than 1e7 landmarks in the box around this path; expected fewer");
+  }
+  const PathGrid grid(path, config.landmark_max_distance_m);
+  RandomStream stream(seed, "world.landmarks");
+  std::vector<Eigen::Vector3d> landmarks;
+  for (std::int64_t i = 0; i < std::llround(wanted); ++i) {
+    Eigen::Vector3d p_W;
+    for (int axis = 0; axis < 3; ++axis) {
+      p_W[axis] = stream.Uniform(low[axis], high[axis]);
+    }
+    const double distance_m = grid.DistanceTo(p_W);
+    if (distance_m >= config.landmark_min_distance_m && distance_m <= config.landmark_max_distance_m) {
+      landmarks.push_back(p_W);
+    }
+  }
+  if (landmarks.empty()) {
+    return Status::Config("landmark_density_per_m3: " + std::to_string(config.landmark_density_per_m3) +
+                          " leaves the space around this path empty; expected more");
+  }
+  return landmarks;
+}
+
 /// Throws until `count` landmarks keep their distance from the path.
 template <typename Layout>
 Result<std::vector<Eigen::Vector3d>> ThrowAll(const Layout& layout, const SimulatorConfig& config,
@@ -119,6 +200,9 @@ Result<std::vector<Eigen::Vector3d>> MakeLandmarks(const SimulatorConfig& config
   const std::vector<Eigen::Vector3d> path = SamplePath(trajectory, 0.1 * config.landmark_min_distance_m);
   if (config.landmark_layout == SimLandmarkLayout::kRoom) {
     return ThrowAll(Room(config, path), config, path, seed, "room_margin_m");
+  }
+  if (config.landmark_layout == SimLandmarkLayout::kVolume) {
+    return FillVolume(config, path, seed);
   }
   return ThrowAll(Shell(config, path), config, path, seed, "landmark_max_distance_m");
 }

@@ -64,9 +64,10 @@ Result<Dataset> Simulate(const SimulatorConfig& config, unsigned seed) {
   dataset.imu = std::move(imu.samples);
 
   dataset.camera_stamps = EvenStamps(motion->start_ns, duration_s, config.camera_rate_hz);
-  dataset.tracks =
-      SimulateTracks(config, trajectory, *rig, *landmarks, motion->start_ns, dataset.camera_stamps, seed)
-          .frames;
+  dataset.extra_cameras = MakeExtraCameras(config, *rig);
+  TakeTracks(SimulateTracks(config, trajectory, *rig, *landmarks, motion->start_ns, dataset.camera_stamps,
+                            seed, dataset.extra_cameras),
+             &dataset);
   return dataset;
 }
 

@@ -13,8 +13,9 @@ namespace alidade {
 enum class SimTrajectory { kFigureEight, kEllipse, kWander, kFile };
 enum class SimCameraView { kForward, kSideways, kDataset };
 enum class SimLandmarkLayout {
-  kShell,  ///< between two distances around the path
-  kRoom,   ///< on floor, ceiling and walls of a box around the path
+  kShell,   ///< between two distances around the path
+  kRoom,    ///< on floor, ceiling and walls of a box around the path
+  kVolume,  ///< of even density in the space around the path
 };
 /// What to do with a recorded trajectory that has gaps: the motion in a gap is unknown.
 enum class TruthGaps {
@@ -22,9 +23,15 @@ enum class TruthGaps {
   kRefuse,
 };
 enum class SimOutlierKind {
-  kJump,   ///< a single observation lands elsewhere
-  kDrift,  ///< a whole track slides away from its landmark at a constant rate
+  kJump,     ///< shifted by a vector: an observation, or a track from some frame on
+  kUniform,  ///< anywhere in the image
+  kSwap,     ///< ids exchanged: within one frame, or two tracks for the rest of their lives
+  kDrift,    ///< a track slides away from its landmark at a constant rate
+  kMoving,   ///< a track's landmark moves through the world at a constant velocity
+  kMixed,    ///< each wrong track is one of the above
 };
+/// What is wrong at once. Drift, moving and mixed outliers are whole tracks whatever this says.
+enum class SimOutlierUnit { kObservation, kTrack };
 
 /// Value of a path that is not given.
 inline constexpr std::string_view kNoPath = "none";
@@ -75,6 +82,11 @@ struct SimulatorConfig {
   Eigen::Vector4d distortion_coefficients =
       Eigen::Vector4d::Zero();  ///< core/camera_model.h gives their order
 
+  int camera_count = 1;  ///< 2: stereo
+  /// From each camera to the next, in the frame of the former: x right, y down, z forward.
+  Eigen::Vector3d camera_spacing_m = Eigen::Vector3d(0.11, 0, 0);
+  double camera_turn_rad = 0;  ///< and turned to the right by this much
+
   double pixel_noise_px = 1;
   int max_features = 150;
   /// Probability that a visible track is lost from one frame to the next. Sets the mean length of tracks: p
@@ -82,18 +94,23 @@ struct SimulatorConfig {
   double mean_track_loss = 0.0;
   double border_px = 10;
   double max_range_m = 30;
-  double outlier_rate = 0;  ///< fraction of observations (jump) or of tracks (drift)
+  double outlier_rate = 0;  ///< fraction of observations or of tracks
   SimOutlierKind outlier_kind = SimOutlierKind::kJump;
-  double outlier_px = 20;  ///< mean size of a jump; mean drift in one second
+  SimOutlierUnit outlier_unit = SimOutlierUnit::kObservation;
+  double outlier_px = 20;        ///< mean size of a jump; mean drift in one second
+  double outlier_speed_mps = 1;  ///< mean speed of a moving landmark
 
   SimLandmarkLayout landmark_layout = SimLandmarkLayout::kShell;
-  double landmark_min_distance_m = 2;   ///< of every landmark to the path
-  double landmark_max_distance_m = 10;  ///< shell
-  int landmark_count = 800;
+  double landmark_min_distance_m = 2;                        ///< of every landmark to the path
+  double landmark_max_distance_m = 10;                       ///< shell
+  int landmark_count = 800;                                  ///< shell and room
+  double landmark_density_per_m3 = 0.2;                      ///< volume
   Eigen::Vector3d room_margin_m = Eigen::Vector3d(2, 2, 1);  ///< from the path's bounding box to the walls
   double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
 
   [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }
+  /// Whether outliers are whole tracks.
+  [[nodiscard]] bool OutliersAreTracks() const;
 
   /// Lists every key with unit, range and reason; the order is the order of configs/datasets/figure8.yaml.
   void Describe(ConfigVisitor& visitor);
@@ -113,8 +130,10 @@ Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,
 /// its stamps; white noise n has the standard deviation density * sqrt(rate), a bias walks by random walk *
 /// sqrt(1 / rate) a sample from a normal turn-on value; M = I + scale errors on and misalignment off the
 /// diagonal, constant. Camera: frames start at the first IMU stamp; a frame shows the world at its stamp plus
-/// the time offset; an observation is the projection of its landmark plus normal noise. Truth has all 17
-/// columns at the IMU rate.
+/// the time offset; an observation is the projection of its landmark plus normal noise; faults of tracks:
+/// sim_fault.h; several cameras: sim_camera.h. Truth has all 17 columns at the IMU rate. Every effect draws
+/// from streams of its own, and what is drawn for a landmark in a frame does not depend on what happens to
+/// others: switching one effect on leaves the numbers of the others.
 ///
 /// trajectory: file moves the body along a spline through a recorded trajectory (recorded_motion.h), stamped
 /// as the recording, for at most duration_s. hybrid_dataset simulates the tracks alone (sim_hybrid.h).

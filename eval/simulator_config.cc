@@ -121,6 +121,20 @@ void DescribeCamera(SimulatorConfig* config, ConfigVisitor& visitor) {
   }
 }
 
+void DescribeMoreCameras(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Integer(
+      {"camera_count", "-",
+       "2 is stereo; cam1 and on are written and part of the digest, but estimators read cam0 alone"},
+      &config->camera_count, 1, 8);
+  visitor.Vector3({"camera_spacing_m", "m",
+                   "from each camera to the next, in the former's frame: x right, y down, z forward; EuRoC's "
+                   "baseline"},
+                  &config->camera_spacing_m, -10, 10);
+  visitor.Real(
+      {"camera_turn_rad", "rad", "each camera is turned right by this against the former; 0 is stereo"},
+      &config->camera_turn_rad, -3.2, 3.2);
+}
+
 void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"pixel_noise_px", "px", "standard deviation of each image coordinate of an observation"},
                &config->pixel_noise_px, 0, 100);
@@ -136,32 +150,50 @@ void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
       &config->border_px, 0, 1e3);
   visitor.Real({"max_range_m", "m", "a landmark farther from the camera is not seen"}, &config->max_range_m,
                0.1, 1e5);
-  visitor.Real(
-      {"outlier_rate", "-", "fraction of the observations (jump) or of the tracks (drift) that are wrong"},
-      &config->outlier_rate, 0, 1);
-  visitor.Enumeration(
-      {"outlier_kind", "-", "a jump is easy to gate, a drifting track agrees with itself for a while"},
-      &config->outlier_kind, {{"jump", SimOutlierKind::kJump}, {"drift", SimOutlierKind::kDrift}});
+  visitor.Real({"outlier_rate", "-", "fraction of the observations or of the tracks that are wrong"},
+               &config->outlier_rate, 0, 1);
+  visitor.Enumeration({"outlier_kind", "-",
+                       "a jump is easy to gate, a drifting track or a moving object agrees with itself for a "
+                       "while; swap exchanges ids; mixed: any of them"},
+                      &config->outlier_kind,
+                      {{"jump", SimOutlierKind::kJump},
+                       {"uniform", SimOutlierKind::kUniform},
+                       {"swap", SimOutlierKind::kSwap},
+                       {"drift", SimOutlierKind::kDrift},
+                       {"moving", SimOutlierKind::kMoving},
+                       {"mixed", SimOutlierKind::kMixed}});
+  visitor.Enumeration({"outlier_unit", "-",
+                       "what is wrong at once; drift, moving and mixed are of tracks whatever this says"},
+                      &config->outlier_unit,
+                      {{"observation", SimOutlierUnit::kObservation}, {"track", SimOutlierUnit::kTrack}});
   visitor.Real(
       {"outlier_px", "px", "mean size of a jump, or mean drift in one second; half to one and a half of it"},
       &config->outlier_px, 0, 1e4);
+  visitor.Real({"outlier_speed_mps", "m/s",
+                "mean speed of a moving landmark, half to one and a half of it; 1 m/s is a walking person"},
+               &config->outlier_speed_mps, 0, 100);
 }
 
 void DescribeLandmarks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Enumeration({"landmark_layout", "-",
                        "shell: between two distances around the path; room: on floor, ceiling and walls of a "
-                       "box around it"},
+                       "box around it; volume: evenly dense in the space around it"},
                       &config->landmark_layout,
-                      {{"shell", SimLandmarkLayout::kShell}, {"room", SimLandmarkLayout::kRoom}});
+                      {{"shell", SimLandmarkLayout::kShell},
+                       {"room", SimLandmarkLayout::kRoom},
+                       {"volume", SimLandmarkLayout::kVolume}});
   visitor.Real({"landmark_min_distance_m", "m", "of every landmark to the path"},
                &config->landmark_min_distance_m, 0.1, 1e4);
   visitor.Real({"landmark_max_distance_m", "m",
-                "of a landmark to the nearest point of the path; sets the tracks' length; layout shell"},
+                "of a landmark to the nearest point of the path; sets the tracks' length; shell and volume"},
                &config->landmark_max_distance_m, 0.1, 1e4);
   visitor.Integer({"landmark_count", "-",
                    "fewer and longer tracks when few: 800 give about 115 tracks a frame of 24 frames each, "
-                   "1500 give 148 of 20"},
+                   "1500 give 148 of 20; layouts shell and room"},
                   &config->landmark_count, 1, 1000000);
+  visitor.Real({"landmark_density_per_m3", "1/m^3",
+                "landmarks in a cubic metre of the space around the path; layout volume"},
+               &config->landmark_density_per_m3, 1e-6, 1e3);
   visitor.Vector3({"room_margin_m", "m", "from the path's bounding box to the walls; layout room"},
                   &config->room_margin_m, 0.1, 1e4);
   visitor.Real(
@@ -209,6 +241,11 @@ void ResolvePath(const std::filesystem::path& folder, std::string* path) {
 
 }  // namespace
 
+bool SimulatorConfig::OutliersAreTracks() const {
+  return outlier_unit == SimOutlierUnit::kTrack || outlier_kind == SimOutlierKind::kDrift ||
+         outlier_kind == SimOutlierKind::kMoving || outlier_kind == SimOutlierKind::kMixed;
+}
+
 void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Text({"name", "-", "name of the sequence in tables and paths"}, &name);
   visitor.Integer({"start_time_s", "s", "stamp of the first sample; not 0, so that a forgotten offset shows"},
@@ -217,6 +254,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeRecording(this, visitor);
   DescribeImu(this, visitor);
   DescribeCamera(this, visitor);
+  DescribeMoreCameras(this, visitor);
   DescribeTracks(this, visitor);
   DescribeLandmarks(this, visitor);
 }

@@ -20,7 +20,7 @@ int RunSimulate(const std::vector<std::string>&) {
   }
   status = WriteDataset(*dataset, FLAGS_output);
   if (status.ok()) {
-    const MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks};
+    const MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks, dataset->extra_cameras};
     Say(FLAGS_output + ": " + DescribeLog(log, DigestOf(log)));
   }
   return Report(status);

@@ -46,7 +46,7 @@ int RunTrack(const std::vector<std::string>&) {
     return Report(frames.status());
   }
   dataset->tracks = std::move(*frames);
-  const MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks};
+  const MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks, dataset->extra_cameras};
   if (const Status status = WriteDataset(*dataset, FLAGS_output); !status.ok()) {
     return Report(status);
   }

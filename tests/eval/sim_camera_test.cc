@@ -10,38 +10,12 @@
 #include <numbers>
 #include <set>
 
-#include "eval/sim_imu.h"
-#include "eval/sim_trajectory.h"
+#include "tests/eval/sim_scene.h"
 
 namespace alidade {
 namespace {
 
-/// Everything the camera of a configuration sees, with the truth beside it.
-struct Scene {
-  SimulatorConfig config;
-  std::unique_ptr<ContinuousTrajectory> trajectory;
-  RigCalibration rig;
-  std::vector<Eigen::Vector3d> landmarks;
-  SimulatedTracks tracks;
-
-  explicit Scene(const SimulatorConfig& given, std::uint64_t seed = 3)
-      : config(given), trajectory(MakeSimTrajectory(given)) {
-    rig = MakeSimRig(config).value();
-    landmarks = MakeLandmarks(config, *trajectory, seed).value();
-    tracks = SimulateTracks(config, *trajectory, rig, landmarks, 0,
-                            EvenStamps(0, config.duration_s, config.camera_rate_hz), seed);
-  }
-
-  /// Observed minus true pixel.
-  [[nodiscard]] Eigen::Vector2d ErrorOf(const TrackFrame& frame, const TrackObservation& observation) const {
-    const double t = SecondsBetween(0, frame.stamp_ns) + config.camera_time_offset_s;
-    const Pose T_CW = (trajectory->At(t).nav.T_WB() * rig.T_BC).Inverse();
-    const int landmark = tracks.landmark_of_track[static_cast<std::size_t>(observation.track_id)];
-    Eigen::Vector2d pixel(1e9, 1e9);
-    EXPECT_TRUE(rig.camera.Project(T_CW * landmarks[static_cast<std::size_t>(landmark)], &pixel));
-    return observation.pixel - pixel;
-  }
-};
+using Scene = test::SimScene;
 
 void ExpectReprojectionStd(const Scene& scene, double expected_px) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

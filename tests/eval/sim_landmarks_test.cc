@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "eval/sim_trajectory.h"
 
@@ -53,6 +54,60 @@ TEST(SimLandmarksTest, ARoomWithoutRoomIsAConfigurationError) {
   ASSERT_FALSE(landmarks.ok());
   EXPECT_EQ(landmarks.code(), StatusCode::kConfig);
   EXPECT_NE(landmarks.message().find("room_margin_m"), std::string::npos);
+}
+
+// GIVEN an even density WHEN the space around the path is filled THEN its parts hold as many landmarks as
+// their volumes, found by another grid, ask for.
+TEST(SimLandmarksTest, AVolumeIsEvenlyDense) {
+  SimulatorConfig config;
+  config.landmark_layout = SimLandmarkLayout::kVolume;
+  config.landmark_density_per_m3 = 1;
+  config.landmark_min_distance_m = 2;
+  config.landmark_max_distance_m = 6;
+  config.duration_s = 20;
+  config.path_m = 27;
+  const auto trajectory = MakeSimTrajectory(config);
+  const std::vector<Eigen::Vector3d> landmarks = MakeLandmarks(config, *trajectory, 2).value();
+  const auto distance_m = [&trajectory](const Eigen::Vector3d& p_W) {
+    double nearest = 1e9;
+    for (double t = 0; t <= 20; t += 0.1) {
+      nearest = std::min(nearest, (trajectory->At(t).nav.p_WB - p_W).norm());
+    }
+    return nearest;
+  };
+  constexpr double kStep = 0.5;
+  double volume[2] = {0, 0};  // beyond and within 4 m of the path, m^3
+  for (double x = -11.25; x < 11.5; x += kStep) {
+    for (double y = -8.75; y < 9; y += kStep) {
+      for (double z = -6.75; z < 7; z += kStep) {
+        const double d = distance_m({x, y, z});
+        volume[d < 4 ? 1 : 0] += d >= 2 && d <= 6 ? kStep * kStep * kStep : 0;
+      }
+    }
+  }
+  double count[2] = {0, 0};
+  for (const Eigen::Vector3d& p_W : landmarks) {
+    const double d = distance_m(p_W);
+    ASSERT_GT(d, 1.9);
+    ASSERT_LT(d, 6.1);
+    count[d < 4 ? 1 : 0] += 1;
+  }
+  for (int part = 0; part < 2; ++part) {
+    ASSERT_GT(volume[part], 300);
+    EXPECT_NEAR(count[part], volume[part], 4 * std::sqrt(volume[part]) + 0.03 * volume[part]);
+  }
+}
+
+TEST(SimLandmarksTest, ADensityBeyondReasonIsAConfigurationError) {
+  SimulatorConfig config;
+  config.landmark_layout = SimLandmarkLayout::kVolume;
+  for (const double density : {1e5, 1e-5}) {
+    config.landmark_density_per_m3 = density;
+    const Result<std::vector<Eigen::Vector3d>> landmarks =
+        MakeLandmarks(config, *MakeSimTrajectory(config), 1);
+    ASSERT_EQ(landmarks.code(), StatusCode::kConfig);
+    EXPECT_NE(landmarks.message().find("landmark_density_per_m3"), std::string::npos);
+  }
 }
 
 }  // namespace
