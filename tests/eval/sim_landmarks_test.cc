@@ -68,10 +68,14 @@ TEST(SimLandmarksTest, AVolumeIsEvenlyDense) {
   config.path_m = 27;
   const auto trajectory = MakeSimTrajectory(config);
   const std::vector<Eigen::Vector3d> landmarks = MakeLandmarks(config, *trajectory, 2).value();
-  const auto distance_m = [&trajectory](const Eigen::Vector3d& p_W) {
+  std::vector<Eigen::Vector3d> path;
+  for (double t = 0; t <= 20; t += 0.1) {
+    path.push_back(trajectory->At(t).nav.p_WB);
+  }
+  const auto distance_m = [&path](const Eigen::Vector3d& p_W) {
     double nearest = 1e9;
-    for (double t = 0; t <= 20; t += 0.1) {
-      nearest = std::min(nearest, (trajectory->At(t).nav.p_WB - p_W).norm());
+    for (const Eigen::Vector3d& point : path) {
+      nearest = std::min(nearest, (point - p_W).norm());
     }
     return nearest;
   };
