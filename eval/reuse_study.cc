@@ -20,6 +20,7 @@ EstimatorConfig Believing(const EstimatorConfig& estimator, const SimulatorConfi
   config.vision.gate_probability = 1;
   config.vision.robust_kernel = RobustKernel::kNone;
   config.vision.rest_updates = false;
+  config.filter.track_memory = TrackMemoryPolicy::kNone;  // its rows are not traced to observations
   config.init.method = InitMethod::kTruth;
   config.init.perturb_truth = false;
   return config;

@@ -26,9 +26,10 @@ struct ReusePrediction {
   double orientation_rad = 0;
 };
 
-/// Runs the filter of `estimator` with `policy` on the simulation without any noise, from the true state,
-/// while a CovarianceAnalysis watches: the filter believes in the noise of `simulation` and linearises at the
-/// true states. Errors: those of Simulate and of the configuration; kDiverged when the run does not last.
+/// Runs the filter of `estimator`, without track memory, with `policy` on the simulation without any noise,
+/// from the true state, while a CovarianceAnalysis watches: the filter believes in the noise of `simulation`
+/// and linearises at the true states. Errors: those of Simulate and of the configuration; kDiverged when the
+/// run does not last.
 Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
                                            const EstimatorConfig& estimator, const ReusePolicy& policy,
                                            int window, unsigned seed);

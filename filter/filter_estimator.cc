@@ -327,7 +327,10 @@ void FilterEstimator::GateBlocks() {
       if (observer_ != nullptr) {
         observed_.jacobian.middleRows(block.first, block.rows) *= std::sqrt(weight);
         observed_.innovation.segment(block.first, block.rows) *= std::sqrt(weight);
-        observed_.blocks[i].noise *= std::sqrt(weight);
+        for (TracedBlock& trace : observed_.blocks) {
+          // A block that a memory made has no trace.
+          trace.noise *= trace.first == block.first ? std::sqrt(weight) : 1.0;
+        }
       }
     }
   }

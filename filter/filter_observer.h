@@ -23,9 +23,10 @@ struct TracedBlock {
 
 /// The rows of one update as the filter applies them: y = H xi + n, n ~ N(0, I) as the filter believes.
 struct FilterRows {
-  Eigen::MatrixXd jacobian;         ///< rows x error dimension, weighted; a refused track's rows are zero
-  Eigen::VectorXd innovation;       ///< weighted likewise
-  std::vector<TracedBlock> blocks;  ///< empty where no track made the rows
+  Eigen::MatrixXd jacobian;    ///< rows x error dimension, weighted; a refused track's rows are zero
+  Eigen::VectorXd innovation;  ///< weighted likewise
+  /// Of tracks whose observations alone made their rows: none for rest, or for rows out of a track memory.
+  std::vector<TracedBlock> blocks;
 };
 
 /// Sees every linear operation the filter performs on its error, with the matrices it really uses. The error

@@ -181,6 +181,22 @@ TEST(ObservabilityTest, ALandmarkOfTheStateSaysWhatItsEliminatedRowsSay) {
   EXPECT_LT((a - b).norm(), 1e-12 * b.norm());
 }
 
+TEST(ObservabilityTest, WhatATrackMemoryRetainsSaysNothingAboutYawOrPosition) {
+  SimulatorConfig sim;
+  sim.duration_s = 10;
+  sim.path_m = 13;
+  const Dataset dataset = test::SimulateOrDie(sim, 3);
+  EstimatorConfig config;
+  config.filter.window = 10;
+  config.filter.track_memory = TrackMemoryPolicy::kCarry;
+  ObservabilityAudit audit;
+  const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig, &audit);
+  const NavEstimate initial = test::DrawInitialState(dataset, 3);
+  ASSERT_TRUE(test::RunScenario(dataset, initial, filter.get()).status.ok());
+  std::printf("memory leak %g\n", RelativeLeak(audit, audit.theory()).maxCoeff());
+  EXPECT_EQ(audit.records().back().rank, 11);
+}
+
 class AuditedFilter : public ::testing::TestWithParam<std::pair<ErrorConvention, int>> {};
 INSTANTIATE_TEST_SUITE_P(Conventions, AuditedFilter,
                          ::testing::Values(std::pair{ErrorConvention::kRightInvariant, 11},
