@@ -152,8 +152,23 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
                       {{"oldest", ClonePolicy::kOldest},
                        {"keep_bases", ClonePolicy::kKeepBases},
                        {"alternate", ClonePolicy::kAlternate}});
-  visitor.Integer({"refine_iterations", "-", "Gauss-Newton steps on the landmark; landmark msckf only"},
-                  &refine_iterations, 0, 50);
+  visitor.Integer(
+      {"refine_iterations", "-", "Gauss-Newton steps on the landmark; landmark msckf and slam_features only"},
+      &refine_iterations, 0, 50);
+  visitor.Boolean(
+      {"first_estimates", "-",
+       "Jacobians at the first estimate of each pose and landmark: with so3xrn yaw stays unobservable"},
+      &first_estimates);
+  visitor.Integer({"slam_features", "-",
+                   "at most this many long tracks become landmarks of the state, so that their information "
+                   "outlives the window; 0 keeps none"},
+                  &slam_features, 0, 100);
+  visitor.Integer(
+      {"slam_min_track", "-", "observations of a track before it may become a landmark of the state"},
+      &slam_min_track, 3, 1000);
+  visitor.Real({"slam_max_depth_deviation", "-",
+                "relative deviation of its depth below which a track may become a landmark of the state"},
+               &slam_max_depth_deviation, 1e-4, 1);
 }
 
 void SmootherConfig::Describe(ConfigVisitor& visitor) {
@@ -223,6 +238,12 @@ Status EstimatorConfig::Validate() const {
     return Status::Config("filter.min_observations: " + std::to_string(filter.min_observations) +
                           " views never fit a window of " + std::to_string(filter.window) +
                           " clones and the newest frame");
+  }
+  if (filter.first_estimates && filter.track_memory != TrackMemoryPolicy::kNone) {
+    return Status::Config(
+        "filter.first_estimates: true, but memories of tracks are linearised at the current estimates; "
+        "expected "
+        "false, or filter.track_memory: none");
   }
   if (vision.min_depth_m >= vision.max_depth_m) {
     return Status::Config("vision.min_depth_m: must be less than vision.max_depth_m");

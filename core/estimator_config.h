@@ -119,6 +119,10 @@ struct FilterConfig {
   bool flush_lost_tracks = true;
   ClonePolicy clone_policy = ClonePolicy::kKeepBases;
   int refine_iterations = 5;
+  bool first_estimates = false;
+  int slam_features = 0;
+  int slam_min_track = 10;
+  double slam_max_depth_deviation = 0.05;
 
   void Describe(ConfigVisitor& visitor);
 };

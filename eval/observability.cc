@@ -47,13 +47,14 @@ Eigen::Matrix<double, 15, 4> UnobservableDirections(ErrorConvention convention, 
 void ObservabilityAudit::OnReset(const FilterState& state) {
   theory_ = UnobservableDirections(state.convention(), state.nav());
   map_ = Matrix15d::Identity();
+  core_ = 0;
   landmark_firsts_.clear();
   factor_ = Matrix15d::Zero();
   scale_squared_.setZero();
 }
 
 void ObservabilityAudit::OnPropagate(const Matrix15d& phi, const Matrix15d& /*q*/) {
-  map_.topRows<15>() = (phi * map_.topRows<15>()).eval();
+  map_.middleRows<15>(core_) = (phi * map_.middleRows<15>(core_)).eval();
 }
 
 void ObservabilityAudit::InsertRows(int first, int size) {
@@ -61,14 +62,15 @@ void ObservabilityAudit::InsertRows(int first, int size) {
   map_.conservativeResize(map_.rows() + size, Eigen::NoChange);
   map_.bottomRows(tail) = map_.middleRows(first, tail).eval();
   map_.middleRows(first, size).setZero();
+  core_ += first <= core_ ? size : 0;
   for (int& landmark : landmark_firsts_) {
     landmark += landmark >= first ? size : 0;
   }
 }
 
 void ObservabilityAudit::OnClone(int first, int size) {
-  InsertRows(15, size);
-  map_.middleRows(15, size) = map_.middleRows(first, size).eval();
+  InsertRows(core_ + 15, size);
+  map_.middleRows(core_ + 15, size) = map_.middleRows(core_ + first, size).eval();
 }
 
 void ObservabilityAudit::OnAddLandmark(int first, const MatrixXd& rows) {
@@ -81,6 +83,15 @@ void ObservabilityAudit::OnAddLandmark(int first, const MatrixXd& rows) {
   AddRows(rows);
 }
 
+void ObservabilityAudit::OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) {
+  // f' = f + m s: in the rows, f is f' less m times what s is of the initial error.
+  const auto found = std::find(landmark_firsts_.begin(), landmark_firsts_.end(), landmark);
+  CHECK(found != landmark_firsts_.end()) << "no landmark starts at row " << landmark;
+  const Index column = 3 * (found - landmark_firsts_.begin());
+  const Eigen::Matrix<double, 3, 15> shift = m * map_.middleRows<3>(source);
+  factor_.rightCols<15>() -= (factor_.middleCols<3>(column) * shift).eval();
+}
+
 void ObservabilityAudit::OnRemove(int first, int size) {
   const auto landmark = std::find(landmark_firsts_.begin(), landmark_firsts_.end(), first);
   if (landmark != landmark_firsts_.end()) {
@@ -88,6 +99,7 @@ void ObservabilityAudit::OnRemove(int first, int size) {
     EliminateLandmark(static_cast<size_t>(landmark - landmark_firsts_.begin()));
   }
   EraseRows(first, size, &map_);
+  core_ -= first < core_ ? size : 0;
   for (int& other : landmark_firsts_) {
     other -= other > first ? size : 0;
   }

@@ -43,6 +43,7 @@ class ObservabilityAudit : public FilterObserver {
   void OnPropagate(const Matrix15d& phi, const Matrix15d& q) override;
   void OnClone(int first, int size) override;
   void OnAddLandmark(int first, const Eigen::MatrixXd& rows) override;
+  void OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) override;
   void OnRemove(int first, int size) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
@@ -64,6 +65,7 @@ class ObservabilityAudit : public FilterObserver {
 
   Eigen::Matrix<double, 15, 4> theory_ = Eigen::Matrix<double, 15, 4>::Zero();
   Eigen::MatrixXd map_;               ///< error now = map_ * initial core error; zero rows for landmarks
+  int core_ = 0;                      ///< first row of the core
   std::vector<int> landmark_firsts_;  ///< rows of the landmarks, in the order of factor_'s columns
   Eigen::MatrixXd factor_;            ///< over [landmarks | initial core error]
   Vector15d scale_squared_ = Vector15d::Zero();

@@ -20,6 +20,7 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
     : filter_(filter), vision_(vision), keeper_(filter, max_clones) {
   const auto views = static_cast<size_t>(max_clones);
   poses_.reserve(views);
+  jacobian_poses_.reserve(views);
   points_.reserve(views);
   observations_.reserve(views);
   offsets_.reserve(views);
@@ -50,6 +51,7 @@ void FeatureUpdate::Reserve(int additional_rows) {
 
 bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
   poses_.clear();
+  jacobian_poses_.clear();
   points_.clear();
   observations_.clear();
   offsets_.clear();
@@ -61,6 +63,7 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
     CHECK_GE(index, 0) << "a track refers to a clone that left the window";
     const Clone& clone = state.clones()[static_cast<size_t>(index)];
     poses_.push_back(clone.T_WC);
+    jacobian_poses_.push_back(clone.T_WC_jacobian);
     points_.push_back(view.observation.z);
     observations_.push_back(view.observation);
     if (inflate_base && observations_.size() == 1) {
@@ -73,17 +76,14 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
   return poses_.size() >= 2;
 }
 
-TrackOutcome FeatureUpdate::Triangulate(bool to_remember, Eigen::Vector3d* p_W) const {
+TrackOutcome FeatureUpdate::Triangulate(double max_relative_deviation, bool refine,
+                                        Eigen::Vector3d* p_W) const {
   PoseOnlyDepth depth;
   const DepthViews views =
       filter_.landmark == FilterLandmark::kPoseOnlyTwo ? DepthViews::kTwo : DepthViews::kMulti;
   if (!ComputePoseOnlyDepth(poses_, points_, 0, views, &depth)) {
     return TrackOutcome::kWaiting;
   }
-  // Cheaper than the exact test of a memory, which follows.
-  const double max_relative_deviation =
-      to_remember ? std::min(vision_.max_relative_depth_deviation, kLeniency * filter_.memory_depth_deviation)
-                  : vision_.max_relative_depth_deviation;
   const int other_views = views == DepthViews::kTwo ? 1 : static_cast<int>(poses_.size()) - 1;
   if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(), max_relative_deviation)) {
     return TrackOutcome::kWaiting;
@@ -92,24 +92,63 @@ TrackOutcome FeatureUpdate::Triangulate(bool to_remember, Eigen::Vector3d* p_W) 
     return TrackOutcome::kDegenerate;
   }
   *p_W = depth.p_W;
-  const bool refine =
-      filter_.landmark == FilterLandmark::kMsckf || filter_.track_memory != TrackMemoryPolicy::kNone;
   if (refine && !RefineLandmark(poses_, observations_, 0, filter_.refine_iterations, p_W)) {
     return TrackOutcome::kDegenerate;
   }
   return TrackOutcome::kReady;
 }
 
-TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track, bool to_remember) {
+bool FeatureUpdate::Linearize(const FilterState& state, const Eigen::Vector3d& p_W) {
+  if (!LinearizeTrack(poses_, observations_, p_W, &linearization_)) {
+    return false;
+  }
+  if (!state.first_estimates()) {
+    return true;
+  }
+  residual_ = linearization_.residual;
+  if (!LinearizeTrack(jacobian_poses_, observations_, p_W, &linearization_)) {
+    return false;
+  }
+  linearization_.residual = residual_;
+  return true;
+}
+
+void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, const Eigen::Vector3d& p_W,
+                               LandmarkRows* rows) const {
+  const int core = state.CoreOffset();
+  rows->landmark = {track.id, track.views.back().serial, 0, p_W, p_W};
+  rows->R_f = linearization_.point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
+  rows->T.setZero(3, dimension_ - core);
+  for (size_t k = 0; k < offsets_.size(); ++k) {
+    rows->T.middleCols<6>(offsets_[k] - core) = track_jacobian_.block<3, 6>(0, 6 * static_cast<Index>(k));
+  }
+  if (state.landmarks_are_anchored()) {
+    // An additive error of p_W is f~ - [p_W]x theta_a.
+    rows->T.middleCols<3>(offsets_.back() - core) -= rows->R_f * Skew(p_W);
+  }
+  rows->t = -linearization_.residual.head<3>();
+}
+
+TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& track, bool to_remember,
+                                        LandmarkRows* landmark_rows) {
   if (!GatherViews(state, track)) {
     return TrackOutcome::kWaiting;
   }
   Eigen::Vector3d p_W;
-  const TrackOutcome outcome = Triangulate(to_remember, &p_W);
+  double max_relative_deviation = vision_.max_relative_depth_deviation;
+  if (landmark_rows != nullptr) {
+    max_relative_deviation = filter_.slam_max_depth_deviation;
+  } else if (to_remember) {
+    // Cheaper than the exact test of a memory, which follows.
+    max_relative_deviation = std::min(max_relative_deviation, kLeniency * filter_.memory_depth_deviation);
+  }
+  const bool refine = landmark_rows != nullptr || filter_.landmark == FilterLandmark::kMsckf ||
+                      filter_.track_memory != TrackMemoryPolicy::kNone;
+  const TrackOutcome outcome = Triangulate(max_relative_deviation, refine, &p_W);
   if (outcome != TrackOutcome::kReady) {
     return outcome;
   }
-  if (!LinearizeTrack(poses_, observations_, p_W, &linearization_)) {
+  if (!Linearize(state, p_W)) {
     return TrackOutcome::kDegenerate;
   }
   if (to_remember && !keeper_.MayStart(linearization_.point_jacobian, p_W, poses_.back().translation)) {
@@ -129,17 +168,27 @@ TrackOutcome FeatureUpdate::Append(const FilterState& state, const Track& track,
         linearization_.pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
   }
   EliminateLandmark(linearization_.point_jacobian, dense, linearization_.residual);
-  const int kept = 2 * static_cast<int>(views) - 3;
-  AddBlock(kept);
+  const Block block = AddBlock(static_cast<int>(2 * views - 3));
   for (Index k = 0; k < views; ++k) {
-    jacobian_.block(rows_ - kept, offsets_[static_cast<size_t>(k)], kept, 6) = dense.block(3, 6 * k, kept, 6);
+    jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =
+        dense.block(3, 6 * k, block.rows, 6);
   }
-  innovation_.segment(rows_ - kept, kept) = -linearization_.residual.tail(kept);
+  innovation_.segment(block.first, block.rows) = -linearization_.residual.tail(block.rows);
+  if (landmark_rows != nullptr) {
+    RetainRows(state, track, p_W, landmark_rows);
+  }
   StartMemory(state, dense.topRows(3), p_W);
   if (tracing_) {
-    Trace(track, dense.bottomRightCorner(kept, 2 * views));
+    Trace(track, dense.bottomRightCorner(block.rows, 2 * views));
   }
   return TrackOutcome::kReady;
+}
+
+void FeatureUpdate::TraceNewestObservation(const Track& track) {
+  if (tracing_) {
+    traces_.push_back(
+        {blocks_.back().first, 2, track.id, {track.views.back().serial}, Eigen::Matrix2d::Identity()});
+  }
 }
 
 void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
@@ -178,27 +227,29 @@ TrackOutcome FeatureUpdate::AppendRemembered(const FilterState& state, const Tra
                       &successors_[blocks_.size()])) {
     return TrackOutcome::kDegenerate;
   }
-  AddBlock(2);
+  const Block block = AddBlock(2);
   for (size_t i = 0; i < state.clones().size(); ++i) {
-    jacobian_.block<2, 6>(rows_ - 2, state.CloneOffset(i)) =
+    jacobian_.block<2, 6>(block.first, state.CloneOffset(i)) =
         keeper_.jacobian().middleCols<6>(6 * state.clones()[i].slot);
   }
-  innovation_.segment<2>(rows_ - 2) = keeper_.innovation();
+  innovation_.segment<2>(block.first) = keeper_.innovation();
   if (tracing_) {
     // The noise of the views behind a memory is not followed.
-    traces_.push_back({blocks_.back().first, 2, track.id, {}, Eigen::MatrixXd(2, 0)});
+    traces_.push_back({block.first, 2, track.id, {}, Eigen::MatrixXd(2, 0)});
   }
   return TrackOutcome::kReady;
 }
 
-void FeatureUpdate::AddBlock(int rows) {
+FeatureUpdate::Block FeatureUpdate::AddBlock(int rows) {
   Reserve(rows);
+  const Block block{rows_, rows};
   jacobian_.block(rows_, 0, rows, dimension_).setZero();
-  blocks_.push_back({rows_, rows});
+  blocks_.push_back(block);
   rows_ += rows;
   if (successors_.size() < blocks_.size()) {
     successors_.emplace_back();
   }
+  return block;
 }
 
 void FeatureUpdate::Remember(const FilterState& state, size_t block, double weight, Track* track) {

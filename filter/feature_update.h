@@ -30,7 +30,15 @@ class FeatureUpdate {
   void Begin(const FilterState& state);
   /// Appends the rows of a track that all of its views define; to_remember: waits for a depth that a memory
   /// can start from.
-  TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember = false);
+  TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember = false) {
+    return AppendViews(state, track, to_remember, nullptr);
+  }
+  /// The same for a track that shall become a landmark of the state: linearised where Gauss-Newton puts it,
+  /// with the three rows left over in `landmark_rows`. kWaiting, with nothing appended, while its depth is
+  /// not known to slam_max_depth_deviation.
+  TrackOutcome AppendLandmark(const FilterState& state, const Track& track, LandmarkRows* landmark_rows) {
+    return AppendViews(state, track, false, landmark_rows);
+  }
   /// Appends the two rows that the newest view of a remembered track adds.
   TrackOutcome AppendRemembered(const FilterState& state, const Track& track);
 
@@ -39,6 +47,10 @@ class FeatureUpdate {
     int first = 0;
     int rows = 0;
   };
+  /// The trace of the block just added, when it holds the two whitened rows of a track's newest observation.
+  void TraceNewestObservation(const Track& track);
+  /// Appends `rows` zero rows, for the caller to fill, and an empty successor.
+  Block AddBlock(int rows);
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   /// One a block, when tracing.
   [[nodiscard]] const std::vector<TracedBlock>& traces() const { return traces_; }
@@ -54,15 +66,21 @@ class FeatureUpdate {
 
  private:
   bool GatherViews(const FilterState& state, const Track& track);
-  TrackOutcome Triangulate(bool to_remember, Eigen::Vector3d* p_W) const;
+  TrackOutcome AppendViews(const FilterState& state, const Track& track, bool to_remember,
+                           LandmarkRows* landmark_rows);
+  /// The depth needs a relative deviation below the given one.
+  TrackOutcome Triangulate(double max_relative_deviation, bool refine, Eigen::Vector3d* p_W) const;
+  /// Residuals at the current poses, Jacobians where the state wants them.
+  bool Linearize(const FilterState& state, const Eigen::Vector3d& p_W);
+  /// The three rows that elimination left over.
+  void RetainRows(const FilterState& state, const Track& track, const Eigen::Vector3d& p_W,
+                  LandmarkRows* rows) const;
   void Reserve(int additional_rows);
   /// The trace of the block that Append just added; `noise` holds its 2N - 3 rows.
   void Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise);
   /// What the block that Append just added leaves over, into its successor.
   void StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
                    const Eigen::Vector3d& p_W);
-  /// Makes room for a block of zero rows and its successor.
-  void AddBlock(int rows);
 
   FilterConfig filter_;
   VisionConfig vision_;
@@ -77,12 +95,14 @@ class FeatureUpdate {
   Eigen::VectorXd innovation_;
   // Scratch of one track.
   std::vector<Pose> poses_;
+  std::vector<Pose> jacobian_poses_;
   std::vector<Eigen::Vector2d> points_;
   std::vector<NormalizedObservation> observations_;
   std::vector<int> offsets_;
   std::vector<const Matrix6d*> chains_;
   std::vector<int> clones_;
   TrackLinearization linearization_;
+  Eigen::VectorXd residual_;
   Eigen::MatrixXd track_jacobian_;
 };
 

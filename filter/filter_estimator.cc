@@ -27,8 +27,10 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       noise_(config.imu.Scaled(rig.imu_noise)),
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
-      state_(config.filter.error, rig.T_BC, config.filter.window + 1),
+      state_(config.filter.error, config.filter.first_estimates, rig.T_BC,
+             {config.filter.window + 1, config.filter.slam_features}),
       update_(config.filter, config.vision, config.filter.window + 1),
+      slam_(config.filter, config.filter.window + 1),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s) {}
 
@@ -86,6 +88,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     finite = UpdateAtRest(rest);
   }
   finite = finite && UpdateWithDueTracks(leaving_serial);
+  SlamFeatures::RemoveEnded(serial_, &tracks_, &state_);
   tracks_.RemoveEnded(serial_);
   if (leaving >= 0) {
     LeaveMemories(static_cast<size_t>(leaving));
@@ -165,7 +168,8 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
       .Evaluate(state_.nav(), state_.bias(), &residual, &jacobian);
   const int rows = rest.no_rotation ? RestModel::kRows : 3;
   rest_rows_.setZero(rows, state_.covariance().dimension());
-  rest_rows_.leftCols<15>() = (jacobian * ImuChartJacobian(state_.convention(), state_.nav())).topRows(rows);
+  rest_rows_.middleCols<15>(state_.CoreOffset()) =
+      (jacobian * ImuChartJacobian(state_.convention(), state_.nav())).topRows(rows);
   rest_innovation_ = -residual.head(rows);
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, {rest_rows_, rest_innovation_, {}});
@@ -211,26 +215,57 @@ void FilterEstimator::LeaveMemories(size_t leaving) {
   }
 }
 
+void FilterEstimator::AppendTrack(size_t index, int leaving_serial) {
+  Track& track = tracks_.tracks()[index];
+  TrackOutcome outcome = TrackOutcome::kWaiting;
+  if (track.in_state) {
+    if (track.last_serial != serial_) {
+      return;
+    }
+    outcome = slam_.Append(state_, track, &update_);
+  } else if (slam_.IsCandidate(state_, track, serial_)) {
+    outcome = update_.AppendLandmark(state_, track, slam_.TakeRows());
+    if (outcome == TrackOutcome::kReady) {
+      slam_.AssignBlock(update_.blocks().size() - 1);
+    } else {
+      slam_.ReturnRows();
+    }
+  }
+  if (outcome != TrackOutcome::kReady && !track.in_state) {
+    if (!IsDue(track, leaving_serial)) {
+      return;
+    }
+    outcome = AppendViews(track, leaving_serial);
+  }
+  switch (outcome) {
+    case TrackOutcome::kReady:
+      appended_.push_back(index);
+      break;
+    case TrackOutcome::kWaiting:
+      ++statistics_.features_waiting;
+      break;
+    case TrackOutcome::kDegenerate:
+      ++statistics_.features_degenerate;
+      RetireViews(&track, false);
+      track.memory.active = false;
+      break;
+  }
+}
+
 bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   std::vector<Track>& tracks = tracks_.tracks();
   update_.Begin(state_);
+  slam_.Begin();
   appended_.clear();
   for (size_t i = 0; i < tracks.size(); ++i) {
-    if (!IsDue(tracks[i], leaving_serial)) {
-      continue;
+    if (!tracks[i].in_state) {
+      AppendTrack(i, leaving_serial);
     }
-    switch (AppendTrack(tracks[i], leaving_serial)) {
-      case TrackOutcome::kReady:
-        appended_.push_back(i);
-        break;
-      case TrackOutcome::kWaiting:
-        ++statistics_.features_waiting;
-        break;
-      case TrackOutcome::kDegenerate:
-        ++statistics_.features_degenerate;
-        RetireViews(&tracks[i], false);
-        tracks[i].memory.active = false;
-        break;
+  }
+  const int landmark_rows = update_.rows();  // where they begin
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i].in_state) {
+      AppendTrack(i, leaving_serial);
     }
   }
   if (appended_.empty()) {
@@ -239,12 +274,13 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   if (observer_ != nullptr) {
     observed_ = {update_.jacobian(), update_.innovation(), update_.traces()};
   }
-  state_.covariance().Prepare(update_.jacobian());
+  state_.covariance().Prepare(update_.jacobian(), landmark_rows);
   GateBlocks();
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, observed_);
   }
-  if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_, &statistics_.nis)) {
+  if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_, &statistics_.nis,
+                                 landmark_rows)) {
     return false;
   }
   for (size_t block = 0; block < appended_.size(); ++block) {
@@ -256,13 +292,14 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     }
   }
   Correct();
+  slam_.Enter(correction_, weights_, &state_, &tracks_);
   for (size_t block = 0; block < appended_.size(); ++block) {
     RetireViews(&tracks[appended_[block]], accepted_[block]);
   }
   return true;
 }
 
-TrackOutcome FilterEstimator::AppendTrack(const Track& track, int leaving_serial) {
+TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial) {
   if (track.memory.active) {
     return update_.AppendRemembered(state_, track);
   }
@@ -336,8 +373,13 @@ void FilterEstimator::GateBlocks() {
   }
 }
 
-void FilterEstimator::RetireViews(Track* track, bool used) const {
+void FilterEstimator::RetireViews(Track* track, bool used) {
   const FilterConfig& filter = config_.filter;
+  if (track->in_state) {
+    track->views.clear();
+    SlamFeatures::Judge(used, *track, &state_);
+    return;
+  }
   if (!used || filter.update != UpdateTiming::kImmediate || filter.track_memory != TrackMemoryPolicy::kNone) {
     track->views.clear();
     track->base_rounds = 0;

@@ -8,6 +8,7 @@
 #include "core/robust.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
+#include "filter/slam_features.h"
 #include "filter/track_store.h"
 
 namespace alidade {
@@ -35,6 +36,8 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] int ChooseLeavingClone() const;
   /// True when the track's views are to be used in this frame.
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
+  /// Appends the rows of a track: of its landmark in the state, of its entry there, or of its due views.
+  void AppendTrack(size_t index, int leaving_serial);
   /// False when a number is not finite; the state is then lost.
   bool UpdateWithDueTracks(int leaving_serial);
   /// Zero velocity and zero angular rate, as far as the rest detector says so. False as above.
@@ -43,13 +46,14 @@ class FilterEstimator : public Estimator {
   void MeasureBlocks();
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   void GateBlocks();
-  TrackOutcome AppendTrack(const Track& track, int leaving_serial);
+  /// Appends the rows of a track's views, or those its newest view adds to its memory.
+  TrackOutcome AppendViews(const Track& track, int leaving_serial);
   /// Corrects state and memories by correction_.
   void Correct();
   /// What the memories become when a clone leaves.
   void LeaveMemories(size_t leaving);
   /// What a track keeps after its views were used (base re-use) or refused.
-  void RetireViews(Track* track, bool used) const;
+  void RetireViews(Track* track, bool used);
 
   EstimatorConfig config_;
   RigCalibration rig_;
@@ -58,6 +62,7 @@ class FilterEstimator : public Estimator {
   ChiSquareGate gate_;
   FilterState state_;
   FeatureUpdate update_;
+  SlamFeatures slam_;
   TrackStore tracks_;
   RestDetector rest_;
   ImuBuffer imu_;
@@ -71,7 +76,7 @@ class FilterEstimator : public Estimator {
   std::vector<size_t> appended_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
-  std::vector<double> weights_;
+  std::vector<double> weights_;  ///< of the blocks; 0: refused
   CloneConditional conditional_;
   Eigen::MatrixXd gate_matrix_;
   Eigen::VectorXd correction_;

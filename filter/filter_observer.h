@@ -30,7 +30,8 @@ struct FilterRows {
 };
 
 /// Sees every linear operation the filter performs on its error, with the matrices it really uses. The error
-/// is [core 15 | clones, newest first | further blocks]. Default functions do nothing, and a filter without
+/// is [landmarks, newest first | core 15 | clones, newest first]; without landmarks in the state
+/// (filter.slam_features: 0) the core comes first. Default functions do nothing, and a filter without
 /// observer does no extra work.
 class FilterObserver {
  public:
@@ -45,6 +46,9 @@ class FilterObserver {
   /// A landmark enters as rows [first, first + 3): `rows` (3 x dimension with the landmark) are the
   /// unit-noise measurements that define it; their 3 x 3 block at `first` is invertible.
   virtual void OnAddLandmark(int /*first*/, const Eigen::MatrixXd& /*rows*/) {}
+  /// The rows [landmark, landmark + 3) += m times the rows [source, source + 3) of a clone: the landmark's
+  /// error refers to another anchor.
+  virtual void OnAddToLandmark(int /*landmark*/, const Eigen::Matrix3d& /*m*/, int /*source*/) {}
   /// The rows [first, first + size) leave.
   virtual void OnRemove(int /*first*/, int /*size*/) {}
   /// An update is about to be applied to `state`.

@@ -5,10 +5,15 @@
 
 namespace alidade {
 
-FilterState::FilterState(ErrorConvention convention, const Pose& T_BC, int max_clones)
-    : convention_(convention), T_BC_(T_BC), covariance_(SquareRootCovariance::kCore + 6 * max_clones) {
-  clones_.reserve(static_cast<size_t>(max_clones));
-  for (int slot = max_clones; slot-- > 0;) {
+FilterState::FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits)
+    : convention_(convention),
+      first_estimates_(first_estimates),
+      T_BC_(T_BC),
+      covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks,
+                  3 * limits.landmarks) {
+  clones_.reserve(static_cast<size_t>(limits.clones));
+  landmarks_.reserve(static_cast<size_t>(limits.landmarks));
+  for (int slot = limits.clones; slot-- > 0;) {
     free_slots_.push_back(slot);
   }
 }
@@ -19,12 +24,14 @@ Status FilterState::Reset(const NavEstimate& initial) {
   const Matrix15d transformed = to_error * initial.covariance * to_error.transpose();
   ALIDADE_RETURN_IF_ERROR(covariance_.Reset(0.5 * (transformed + transformed.transpose())));
   nav_ = initial.nav;
+  nav_first_ = nav_;
   bias_ = initial.bias;
   stamp_ns_ = initial.stamp_ns;
   while (!clones_.empty()) {
     free_slots_.push_back(clones_.back().slot);
     clones_.pop_back();
   }
+  landmarks_.clear();
   if (observer_ != nullptr) {
     observer_->OnReset(*this);
   }
@@ -33,7 +40,13 @@ Status FilterState::Reset(const NavEstimate& initial) {
 
 void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& noise,
                             const Eigen::Vector3d& gravity_W) {
-  const Matrix15d from_error = ImuChartJacobian(convention_, nav_);
+  Matrix15d from_error = ImuChartJacobian(convention_, nav_);
+  if (first_estimates_) {
+    // The right-invariant transition does not depend on the state; only the charts at its ends do.
+    constexpr ErrorConvention kInvariant = ErrorConvention::kRightInvariant;
+    from_error = ImuChartJacobian(kInvariant, nav_) * InverseImuChartJacobian(kInvariant, nav_first_) *
+                 ImuChartJacobian(convention_, nav_first_);
+  }
   ImuTransition transition;
   PropagateImu(samples, bias_, noise, gravity_W, &nav_, &transition);
   const Matrix15d to_error = InverseImuChartJacobian(convention_, nav_);
@@ -44,6 +57,7 @@ void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& 
     observer_->OnPropagate(phi, q);
   }
   stamp_ns_ = samples.back().stamp_ns;
+  nav_first_ = nav_;
 }
 
 void FilterState::AddClone(int serial) {
@@ -59,38 +73,111 @@ void FilterState::AddClone(int serial) {
   free_slots_.pop_back();
   clone.stamp_ns = stamp_ns_;
   clone.T_WB = nav_.T_WB();
+  clone.T_WB_first = nav_first_.T_WB();
   RefreshClone(&clone);
   clones_.push_back(clone);
 }
 
 void FilterState::RemoveClone(size_t index) {
   CHECK_LT(index, clones_.size());
-  const int first = CloneOffset(index);
-  covariance_.Remove(first, 6);
-  if (observer_ != nullptr) {
-    observer_->OnRemove(first, 6);
+  if (landmarks_are_anchored()) {
+    Reanchor(clones_[index].serial);
   }
+  RemoveRows(CloneOffset(index), 6);
   free_slots_.push_back(clones_[index].slot);
   clones_.erase(clones_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
+void FilterState::RemoveRows(int first, int size) {
+  covariance_.Remove(first, size);
+  if (observer_ != nullptr) {
+    observer_->OnRemove(first, size);
+  }
+}
+
+void FilterState::AddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) {
+  covariance_.AddToLeading(landmark, m, source);
+  if (observer_ != nullptr) {
+    observer_->OnAddToLandmark(landmark, m, source);
+  }
+}
+
+void FilterState::Reanchor(int leaving_serial) {
+  // Exp(theta_a) p^ + f~ = Exp(theta_b) p^ + f~': to first order f~' = f~ + [p^]x (theta_b - theta_a).
+  const int leaving = FindClone(leaving_serial);
+  const size_t newest = clones_.size() - 1;
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    Landmark& landmark = landmarks_[i];
+    if (landmark.anchor_serial != leaving_serial) {
+      continue;
+    }
+    CHECK_NE(static_cast<size_t>(leaving), newest) << "the last clone holds anchors";
+    const Eigen::Matrix3d skew = Skew(JacobianPoint(landmark));
+    AddToLandmark(LandmarkOffset(i), skew, CloneOffset(newest));
+    AddToLandmark(LandmarkOffset(i), -skew, CloneOffset(static_cast<size_t>(leaving)));
+    landmark.anchor_serial = clones_[newest].serial;
+  }
+}
+
+void FilterState::AddLandmark(const LandmarkRows& rows) {
+  CHECK_LT(landmarks_.size(), landmarks_.capacity());
+  CHECK_EQ(rows.T.cols(), covariance_.dimension() - covariance_.leading());
+  Eigen::Matrix3d root = Eigen::Matrix3d::Identity();
+  rows.R_f.triangularView<Eigen::Upper>().solveInPlace(root);
+  // f~ = R_f^-1 (t - T x~ - n); the sign of n means nothing.
+  gain_.noalias() = -root * rows.T;
+  covariance_.AddLeading(root, gain_);
+  landmarks_.push_back(rows.landmark);
+  landmarks_.back().p_W += root * rows.t;
+  if (observer_ != nullptr) {
+    Eigen::MatrixXd defining = Eigen::MatrixXd::Zero(3, covariance_.dimension());
+    defining.leftCols<3>() = rows.R_f;
+    defining.rightCols(rows.T.cols()) = rows.T;
+    observer_->OnAddLandmark(0, defining);
+  }
+}
+
+void FilterState::RemoveLandmark(size_t index) {
+  CHECK_LT(index, landmarks_.size());
+  RemoveRows(LandmarkOffset(index), 3);
+  landmarks_.erase(landmarks_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
 void FilterState::Correct(const Eigen::VectorXd& correction) {
   CHECK_EQ(correction.size(), covariance_.dimension());
-  nav_ = Retract(convention_, nav_, Vector9d(correction.head<9>()));
+  const int core = CoreOffset();
+  nav_ = Retract(convention_, nav_, Vector9d(correction.segment<9>(core)));
   nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
-  bias_.gyro += correction.segment<3>(9);
-  bias_.accel += correction.segment<3>(12);
+  bias_.gyro += correction.segment<3>(core + 9);
+  bias_.accel += correction.segment<3>(core + 12);
   for (size_t i = 0; i < clones_.size(); ++i) {
     Clone& clone = clones_[i];
     clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(correction.segment<6>(CloneOffset(i))));
     clone.T_WB.rotation = Eigen::Quaterniond(clone.T_WB.rotation).normalized().toRotationMatrix();
     RefreshClone(&clone);
   }
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    Landmark& landmark = landmarks_[i];
+    if (landmarks_are_anchored()) {
+      const auto anchor = static_cast<size_t>(FindClone(landmark.anchor_serial));
+      landmark.p_W = so3::Exp(correction.segment<3>(CloneOffset(anchor))) * landmark.p_W;
+    }
+    landmark.p_W += correction.segment<3>(LandmarkOffset(i));
+  }
 }
 
 int FilterState::FindClone(int serial) const {
   for (size_t i = clones_.size(); i-- > 0;) {
     if (clones_[i].serial == serial) {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+int FilterState::FindLandmark(std::int64_t id) const {
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    if (landmarks_[i].id == id) {
       return static_cast<int>(i);
     }
   }
@@ -110,8 +197,9 @@ bool FilterState::AllFinite() const {
 
 void FilterState::RefreshClone(Clone* clone) const {
   clone->T_WC = clone->T_WB * T_BC_;
-  clone->camera_from_error =
-      BodyToCameraJacobian(clone->T_WB.rotation, T_BC_) * ChartJacobian(convention_, clone->T_WB);
+  const Pose& T_WB = first_estimates_ ? clone->T_WB_first : clone->T_WB;
+  clone->T_WC_jacobian = T_WB * T_BC_;
+  clone->camera_from_error = BodyToCameraJacobian(T_WB.rotation, T_BC_) * ChartJacobian(convention_, T_WB);
 }
 
 }  // namespace alidade

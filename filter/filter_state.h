@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,16 +18,51 @@ struct Clone {
   int slot = 0;  ///< in [0, max_clones), its own as long as it lives
   TimeNs stamp_ns = 0;
   Pose T_WB;
-  // Derived from T_WB and the extrinsics; refreshed after every correction.
+  Pose T_WB_first;  ///< when it was cloned
+  // Derived from the poses and the extrinsics; refreshed after every correction.
   Pose T_WC;
-  Matrix6d camera_from_error = Matrix6d::Identity();  ///< d zeta_C / d xi of this clone
+  Pose T_WC_jacobian;                                 ///< where Jacobians are evaluated: T_WC, or its first
+  Matrix6d camera_from_error = Matrix6d::Identity();  ///< d zeta_C / d xi of this clone, at T_WC_jacobian
 };
 
-/// State and covariance of the filter: current navigation state, biases and a window of clones. The error is
-/// [theta p v bg ba | clones newest first], each pose in the configured convention.
+/// A long-lived landmark kept in the state. Its error f~ is additive, p_W = p^_W + f~, except in the
+/// right-invariant convention, where it turns with the attitude error of its anchor clone a: p_W =
+/// Exp(theta_a) p^_W + f~. With it a common turn and a common shift of all errors change no predicted
+/// observation, wherever the landmark is linearised.
+struct Landmark {
+  std::int64_t id = 0;    ///< of its track
+  int anchor_serial = 0;  ///< of a clone in the window
+  int refusals = 0;       ///< by the gate, in a row
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_W_first = Eigen::Vector3d::Zero();  ///< when it entered the state
+};
+
+/// What the rows of a track say about its landmark after elimination (core/landmark_reduction.h): t = T x~ +
+/// R_f f~ + n, n ~ N(0, I_3) independent of the eliminated rows; x~ the core and all clones, f~ as in
+/// Landmark.
+struct LandmarkRows {
+  Landmark landmark;
+  Eigen::Matrix3d R_f = Eigen::Matrix3d::Zero();  ///< upper triangular
+  Eigen::Matrix<double, 3, Eigen::Dynamic> T;     ///< 3 x (dimension without landmarks)
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+};
+
+/// State and covariance of the filter: landmarks, current navigation state, biases and a window of clones.
+/// The error is [landmarks newest first | theta p v bg ba | clones newest first], each pose in the configured
+/// convention.
+///
+/// With `first_estimates`, Jacobians are evaluated at the first estimate of each clone and landmark, and the
+/// transition runs from the first estimate at its start (the prediction, before any update there) to the
+/// prediction at its end, so that transitions chain (Li & Mourikis 2013, Huang et al. 2010). Residuals use
+/// the current estimates throughout. In the right-invariant convention the transition is the same either way.
 class FilterState {
  public:
-  FilterState(ErrorConvention convention, const Pose& T_BC, int max_clones);
+  struct Limits {
+    int clones = 0;
+    int landmarks = 0;
+  };
+
+  FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits);
 
   /// Null, the default, observes nothing. It must outlive the state.
   void SetObserver(FilterObserver* observer) { observer_ = observer; }
@@ -36,20 +72,46 @@ class FilterState {
   /// Propagates state and covariance over consecutive samples.
   void Propagate(std::span<const ImuSample> samples, const ImuNoise& noise, const Eigen::Vector3d& gravity_W);
   void AddClone(int serial);
+  /// Landmarks anchored in the clone move their anchor to the newest one.
   void RemoveClone(size_t index);
+  /// Enters a landmark whose rows were linearised at the present state: p_W moves by R_f^-1 t. R_f must be
+  /// regular.
+  void AddLandmark(const LandmarkRows& rows);
+  void RemoveLandmark(size_t index);
   /// Retracts every state by its part of the correction (error order of the class).
   void Correct(const Eigen::VectorXd& correction);
 
+  /// First error row of the core; landmarks lie before it.
+  [[nodiscard]] int CoreOffset() const { return covariance_.leading(); }
   /// First error row of clone `index` (0 = oldest).
   [[nodiscard]] int CloneOffset(size_t index) const {
-    return SquareRootCovariance::kCore + 6 * static_cast<int>(clones_.size() - 1 - index);
+    return CoreOffset() + SquareRootCovariance::kCore + 6 * static_cast<int>(clones_.size() - 1 - index);
+  }
+  /// First error row of landmark `index` (0 = oldest).
+  [[nodiscard]] int LandmarkOffset(size_t index) const {
+    return 3 * static_cast<int>(landmarks_.size() - 1 - index);
   }
   /// Index of the clone with this serial, or -1.
   [[nodiscard]] int FindClone(int serial) const;
+  /// Index of the landmark of this track, or -1.
+  [[nodiscard]] int FindLandmark(std::int64_t id) const;
   [[nodiscard]] NavEstimate Estimate() const;
 
-  [[nodiscard]] const std::vector<Clone>& clones() const { return clones_; }  ///< oldest first
+  [[nodiscard]] const std::vector<Clone>& clones() const { return clones_; }           ///< oldest first
+  [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarks_; }  ///< oldest first
+  [[nodiscard]] std::vector<Landmark>& landmarks() { return landmarks_; }
+  /// Where Jacobians of a landmark are evaluated.
+  [[nodiscard]] const Eigen::Vector3d& JacobianPoint(const Landmark& landmark) const {
+    return first_estimates_ ? landmark.p_W_first : landmark.p_W;
+  }
+  [[nodiscard]] bool first_estimates() const { return first_estimates_; }
+  /// True when a landmark's error turns with its anchor's.
+  [[nodiscard]] bool landmarks_are_anchored() const {
+    return convention_ == ErrorConvention::kRightInvariant;
+  }
   [[nodiscard]] const NavState& nav() const { return nav_; }
+  /// The current state as it was predicted, before any update.
+  [[nodiscard]] const NavState& nav_first() const { return nav_first_; }
   [[nodiscard]] const ImuBias& bias() const { return bias_; }
   [[nodiscard]] TimeNs stamp_ns() const { return stamp_ns_; }
   [[nodiscard]] SquareRootCovariance& covariance() { return covariance_; }
@@ -59,16 +121,24 @@ class FilterState {
 
  private:
   void RefreshClone(Clone* clone) const;
+  void Reanchor(int leaving_serial);
+  // Covariance and observer alike.
+  void RemoveRows(int first, int size);
+  void AddToLandmark(int landmark, const Eigen::Matrix3d& m, int source);
 
   ErrorConvention convention_;
+  bool first_estimates_;
   Pose T_BC_;
   TimeNs stamp_ns_ = 0;
   NavState nav_;
+  NavState nav_first_;
   ImuBias bias_;
   std::vector<Clone> clones_;
   std::vector<int> free_slots_;
+  std::vector<Landmark> landmarks_;
   SquareRootCovariance covariance_;
   FilterObserver* observer_ = nullptr;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> gain_;  // scratch of AddLandmark
 };
 
 }  // namespace alidade

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
+#include <vector>
 
 #include "core/lie.h"
 #include "core/status.h"
@@ -8,14 +10,16 @@
 namespace alidade {
 
 /// Covariance kept as an upper-triangular factor, P = S S^T: symmetric and positive semi-definite by
-/// construction, whatever is done to it. The error is ordered [core (15), blocks newest first]: upper
-/// triangularity then makes propagation and cloning touch a corner only. Storage is allocated once for
-/// `capacity`.
+/// construction, whatever is done to it. The error is ordered [leading blocks newest first, core (15), blocks
+/// newest first]. Upper triangularity makes a row depend on the noise of its own and later rows: a leading
+/// block, a linear function of what follows it plus its own noise, is added without touching the rest, and
+/// without leading blocks propagation and cloning touch a corner only. Storage is allocated once.
 class SquareRootCovariance {
  public:
   static constexpr int kCore = 15;
 
-  explicit SquareRootCovariance(int capacity);
+  /// `capacity`: largest dimension; `max_leading` of it may be leading blocks.
+  explicit SquareRootCovariance(int capacity, int max_leading = 0);
 
   /// Restarts with the core block alone. kInput: not symmetric positive semi-definite to rounding.
   Status Reset(const Matrix15d& covariance);
@@ -26,23 +30,37 @@ class SquareRootCovariance {
   /// Inserts a copy of the error rows [first, first + size) of the core block directly after the core block.
   void CloneCore(int first, int size);
 
+  /// Inserts a block f = gain x + root n at the very front; x: the core and all that follows it, n ~ N(0,
+  /// I_3) independent of everything. root: upper triangular.
+  void AddLeading(const Eigen::Matrix3d& root, const Eigen::Ref<const Eigen::MatrixXd>& gain);
+
+  /// Rows [target, target + 3) of a leading block += m times the rows [source, source + 3), which lie behind
+  /// the leading blocks.
+  void AddToLeading(int target, const Eigen::Matrix3d& m, int source);
+
   /// Marginalises the rows [first, first + size), which lie outside the core block.
   void Remove(int first, int size);
 
   /// Kalman update with unit-noise rows H over the whole error (rows x dimension()) and innovation y =
   /// measured - predicted. Prepare computes A = H S, in place; rows may then be gated or re-weighted in A and
   /// y before Apply.
-  void Prepare(Eigen::Ref<Eigen::MatrixXd> rows_in_place) const;
+  ///
+  /// The rows from `sparse_from` on are handled apart (both in Prepare and Apply): few of their entries are
+  /// not zero, but these reach leading blocks, which the rows before need not pay for. -1: no such rows.
+  void Prepare(Eigen::Ref<Eigen::MatrixXd> rows_in_place, int sparse_from = -1);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
   /// y, the normalised innovation squared. False, with nothing changed, when a row is not finite: M is at
   /// least the identity, so nothing else can stop its factorisation.
   bool Apply(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows,
-             const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::VectorXd* correction, double* nis);
+             const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::VectorXd* correction, double* nis,
+             int sparse_from = -1);
 
   [[nodiscard]] int dimension() const { return dimension_; }
+  /// Rows before the core block.
+  [[nodiscard]] int leading() const { return leading_; }
   [[nodiscard]] int capacity() const { return static_cast<int>(factor_.rows()); }
   /// The factor, dimension() x dimension(), upper triangular.
-  [[nodiscard]] auto factor() const { return factor_.topLeftCorner(dimension_, dimension_); }
+  [[nodiscard]] auto factor() const { return factor_.block(origin_, origin_, dimension_, dimension_); }
   [[nodiscard]] Matrix15d CoreCovariance() const;
   /// Covariance of the rows [row, row + 6) with [column, column + 6).
   [[nodiscard]] Matrix6d PoseBlock(int row, int column) const;
@@ -51,10 +69,30 @@ class SquareRootCovariance {
   [[nodiscard]] bool AllFinite() const { return factor().allFinite(); }
 
  private:
+  [[nodiscard]] auto Part(Eigen::Index row, Eigen::Index col, Eigen::Index rows, Eigen::Index cols) {
+    return factor_.block(origin_ + row, origin_ + col, rows, cols);
+  }
+  [[nodiscard]] const double* Data(int row, int col) const { return &factor_(origin_ + row, origin_ + col); }
+  [[nodiscard]] double* Data(int row, int col) { return &factor_(origin_ + row, origin_ + col); }
+  void RemoveLeading(int first, int size);
+  void PrepareSparse(Eigen::Ref<Eigen::MatrixXd> rows_in_place);
+  /// The part of A^T A that the columns from `first` on make, in the upper left of information_. Rows before
+  /// `sparse_from` are zero left of first_dense, the others left of first_sparse.
+  void FormInformation(const Eigen::Ref<const Eigen::MatrixXd>& rows, int sparse_from, int first_dense,
+                       int first_sparse);
+  /// S <- S U^-1 for the columns from `first` on; U is information_.
+  void DivideByInformationRoot(int first);
+
   int dimension_ = 0;
+  int leading_ = 0;
+  int max_leading_ = 0;
+  int origin_ = 0;  ///< the factor's place in factor_: leading blocks grow towards the upper left
   Eigen::MatrixXd factor_;
   Eigen::MatrixXd information_;  // scratch of Apply
+  Eigen::MatrixXd corner_;       // scratch of Propagate and CloneCore
   Eigen::VectorXd projected_;
+  std::vector<std::pair<int, double>> entries_;  // scratch of PrepareSparse: column and value
+  std::vector<size_t> row_ends_;
   Eigen::VectorXd reflection_;
 };
 

@@ -16,6 +16,8 @@ Track TrackStore::TakeSpare(std::int64_t id) {
   track.base_rounds = 0;
   track.last_serial = -1;
   track.memory.active = false;
+  track.observations = 0;
+  track.in_state = false;
   return track;
 }
 
@@ -38,6 +40,7 @@ int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int s
     merged_.push_back(known ? std::move(tracks_[next++]) : TakeSpare(seen.track_id));
     merged_.back().views.push_back(view);
     merged_.back().last_serial = serial;
+    ++merged_.back().observations;
   }
   while (next < tracks_.size()) {
     merged_.push_back(std::move(tracks_[next++]));
@@ -67,6 +70,13 @@ void TrackStore::RemoveClone(int serial) {
     }
     track.views.erase(view);
   }
+}
+
+Track* TrackStore::Find(std::int64_t id) {
+  const auto found =
+      std::lower_bound(tracks_.begin(), tracks_.end(), id,
+                       [](const Track& track, std::int64_t value) { return track.id < value; });
+  return found != tracks_.end() && found->id == id ? &*found : nullptr;
 }
 
 void TrackStore::Clear() {

@@ -19,8 +19,10 @@ struct TrackView {
 struct Track {
   std::int64_t id = 0;
   std::vector<TrackView> views;
-  int base_rounds = 0;   ///< updates the present base has already served
-  int last_serial = -1;  ///< newest frame that saw the track
+  int base_rounds = 0;    ///< updates the present base has already served
+  int last_serial = -1;   ///< newest frame that saw the track
+  int observations = 0;   ///< of its life, also those used and forgotten
+  bool in_state = false;  ///< its landmark is in the state; views then holds the newest observation only
   TrackMemory memory;
 };
 
@@ -37,6 +39,8 @@ class TrackStore {
   void RemoveClone(int serial);
   void Clear();
 
+  /// The live track of this id, or nullptr.
+  [[nodiscard]] Track* Find(std::int64_t id);
   [[nodiscard]] std::vector<Track>& tracks() { return tracks_; }
   [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
 

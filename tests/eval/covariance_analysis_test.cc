@@ -93,7 +93,7 @@ MatrixXd Sampled(const TwoRounds& rounds, bool base_again, int samples) {
 
 TEST(CovarianceAnalysisTest, AgreesWithSamplesOfAReusedBaseWhereTheFilterDoesNot) {
   const TwoRounds rounds = MakeTwoRounds(true);
-  FilterState state(ErrorConvention::kRightInvariant, Pose(), 2);
+  FilterState state(ErrorConvention::kRightInvariant, false, Pose(), {2, 0});
   const CovarianceAnalysis analysis = Analyze(rounds, &state);
   const MatrixXd sampled = Sampled(rounds, true, 200000);
   const MatrixXd believed = state.covariance().Covariance();
@@ -103,7 +103,7 @@ TEST(CovarianceAnalysisTest, AgreesWithSamplesOfAReusedBaseWhereTheFilterDoesNot
 }
 
 TEST(CovarianceAnalysisTest, IsTheFiltersOwnCovarianceWhenNothingServesTwice) {
-  FilterState state(ErrorConvention::kRightInvariant, Pose(), 2);
+  FilterState state(ErrorConvention::kRightInvariant, false, Pose(), {2, 0});
   const CovarianceAnalysis analysis = Analyze(MakeTwoRounds(false), &state);
   const MatrixXd believed = state.covariance().Covariance();
   EXPECT_LT((analysis.actual() - believed).norm(), 1e-12 * believed.norm());
@@ -112,7 +112,7 @@ TEST(CovarianceAnalysisTest, IsTheFiltersOwnCovarianceWhenNothingServesTwice) {
 TEST(CovarianceAnalysisTest, CountsTheReuseItDoesNotModel) {
   TwoRounds rounds = MakeTwoRounds(true);
   rounds.second.blocks[0].serials = {1, 2};  // the second view was no base
-  FilterState state(ErrorConvention::kRightInvariant, Pose(), 2);
+  FilterState state(ErrorConvention::kRightInvariant, false, Pose(), {2, 0});
   EXPECT_EQ(Analyze(rounds, &state).unmodelled_reuse(), 1);
 }
 

@@ -17,19 +17,41 @@ using Eigen::MatrixXd;
 /// Repeats with plain covariance algebra what it is told, and compares at the end of every frame.
 class CovarianceReplay : public FilterObserver {
  public:
-  void OnReset(const FilterState& state) override { p_ = state.covariance().Covariance(); }
+  void OnReset(const FilterState& state) override {
+    p_ = state.covariance().Covariance();
+    core_ = 0;
+  }
   void OnPropagate(const Matrix15d& phi, const Matrix15d& q) override {
     MatrixXd map = MatrixXd::Identity(p_.rows(), p_.rows());
-    map.topLeftCorner<15, 15>() = phi;
+    map.block<15, 15>(core_, core_) = phi;
     p_ = map * p_ * map.transpose();
-    p_.topLeftCorner<15, 15>() += q;
+    p_.block<15, 15>(core_, core_) += q;
   }
   void OnClone(int first, int size) override {
+    const Index head = core_ + 15;
     MatrixXd map = MatrixXd::Zero(p_.rows() + size, p_.rows());
-    map.topLeftCorner<15, 15>().setIdentity();
-    map.block(15, first, size, size).setIdentity();
-    map.bottomRightCorner(p_.rows() - 15, p_.rows() - 15).setIdentity();
+    map.topLeftCorner(head, head).setIdentity();
+    map.block(head, core_ + first, size, size).setIdentity();
+    map.bottomRightCorner(p_.rows() - head, p_.rows() - head).setIdentity();
     p_ = map * p_ * map.transpose();
+  }
+  void OnAddLandmark(int first, const MatrixXd& rows) override {
+    ASSERT_EQ(first, 0);
+    ASSERT_EQ(rows.cols(), p_.rows() + 3);
+    const Eigen::Matrix3d root = rows.leftCols<3>().inverse();
+    MatrixXd map = MatrixXd::Zero(p_.rows() + 3, p_.rows());
+    map.topRows<3>() = -root * rows.rightCols(p_.rows());
+    map.bottomRows(p_.rows()).setIdentity();
+    p_ = map * p_ * map.transpose();
+    p_.topLeftCorner<3, 3>() += root * root.transpose();
+    core_ += 3;
+    ++landmarks_;
+  }
+  void OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) override {
+    MatrixXd map = MatrixXd::Identity(p_.rows(), p_.rows());
+    map.block<3, 3>(landmark, source) = m;
+    p_ = map * p_ * map.transpose();
+    ++anchor_moves_;
   }
   void OnRemove(int first, int size) override {
     MatrixXd map = MatrixXd::Zero(p_.rows() - size, p_.rows());
@@ -37,6 +59,7 @@ class CovarianceReplay : public FilterObserver {
     const Index tail = p_.rows() - first - size;
     map.bottomRightCorner(tail, tail).setIdentity();
     p_ = map * p_ * map.transpose();
+    core_ -= first < core_ ? size : 0;
   }
   void OnUpdate(const FilterState& state, const FilterRows& rows) override {
     ASSERT_EQ(rows.jacobian.cols(), state.covariance().dimension());
@@ -59,6 +82,8 @@ class CovarianceReplay : public FilterObserver {
 
   int frames() const { return frames_; }
   int updates() const { return updates_; }
+  int landmarks() const { return landmarks_; }
+  int anchor_moves() const { return anchor_moves_; }
   int inflated() const { return inflated_; }
   int plain() const { return plain_; }
   double worst() const { return worst_; }
@@ -80,14 +105,17 @@ class CovarianceReplay : public FilterObserver {
   }
 
   MatrixXd p_;
+  int core_ = 0;  ///< first row of the core, behind the landmarks
   int frames_ = 0;
   int updates_ = 0;
+  int landmarks_ = 0;
+  int anchor_moves_ = 0;
   int inflated_ = 0;
   int plain_ = 0;
   double worst_ = 0;
 };
 
-CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel) {
+CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel, int slam_features = 0) {
   SimulatorConfig sim;
   sim.duration_s = 8;
   sim.path_m = 10;
@@ -95,6 +123,7 @@ CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel) {
   EstimatorConfig config;
   config.filter.base_reuse = reuse;
   config.filter.window = 12;
+  config.filter.slam_features = slam_features;
   config.vision.robust_kernel = kernel;
   config.vision.gate_probability = kernel == RobustKernel::kNone ? 1.0 : 0.99;
   CovarianceReplay replay;
@@ -109,6 +138,13 @@ CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel) {
 TEST(FilterObserverTest, WhatIsObservedIsWhatTheFilterDoes) {
   const CovarianceReplay replay = Replay(BaseReuse::kInflate, RobustKernel::kHuber);
   EXPECT_GT(replay.updates(), 60);
+  EXPECT_LT(replay.worst(), 1e-6);
+}
+
+TEST(FilterObserverTest, LandmarksOfTheStateAreObservedToo) {
+  const CovarianceReplay replay = Replay(BaseReuse::kInflate, RobustKernel::kHuber, 10);
+  EXPECT_GT(replay.landmarks(), 20);
+  EXPECT_GT(replay.anchor_moves(), 20);
   EXPECT_LT(replay.worst(), 1e-6);
 }
 

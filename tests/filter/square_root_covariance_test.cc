@@ -35,43 +35,98 @@ class SquareRootCovarianceTest : public ::testing::Test {
     const MatrixXd b = 0.1 * RandomMatrix(&random_, 15, 15);
     const MatrixXd q = b * b.transpose();
     MatrixXd f = MatrixXd::Identity(dense_.rows(), dense_.rows());
-    f.topLeftCorner(15, 15) = phi;
+    f.block(leading_, leading_, 15, 15) = phi;
     dense_ = f * dense_ * f.transpose();
-    dense_.topLeftCorner(15, 15) += q;
+    dense_.block(leading_, leading_, 15, 15) += q;
     root_.Propagate(phi, q);
   }
 
   void Clone() {
     const Eigen::Index n = dense_.rows();
+    const Eigen::Index head = leading_ + 15;
     MatrixXd j = MatrixXd::Zero(n + 6, n);
-    j.topLeftCorner(15, 15).setIdentity();
-    j.block(15, 0, 6, 6).setIdentity();
-    j.bottomRightCorner(n - 15, n - 15).setIdentity();
+    j.topLeftCorner(head, head).setIdentity();
+    j.block(head, leading_, 6, 6).setIdentity();
+    j.bottomRightCorner(n - head, n - head).setIdentity();
     dense_ = j * dense_ * j.transpose();
     root_.CloneCore(0, 6);
   }
 
-  void Remove(int first) {
+  /// f = gain x + root n.
+  void AddLeading() {
     const Eigen::Index n = dense_.rows();
-    MatrixXd keep = MatrixXd::Zero(n - 6, n);
+    const MatrixXd gain = RandomMatrix(&random_, 3, n - leading_);
+    const Eigen::Matrix3d root = RandomMatrix(&random_, 3, 3).triangularView<Eigen::Upper>();
+    MatrixXd j = MatrixXd::Zero(n + 3, n);
+    j.topRightCorner(3, n - leading_) = gain;
+    j.bottomRows(n).setIdentity();
+    dense_ = j * dense_ * j.transpose();
+    dense_.topLeftCorner(3, 3) += root * root.transpose();
+    root_.AddLeading(root, gain);
+    leading_ += 3;
+  }
+
+  void AddToLeading(int target, int source) {
+    const Eigen::Index n = dense_.rows();
+    const Eigen::Matrix3d m = RandomMatrix(&random_, 3, 3);
+    MatrixXd j = MatrixXd::Identity(n, n);
+    j.block(target, source, 3, 3) = m;
+    dense_ = j * dense_ * j.transpose();
+    root_.AddToLeading(target, m, source);
+  }
+
+  void Remove(int first, int size = 6) {
+    const Eigen::Index n = dense_.rows();
+    MatrixXd keep = MatrixXd::Zero(n - size, n);
     keep.topLeftCorner(first, first).setIdentity();
-    keep.bottomRightCorner(n - 6 - first, n - 6 - first).setIdentity();
+    keep.bottomRightCorner(n - size - first, n - size - first).setIdentity();
     dense_ = keep * dense_ * keep.transpose();
-    root_.Remove(first, 6);
+    root_.Remove(first, size);
+    leading_ -= first < leading_ ? size : 0;
+  }
+
+  /// 40 rows that do not see the first `unseen` errors, and `sparse` rows with three entries each.
+  void Update(int unseen = 0, int sparse = 0) {
+    const Eigen::Index n = dense_.rows();
+    const Eigen::Index rows = 40 + sparse;
+    MatrixXd h = RandomMatrix(&random_, rows, n);
+    h.leftCols(unseen).setZero();
+    for (Eigen::Index row = 40; row < rows; ++row) {
+      const Eigen::Index landmark = row % n;
+      h.row(row).setZero();
+      h(row, landmark) = random_.Normal();
+      h(row, n - 6) = random_.Normal();
+      h(row, n - 1) = random_.Normal();
+    }
+    const VectorXd y = RandomMatrix(&random_, rows, 1);
+    const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(rows, rows);
+    const MatrixXd gain = s.ldlt().solve(h * dense_).transpose();
+    const VectorXd expected = gain * y;
+    const double nis = y.dot(s.ldlt().solve(y));
+    const MatrixXd rest = MatrixXd::Identity(n, n) - gain * h;
+    dense_ = rest * dense_ * rest.transpose() + gain * gain.transpose();
+    root_.Prepare(h, sparse > 0 ? 40 : -1);
+    VectorXd correction;
+    double measured = 0;
+    ASSERT_TRUE(root_.Apply(h, y, &correction, &measured, sparse > 0 ? 40 : -1));
+    EXPECT_NEAR(measured, nis, 1e-9 * nis);
+    EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
   }
 
   void ExpectEqual() {
     ASSERT_EQ(root_.dimension(), dense_.rows());
     const double scale = std::max(1.0, dense_.norm());
     EXPECT_LT((root_.Covariance() - dense_).norm(), 1e-10 * scale);
-    EXPECT_LT((root_.CoreCovariance() - dense_.topLeftCorner(15, 15)).norm(), 1e-10 * scale);
+    EXPECT_EQ(root_.leading(), leading_);
+    EXPECT_LT((root_.CoreCovariance() - dense_.block(leading_, leading_, 15, 15)).norm(), 1e-10 * scale);
     const MatrixXd below = root_.factor().triangularView<Eigen::StrictlyLower>();
     EXPECT_EQ(below.norm(), 0.0);
   }
 
   RandomStream random_{1, "square root covariance"};
   MatrixXd dense_;
-  SquareRootCovariance root_{15 + 6 * 8};
+  int leading_ = 0;
+  SquareRootCovariance root_{15 + 6 * 8 + 3 * 4, 3 * 4};
 };
 
 TEST_F(SquareRootCovarianceTest, FollowsTheDenseCovarianceThroughAWindow) {
@@ -80,11 +135,36 @@ TEST_F(SquareRootCovarianceTest, FollowsTheDenseCovarianceThroughAWindow) {
     ExpectEqual();
     Clone();
     ExpectEqual();
-    if (root_.dimension() == root_.capacity()) {
+    if (root_.dimension() == 15 + 6 * 8) {
       const int clones = (root_.dimension() - 15) / 6;
       Remove(15 + 6 * (frame % clones));  // oldest, newest and between
       ExpectEqual();
     }
+  }
+}
+
+TEST_F(SquareRootCovarianceTest, FollowsTheDenseCovarianceWithLeadingBlocks) {
+  Clone();
+  for (int frame = 0; frame < 40; ++frame) {
+    Propagate();
+    ExpectEqual();
+    Clone();
+    ExpectEqual();
+    AddLeading();
+    ExpectEqual();
+    const int last_clone = static_cast<int>(dense_.rows()) - 6;
+    AddToLeading(3 * (frame % (leading_ / 3)), last_clone);
+    ExpectEqual();
+    if (leading_ == 12) {
+      Remove(3 * (frame % 4), 3);  // newest, between and oldest
+      ExpectEqual();
+    }
+    if (dense_.rows() - leading_ == 15 + 6 * 8) {
+      Remove(leading_ + 15 + 6 * (frame % 8));
+      ExpectEqual();
+    }
+    Update(frame % 2 == 0 ? leading_ : 0, frame % 3 == 0 ? 0 : 20);
+    ExpectEqual();
   }
 }
 
@@ -93,24 +173,8 @@ TEST_F(SquareRootCovarianceTest, UpdateIsTheKalmanUpdate) {
     Propagate();
     Clone();
   }
-  for (const bool sees_core : {false, true}) {
-    const Eigen::Index n = dense_.rows();
-    MatrixXd h = RandomMatrix(&random_, 40, n);
-    if (!sees_core) {
-      h.leftCols(21).setZero();
-    }
-    const VectorXd y = RandomMatrix(&random_, 40, 1);
-    const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(40, 40);
-    const MatrixXd gain = dense_ * h.transpose() * s.inverse();
-    const VectorXd expected = gain * y;
-    const double nis = y.dot(s.ldlt().solve(y));
-    dense_ = (MatrixXd::Identity(n, n) - gain * h) * dense_;
-    root_.Prepare(h);
-    VectorXd correction;
-    double measured = 0;
-    ASSERT_TRUE(root_.Apply(h, y, &correction, &measured));
-    EXPECT_NEAR(measured, nis, 1e-9 * nis);
-    EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
+  for (const int unseen : {21, 0}) {
+    Update(unseen);
     ExpectEqual();
   }
 }

@@ -23,7 +23,7 @@ constexpr int kFrames = 9;
 
 /// A filter state with a clone for each of the first frames of a simulation; nothing updated yet.
 FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) {
-  FilterState state(convention, dataset.rig.T_BC, kFrames + 1);
+  FilterState state(convention, false, dataset.rig.T_BC, {kFrames + 1, 0});
   EXPECT_TRUE(state.Reset(test::DrawInitialState(dataset, 1)).ok());
   ImuBuffer imu(1.0);
   for (const ImuSample& sample : dataset.imu) {

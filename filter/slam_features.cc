@@ -1,0 +1,130 @@
+#include "filter/slam_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace alidade {
+namespace {
+
+// A landmark that the gate refuses this often in a row is taken for a mismatch.
+constexpr int kMaxRefusals = 2;
+
+}  // namespace
+
+SlamFeatures::SlamFeatures(const FilterConfig& filter, int max_clones) : filter_(filter) {
+  candidates_.resize(static_cast<size_t>(filter.slam_features));
+  for (Candidate& candidate : candidates_) {
+    candidate.rows.T.resize(3, SquareRootCovariance::kCore + 6 * max_clones);
+  }
+}
+
+void SlamFeatures::Begin() {
+  taken_ = 0;
+}
+
+bool SlamFeatures::IsCandidate(const FilterState& state, const Track& track, int serial) const {
+  const auto max_landmarks = static_cast<size_t>(filter_.slam_features);
+  return state.landmarks().size() + taken_ < max_landmarks && !track.in_state && !track.memory.active &&
+         track.last_serial == serial && track.observations >= filter_.slam_min_track &&
+         track.views.size() >= 3;
+}
+
+LandmarkRows* SlamFeatures::TakeRows() {
+  CHECK_LT(taken_, candidates_.size());
+  return &candidates_[taken_++].rows;
+}
+
+void SlamFeatures::ReturnRows() {
+  CHECK_GT(taken_, 0u);
+  --taken_;
+}
+
+void SlamFeatures::AssignBlock(size_t block) {
+  CHECK_GT(taken_, 0u);
+  candidates_[taken_ - 1].block = block;
+}
+
+TrackOutcome SlamFeatures::Append(const FilterState& state, const Track& track, FeatureUpdate* update) {
+  const int index = state.FindLandmark(track.id);
+  CHECK_GE(index, 0) << "a track without its landmark";
+  const Landmark& landmark = state.landmarks()[static_cast<size_t>(index)];
+  const Clone& clone = state.clones().back();
+  const NormalizedObservation& observation = track.views.back().observation;
+  if (!LinearizeTrack({&clone.T_WC, 1}, {&observation, 1}, landmark.p_W, &linearization_)) {
+    return TrackOutcome::kDegenerate;
+  }
+  const Eigen::Vector2d residual = linearization_.residual;
+  const Eigen::Vector3d& p_W = state.JacobianPoint(landmark);
+  if (state.first_estimates() &&
+      !LinearizeTrack({&clone.T_WC_jacobian, 1}, {&observation, 1}, p_W, &linearization_)) {
+    return TrackOutcome::kDegenerate;
+  }
+  const FeatureUpdate::Block block = update->AddBlock(2);
+  Eigen::Ref<Eigen::MatrixXd> jacobian = update->jacobian();
+  auto rows = jacobian.middleRows<2>(block.first);
+  rows.middleCols<6>(state.CloneOffset(state.clones().size() - 1)) =
+      linearization_.pose_jacobians * clone.camera_from_error;
+  rows.middleCols<3>(state.LandmarkOffset(static_cast<size_t>(index))) = linearization_.point_jacobian;
+  if (state.landmarks_are_anchored()) {
+    const auto anchor = static_cast<size_t>(state.FindClone(landmark.anchor_serial));
+    rows.middleCols<3>(state.CloneOffset(anchor)) -= linearization_.point_jacobian * Skew(p_W);
+  }
+  update->innovation().segment<2>(block.first) = -residual;
+  update->TraceNewestObservation(track);
+  return TrackOutcome::kReady;
+}
+
+void SlamFeatures::Enter(const Eigen::VectorXd& correction, const std::vector<double>& block_weights,
+                         FilterState* state, TrackStore* tracks) {
+  const Eigen::Index old_core = state->CoreOffset();
+  const auto moved = correction.tail(correction.size() - old_core);
+  for (size_t i = 0; i < taken_; ++i) {
+    const double weight = block_weights[candidates_[i].block];
+    LandmarkRows& rows = candidates_[i].rows;
+    const double scale = std::sqrt(weight);
+    if (!(weight > 0) || !(rows.R_f.diagonal().cwiseAbs().minCoeff() > 0)) {
+      continue;
+    }
+    // The state has moved since the rows were linearised.
+    rows.t -= rows.T * moved;
+    if (state->landmarks_are_anchored()) {
+      const auto anchor = static_cast<size_t>(state->FindClone(rows.landmark.anchor_serial));
+      const int theta = state->CloneOffset(anchor) - state->CoreOffset();
+      rows.landmark.p_W = so3::Exp(Eigen::Vector3d(moved.segment<3>(theta))) * rows.landmark.p_W;
+    }
+    rows.R_f *= scale;
+    rows.T *= scale;
+    rows.t *= scale;
+    Track* track = tracks->Find(rows.landmark.id);
+    CHECK(track != nullptr);
+    state->AddLandmark(rows);
+    track->in_state = true;
+  }
+  taken_ = 0;
+}
+
+void SlamFeatures::Judge(bool accepted, const Track& track, FilterState* state) {
+  const int index = state->FindLandmark(track.id);
+  CHECK_GE(index, 0) << "a track without its landmark";
+  int& refusals = state->landmarks()[static_cast<size_t>(index)].refusals;
+  refusals = accepted ? 0 : refusals + 1;
+}
+
+void SlamFeatures::RemoveEnded(int serial, TrackStore* tracks, FilterState* state) {
+  for (size_t i = state->landmarks().size(); i-- > 0;) {
+    const Landmark& landmark = state->landmarks()[i];
+    Track* track = tracks->Find(landmark.id);
+    CHECK(track != nullptr) << "a landmark without its track";
+    const bool refused = landmark.refusals >= kMaxRefusals;
+    if (!refused && track->last_serial == serial) {
+      continue;
+    }
+    track->in_state = false;
+    track->observations = 0;
+    state->RemoveLandmark(i);
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "filter/feature_update.h"
+#include "filter/filter_state.h"
+#include "filter/track_store.h"
+
+namespace alidade {
+
+/// Long-lived landmarks of the state (FilterConfig::slam_features): which tracks become one, the rows of
+/// their later observations, and their end.
+///
+/// A track enters with the rows of all views it still holds: the 2N-3 landmark-free rows update the state
+/// like any other track's, the three rows left over initialise the landmark. Every later observation gives
+/// two rows over the newest clone, the landmark and, where it has one, its anchor. So each observation is
+/// used once.
+class SlamFeatures {
+ public:
+  SlamFeatures(const FilterConfig& filter, int max_clones);
+
+  /// Forgets what the last frame prepared.
+  void Begin();
+
+  /// True when the track, seen in frame `serial`, has earned a place in the state and one is free.
+  [[nodiscard]] bool IsCandidate(const FilterState& state, const Track& track, int serial) const;
+  /// Rows to be filled by FeatureUpdate::Append; dropped again by ReturnRows when it did not.
+  LandmarkRows* TakeRows();
+  void ReturnRows();
+  /// Says that the rows taken last belong to block `block` of the update.
+  void AssignBlock(size_t block);
+
+  /// Appends the two rows of a landmark's newest observation.
+  TrackOutcome Append(const FilterState& state, const Track& track, FeatureUpdate* update);
+
+  /// After the correction: enters the landmark of every block with a positive weight, its rows weighted like
+  /// the block's. Tracks are marked as in_state.
+  void Enter(const Eigen::VectorXd& correction, const std::vector<double>& block_weights, FilterState* state,
+             TrackStore* tracks);
+  /// What the gate said about the newest observation of a track in the state.
+  static void Judge(bool accepted, const Track& track, FilterState* state);
+  /// Takes landmarks out of the state whose track was not seen in frame `serial`, or was refused twice in a
+  /// row (such a track starts afresh).
+  static void RemoveEnded(int serial, TrackStore* tracks, FilterState* state);
+
+ private:
+  struct Candidate {
+    LandmarkRows rows;
+    size_t block = 0;
+  };
+
+  FilterConfig filter_;
+  std::vector<Candidate> candidates_;  ///< the first taken_ are of this frame
+  size_t taken_ = 0;
+  TrackLinearization linearization_;
+};
+
+}  // namespace alidade

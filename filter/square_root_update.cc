@@ -1,0 +1,148 @@
+#include <cblas.h>
+#include <lapack.h>
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "filter/square_root_covariance.h"
+
+// The Kalman update of SquareRootCovariance.
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+int LeadingZeroColumns(const Eigen::Ref<const MatrixXd>& matrix) {
+  int first = 0;
+  while (first < matrix.cols() && matrix.col(first).isZero(0)) {
+    ++first;
+  }
+  return first;
+}
+
+}  // namespace
+
+void SquareRootCovariance::Prepare(Eigen::Ref<MatrixXd> rows_in_place, int sparse_from) {
+  CHECK_EQ(rows_in_place.cols(), dimension_);
+  const Index rows = rows_in_place.rows();
+  const Index dense = sparse_from < 0 ? rows : sparse_from;
+  const int first = LeadingZeroColumns(rows_in_place.topRows(dense));
+  if (first < dimension_) {
+    cblas_dtrmm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, static_cast<int>(dense),
+                dimension_ - first, 1.0, Data(first, first), capacity(),
+                rows_in_place.data() + first * rows_in_place.outerStride(),
+                static_cast<int>(rows_in_place.outerStride()));
+  }
+  if (dense < rows) {
+    PrepareSparse(rows_in_place.bottomRows(rows - dense));
+  }
+}
+
+void SquareRootCovariance::PrepareSparse(Eigen::Ref<MatrixXd> rows_in_place) {
+  entries_.clear();
+  row_ends_.clear();
+  for (Index row = 0; row < rows_in_place.rows(); ++row) {
+    for (int column = 0; column < dimension_; ++column) {
+      const double value = rows_in_place(row, column);
+      if (value != 0) {
+        entries_.emplace_back(column, value);
+      }
+    }
+    row_ends_.push_back(entries_.size());
+  }
+  for (int column = 0; column < dimension_; ++column) {
+    const double* s = Data(0, column);  // zero below its diagonal
+    size_t entry = 0;
+    for (Index row = 0; row < rows_in_place.rows(); ++row) {
+      double sum = 0;
+      for (const size_t end = row_ends_[static_cast<size_t>(row)]; entry < end; ++entry) {
+        sum += entries_[entry].second * s[entries_[entry].first];
+      }
+      rows_in_place(row, column) = sum;
+    }
+  }
+}
+
+void SquareRootCovariance::FormInformation(const Eigen::Ref<const MatrixXd>& rows, int sparse_from,
+                                           int first_dense, int first_sparse) {
+  const int lda = static_cast<int>(rows.outerStride());
+  const int first = std::min(first_dense, first_sparse);
+  const int count = static_cast<int>(rows.rows());
+  const auto accumulate = [&](int row, int end, int from, double beta) {
+    double* m = information_.data() + static_cast<Index>(from - first) * (capacity() + 1);
+    cblas_dsyrk(CblasColMajor, CblasUpper, CblasTrans, dimension_ - from, end - row, 1.0,
+                rows.data() + row + static_cast<Index>(from) * lda, lda, beta, m, capacity());
+  };
+  // The wider part first: it overwrites.
+  if (first_dense <= first_sparse) {
+    accumulate(0, sparse_from, first_dense, 0.0);
+    accumulate(sparse_from, count, first_sparse, 1.0);
+  } else {
+    accumulate(sparse_from, count, first_sparse, 0.0);
+    accumulate(0, sparse_from, first_dense, 1.0);
+  }
+}
+
+void SquareRootCovariance::DivideByInformationRoot(int first) {
+  // Both factors are upper triangular, and so is the quotient: a panel of columns ends at its own diagonal.
+  constexpr int kPanel = 48;
+  const int active = dimension_ - first;
+  for (int begin = 0; begin < active; begin += kPanel) {
+    const int width = std::min(kPanel, active - begin);
+    const int rows = first + begin + width;
+    const double* u = information_.data() + static_cast<Index>(begin) * capacity();
+    if (begin > 0) {
+      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows, width, begin, -1.0, Data(0, first),
+                  capacity(), u, capacity(), 1.0, Data(0, first + begin), capacity());
+    }
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, rows, width, 1.0,
+                u + begin, capacity(), Data(0, first + begin), capacity());
+  }
+}
+
+bool SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows,
+                                 const Eigen::Ref<const VectorXd>& y, VectorXd* correction, double* nis,
+                                 int sparse_from) {
+  const int rows = static_cast<int>(prepared_rows.rows());
+  const int lda = static_cast<int>(prepared_rows.outerStride());
+  const int n = dimension_;
+  const int dense = sparse_from < 0 ? rows : sparse_from;
+  // Where the rows see nothing, the corresponding part of M is the identity.
+  const int first_dense = LeadingZeroColumns(prepared_rows.topRows(dense));
+  const int first_sparse = LeadingZeroColumns(prepared_rows.bottomRows(rows - dense));
+  const int first = std::min(first_dense, first_sparse);
+  const int active = n - first;
+  correction->setZero(n);
+  if (nis != nullptr) {
+    *nis = y.squaredNorm();
+  }
+  if (active == 0) {
+    return true;
+  }
+  const double* a = prepared_rows.data() + static_cast<Index>(first) * lda;
+  double* m = information_.data();
+  const int ldm = capacity();
+  FormInformation(prepared_rows, dense, first_dense, first_sparse);
+  auto diagonal = information_.diagonal().head(active);
+  if (!diagonal.allFinite() || !y.allFinite()) {
+    return false;
+  }
+  diagonal.array() += 1.0;
+  int info = 0;
+  LAPACK_dpotrf("U", &active, m, &ldm, &info);
+  CHECK_EQ(info, 0) << "I + A^T A of finite rows lost positivity";
+  DivideByInformationRoot(first);
+  auto b = projected_.head(active);
+  cblas_dgemv(CblasColMajor, CblasTrans, rows, active, 1.0, a, lda, y.data(), 1, 0.0, b.data(), 1);
+  cblas_dtrsv(CblasColMajor, CblasUpper, CblasTrans, CblasNonUnit, active, m, ldm, b.data(), 1);
+  correction->noalias() = Part(0, first, n, active) * b;
+  if (nis != nullptr) {
+    *nis -= b.squaredNorm();
+  }
+  return true;
+}
+
+}  // namespace alidade
