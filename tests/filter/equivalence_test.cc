@@ -34,7 +34,7 @@ struct Outcome {
 /// A window of clones after half a second of motion, and tracks that see random landmarks with noise.
 struct Window {
   explicit Window(ErrorConvention convention, unsigned seed)
-      : random(seed), state(convention, random.RandomPose(0.1), kClones) {
+      : random(seed), state(convention, false, random.RandomPose(0.1), {kClones, 0}) {
     NavEstimate start;
     start.nav = random.Nav(3);
     start.covariance = 1e-4 * Matrix15d::Identity();
