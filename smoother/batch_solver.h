@@ -23,8 +23,7 @@ struct BatchReport {
 ///
 ///   1. A solve with a robust kernel on all tracks with a depth.
 ///   2. Gate (BatchSequence::Select), preintegration at the new biases, solve with the configured kernel;
-///   again while
-///      the gate changes its mind, at most kGateRounds times.
+///      again while the gate changes its mind, at most kGateRounds times.
 ///   3. The same with the tracks held, until the distance to the minimum (SequenceCovariance::
 ///      newton_decrement) is below config.batch.tolerance_sigma.
 ///

@@ -37,11 +37,7 @@ struct Elimination {
   MatrixXd inverse;    ///< A_EE^-1
 };
 
-Index StateIn(const Indices& kept) {
-  return static_cast<Index>(kept.size());
-}
-
-/// Symmetric matrix whose lower triangle is `hessian`'s, at rows and columns `which`.
+/// Block of the symmetric matrix whose lower triangle is given.
 MatrixXd Gather(const MatrixXd& hessian, const Indices& rows, const Indices& columns) {
   MatrixXd block(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
   for (size_t j = 0; j < columns.size(); ++j) {
@@ -119,7 +115,7 @@ class SequenceFactorization {
   Status Advance(size_t k) {
     Elimination step;
     const std::vector<size_t> survivors = Split(k - 1, &step);
-    const Index kept = StateIn(step.kept);
+    const Index kept = static_cast<Index>(step.kept.size());
     const Index size = kept + kState;
     const ImuRows imu = LinearizeImu(*problem_.frames[k - 1], *problem_.frames[k], problem_.gravity_W);
     MatrixXd eliminated = Gather(front_.hessian, step.eliminated, step.eliminated);
@@ -261,7 +257,7 @@ class SequenceFactorization {
     for (size_t k = eliminations_.size(); k-- > 0;) {
       Elimination& step = eliminations_[k];
       // Of the later front: the landmarks that came from this one, and its state.
-      const Index kept = StateIn(step.kept);
+      const Index kept = static_cast<Index>(step.kept.size());
       const Index later = covariance.rows() - kState;
       MatrixXd common(kept + kState, kept + kState);
       common.topLeftCorner(kept, kept) = covariance.topLeftCorner(kept, kept);
