@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/blas.h"
 #include "core/format.h"
 #include "eval/cell_score.h"
 #include "eval/compare_input.h"
@@ -149,8 +150,13 @@ class Comparer {
   }
 
   void RunAll() {
+    int jobs = options_.jobs;
+    if (jobs > 1 && !BlasIsThreadSafe()) {
+      Say("one job at a time: this OpenBLAS was built without locks; install libopenblas0-pthread");
+      jobs = 1;
+    }
     std::vector<std::thread> threads;
-    for (int i = 1; i < options_.jobs; ++i) {
+    for (int i = 1; i < jobs; ++i) {
       threads.emplace_back([this] { Work(); });
     }
     Work();

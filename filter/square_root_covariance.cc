@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/blas.h"
 #include "core/check.h"
 #include "filter/triangularize.h"
 
@@ -43,6 +44,7 @@ SquareRootCovariance::SquareRootCovariance(int capacity, int max_leading)
       projected_(VectorXd::Zero(capacity)),
       reflection_(VectorXd::Zero(capacity)) {
   CHECK_GE(capacity, kCore + max_leading);
+  UseOneThreadPerBlasCall();
 }
 
 Status SquareRootCovariance::Reset(const Matrix15d& covariance) {

@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
   ca-certificates g++ cmake ninja-build pkg-config ccache
-  libeigen3-dev libceres-dev libsuitesparse-dev libopenblas-serial-dev liblapacke-dev
+  libeigen3-dev libceres-dev libsuitesparse-dev libopenblas-pthread-dev liblapacke-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-video-dev libopencv-calib3d-dev
   libopencv-features2d-dev
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev

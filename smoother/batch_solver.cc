@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/blas.h"
 #include "core/format.h"
 #include "core/imu_propagation.h"
 #include "smoother/solve_store.h"
@@ -109,6 +110,7 @@ class BatchSolve {
     store.AddInverseDepth(rig_.T_BC, problem.get());
     const int frames = static_cast<int>(sequence_.frames().size());
     ceres::Solver::Options options = SolverOptions(config_.batch, frames, tracks.size(), &store);
+    UseOneThreadPerBlasCall();  // CHOLMOD's supernodes
     StopCallback callback(stop_);
     options.callbacks.push_back(&callback);
     ceres::Solver::Summary summary;
