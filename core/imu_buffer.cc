@@ -33,12 +33,13 @@ Status ImuBuffer::Add(const ImuSample& sample) {
     ++statistics_.rejected;
     return Status::Input("imu sample at " + FormatSeconds(sample.stamp_ns) + " s is older than the state");
   }
-  if (samples_.empty() || samples_.back().stamp_ns < sample.stamp_ns) {
+  if (samples().empty() || samples_.back().stamp_ns < sample.stamp_ns) {
     samples_.push_back(sample);
     ++statistics_.accepted;
     return Status::Ok();
   }
-  const auto place = std::lower_bound(samples_.begin(), samples_.end(), sample.stamp_ns, Earlier);
+  const auto begin = samples_.begin() + static_cast<std::ptrdiff_t>(begin_);
+  const auto place = std::lower_bound(begin, samples_.end(), sample.stamp_ns, Earlier);
   if (place != samples_.end() && place->stamp_ns == sample.stamp_ns) {
     ++statistics_.duplicates;
     return Status::Ok();
@@ -49,29 +50,29 @@ Status ImuBuffer::Add(const ImuSample& sample) {
   return Status::Ok();
 }
 
-Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* samples) {
-  samples->clear();
+Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* interval) {
+  interval->clear();
+  const std::span<const ImuSample> held = samples();
   if (to_ns <= from_ns) {
     return Status::Input("imu interval ends at " + FormatSeconds(to_ns) + " s, not after its start " +
                          FormatSeconds(from_ns) + " s");
   }
-  if (samples_.empty() || samples_.back().stamp_ns < to_ns) {
-    return Status::Input(
-        "no imu sample reaches " + FormatSeconds(to_ns) + " s" +
-        (samples_.empty() ? "" : "; missing " + Milliseconds(to_ns - samples_.back().stamp_ns)));
+  if (held.empty() || held.back().stamp_ns < to_ns) {
+    return Status::Input("no imu sample reaches " + FormatSeconds(to_ns) + " s" +
+                         (held.empty() ? "" : "; missing " + Milliseconds(to_ns - held.back().stamp_ns)));
   }
-  if (samples_.front().stamp_ns > from_ns) {
-    return Status::Input("imu starts " + Milliseconds(samples_.front().stamp_ns - from_ns) + " after " +
+  if (held.front().stamp_ns > from_ns) {
+    return Status::Input("imu starts " + Milliseconds(held.front().stamp_ns - from_ns) + " after " +
                          FormatSeconds(from_ns) + " s");
   }
-  const auto first = std::upper_bound(samples_.begin(), samples_.end(), from_ns,
+  const auto first = std::upper_bound(held.begin(), held.end(), from_ns,
                                       [](TimeNs stamp, const ImuSample& s) { return stamp < s.stamp_ns; });
-  const auto last = std::lower_bound(first, samples_.end(), to_ns, Earlier);
+  const auto last = std::lower_bound(first, held.end(), to_ns, Earlier);
   const ImuSample& before = *(first - 1);
-  samples->push_back(before.stamp_ns == from_ns ? before : Interpolate(before, *first, from_ns));
-  samples->insert(samples->end(), first, last);
-  samples->push_back(last->stamp_ns == to_ns ? *last : Interpolate(*(last - 1), *last, to_ns));
-  for (auto sample = first; sample <= last && sample != samples_.end(); ++sample) {
+  interval->push_back(before.stamp_ns == from_ns ? before : Interpolate(before, *first, from_ns));
+  interval->insert(interval->end(), first, last);
+  interval->push_back(last->stamp_ns == to_ns ? *last : Interpolate(*(last - 1), *last, to_ns));
+  for (auto sample = first; sample <= last && sample != held.end(); ++sample) {
     const double step_s = SecondsBetween((sample - 1)->stamp_ns, sample->stamp_ns);
     statistics_.longest_gap_s = std::max(statistics_.longest_gap_s, step_s);
     statistics_.gaps += step_s > max_gap_s_ ? 1 : 0;
@@ -80,12 +81,16 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
 }
 
 void ImuBuffer::DropBefore(TimeNs stamp_ns) {
-  while (samples_.size() >= 2 && samples_[1].stamp_ns <= stamp_ns) {
-    samples_.pop_front();
+  while (samples().size() >= 2 && samples()[1].stamp_ns <= stamp_ns) {
+    ++begin_;
   }
   // Without a sample at or before the stamp, the one that comes before it is still needed.
-  if (!samples_.empty() && samples_.front().stamp_ns <= stamp_ns) {
+  if (!samples().empty() && samples().front().stamp_ns <= stamp_ns) {
     consumed_before_ns_ = std::max(consumed_before_ns_, stamp_ns);
+  }
+  if (2 * begin_ > samples_.size()) {
+    samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    begin_ = 0;
   }
 }
 

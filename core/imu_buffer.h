@@ -1,6 +1,7 @@
 #pragma once
 
-#include <deque>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/imu_sample.h"
@@ -30,19 +31,24 @@ class ImuBuffer {
   /// Samples that cover [from, to]: linearly interpolated at both ends, all measured ones between. kInput: to
   /// <= from, or the buffer does not reach both ends (the message gives the missing milliseconds). A gap
   /// longer than the limit is counted and bridged by interpolation.
-  Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* samples);
+  Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* interval);
 
   /// Forgets samples that no interval starting at or after `stamp_ns` needs.
   void DropBefore(TimeNs stamp_ns);
-  void Clear() { samples_.clear(); }
+  void Clear() {
+    samples_.clear();
+    begin_ = 0;
+  }
 
-  [[nodiscard]] const std::deque<ImuSample>& samples() const { return samples_; }
+  /// Valid until the next call.
+  [[nodiscard]] std::span<const ImuSample> samples() const { return std::span(samples_).subspan(begin_); }
   [[nodiscard]] const ImuBufferStatistics& statistics() const { return statistics_; }
 
  private:
   double max_gap_s_;
   TimeNs consumed_before_ns_ = INT64_MIN;
-  std::deque<ImuSample> samples_;
+  std::vector<ImuSample> samples_;  ///< those before begin_ are forgotten
+  size_t begin_ = 0;
   ImuBufferStatistics statistics_;
 };
 

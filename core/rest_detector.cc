@@ -15,31 +15,6 @@ using Eigen::Vector3d;
 
 constexpr int kMinCommonTracks = 12;
 
-struct CommonTrack {
-  Vector2d before;
-  Vector2d flow;
-};
-
-std::vector<CommonTrack> FindCommon(const CameraModel& camera, const TrackFrame& before,
-                                    const TrackFrame& now, const Eigen::Matrix3d& R_now_before) {
-  std::vector<CommonTrack> common;
-  auto old = before.observations.begin();
-  for (const TrackObservation& seen : now.observations) {
-    while (old != before.observations.end() && old->track_id < seen.track_id) {
-      ++old;
-    }
-    if (old != before.observations.end() && old->track_id == seen.track_id) {
-      Vector2d ideal;
-      Vector2d turned;
-      if (camera.Unproject(old->pixel, &ideal) &&
-          camera.Project(R_now_before * ideal.homogeneous(), &turned)) {
-        common.push_back({turned, seen.pixel - turned});
-      }
-    }
-  }
-  return common;
-}
-
 }  // namespace
 
 RestDetector::RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera)
@@ -50,7 +25,7 @@ RestDetector::RestDetector(const VisionConfig& vision, const InitConfig& init, c
       image_radius_px_(0.5 * std::hypot(camera.width_px(), camera.height_px())) {}
 
 void RestDetector::Clear() {
-  frames_.clear();
+  frame_count_ = 0;
   imu_.clear();
 }
 
@@ -63,19 +38,25 @@ void RestDetector::AddImu(std::span<const ImuSample> samples) {
 }
 
 RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC) {
-  frames_.push_back({frame, R_WC});
+  if (frame_count_ == frames_.size()) {
+    frames_.emplace_back();
+  }
+  frames_[frame_count_].frame = frame;
+  frames_[frame_count_].R_WC = R_WC;
+  ++frame_count_;
   const TimeNs window_ns = SecondsToNs(vision_.rest_window_s);
   const TimeNs start_ns = frame.stamp_ns - window_ns;
-  while (frames_.size() > 2 && frames_[1].frame.stamp_ns <= start_ns) {
-    frames_.pop_front();
+  while (frame_count_ > 2 && frames_[1].frame.stamp_ns <= start_ns) {
+    std::rotate(frames_.begin(), frames_.begin() + 1, frames_.end());
+    --frame_count_;
   }
-  while (!imu_.empty() && imu_.front().stamp_ns < imu_.back().stamp_ns - window_ns) {
-    imu_.pop_front();
-  }
+  imu_.erase(imu_.begin(), std::find_if(imu_.begin(), imu_.end(), [&](const ImuSample& sample) {
+               return sample.stamp_ns >= imu_.back().stamp_ns - window_ns;
+             }));
   const OrientedFrame& before = frames_.front();
   RestVerdict verdict;
   const ImuStatistics imu = MeasureImu(imu_);
-  if (frames_.size() < 2 || before.frame.stamp_ns > start_ns || imu_.size() < 5 ||
+  if (frame_count_ < 2 || before.frame.stamp_ns > start_ns || imu_.size() < 5 ||
       imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
     return verdict;
   }
@@ -89,9 +70,27 @@ Vector3d RestDetector::MeanGyro() const {
   return MeasureImu(imu_).mean_gyro;
 }
 
-bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now,
-                              const Matrix3d& R_now_before) const {
-  std::vector<CommonTrack> common = FindCommon(camera_, before, now, R_now_before);
+void RestDetector::FindCommon(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before) {
+  common_.clear();
+  auto old = before.observations.begin();
+  for (const TrackObservation& seen : now.observations) {
+    while (old != before.observations.end() && old->track_id < seen.track_id) {
+      ++old;
+    }
+    if (old != before.observations.end() && old->track_id == seen.track_id) {
+      Vector2d ideal;
+      Vector2d turned;
+      if (camera_.Unproject(old->pixel, &ideal) &&
+          camera_.Project(R_now_before * ideal.homogeneous(), &turned)) {
+        common_.push_back({turned, seen.pixel - turned});
+      }
+    }
+  }
+}
+
+bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before) {
+  FindCommon(before, now, R_now_before);
+  std::vector<CommonTrack>& common = common_;
   if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
     return false;  // too few to tell, or half of them new: the image changes
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deque>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -43,17 +43,25 @@ class RestDetector {
     TrackFrame frame;
     Eigen::Matrix3d R_WC;
   };
+  struct CommonTrack {
+    Eigen::Vector2d before;
+    Eigen::Vector2d flow;
+  };
   /// R_now_before: turn of the camera between the frames; identity takes the flow as it is.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
-                                const Eigen::Matrix3d& R_now_before) const;
+                                const Eigen::Matrix3d& R_now_before);
+  /// Fills common_.
+  void FindCommon(const TrackFrame& before, const TrackFrame& now, const Eigen::Matrix3d& R_now_before);
 
   VisionConfig vision_;
   InitConfig init_;
   CameraModel camera_;
   Eigen::Vector2d image_center_;
   double image_radius_px_;
-  std::deque<OrientedFrame> frames_;
-  std::deque<ImuSample> imu_;
+  std::vector<OrientedFrame> frames_;  ///< the first frame_count_, oldest first; the rest is spare memory
+  size_t frame_count_ = 0;
+  std::vector<ImuSample> imu_;
+  std::vector<CommonTrack> common_;
 };
 
 }  // namespace alidade

@@ -12,7 +12,8 @@ using Eigen::Index;
 
 namespace {
 
-constexpr double kLeniency = 1.5;  // the two measures of the depth's deviation differ by less
+constexpr size_t kUsualTracks = 256;  // updated in one frame; more make vectors grow
+constexpr double kLeniency = 1.5;     // the two measures of the depth's deviation differ by less
 
 }  // namespace
 
@@ -26,8 +27,21 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
   offsets_.reserve(views);
   chains_.reserve(views);
   clones_.reserve(views);
+  linearizations_.resize(views + 1);
+  for (Index k = 1; k <= max_clones; ++k) {
+    TrackLinearization& linearization = linearizations_[static_cast<size_t>(k)];
+    linearization.residual.resize(2 * k);
+    linearization.pose_jacobians.resize(2 * k, 6);
+    linearization.point_jacobian.resize(2 * k, 3);
+  }
+  residual_.resize(2 * max_clones);
   track_jacobian_.resize(2 * max_clones, 6 * max_clones);
   Reserve(512);
+  successors_.resize(kUsualTracks);
+  for (TrackMemory& successor : successors_) {
+    successor.clone_rows.resize(3, filter.track_memory != TrackMemoryPolicy::kNone ? 6 * max_clones : 0);
+  }
+  blocks_.reserve(kUsualTracks);
 }
 
 void FeatureUpdate::Begin(const FilterState& state) {
@@ -73,6 +87,7 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
     chains_.push_back(&clone.camera_from_error);
     clones_.push_back(index);
   }
+  linearization_ = &linearizations_[poses_.size()];
   return poses_.size() >= 2;
 }
 
@@ -99,17 +114,18 @@ TrackOutcome FeatureUpdate::Triangulate(double max_relative_deviation, bool refi
 }
 
 bool FeatureUpdate::Linearize(const FilterState& state, const Eigen::Vector3d& p_W) {
-  if (!LinearizeTrack(poses_, observations_, p_W, &linearization_)) {
+  if (!LinearizeTrack(poses_, observations_, p_W, linearization_)) {
     return false;
   }
   if (!state.first_estimates()) {
     return true;
   }
-  residual_ = linearization_.residual;
-  if (!LinearizeTrack(jacobian_poses_, observations_, p_W, &linearization_)) {
+  auto residual = residual_.head(linearization_->residual.size());
+  residual = linearization_->residual;
+  if (!LinearizeTrack(jacobian_poses_, observations_, p_W, linearization_)) {
     return false;
   }
-  linearization_.residual = residual_;
+  linearization_->residual = residual;
   return true;
 }
 
@@ -117,7 +133,7 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
                                LandmarkRows* rows) const {
   const int core = state.CoreOffset();
   rows->landmark = {track.id, track.views.back().serial, 0, p_W, p_W};
-  rows->R_f = linearization_.point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
+  rows->R_f = linearization_->point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
   rows->T.setZero(3, dimension_ - core);
   for (size_t k = 0; k < offsets_.size(); ++k) {
     rows->T.middleCols<6>(offsets_[k] - core) = track_jacobian_.block<3, 6>(0, 6 * static_cast<Index>(k));
@@ -126,7 +142,7 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
     // An additive error of p_W is f~ - [p_W]x theta_a.
     rows->T.middleCols<3>(offsets_.back() - core) -= rows->R_f * Skew(p_W);
   }
-  rows->t = -linearization_.residual.head<3>();
+  rows->t = -linearization_->residual.head<3>();
 }
 
 TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& track, bool to_remember,
@@ -151,7 +167,7 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   if (!Linearize(state, p_W)) {
     return TrackOutcome::kDegenerate;
   }
-  if (to_remember && !keeper_.MayStart(linearization_.point_jacobian, p_W, poses_.back().translation)) {
+  if (to_remember && !keeper_.MayStart(linearization_->point_jacobian, p_W, poses_.back().translation)) {
     return TrackOutcome::kWaiting;
   }
   const Index views = static_cast<Index>(poses_.size());
@@ -165,19 +181,20 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   dense.rightCols(columns - 6 * views).setIdentity();
   for (Index k = 0; k < views; ++k) {
     dense.block<2, 6>(2 * k, 6 * k).noalias() =
-        linearization_.pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
+        linearization_->pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
   }
-  EliminateLandmark(linearization_.point_jacobian, dense, linearization_.residual);
+  EliminateLandmark(linearization_->point_jacobian, dense, linearization_->residual);
   const Block block = AddBlock(static_cast<int>(2 * views - 3));
   for (Index k = 0; k < views; ++k) {
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =
         dense.block(3, 6 * k, block.rows, 6);
   }
-  innovation_.segment(block.first, block.rows) = -linearization_.residual.tail(block.rows);
+  innovation_.segment(block.first, block.rows) = -linearization_->residual.tail(block.rows);
   if (landmark_rows != nullptr) {
     RetainRows(state, track, p_W, landmark_rows);
+  } else {
+    StartMemory(state, dense.topRows(3), p_W);
   }
-  StartMemory(state, dense.topRows(3), p_W);
   if (tracing_) {
     Trace(track, dense.bottomRightCorner(block.rows, 2 * views));
   }
@@ -193,16 +210,14 @@ void FeatureUpdate::TraceNewestObservation(const Track& track) {
 
 void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
                                 const Eigen::Vector3d& p_W) {
-  TrackMemory& successor = successors_[blocks_.size() - 1];
-  successor.active = false;
   if (filter_.track_memory == TrackMemoryPolicy::kNone) {
     return;
   }
   const Eigen::Matrix3d landmark_rows =
-      linearization_.point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
+      linearization_->point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
   const Eigen::Vector3d move =
-      landmark_rows.triangularView<Eigen::Upper>().solve(-linearization_.residual.head<3>());
-  keeper_.Start(state, p_W + move, landmark_rows, clone_rows, clones_, &successor);
+      landmark_rows.triangularView<Eigen::Upper>().solve(-linearization_->residual.head<3>());
+  keeper_.Start(state, p_W + move, landmark_rows, clone_rows, clones_, &successors_[blocks_.size() - 1]);
 }
 
 void FeatureUpdate::Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise) {
@@ -228,6 +243,7 @@ TrackOutcome FeatureUpdate::AppendRemembered(const FilterState& state, const Tra
     return TrackOutcome::kDegenerate;
   }
   const Block block = AddBlock(2);
+  successors_[blocks_.size() - 1].active = true;
   for (size_t i = 0; i < state.clones().size(); ++i) {
     jacobian_.block<2, 6>(block.first, state.CloneOffset(i)) =
         keeper_.jacobian().middleCols<6>(6 * state.clones()[i].slot);
@@ -249,6 +265,7 @@ FeatureUpdate::Block FeatureUpdate::AddBlock(int rows) {
   if (successors_.size() < blocks_.size()) {
     successors_.emplace_back();
   }
+  successors_[blocks_.size() - 1].active = false;
   return block;
 }
 

@@ -101,7 +101,8 @@ class FeatureUpdate {
   std::vector<int> offsets_;
   std::vector<const Matrix6d*> chains_;
   std::vector<int> clones_;
-  TrackLinearization linearization_;
+  std::vector<TrackLinearization> linearizations_;  ///< by the number of views, so that none is resized twice
+  TrackLinearization* linearization_ = nullptr;     ///< of the track at hand
   Eigen::VectorXd residual_;
   Eigen::MatrixXd track_jacobian_;
 };

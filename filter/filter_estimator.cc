@@ -1,6 +1,5 @@
 #include "filter/filter_estimator.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <climits>
 #include <cmath>
@@ -31,8 +30,10 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
              {config.filter.window + 1, config.filter.slam_features}),
       update_(config.filter, config.vision, config.filter.window + 1),
       slam_(config.filter, config.filter.window + 1),
+      tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone),
       rest_(config.vision, config.init, rig.camera),
-      imu_(config.imu.max_gap_s) {}
+      imu_(config.imu.max_gap_s),
+      correction_(state_.covariance().capacity()) {}
 
 Status FilterEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));
@@ -175,7 +176,7 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
     observer_->OnUpdate(state_, {rest_rows_, rest_innovation_, {}});
   }
   state_.covariance().Prepare(rest_rows_);
-  if (!state_.covariance().Apply(rest_rows_, rest_innovation_, &correction_, nullptr)) {
+  if (!state_.covariance().Apply(rest_rows_, rest_innovation_, Correction(), nullptr)) {
     return false;
   }
   Correct();
@@ -185,10 +186,10 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
 void FilterEstimator::Correct() {
   for (Track& track : tracks_.tracks()) {
     if (track.memory.active) {
-      update_.keeper().Correct(state_, correction_, &track.memory);
+      update_.keeper().Correct(state_, Correction(), &track.memory);
     }
   }
-  state_.Correct(correction_);
+  state_.Correct(Correction());
 }
 
 void FilterEstimator::LeaveMemories(size_t leaving) {
@@ -279,7 +280,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, observed_);
   }
-  if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), &correction_, &statistics_.nis,
+  if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), Correction(), &statistics_.nis,
                                  landmark_rows)) {
     return false;
   }
@@ -291,8 +292,9 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
       track.memory.active = false;
     }
   }
+  const auto correction = Correction();  // of the dimension before landmarks enter
   Correct();
-  slam_.Enter(correction_, weights_, &state_, &tracks_);
+  slam_.Enter(correction, weights_, &state_, &tracks_);
   for (size_t block = 0; block < appended_.size(); ++block) {
     RetireViews(&tracks[appended_[block]], accepted_[block]);
   }
@@ -314,18 +316,8 @@ void FilterEstimator::MeasureBlocks() {
   const Eigen::Ref<const Eigen::VectorXd> innovation = update_.innovation();
   block_nis_.clear();
   for (const FeatureUpdate::Block& block : update_.blocks()) {
-    if (block.rows == 2) {  // a remembered track: too small for the general product
-      const auto rows = prepared.middleRows<2>(block.first);
-      const auto y = innovation.segment<2>(block.first);
-      const Eigen::Matrix2d gate = rows.lazyProduct(rows.transpose()) + Eigen::Matrix2d::Identity();
-      block_nis_.push_back(y.dot(gate.llt().solve(y)));
-      continue;
-    }
-    const auto rows = prepared.middleRows(block.first, block.rows);
-    const auto y = innovation.segment(block.first, block.rows);
-    gate_matrix_.noalias() = rows * rows.transpose();
-    gate_matrix_.diagonal().array() += 1.0;
-    block_nis_.push_back(y.dot(gate_matrix_.llt().solve(y)));
+    block_nis_.push_back(state_.covariance().NormalizedInnovationSquared(
+        prepared.middleRows(block.first, block.rows), innovation.segment(block.first, block.rows)));
   }
 }
 

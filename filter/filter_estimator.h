@@ -48,7 +48,11 @@ class FilterEstimator : public Estimator {
   void GateBlocks();
   /// Appends the rows of a track's views, or those its newest view adds to its memory.
   TrackOutcome AppendViews(const Track& track, int leaving_serial);
-  /// Corrects state and memories by correction_.
+  /// The part of correction_ that the present error dimension uses.
+  [[nodiscard]] Eigen::Ref<Eigen::VectorXd> Correction() {
+    return correction_.head(state_.covariance().dimension());
+  }
+  /// Corrects state and memories by Correction().
   void Correct();
   /// What the memories become when a clone leaves.
   void LeaveMemories(size_t leaving);
@@ -78,8 +82,7 @@ class FilterEstimator : public Estimator {
   std::vector<double> block_nis_;
   std::vector<double> weights_;  ///< of the blocks; 0: refused
   CloneConditional conditional_;
-  Eigen::MatrixXd gate_matrix_;
-  Eigen::VectorXd correction_;
+  Eigen::VectorXd correction_;  ///< see Correction()
   Eigen::MatrixXd rest_rows_;
   Eigen::VectorXd rest_innovation_;
 };

@@ -143,7 +143,7 @@ void FilterState::RemoveLandmark(size_t index) {
   landmarks_.erase(landmarks_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-void FilterState::Correct(const Eigen::VectorXd& correction) {
+void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   CHECK_EQ(correction.size(), covariance_.dimension());
   const int core = CoreOffset();
   nav_ = Retract(convention_, nav_, Vector9d(correction.segment<9>(core)));

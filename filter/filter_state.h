@@ -79,7 +79,7 @@ class FilterState {
   void AddLandmark(const LandmarkRows& rows);
   void RemoveLandmark(size_t index);
   /// Retracts every state by its part of the correction (error order of the class).
-  void Correct(const Eigen::VectorXd& correction);
+  void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction);
 
   /// First error row of the core; landmarks lie before it.
   [[nodiscard]] int CoreOffset() const { return covariance_.leading(); }

@@ -65,19 +65,19 @@ TrackOutcome SlamFeatures::Append(const FilterState& state, const Track& track, 
   Eigen::Ref<Eigen::MatrixXd> jacobian = update->jacobian();
   auto rows = jacobian.middleRows<2>(block.first);
   rows.middleCols<6>(state.CloneOffset(state.clones().size() - 1)) =
-      linearization_.pose_jacobians * clone.camera_from_error;
+      linearization_.pose_jacobians.topRows<2>() * clone.camera_from_error;
   rows.middleCols<3>(state.LandmarkOffset(static_cast<size_t>(index))) = linearization_.point_jacobian;
   if (state.landmarks_are_anchored()) {
     const auto anchor = static_cast<size_t>(state.FindClone(landmark.anchor_serial));
-    rows.middleCols<3>(state.CloneOffset(anchor)) -= linearization_.point_jacobian * Skew(p_W);
+    rows.middleCols<3>(state.CloneOffset(anchor)) -= linearization_.point_jacobian.topRows<2>() * Skew(p_W);
   }
   update->innovation().segment<2>(block.first) = -residual;
   update->TraceNewestObservation(track);
   return TrackOutcome::kReady;
 }
 
-void SlamFeatures::Enter(const Eigen::VectorXd& correction, const std::vector<double>& block_weights,
-                         FilterState* state, TrackStore* tracks) {
+void SlamFeatures::Enter(const Eigen::Ref<const Eigen::VectorXd>& correction,
+                         const std::vector<double>& block_weights, FilterState* state, TrackStore* tracks) {
   const Eigen::Index old_core = state->CoreOffset();
   const auto moved = correction.tail(correction.size() - old_core);
   for (size_t i = 0; i < taken_; ++i) {

@@ -36,8 +36,8 @@ class SlamFeatures {
 
   /// After the correction: enters the landmark of every block with a positive weight, its rows weighted like
   /// the block's. Tracks are marked as in_state.
-  void Enter(const Eigen::VectorXd& correction, const std::vector<double>& block_weights, FilterState* state,
-             TrackStore* tracks);
+  void Enter(const Eigen::Ref<const Eigen::VectorXd>& correction, const std::vector<double>& block_weights,
+             FilterState* state, TrackStore* tracks);
   /// What the gate said about the newest observation of a track in the state.
   static void Judge(bool accepted, const Track& track, FilterState* state);
   /// Takes landmarks out of the state whose track was not seen in frame `serial`, or was refused twice in a

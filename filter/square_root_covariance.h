@@ -48,11 +48,14 @@ class SquareRootCovariance {
   /// The rows from `sparse_from` on are handled apart (both in Prepare and Apply): few of their entries are
   /// not zero, but these reach leading blocks, which the rows before need not pay for. -1: no such rows.
   void Prepare(Eigen::Ref<Eigen::MatrixXd> rows_in_place, int sparse_from = -1);
+  /// y^T (A A^T + I)^-1 y of some prepared rows A alone; NaN when a row is not finite.
+  [[nodiscard]] double NormalizedInnovationSquared(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows,
+                                                   const Eigen::Ref<const Eigen::VectorXd>& y);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
   /// y, the normalised innovation squared. False, with nothing changed, when a row is not finite: M is at
   /// least the identity, so nothing else can stop its factorisation.
   bool Apply(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows,
-             const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::VectorXd* correction, double* nis,
+             const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> correction, double* nis,
              int sparse_from = -1);
 
   [[nodiscard]] int dimension() const { return dimension_; }
@@ -82,6 +85,9 @@ class SquareRootCovariance {
                        int first_sparse);
   /// S <- S U^-1 for the columns from `first` on; U is information_.
   void DivideByInformationRoot(int first);
+  /// The same within rows and columns [first + begin, first + begin + size) of S; overwrites U above its
+  /// diagonal blocks.
+  void DivideTriangle(int first, int begin, int size);
 
   int dimension_ = 0;
   int leading_ = 0;
@@ -94,6 +100,8 @@ class SquareRootCovariance {
   std::vector<std::pair<int, double>> entries_;  // scratch of PrepareSparse: column and value
   std::vector<size_t> row_ends_;
   Eigen::VectorXd reflection_;
+  Eigen::MatrixXd gate_;  // scratch of NormalizedInnovationSquared
+  Eigen::VectorXd gated_;
 };
 
 /// Lower factor L of a symmetric positive semi-definite matrix, M = L L^T; pivots below rounding give zero

@@ -1,7 +1,9 @@
 #include <cblas.h>
 #include <lapack.h>
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 #include "core/check.h"
 #include "filter/square_root_covariance.h"
@@ -66,6 +68,34 @@ void SquareRootCovariance::PrepareSparse(Eigen::Ref<MatrixXd> rows_in_place) {
   }
 }
 
+double SquareRootCovariance::NormalizedInnovationSquared(const Eigen::Ref<const MatrixXd>& prepared_rows,
+                                                         const Eigen::Ref<const VectorXd>& y) {
+  const Index rows = prepared_rows.rows();
+  if (rows == 2) {  // a remembered track or a landmark of the state: too small for BLAS
+    const auto pair = prepared_rows.middleRows<2>(0);
+    const Eigen::Matrix2d variance = pair.lazyProduct(pair.transpose()) + Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d innovation = y;
+    return innovation.dot(variance.inverse() * innovation);
+  }
+  if (gate_.rows() < rows) {
+    gate_.resize(rows, rows);
+    gated_.resize(rows);
+  }
+  const int n = static_cast<int>(rows);
+  const int ld = static_cast<int>(gate_.rows());
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, dimension_, 1.0, prepared_rows.data(),
+              static_cast<int>(prepared_rows.outerStride()), 0.0, gate_.data(), ld);
+  gate_.diagonal().head(rows).array() += 1.0;
+  gated_.head(rows) = y;
+  int info = 0;
+  LAPACK_dpotrf("L", &n, gate_.data(), &ld, &info);
+  if (info != 0) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, gate_.data(), ld, gated_.data(), 1);
+  return gated_.head(rows).squaredNorm();
+}
+
 void SquareRootCovariance::FormInformation(const Eigen::Ref<const MatrixXd>& rows, int sparse_from,
                                            int first_dense, int first_sparse) {
   const int lda = static_cast<int>(rows.outerStride());
@@ -87,25 +117,43 @@ void SquareRootCovariance::FormInformation(const Eigen::Ref<const MatrixXd>& row
 }
 
 void SquareRootCovariance::DivideByInformationRoot(int first) {
-  // Both factors are upper triangular, and so is the quotient: a panel of columns ends at its own diagonal.
-  constexpr int kPanel = 48;
   const int active = dimension_ - first;
-  for (int begin = 0; begin < active; begin += kPanel) {
-    const int width = std::min(kPanel, active - begin);
-    const int rows = first + begin + width;
-    const double* u = information_.data() + static_cast<Index>(begin) * capacity();
-    if (begin > 0) {
-      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows, width, begin, -1.0, Data(0, first),
-                  capacity(), u, capacity(), 1.0, Data(0, first + begin), capacity());
-    }
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, rows, width, 1.0,
-                u + begin, capacity(), Data(0, first + begin), capacity());
+  const double* u = information_.data();
+  if (first > 0) {
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, first, active, 1.0, u,
+                capacity(), Data(0, first), capacity());
   }
+  DivideTriangle(first, 0, active);
+}
+
+void SquareRootCovariance::DivideTriangle(int first, int begin, int size) {
+  // Dividend, divisor and quotient are upper triangular. By halves,
+  //   [X11 X12; 0 X22] [U11 U12; 0 U22] = [S11 S12; 0 S22],
+  // most of the work skips the zeros. No product of full matrices: OpenBLAS allocates for the small ones.
+  constexpr int kSmall = 48;
+  double* s = Data(first + begin, first + begin);
+  double* u = information_.data() + static_cast<Index>(begin) * (capacity() + 1);
+  if (size <= kSmall) {
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, size, size, 1.0, u,
+                capacity(), s, capacity());
+    return;
+  }
+  const int head = size / 2;
+  const int tail = size - head;
+  DivideTriangle(first, begin, head);
+  const Index corner = static_cast<Index>(head) * capacity();
+  cblas_dtrmm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit, head, tail, 1.0, s,
+              capacity(), u + corner, capacity());
+  Part(first + begin, first + begin + head, head, tail) -=
+      information_.block(begin, begin + head, head, tail);
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, head, tail, 1.0,
+              u + corner + head, capacity(), s + corner, capacity());
+  DivideTriangle(first, begin + head, tail);
 }
 
 bool SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows,
-                                 const Eigen::Ref<const VectorXd>& y, VectorXd* correction, double* nis,
-                                 int sparse_from) {
+                                 const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> correction,
+                                 double* nis, int sparse_from) {
   const int rows = static_cast<int>(prepared_rows.rows());
   const int lda = static_cast<int>(prepared_rows.outerStride());
   const int n = dimension_;
@@ -115,7 +163,7 @@ bool SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows
   const int first_sparse = LeadingZeroColumns(prepared_rows.bottomRows(rows - dense));
   const int first = std::min(first_dense, first_sparse);
   const int active = n - first;
-  correction->setZero(n);
+  correction.setZero();
   if (nis != nullptr) {
     *nis = y.squaredNorm();
   }
@@ -134,11 +182,11 @@ bool SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows
   int info = 0;
   LAPACK_dpotrf("U", &active, m, &ldm, &info);
   CHECK_EQ(info, 0) << "I + A^T A of finite rows lost positivity";
-  DivideByInformationRoot(first);
   auto b = projected_.head(active);
   cblas_dgemv(CblasColMajor, CblasTrans, rows, active, 1.0, a, lda, y.data(), 1, 0.0, b.data(), 1);
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasTrans, CblasNonUnit, active, m, ldm, b.data(), 1);
-  correction->noalias() = Part(0, first, n, active) * b;
+  DivideByInformationRoot(first);
+  correction.noalias() = Part(0, first, n, active) * b;
   if (nis != nullptr) {
     *nis -= b.squaredNorm();
   }

@@ -79,12 +79,13 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
   landmark << memory.landmark_rows, linearization_.point_jacobian;
   stacked_.topRows<3>() = memory.clone_rows;
   stacked_.bottomRows<2>().setZero();
-  stacked_.block<2, 6>(3, 6 * clone.slot) = linearization_.pose_jacobians * clone.camera_from_error;
+  stacked_.block<2, 6>(3, 6 * clone.slot) =
+      linearization_.pose_jacobians.topRows<2>() * clone.camera_from_error;
   if (convention_ == ErrorConvention::kRightInvariant) {
     const int anchor = state.FindClone(memory.anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
     stacked_.block<2, 3>(3, 6 * state.clones()[static_cast<size_t>(anchor)].slot) -=
-        linearization_.point_jacobian * Skew(memory.p_W);
+        linearization_.point_jacobian.topRows<2>() * Skew(memory.p_W);
   }
   // The reflections once, as a small matrix: the rows are few and long.
   Eigen::Matrix<double, 5, 5> rotation = Eigen::Matrix<double, 5, 5>::Identity();
@@ -104,7 +105,7 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
   return extended->p_W.allFinite();
 }
 
-void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::VectorXd& correction,
+void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const Eigen::VectorXd>& correction,
                                 TrackMemory* memory) const {
   Vector3d shift = Vector3d::Zero();
   for (size_t i = 0; i < state.clones().size(); ++i) {

@@ -54,7 +54,8 @@ class TrackMemoryKeeper {
 
   /// Moves the landmark to where its rows put it after the state was corrected (called before the state
   /// itself is).
-  void Correct(const FilterState& state, const Eigen::VectorXd& correction, TrackMemory* memory) const;
+  void Correct(const FilterState& state, const Eigen::Ref<const Eigen::VectorXd>& correction,
+               TrackMemory* memory) const;
 
   /// How clone `index` follows from its neighbours.
   void Condition(const FilterState& state, size_t index, CloneConditional* conditional) const;

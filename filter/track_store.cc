@@ -1,16 +1,34 @@
 #include "filter/track_store.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace alidade {
 
-Track TrackStore::TakeSpare(std::int64_t id) {
-  Track track;
-  if (!spare_.empty()) {
-    track = std::move(spare_.back());
-    spare_.pop_back();
+TrackStore::TrackStore(int max_views, bool with_memory) : max_views_(max_views), with_memory_(with_memory) {
+  constexpr size_t kUsualTracks = 256;
+  tracks_.reserve(kUsualTracks);
+  merged_.reserve(kUsualTracks);
+  spare_.reserve(kUsualTracks);
+  while (spare_.size() < kUsualTracks) {
+    spare_.push_back(MakeTrack());
   }
+}
+
+Track TrackStore::MakeTrack() const {
+  Track track;
+  track.views.reserve(static_cast<size_t>(max_views_));
+  track.memory.clone_rows.resize(3, with_memory_ ? 6 * max_views_ : 0);
+  return track;
+}
+
+Track TrackStore::TakeSpare(std::int64_t id) {
+  if (spare_.empty()) {
+    spare_.push_back(MakeTrack());
+  }
+  Track track = std::move(spare_.back());
+  spare_.pop_back();
   track.id = id;
   track.views.clear();
   track.base_rounds = 0;
@@ -80,6 +98,7 @@ Track* TrackStore::Find(std::int64_t id) {
 }
 
 void TrackStore::Clear() {
+  std::move(tracks_.begin(), tracks_.end(), std::back_inserter(spare_));
   tracks_.clear();
   merged_.clear();
 }

@@ -29,6 +29,11 @@ struct Track {
 /// Live tracks sorted by id. Storage of ended tracks is re-used, so that the steady state does not allocate.
 class TrackStore {
  public:
+  TrackStore() = default;
+  /// Sets memory aside for the usual number of tracks of up to max_views views, each with a memory of
+  /// max_views clones if so wished.
+  TrackStore(int max_views, bool with_memory);
+
   /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's
   /// domain.
   int AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
@@ -45,8 +50,11 @@ class TrackStore {
   [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
 
  private:
+  [[nodiscard]] Track MakeTrack() const;
   Track TakeSpare(std::int64_t id);
 
+  int max_views_ = 0;
+  bool with_memory_ = false;
   std::vector<Track> tracks_;
   std::vector<Track> merged_;
   std::vector<Track> spare_;

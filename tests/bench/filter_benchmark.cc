@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include "eval/config_yaml.h"
 #include "eval/simulator.h"
 #include "filter/filter.h"
 #include "tests/support/scenario.h"
@@ -7,24 +8,36 @@
 namespace alidade {
 namespace {
 
+/// Defaults with what the named updates differ in.
+EstimatorConfig Immediate() {
+  return EstimatorConfig();
+}
+
+EstimatorConfig DelayedMsckf() {
+  EstimatorConfig config;
+  config.filter.landmark = FilterLandmark::kMsckf;
+  config.filter.update = UpdateTiming::kDelayedAll;
+  config.filter.min_observations = 5;
+  config.filter.clone_policy = ClonePolicy::kOldest;
+  return config;
+}
+
+EstimatorConfig AlidadeFilter() {
+  return *LoadEstimatorConfig(std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/alidade_filter.yaml",
+                              {});
+}
+
 /// One iteration is one camera frame of the figure-8 in the steady state: propagation over ten IMU samples,
 /// cloning, update, marginalisation. Arguments: window, tracks.
-void FilterFrame(benchmark::State& state, FilterLandmark landmark, UpdateTiming update,
-                 int min_observations) {
+void FilterFrame(benchmark::State& state, EstimatorConfig (*preset)()) {
   SimulatorConfig sim;
   sim.duration_s = 40;
   sim.path_m = 52.4;
   sim.max_features = static_cast<int>(state.range(1));
   sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
   const Dataset dataset = test::SimulateOrDie(sim, 1);
-  EstimatorConfig config;
+  EstimatorConfig config = preset();
   config.filter.window = static_cast<int>(state.range(0));
-  config.filter.landmark = landmark;
-  config.filter.update = update;
-  config.filter.min_observations = min_observations;
-  if (update == UpdateTiming::kDelayedAll) {
-    config.filter.clone_policy = ClonePolicy::kOldest;
-  }
   const NavEstimate initial = test::DrawInitialState(dataset, 1);
   constexpr size_t kWarmUpFrames = 60;
   std::unique_ptr<Estimator> filter;
@@ -73,12 +86,9 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond);
 }
 
-BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate,
-                  4)
-    ->Apply(Sizes);
-BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5)
-    ->Args({25, 150})
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(FilterFrame, alidade_filter, AlidadeFilter)->Apply(Sizes);
+BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, Immediate)->Apply(Sizes);
+BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, DelayedMsckf)->Args({25, 150})->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace alidade

@@ -58,9 +58,9 @@ CovarianceAnalysis Analyze(const TwoRounds& rounds, FilterState* state) {
   for (const FilterRows* rows : {&rounds.first, &rounds.second}) {
     analysis.OnUpdate(*state, *rows);
     MatrixXd prepared = rows->jacobian;
-    VectorXd correction;
+    VectorXd correction(state->covariance().dimension());
     state->covariance().Prepare(prepared);
-    EXPECT_TRUE(state->covariance().Apply(prepared, rows->innovation, &correction, nullptr));
+    EXPECT_TRUE(state->covariance().Apply(prepared, rows->innovation, correction, nullptr));
   }
   return analysis;
 }

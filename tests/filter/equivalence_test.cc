@@ -96,9 +96,9 @@ Outcome MsckfUpdate(Window window) {
   for (const Track& track : window.tracks) {
     EXPECT_EQ(update.Append(window.state, track), TrackOutcome::kReady);
   }
-  VectorXd correction;
+  VectorXd correction(window.state.covariance().dimension());
   window.state.covariance().Prepare(update.jacobian());
-  EXPECT_TRUE(window.state.covariance().Apply(update.jacobian(), update.innovation(), &correction, nullptr));
+  EXPECT_TRUE(window.state.covariance().Apply(update.jacobian(), update.innovation(), correction, nullptr));
   window.state.Correct(correction);
   return window.Look();
 }

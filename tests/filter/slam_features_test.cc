@@ -55,10 +55,10 @@ class Flight {
 
   /// Applies what update_ holds, corrects and returns the correction.
   VectorXd Apply() {
-    VectorXd correction;
+    VectorXd correction(state_.covariance().dimension());
     MatrixXd rows = update_.jacobian();
     state_.covariance().Prepare(rows);
-    EXPECT_TRUE(state_.covariance().Apply(rows, update_.innovation(), &correction, nullptr));
+    EXPECT_TRUE(state_.covariance().Apply(rows, update_.innovation(), correction, nullptr));
     state_.Correct(correction);
     return correction;
   }

@@ -105,7 +105,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   FilterState joint = CloneEveryFrame(dataset_, GetParam());
   FilterState sequential = joint;
   const Vector3d p_W = PointBefore(joint);
-  VectorXd correction;
+  VectorXd correction(joint.covariance().dimension());
 
   FilterConfig plain;
   plain.error = GetParam();
@@ -113,7 +113,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   all.Begin(joint);
   ASSERT_EQ(all.Append(joint, SeenFromClones(joint, p_W, 0, kFrames), false), TrackOutcome::kReady);
   joint.covariance().Prepare(all.jacobian());
-  ASSERT_TRUE(joint.covariance().Apply(all.jacobian(), all.innovation(), &correction, nullptr));
+  ASSERT_TRUE(joint.covariance().Apply(all.jacobian(), all.innovation(), correction, nullptr));
 
   FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
   Track track = SeenFromClones(sequential, p_W, 0, 5);
@@ -124,7 +124,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
               TrackOutcome::kReady);
     update.Remember(sequential, 0, 1, &track);
     sequential.covariance().Prepare(update.jacobian());
-    ASSERT_TRUE(sequential.covariance().Apply(update.jacobian(), update.innovation(), &correction, nullptr));
+    ASSERT_TRUE(sequential.covariance().Apply(update.jacobian(), update.innovation(), correction, nullptr));
     EXPECT_LT(correction.norm(), 1e-9);
     if (seen < kFrames) {
       track.views = SeenFromClones(sequential, p_W, seen, seen + 1).views;
