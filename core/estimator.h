@@ -6,12 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "core/clock_state.h"
 #include "core/estimator_config.h"
 #include "core/measurement_log.h"
 #include "core/navigation_state.h"
 #include "core/status.h"
 
 namespace alidade {
+
+struct GnssAlignment;  // gnss/alignment.h
+struct GnssEpoch;      // gnss/gnss_epoch.h
+struct GnssResiduals;  // gnss/gnss_epoch.h
 
 /// What one frame did to an estimator: what was used, refused and why, and how well the innovations fit.
 struct FrameStatistics {
@@ -26,7 +31,10 @@ struct FrameStatistics {
   int iterations = 0;    ///< of the smoother's solver
   bool at_rest = false;  ///< the frame was used as a zero-velocity measurement
   double nis = 0;        ///< normalised innovation squared of the applied rows
-  int nis_dof = 0;       ///< rows applied
+  int nis_dof = 0;       ///< rows applied, vision's
+  double gnss_nis = 0;   ///< the same of the epochs since the frame before
+  int gnss_nis_dof = 0;
+  bool clock_jump = false;  ///< the receiver clock was set anew
   double propagate_ms = 0;
   double update_ms = 0;
 };
@@ -60,7 +68,18 @@ class Estimator {
   /// restarts.
   virtual Status AddFrame(const TrackFrame& frame) = 0;
 
-  /// State after the last accepted frame. Precondition: initialised.
+  /// Turns the local world into the ENU frame of `alignment`: states, covariance (with the alignment's own)
+  /// and what later frames refer to. Called once, before the first AddGnss, at the time of the state.
+  /// kConfig: the back end takes no GNSS.
+  virtual Status Align(const GnssAlignment& /*alignment*/) { return NoGnss(); }
+  /// Updates with an epoch; the same rules as AddFrame. A frame may follow at the same stamp or later.
+  virtual Status AddGnss(const GnssEpoch& /*epoch*/) { return NoGnss(); }
+  /// Receiver clock after the last epoch; nothing before Align.
+  [[nodiscard]] virtual std::optional<ClockState> LatestClock() const { return std::nullopt; }
+  /// What became of the last epoch's satellites; null before Align.
+  [[nodiscard]] virtual const GnssResiduals* last_gnss() const { return nullptr; }
+
+  /// State after the last accepted frame or epoch. Precondition: initialised.
   [[nodiscard]] virtual NavEstimate Latest() const = 0;
   [[nodiscard]] virtual bool initialized() const = 0;
   [[nodiscard]] virtual const FrameStatistics& last_statistics() const = 0;
@@ -70,6 +89,11 @@ class Estimator {
   /// empty. kDiverged: no estimate was found; those of Latest stand.
   virtual Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* /*stop*/) {
     return std::vector<FinalizedFrame>();
+  }
+
+ private:
+  static Status NoGnss() {
+    return Status::Config("gnss.enabled: this back end takes no GNSS; expected false");
   }
 };
 

@@ -212,10 +212,6 @@ void BatchConfig::Describe(ConfigVisitor& visitor) {
       &filtering_bound);
 }
 
-void GnssConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Boolean({"enabled", "-", "couple pseudorange and Doppler"}, &enabled);
-}
-
 void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Text({"name", "-", "name in tables and paths"}, &name);
   visitor.Enumeration(
@@ -248,8 +244,13 @@ Status EstimatorConfig::Validate() const {
   if (vision.min_depth_m >= vision.max_depth_m) {
     return Status::Config("vision.min_depth_m: must be less than vision.max_depth_m");
   }
-  if (gnss.enabled) {
-    return Status::Config("gnss.enabled: this build has no GNSS; expected false");
+  if (gnss.enabled && backend == Backend::kBatch) {
+    return Status::Config(
+        "gnss.enabled: true, but the batch back end takes no GNSS; expected false, or backend: "
+        "filter or smoother");
+  }
+  if (const Status systems = gnss.corrections.Validate(); !systems.ok()) {
+    return Status::Config("gnss." + systems.message());
   }
   return Status::Ok();
 }

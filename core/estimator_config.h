@@ -4,13 +4,13 @@
 
 #include "core/config_schema.h"
 #include "core/error_convention.h"
+#include "core/gnss_config.h"
 #include "core/imu_sample.h"
 #include "core/status.h"
 
 namespace alidade {
 
 enum class Backend { kFilter, kSmoother, kBatch };
-enum class RobustKernel { kNone, kHuber, kCauchy };
 
 /// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not
 /// settings.
@@ -153,12 +153,6 @@ struct BatchConfig {
   RobustKernel robust_kernel = RobustKernel::kNone;
   double gate_probability = 0.9999;
   bool filtering_bound = true;
-
-  void Describe(ConfigVisitor& visitor);
-};
-
-struct GnssConfig {
-  bool enabled = false;
 
   void Describe(ConfigVisitor& visitor);
 };

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,12 +27,24 @@ struct TrackFrame {
   double frontend_ms = 0;
 };
 
+/// The GNSS antenna on the rig and its receiver's time.
+struct GnssReceiver {
+  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();  ///< antenna in the body frame [m]
+  double time_offset_s = 0;                        ///< t_imu = t_GPST + offset
+  /// Origin of the ENU frame the sequence's truth stands in, ECEF [m]. Estimates then stand there too;
+  /// without it the first solution is the origin. A choice of coordinates only.
+  std::optional<Eigen::Vector3d> anchor_E;
+};
+
+struct GnssLog;  // gnss/gnss_epoch.h
+
 /// What is known about the rig before a run; constant unless an estimator calibrates online.
 struct RigCalibration {
   CameraModel camera;
   Pose T_BC;  ///< camera to body (IMU): p_B = T_BC * p_C
   ImuNoise imu_noise;
   double camera_time_offset_s = 0;  ///< t_imu = t_camera + offset
+  GnssReceiver gnss = {};
 };
 
 /// One more camera of the rig beside the one in RigCalibration. Its track ids are those of the first camera
@@ -50,6 +64,8 @@ struct MeasurementLog {
   std::vector<TrackFrame> frames;  ///< strictly increasing stamps
   /// Recorded, and part of the digest; the estimators read the first camera alone.
   std::vector<ExtraCamera> extra_cameras = {};
+  /// Raw observations and ephemerides; null without GNSS.
+  std::shared_ptr<const GnssLog> gnss = nullptr;
 };
 
 }  // namespace alidade

@@ -56,7 +56,7 @@ Result<CompareInput::Data> CompareInput::RunSimulation() const {
   }
   Data data;
   data.log = {dataset->rig, std::move(dataset->imu), std::move(dataset->tracks),
-              std::move(dataset->extra_cameras)};
+              std::move(dataset->extra_cameras), dataset->gnss};
   data.truth = std::move(dataset->truth);
   SimulatorConfig config = *simulation_;
   data.dataset_digest =

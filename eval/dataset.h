@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct Dataset {
   std::vector<ExtraCamera> extra_cameras;  ///< cam1, cam2, ... that have tracks
   std::vector<ImageEntry> images;          ///< cam0/data.csv; empty when there is none
   std::vector<TimeNs> camera_stamps;       ///< cam0/timestamps.csv; empty when there is none
+  std::shared_ptr<const GnssLog> gnss;     ///< gnss0: observations and navigation data; null without it
   std::optional<Trajectory> truth;         ///< state_groundtruth_estimate0/{data.csv | data_pose.csv}
   std::string truth_path;
 };

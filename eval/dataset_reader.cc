@@ -4,6 +4,7 @@
 #include "eval/csv.h"
 #include "eval/dataset.h"
 #include "eval/dataset_camera.h"
+#include "eval/dataset_gnss.h"
 #include "eval/sensor_yaml.h"
 
 namespace alidade {
@@ -99,6 +100,9 @@ Result<Dataset> ReadDataset(const std::string& path) {
   if (fs::is_directory(mav / "cam0")) {
     ALIDADE_RETURN_IF_ERROR(ReadCameraFolder((mav / "cam0").string(), &dataset));
     ALIDADE_RETURN_IF_ERROR(ReadExtraCameras(mav.string(), &dataset));
+  }
+  if (fs::is_directory(mav / "gnss0")) {
+    ALIDADE_RETURN_IF_ERROR(ReadGnssFolder((mav / "gnss0").string(), &dataset));
   }
   ALIDADE_RETURN_IF_ERROR(ReadTruth(mav / "state_groundtruth_estimate0", &dataset));
   return dataset;

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "eval/dataset.h"
+#include "eval/dataset_gnss.h"
 #include "eval/output_file.h"
 #include "eval/sensor_yaml.h"
 
@@ -126,6 +127,9 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((folder / "sensor.yaml").string(),
                                                 CameraSensorYaml(rig, dataset.camera_rate_hz)));
     ALIDADE_RETURN_IF_ERROR(WriteTracks(extra.frames, (folder / "tracks.csv").string()));
+  }
+  if (dataset.gnss != nullptr) {
+    ALIDADE_RETURN_IF_ERROR(WriteGnssFolder(dataset, (mav / "gnss0").string()));
   }
   if (dataset.truth.has_value()) {
     const char* name = dataset.truth->has_velocity ? "data.csv" : "data_pose.csv";

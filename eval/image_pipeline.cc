@@ -2,6 +2,7 @@
 
 #include "core/stopwatch.h"
 #include "frontend/klt_tracker.h"
+#include "gnss/gnss_epoch.h"
 
 namespace alidade {
 
@@ -44,8 +45,9 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
 
 Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
                                const PipelineOptions& options) {
-  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras};
-  if (!log.frames.empty()) {
+  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras, dataset.gnss};
+  const bool no_camera = dataset.images.empty() && dataset.camera_stamps.empty();
+  if (!log.frames.empty() || (log.gnss != nullptr && no_camera)) {
     return log;
   }
   if (dataset.images.empty()) {
@@ -67,7 +69,8 @@ std::string DescribeLog(const MeasurementLog& log, const std::string& digest) {
     observations += frame.observations.size();
   }
   return "measurement log " + digest + ": " + std::to_string(log.imu.size()) + " IMU samples, " +
-         std::to_string(log.frames.size()) + " frames, " + std::to_string(observations) + " observations";
+         std::to_string(log.frames.size()) + " frames, " + std::to_string(observations) + " observations" +
+         (log.gnss == nullptr ? "" : ", " + std::to_string(log.gnss->epochs.size()) + " GNSS epochs");
 }
 
 }  // namespace alidade

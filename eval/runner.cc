@@ -4,9 +4,11 @@
 
 #include "core/check.h"
 #include "core/stopwatch.h"
+#include "eval/gnss_feed.h"
 #include "eval/truth_start.h"
 #include "filter/filter.h"
 #include "frontend/initializer.h"
+#include "gnss/alignment.h"
 #include "smoother/smoother.h"
 
 namespace alidade {
@@ -23,21 +25,29 @@ class Run {
  public:
   Run(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
       Estimator* estimator)
-      : config_(config),
-        log_(log),
-        options_(options),
-        estimator_(*estimator),
-        initializer_(config, log.rig) {}
+      : config_(config), log_(log), options_(options), estimator_(*estimator), initializer_(config, log.rig) {
+    if (config.gnss.enabled && log.gnss != nullptr) {
+      feed_.emplace(config.gnss, log);
+      aligner_.emplace(config.gnss, log.rig.gnss);
+    }
+  }
 
   RunResult Execute() {
     const Stopwatch wall;
     const double cpu_start = ThreadCpuSeconds();
+    if (config_.gnss.enabled && log_.gnss == nullptr) {
+      result_.status =
+          Status::Input("gnss.enabled: true, but the sequence has no GNSS; expected gnss0 in it, or false");
+    }
     for (size_t i = 0; i < log_.frames.size() && result_.status.ok(); ++i) {
       if (options_.stop != nullptr && options_.stop->load()) {
         result_.interrupted = true;
         break;
       }
-      ProcessFrame(log_.frames[i]);
+      ProcessEpochsBefore(ImuStamp(log_.frames[i]));
+      if (result_.status.ok()) {
+        ProcessFrame(log_.frames[i]);
+      }
       if (options_.progress) {
         options_.progress(i + 1, log_.frames.size());
       }
@@ -66,10 +76,88 @@ class Run {
     }
     if (initialized_) {
       AddFrame(frame, stopwatch);
+      Align(ImuStamp(frame));
     } else if (result_.status.ok() &&
                SecondsBetween(log_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
       result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
                                         std::to_string(config_.init.max_wait_s) + " s: " + Reason());
+    }
+  }
+
+  /// GNSS epochs with an IMU time before `stamp_ns`; the IMU reaches that far.
+  void ProcessEpochsBefore(TimeNs stamp_ns) {
+    while (feed_ && result_.status.ok()) {
+      const GnssEpoch* epoch = feed_->Next();
+      if (epoch == nullptr || epoch->stamp_ns >= stamp_ns) {
+        return;
+      }
+      if (result_.global) {
+        DeliverImu(epoch->stamp_ns);
+        AddEpoch(*epoch);
+      } else {
+        aligner_->AddEpoch(*epoch, feed_->approximate_E());
+      }
+      feed_->Pop();
+    }
+  }
+
+  void AddEpoch(const GnssEpoch& epoch) {
+    Status status = estimator_.AddGnss(epoch);
+    if (status.code() == StatusCode::kInput) {
+      result_.skip_report = result_.epochs_skipped++ == 0 && result_.skip_report.empty()
+                                ? status.message()
+                                : result_.skip_report;
+      return;
+    }
+    if (!status.ok()) {
+      result_.status = std::move(status);
+      return;
+    }
+    ++result_.epochs_used;
+    const FrameStatistics& s = estimator_.last_statistics();
+    epochs_.satellites_used += s.satellites_used;
+    epochs_.satellites_gated += s.satellites_gated;
+    epochs_.gnss_nis += s.gnss_nis;
+    epochs_.gnss_nis_dof += s.gnss_nis_dof;
+    epochs_.clock_jump = epochs_.clock_jump || s.clock_jump;
+    epochs_.propagate_ms += s.propagate_ms;
+    epochs_.update_ms += s.update_ms;
+    if (const GnssResiduals* residuals = estimator_.last_gnss()) {
+      result_.gnss_residuals.push_back(*residuals);
+    }
+  }
+
+  /// Hands the aligner the newest state, and the estimator the alignment as soon as there is one.
+  void Align(TimeNs stamp_ns) {
+    if (!feed_ || result_.global || !result_.status.ok() || !estimator_.initialized()) {
+      return;
+    }
+    const NavEstimate latest = estimator_.Latest();
+    if (latest.stamp_ns != stamp_ns) {
+      return;  // the frame was refused
+    }
+    aligner_->AddState(stamp_ns, latest.nav, latest.bias, log_.imu[next_imu_ - 1].gyro);
+    const std::optional<GnssAlignment> alignment = aligner_->TryAlign();
+    result_.align_report = aligner_->report();
+    if (!alignment) {
+      return;
+    }
+    if (Status status = estimator_.Align(*alignment); !status.ok()) {
+      result_.status = std::move(status);
+      return;
+    }
+    feed_->ShiftTime(alignment->time_offset_s);
+    result_.align_report = alignment->report;
+    result_.global = {alignment->enu,
+                      log_.rig.gnss.p_BA,
+                      stamp_ns,
+                      alignment->yaw_rad,
+                      std::sqrt(alignment->covariance(0, 0)),
+                      alignment->report};
+    // The record of this frame tells the state as it now stands.
+    if (!result_.records.empty()) {
+      result_.records.back().estimate = estimator_.Latest();
+      result_.records.back().clock = estimator_.LatestClock();
     }
   }
 
@@ -161,9 +249,23 @@ class Run {
       return;
     }
     record.statistics = estimator_.last_statistics();
+    AddEpochStatistics(&record.statistics);
+    record.clock = estimator_.LatestClock();
     record.frontend_ms = frame.frontend_ms;
     record.backend_ms = stopwatch.ElapsedMs();
     result_.records.push_back(std::move(record));
+  }
+
+  /// What the epochs since the frame before did.
+  void AddEpochStatistics(FrameStatistics* statistics) {
+    statistics->satellites_used += epochs_.satellites_used;
+    statistics->satellites_gated += epochs_.satellites_gated;
+    statistics->gnss_nis += epochs_.gnss_nis;
+    statistics->gnss_nis_dof += epochs_.gnss_nis_dof;
+    statistics->clock_jump = statistics->clock_jump || epochs_.clock_jump;
+    statistics->propagate_ms += epochs_.propagate_ms;
+    statistics->update_ms += epochs_.update_ms;
+    epochs_ = {};
   }
 
   void Finalize() {
@@ -200,6 +302,9 @@ class Run {
   const RunOptions& options_;
   Estimator& estimator_;
   Initializer initializer_;
+  std::optional<GnssFeed> feed_;
+  std::optional<GnssAligner> aligner_;
+  FrameStatistics epochs_;  ///< of the epochs since the last frame
   RunResult result_;
   size_t next_imu_ = 0;
   bool initialized_ = false;

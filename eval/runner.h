@@ -12,6 +12,8 @@
 #include "core/measurement_log.h"
 #include "eval/observability.h"
 #include "eval/trajectory.h"
+#include "gnss/geodesy.h"
+#include "gnss/gnss_epoch.h"
 
 namespace alidade {
 
@@ -26,6 +28,17 @@ struct RunRecord {
   /// Covariance of (phi, dp) given the data up to this frame alone; of an estimator that looks back and knows
   /// it.
   std::optional<Matrix6d> filtering_covariance;
+  std::optional<ClockState> clock;  ///< once aligned with GNSS
+};
+
+/// How a run came to stand in the ENU frame.
+struct GlobalFrame {
+  EnuFrame enu;
+  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();
+  TimeNs stamp_ns = 0;  ///< of the first state that stands there
+  double yaw_rad = 0;   ///< by which the local world was turned
+  double yaw_std_rad = 0;
+  std::string report;
 };
 
 struct RunResult {
@@ -34,9 +47,14 @@ struct RunResult {
   std::string init_method;         ///< truth | static | dynamic
   std::string init_report;         ///< what the initialiser found, or why it did not initialise
   TimeNs init_stamp_ns = 0;
-  int frames_skipped = 0;   ///< refused by the estimator after initialisation
-  std::string skip_report;  ///< why the first of them was
-  int imu_rejected = 0;     ///< samples refused by the estimator
+  int frames_skipped = 0;                     ///< refused by the estimator after initialisation
+  std::string skip_report;                    ///< why the first of them was
+  int imu_rejected = 0;                       ///< samples refused by the estimator
+  std::optional<GlobalFrame> global;          ///< once aligned with GNSS
+  std::string align_report;                   ///< what the alignment found, or why it did not
+  int epochs_used = 0;                        ///< GNSS epochs the estimator took
+  int epochs_skipped = 0;                     ///< refused by it
+  std::vector<GnssResiduals> gnss_residuals;  ///< of the used epochs
   bool interrupted = false;
   double wall_s = 0;
   double cpu_s = 0;  ///< of the running thread
@@ -66,8 +84,10 @@ struct RunOptions {
 
 /// Feeds the log to `estimator` in time order: before each frame every IMU sample up to and including the
 /// first one at or after the frame's IMU time (stamp + time offset); the frame that yields the initial state
-/// is also the first one added. At the end of the log an estimator that looks back replaces its
-/// records (Estimator::TakeFinalized).
+/// is also the first one added. With GNSS (gnss.enabled, and the log has it) epochs come in between in the
+/// order of IMU time, after a frame of the same stamp; those before the alignment go to the aligner alone and
+/// never hold up a frame. Without frames there is a record an epoch. At the end of the log an estimator that
+/// looks back replaces its records (Estimator::TakeFinalized).
 [[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
                                      const RunOptions& options, Estimator* estimator);
 

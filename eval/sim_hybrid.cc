@@ -9,6 +9,7 @@
 #include "eval/gyro_agreement.h"
 #include "eval/recorded_motion.h"
 #include "eval/sim_camera.h"
+#include "eval/sim_gnss.h"
 #include "eval/sim_landmarks.h"
 
 namespace alidade {
@@ -106,6 +107,7 @@ Result<Dataset> SimulateHybrid(const SimulatorConfig& config, unsigned seed) {
   TakeTracks(SimulateTracks(config, motion, dataset.rig, *landmarks, motion.start_ns(), stamps, seed,
                             dataset.extra_cameras),
              &dataset);
+  ALIDADE_RETURN_IF_ERROR(AddSimulatedGnss(config, motion, motion.start_ns(), seed, &dataset));
   dataset.truth = std::move(recorded->samples);
   dataset.truth_path = recorded->path;
   return dataset;

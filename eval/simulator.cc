@@ -4,6 +4,7 @@
 
 #include "eval/recorded_motion.h"
 #include "eval/sim_camera.h"
+#include "eval/sim_gnss.h"
 #include "eval/sim_hybrid.h"
 #include "eval/sim_imu.h"
 #include "eval/sim_landmarks.h"
@@ -68,6 +69,7 @@ Result<Dataset> Simulate(const SimulatorConfig& config, unsigned seed) {
   TakeTracks(SimulateTracks(config, trajectory, *rig, *landmarks, motion->start_ns, dataset.camera_stamps,
                             seed, dataset.extra_cameras),
              &dataset);
+  ALIDADE_RETURN_IF_ERROR(AddSimulatedGnss(config, trajectory, motion->start_ns, seed, &dataset));
   return dataset;
 }
 

@@ -7,6 +7,7 @@
 #include "core/config_schema.h"
 #include "core/status.h"
 #include "eval/dataset.h"
+#include "eval/sim_gnss_config.h"
 
 namespace alidade {
 
@@ -107,6 +108,8 @@ struct SimulatorConfig {
   double landmark_density_per_m3 = 0.2;                      ///< volume
   Eigen::Vector3d room_margin_m = Eigen::Vector3d(2, 2, 1);  ///< from the path's bounding box to the walls
   double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
+
+  SimGnssConfig gnss;
 
   [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }
   /// Whether outliers are whole tracks.

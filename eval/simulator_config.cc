@@ -257,6 +257,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeMoreCameras(this, visitor);
   DescribeTracks(this, visitor);
   DescribeLandmarks(this, visitor);
+  visitor.Section("gnss", "the receiver", [&] { gnss.Describe(visitor); });
 }
 
 Status SimulatorConfig::Validate() const {
@@ -276,6 +277,11 @@ Status SimulatorConfig::Validate() const {
   ALIDADE_RETURN_IF_ERROR(Expect(trajectory != SimTrajectory::kWander || path_m < 1e4 * (length_m + width_m),
                                  "path_m", path_m, "less than 1e4 times length_m + width_m"));
   ALIDADE_RETURN_IF_ERROR(ValidateRecording(*this));
+  ALIDADE_RETURN_IF_ERROR(gnss.Validate());
+  // GPST began in 1980; readers know the years to 2099.
+  ALIDADE_RETURN_IF_ERROR(Expect(
+      gnss.rate_hz == 0 || trajectory == SimTrajectory::kFile || IsHybrid() || start_time_s >= 400000000,
+      "start_time_s", start_time_s, "at least 4e8 with gnss.rate_hz: stamps are then GPST"));
   ALIDADE_RETURN_IF_ERROR(
       Expect(landmark_layout == SimLandmarkLayout::kRoom || landmark_min_distance_m < landmark_max_distance_m,
              "landmark_min_distance_m", landmark_min_distance_m,
@@ -298,6 +304,7 @@ Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   ResolvePath(folder, &config.trajectory_file);
   ResolvePath(folder, &config.hybrid_dataset);
+  ResolvePath(folder, &config.gnss.navigation_file);
   ALIDADE_RETURN_IF_ERROR(ApplySettings(settings, describe));
   if (const Status valid = config.Validate(); !valid.ok()) {
     return Status(valid.code(), path + ": " + valid.message());

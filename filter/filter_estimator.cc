@@ -27,10 +27,11 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
       state_(config.filter.error, config.filter.first_estimates, rig.T_BC,
-             {config.filter.window + 1, config.filter.slam_features}),
+             {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled}),
       update_(config.filter, config.vision, config.filter.window + 1),
       slam_(config.filter, config.filter.window + 1),
       tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone),
+      gnss_(config.gnss, rig.gnss),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
       correction_(state_.covariance().capacity()) {}
@@ -38,8 +39,10 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
 Status FilterEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));
   tracks_.Clear();
+  gnss_.Reset();
   rest_.Clear();
   imu_.DropBefore(initial.stamp_ns);
+  frame_stamp_ns_ = INT64_MIN;
   statistics_ = {};
   initialized_ = true;
   return Status::Ok();
@@ -56,13 +59,14 @@ Status FilterEstimator::AddImu(const ImuSample& sample) {
 }
 
 Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
-  if (stamp_ns == state_.stamp_ns() && state_.clones().empty()) {
-    return Status::Ok();  // the frame the filter was initialised on
+  if (stamp_ns == state_.stamp_ns() && stamp_ns > frame_stamp_ns_) {
+    return Status::Ok();  // where the filter was initialised, or the stamp of an epoch
   }
   ALIDADE_RETURN_IF_ERROR(imu_.Interval(state_.stamp_ns(), stamp_ns, &interval_));
   state_.Propagate(interval_, noise_, gravity_W_);
   imu_.DropBefore(stamp_ns);
   rest_.AddImu(interval_);
+  last_gyro_radps_ = interval_.back().gyro;
   return Status::Ok();
 }
 
@@ -74,6 +78,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
   Stopwatch stopwatch;
   ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
+  frame_stamp_ns_ = state_.stamp_ns();
   ++serial_;
   state_.AddClone(serial_);
   statistics_.propagate_ms = stopwatch.ElapsedMs();

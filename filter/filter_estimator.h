@@ -8,6 +8,7 @@
 #include "core/robust.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
+#include "filter/gnss_update.h"
 #include "filter/slam_features.h"
 #include "filter/track_store.h"
 
@@ -22,6 +23,10 @@ class FilterEstimator : public Estimator {
   Status Initialize(const NavEstimate& initial) override;
   Status AddImu(const ImuSample& sample) override;
   Status AddFrame(const TrackFrame& frame) override;
+  Status Align(const GnssAlignment& alignment) override;
+  Status AddGnss(const GnssEpoch& epoch) override;
+  [[nodiscard]] std::optional<ClockState> LatestClock() const override;
+  [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return state_.Estimate(); }
   [[nodiscard]] bool initialized() const override { return initialized_; }
   [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
@@ -68,6 +73,7 @@ class FilterEstimator : public Estimator {
   FeatureUpdate update_;
   SlamFeatures slam_;
   TrackStore tracks_;
+  GnssUpdate gnss_;
   RestDetector rest_;
   ImuBuffer imu_;
   FrameStatistics statistics_;
@@ -75,6 +81,8 @@ class FilterEstimator : public Estimator {
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
   int serial_ = 0;
+  TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
+  Eigen::Vector3d last_gyro_radps_ = Eigen::Vector3d::Zero();
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

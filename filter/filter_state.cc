@@ -9,8 +9,9 @@ FilterState::FilterState(ErrorConvention convention, bool first_estimates, const
     : convention_(convention),
       first_estimates_(first_estimates),
       T_BC_(T_BC),
-      covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks,
-                  3 * limits.landmarks) {
+      covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks +
+                      (limits.clock ? kClockSize : 0),
+                  3 * limits.landmarks + (limits.clock ? kClockSize : 0)) {
   clones_.reserve(static_cast<size_t>(limits.clones));
   landmarks_.reserve(static_cast<size_t>(limits.landmarks));
   for (int slot = limits.clones; slot-- > 0;) {

@@ -49,7 +49,8 @@ struct LandmarkRows {
 
 /// State and covariance of the filter: landmarks, current navigation state, biases and a window of clones.
 /// The error is [landmarks newest first | theta p v bg ba | clones newest first], each pose in the configured
-/// convention.
+/// convention. Once aligned with GNSS, six clock terms (core/clock_state.h) stand directly before the core;
+/// their mean is filter/gnss_update.h's.
 ///
 /// With `first_estimates`, Jacobians are evaluated at the first estimate of each clone and landmark, and the
 /// transition runs from the first estimate at its start (the prediction, before any update there) to the
@@ -57,9 +58,11 @@ struct LandmarkRows {
 /// the current estimates throughout. In the right-invariant convention the transition is the same either way.
 class FilterState {
  public:
+  static constexpr int kClockSize = 6;
   struct Limits {
     int clones = 0;
     int landmarks = 0;
+    bool clock = false;
   };
 
   FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits);
@@ -78,11 +81,17 @@ class FilterState {
   /// regular.
   void AddLandmark(const LandmarkRows& rows);
   void RemoveLandmark(size_t index);
+  /// Turns world and states by R_NW about the vertical, shifts them by p_NW, adds the covariance of that (of
+  /// yaw about W's origin and shift) to that of all states, and enters the clock's rows. Without landmarks.
+  void Align(const Eigen::Matrix3d& R_NW, const Eigen::Vector3d& p_NW, const Eigen::Matrix4d& covariance,
+             const Matrix6d& clock_covariance);
   /// Retracts every state by its part of the correction (error order of the class).
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction);
 
   /// First error row of the core; landmarks lie before it.
   [[nodiscard]] int CoreOffset() const { return covariance_.leading(); }
+  /// First error row of the clock; only once aligned.
+  [[nodiscard]] int ClockOffset() const { return CoreOffset() - kClockSize; }
   /// First error row of clone `index` (0 = oldest).
   [[nodiscard]] int CloneOffset(size_t index) const {
     return CoreOffset() + SquareRootCovariance::kCore + 6 * static_cast<int>(clones_.size() - 1 - index);

@@ -27,6 +27,13 @@ class SquareRootCovariance {
   /// core <- phi core + w, w ~ N(0, q); cross terms follow.
   void Propagate(const Matrix15d& phi, const Matrix15d& q);
 
+  /// The six rows [first, first + 6) of a leading block <- phi times them + w, w ~ N(0, q).
+  void PropagateLeading(int first, const Matrix6d& phi, const Matrix6d& q);
+
+  /// Restarts with P = root root^T, whose first `leading` rows are a leading block. root: at least as many
+  /// columns as rows.
+  void Assign(int leading, const Eigen::Ref<const Eigen::MatrixXd>& root);
+
   /// Inserts a copy of the error rows [first, first + size) of the core block directly after the core block.
   void CloneCore(int first, int size);
 

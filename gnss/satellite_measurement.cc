@@ -76,40 +76,6 @@ const SignalObservation* WithDoppler(const SatelliteObservation& observed, const
 
 }  // namespace
 
-void GnssCorrectionOptions::Describe(ConfigVisitor& visitor) {
-  visitor.Text({"systems", "-", "RINEX letters of the constellations in use, of GECJR"}, &systems);
-  visitor.Enumeration(
-      {"ionosphere", "-",
-       "broadcast: GPS's Klobuchar model, else BeiDou's; free: the ionosphere-free pair of two bands; "
-       "none"},
-      &ionosphere,
-      {{"none", IonosphereMode::kNone},
-       {"broadcast", IonosphereMode::kBroadcast},
-       {"free", IonosphereMode::kFree}});
-  visitor.Real({"elevation_mask_deg", "deg", "below, multipath and atmosphere dominate"}, &elevation_mask_deg,
-               0, 60);
-  visitor.Real({"min_cn0_dbhz", "dB-Hz", "below, receivers report noise; a signal without C/N0 passes"},
-               &min_cn0_dbhz, 0, 60);
-  visitor.Real(
-      {"pseudorange_std_m", "m", "deviation at the zenith and 45 dB-Hz; multipath of a good antenna"},
-      &pseudorange_std_m, 0.01, 100);
-  visitor.Real(
-      {"range_rate_std_mps", "m/s", "deviation at the zenith and 45 dB-Hz; half a cycle per second times L1"},
-      &range_rate_std_mps, 1e-4, 10);
-  visitor.Real(
-      {"glonass_factor", "-", "on both deviations for GLONASS: its channels are biased against each other"},
-      &glonass_factor, 1, 100);
-}
-
-Status GnssCorrectionOptions::Validate() const {
-  for (const char letter : systems) {
-    if (std::string_view("GECJR").find(letter) == std::string_view::npos) {
-      return Status::Config(std::string("systems: found '") + letter + "', expected letters of GECJR");
-    }
-  }
-  return Status::Ok();
-}
-
 double ObservationVariance(double zenith_std, double elevation_rad, double cn0_dbhz,
                            std::optional<double> reported_std) {
   const double sine = std::max(std::sin(elevation_rad), 0.05);
@@ -253,8 +219,10 @@ void MeasurementBuilder::Locate(const Eigen::Vector3d& position_E, EpochMeasurem
     const double factor = m.satellite.system == GnssSystem::kGlonass ? options_.glonass_factor : 1;
     const double noise =
         ObservationVariance(factor * options_.pseudorange_std_m, elevation, m.cn0_dbhz, m.reported_std_m);
-    m.pseudorange_variance = m.noise_gain * m.noise_gain * noise + m.ephemeris_variance +
-                             ionosphere_std * ionosphere_std + troposphere_std * troposphere_std;
+    m.pseudorange_variance =
+        m.noise_gain * m.noise_gain * noise +
+        options_.model_std_scale * options_.model_std_scale *
+            (m.ephemeris_variance + ionosphere_std * ionosphere_std + troposphere_std * troposphere_std);
     m.range_rate_variance = ObservationVariance(factor * options_.range_rate_std_mps, elevation, m.cn0_dbhz,
                                                 m.reported_rate_std_mps);
   }

@@ -6,32 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/config_schema.h"
+#include "core/gnss_config.h"
 #include "gnss/geodesy.h"
 #include "gnss/observation.h"
 #include "gnss/satellite_catalog.h"
 
 namespace alidade {
-
-/// What is done about the ionosphere: nothing, the broadcast model (GPS's Klobuchar, else BeiDou's, else
-/// nothing with a larger deviation; NeQuick G is not implemented), or the ionosphere-free pair of two bands.
-/// A satellite without a second band is then left out.
-enum class IonosphereMode { kNone, kBroadcast, kFree };
-
-/// Which signals are used and how far they are trusted.
-struct GnssCorrectionOptions {
-  std::string systems = "GECJR";  ///< RINEX letters
-  IonosphereMode ionosphere = IonosphereMode::kBroadcast;
-  double elevation_mask_deg = 10;
-  double min_cn0_dbhz = 15;
-  double pseudorange_std_m = 0.7;
-  double range_rate_std_mps = 0.05;
-  double glonass_factor = 2;
-
-  void Describe(ConfigVisitor& visitor);
-  /// kConfig: an unknown system.
-  [[nodiscard]] Status Validate() const;
-};
 
 /// One satellite of an epoch, corrected: what the models of gnss/measurement_model.h take.
 struct SatelliteMeasurement {

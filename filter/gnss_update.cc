@@ -1,0 +1,111 @@
+#include "filter/gnss_update.h"
+
+#include <cmath>
+
+#include "gnss/receiver_clock.h"
+
+namespace alidade {
+
+GnssUpdate::GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver)
+    : config_(config), receiver_(receiver), gate_threshold_(ChiSquareQuantile(1, config.gate_probability)) {}
+
+void GnssUpdate::Align(const GnssAlignment& alignment, FilterState* state) {
+  const ClockState fresh = FreshClock(config_, alignment.clock);
+  state->Align(alignment.R_NW(), alignment.p_NW, alignment.covariance, fresh.covariance);
+  mount_ = AntennaMount{alignment.enu, receiver_.p_BA};
+  clock_ = fresh.mean;
+  clock_stamp_ns_ = alignment.stamp_ns;
+}
+
+ClockState GnssUpdate::Clock(const FilterState& state) const {
+  return {clock_, state.covariance().PoseBlock(state.ClockOffset(), state.ClockOffset())};
+}
+
+void GnssUpdate::PropagateClockTo(TimeNs stamp_ns, FilterState* state) {
+  if (stamp_ns <= clock_stamp_ns_) {
+    return;
+  }
+  const ClockTransition transition = PropagateClock(config_, SecondsBetween(clock_stamp_ns_, stamp_ns));
+  clock_ = transition.phi * clock_;
+  state->covariance().PropagateLeading(state->ClockOffset(), transition.phi, transition.q);
+  clock_stamp_ns_ = stamp_ns;
+}
+
+void GnssUpdate::ResetClock(double step_m, FilterState* state) {
+  ClockTransition anew;
+  anew.phi(ClockState::kClock, ClockState::kClock) = 0;
+  anew.q(ClockState::kClock, ClockState::kClock) = kFreshClockStdM * kFreshClockStdM;
+  state->covariance().PropagateLeading(state->ClockOffset(), anew.phi, anew.q);
+  clock_[ClockState::kClock] += step_m;
+  for (GnssRow& row : rows_) {
+    row.residual += row.is_rate ? 0 : step_m;
+  }
+  for (SatelliteResidual& told : residuals_.satellites) {
+    told.residual_m += step_m;
+  }
+}
+
+bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps, FilterState* state,
+                       Eigen::Ref<Eigen::VectorXd> correction, FrameStatistics* statistics) {
+  PropagateClockTo(epoch.stamp_ns, state);
+  located_ = epoch.measurements;
+  LocateEpoch(*epoch.builder, *mount_, state->nav(), &located_);
+  residuals_.stamp_ns = epoch.stamp_ns;
+  rows_ = LinearizeEpoch(config_, *mount_, {state->nav(), state->bias(), gyro_radps, clock_}, located_,
+                         &residuals_);
+  correction.setZero();
+  if (rows_.empty()) {
+    return true;
+  }
+  const double step = CommonStep(rows_);
+  const double clock_std = std::sqrt(Clock(*state).covariance(ClockState::kClock, ClockState::kClock));
+  if (IsClockJump(config_, rows_, step, clock_std)) {
+    ResetClock(step, state);
+    statistics->clock_jump = true;
+  }
+  FillRows(*state);
+  state->covariance().Prepare(jacobian_);
+  Weigh(statistics);
+  if (!state->covariance().Apply(jacobian_, innovation_, correction, &statistics->gnss_nis)) {
+    return false;
+  }
+  clock_ += correction.segment<6>(state->ClockOffset());
+  return clock_.allFinite();
+}
+
+void GnssUpdate::FillRows(const FilterState& state) {
+  const auto count = static_cast<Eigen::Index>(rows_.size());
+  jacobian_.setZero(count, state.covariance().dimension());
+  innovation_.resize(count);
+  const NavState& point = state.first_estimates() ? state.nav_first() : state.nav();
+  const Matrix15d chart = ImuChartJacobian(state.convention(), point);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const GnssRow& row = rows_[static_cast<std::size_t>(i)];
+    jacobian_.block<1, 6>(i, state.ClockOffset()) = row.ClockJacobian() / row.deviation;
+    jacobian_.block<1, 15>(i, state.CoreOffset()).noalias() = row.jacobian * chart / row.deviation;
+    innovation_[i] = -row.residual / row.deviation;
+  }
+}
+
+void GnssUpdate::Weigh(FrameStatistics* statistics) {
+  nis_.resize(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    nis_[i] = innovation_[k] * innovation_[k] / (1 + jacobian_.row(k).squaredNorm());
+  }
+  const GnssWeights result = WeighRows(config_, gate_threshold_, nis_);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double root = std::sqrt(result.weights[i]);
+    jacobian_.row(k) *= root;
+    innovation_[k] *= root;
+    SatelliteResidual& told = residuals_.satellites[rows_[i].satellite];
+    (rows_[i].is_rate ? told.range_rate_used : told.used) = root > 0;
+  }
+  statistics->gnss_nis_dof = result.used;
+  for (const SatelliteResidual& told : residuals_.satellites) {
+    ++(told.used || told.range_rate_used ? statistics->satellites_used : statistics->satellites_gated);
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/estimator.h"
+#include "core/robust.h"
+#include "filter/filter_state.h"
+#include "gnss/alignment.h"
+#include "gnss/epoch_rows.h"
+
+namespace alidade {
+
+/// The filter's part of GNSS: receiver clock in state and covariance, update with an epoch.
+///
+/// The clock's error is a leading block of the covariance, directly before the core: a row of the factor
+/// depends on its own and later columns alone, so the clock's process noise touches its six columns only, and
+/// a state without GNSS pays nothing. Between epochs the clock is left as it is, since nothing else depends
+/// on it.
+class GnssUpdate {
+ public:
+  GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver);
+
+  /// Turns the state, which holds no landmarks, into the ENU frame and enters the clock.
+  void Align(const GnssAlignment& alignment, FilterState* state);
+  [[nodiscard]] bool aligned() const { return mount_.has_value(); }
+  /// Back to a local world.
+  void Reset() { mount_.reset(); }
+
+  /// Updates covariance and clock with an epoch at the state's stamp; `correction` (the error's dimension) is
+  /// what the caller then corrects the state by. False when a number is not finite.
+  bool Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps, FilterState* state,
+             Eigen::Ref<Eigen::VectorXd> correction, FrameStatistics* statistics);
+
+  [[nodiscard]] ClockState Clock(const FilterState& state) const;
+  [[nodiscard]] const GnssResiduals& residuals() const { return residuals_; }
+
+ private:
+  void PropagateClockTo(TimeNs stamp_ns, FilterState* state);
+  void ResetClock(double step_m, FilterState* state);
+  void FillRows(const FilterState& state);
+  void Weigh(FrameStatistics* statistics);
+
+  GnssConfig config_;
+  GnssReceiver receiver_;
+  double gate_threshold_;
+  std::optional<AntennaMount> mount_;
+  Vector6d clock_ = Vector6d::Zero();
+  TimeNs clock_stamp_ns_ = 0;
+  GnssResiduals residuals_;
+  // Scratch kept between epochs.
+  EpochMeasurements located_;
+  std::vector<GnssRow> rows_;
+  std::vector<double> nis_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::VectorXd innovation_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/clock_state.h"
+#include "core/measurement_log.h"
+#include "gnss/epoch_rows.h"
+
+namespace alidade {
+
+/// How the local world W stands in the ENU frame N at an anchor: p_N = Rz(yaw) p_W + p_NW. Both are
+/// gravity-aligned, so that four numbers say it.
+struct GnssAlignment {
+  TimeNs stamp_ns = 0;  ///< IMU time of the last epoch used
+  EnuFrame enu;         ///< N
+  double yaw_rad = 0;
+  Eigen::Vector3d p_NW = Eigen::Vector3d::Zero();
+  /// Of (yaw, p_NW): truth = estimate + error, the turn about W's origin.
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Vector6d clock = Vector6d::Zero();  ///< at stamp_ns
+  double time_offset_s = 0;           ///< estimated, to be added to the receiver's
+  std::string report;
+
+  [[nodiscard]] Eigen::Matrix3d R_NW() const;
+};
+
+/// Finds the alignment from epochs and the visual-inertial estimate at their times: least squares over yaw,
+/// p_NW, the clock of each epoch (tied by its process) and the biases between systems, with Huber weights.
+/// Every pseudorange and range rate counts, so that epochs with few satellites accumulate, at any rate, and
+/// the rates give the yaw from the first metres on. Yaw starts from the best of a ring of candidates.
+///
+/// The estimate's drift over the window is not modelled; align_inflation covers it, and what all epochs
+/// share.
+class GnssAligner {
+ public:
+  GnssAligner(const GnssConfig& config, const GnssReceiver& receiver);
+
+  /// The estimate in the local world and the gyroscope's measurement at its stamp; rising stamps.
+  void AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias, const Eigen::Vector3d& gyro_radps);
+  /// `approximate_E`: an antenna position (kilometres are enough) or nothing; the last one given counts.
+  void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E);
+
+  /// The alignment once it is good enough; report() says what is missing.
+  std::optional<GnssAlignment> TryAlign();
+  [[nodiscard]] const std::string& report() const { return report_; }
+
+ private:
+  struct State {
+    TimeNs stamp_ns = 0;
+    NavState nav;
+    ImuBias bias;
+    Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();
+    Eigen::Vector3d acceleration_W = Eigen::Vector3d::Zero();
+  };
+  struct Sample {
+    State state;
+    EpochMeasurements measurements;
+  };
+  struct Guess;
+  struct Fit;
+
+  void MatchEpochs();
+  void Locate();
+  [[nodiscard]] std::vector<const Sample*> Choose() const;
+  [[nodiscard]] Fit Step(const std::vector<const Sample*>& samples, bool yaw_free, bool robust,
+                         Guess* guess) const;
+  [[nodiscard]] Guess FirstGuess(const std::vector<const Sample*>& samples) const;
+
+  GnssConfig config_;
+  GnssReceiver receiver_;
+  std::deque<State> states_;
+  std::deque<GnssEpoch> pending_;
+  std::deque<Sample> samples_;
+  std::optional<Eigen::Vector3d> approximate_E_;
+  std::shared_ptr<const MeasurementBuilder> builder_;
+  EnuFrame enu_;
+  bool located_ = false;
+  TimeNs tried_ns_ = INT64_MIN;
+  std::string report_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/clock_state.h"
+#include "core/gnss_config.h"
+#include "gnss/satellite_id.h"
+
+namespace alidade {
+
+/// Where the bias of a system stands in a ClockState; -1 for the datum, GPS (and systems that are not used).
+[[nodiscard]] int ClockBiasIndex(GnssSystem system);
+
+/// Clock over an interval: c' = phi c + w, w ~ N(0, q).
+struct ClockTransition {
+  Matrix6d phi = Matrix6d::Identity();
+  Matrix6d q = Matrix6d::Zero();
+};
+
+/// The two-state clock: d clock = drift dt + w_1, d drift = w_2 (white frequency noise and frequency walk;
+/// Brown and Hwang, "Introduction to Random Signals", 9.3); biases between systems walk on their own. dt_s >=
+/// 0.
+[[nodiscard]] ClockTransition PropagateClock(const GnssConfig& config, double dt_s);
+
+/// A clock that was just found to the precision of one epoch: `clock_m` with kFreshClockStdM, drift likewise,
+/// biases as given.
+[[nodiscard]] ClockState FreshClock(const GnssConfig& config, const Vector6d& mean);
+
+inline constexpr double kFreshClockStdM = 30;
+inline constexpr double kFreshDriftStdMps = 3;
+
+}  // namespace alidade
