@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/error_convention.h"
+#include "eval/sky_tracks.h"
 
 namespace alidade {
 namespace {
@@ -171,6 +172,8 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   cell->features_per_frame = Mean(features);
   cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;
   FillPredicted(run, cell);
+  constexpr size_t kSkyPoints = 24;
+  cell->sky = MakeSkyTracks(run.gnss_residuals, kSkyPoints);
   Score(truth, TrajectoryOf(run), &run, options, cell);
 }
 

@@ -26,6 +26,15 @@ struct CellSeries {
   std::vector<double> position_leak;  ///< [1/m^2]
 };
 
+/// How a GNSS satellite stood and fitted in a run (eval/sky_tracks.h).
+struct SkyTrack {
+  std::string satellite;
+  std::vector<double> time_s, azimuth_deg, elevation_deg;
+  std::vector<double> residual_m;  ///< predicted - measured pseudorange
+  double used_share = 0;           ///< of the epochs it was seen in
+  double rms_m = 0;                ///< of the used residuals
+};
+
 /// One row of summary.csv: one estimator on one sequence with one seed.
 struct CellResult {
   std::string estimator;
@@ -56,6 +65,7 @@ struct CellResult {
   double filtering_sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
   double filtering_sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
   CellSeries series;
+  std::vector<SkyTrack> sky;  ///< empty without GNSS
 };
 
 /// A published figure to print beside the measured ones.

@@ -6,6 +6,8 @@
 
 #include "core/format.h"
 #include "eval/dataset.h"
+#include "eval/dataset_camera.h"
+#include "gnss/gnss_epoch.h"
 
 namespace alidade {
 namespace {
@@ -240,7 +242,8 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
 
   const std::vector<TimeNs> camera_stamps = CameraStamps(dataset);
   if (camera_stamps.empty()) {
-    findings.Warning("cam0: none; estimators here need a camera");
+    findings.Warning(dataset.gnss == nullptr ? "cam0: none; estimators need a camera or GNSS"
+                                             : "cam0: none; GNSS and IMU alone");
   } else {
     CheckStamps("cam0", camera_stamps, dataset.camera_rate_hz, &findings);
     CheckSpan("cam0", camera_stamps.front(), camera_stamps.back(), dataset, &findings);
@@ -251,6 +254,18 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
     findings.Fact(Format("cam0: %zu images, no tracks: the front end runs on them", dataset.images.size()));
   } else if (!camera_stamps.empty()) {
     findings.Warning("cam0: stamps alone, neither images nor tracks: nothing to see in them");
+  }
+  if (dataset.gnss != nullptr) {
+    size_t satellites = 0;
+    for (const ObservationEpoch& epoch : dataset.gnss->epochs) {
+      satellites += epoch.satellites.size();
+    }
+    const size_t epochs = dataset.gnss->epochs.size();
+    findings.Fact(Format(
+        "gnss0: %zu epochs, %.1f Hz, %.1f satellites each, %zu ephemerides", epochs,
+        MeasuredRate(dataset.gnss->epochs.front().stamp_ns, dataset.gnss->epochs.back().stamp_ns, epochs),
+        static_cast<double>(satellites) / static_cast<double>(epochs),
+        dataset.gnss->catalog->navigation().ephemerides()));
   }
   if (!dataset.extra_cameras.empty()) {
     findings.Fact(Format("%zu more cameras with tracks: recorded, but estimators read cam0 alone",

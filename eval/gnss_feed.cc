@@ -19,6 +19,13 @@ double GnssFeed::ClockAt(TimeNs tag_ns) const {
   return last_ ? last_->clock_m + last_->drift_mps * SecondsBetween(last_->tag_ns, tag_ns) : 0;
 }
 
+void GnssFeed::ShiftTime(double offset_s) {
+  offset_s_ += offset_s;
+  if (next_) {
+    next_->stamp_ns += SecondsToNs(offset_s);
+  }
+}
+
 const GnssEpoch* GnssFeed::Next() {
   if (next_) {
     return &*next_;

@@ -24,8 +24,9 @@ class GnssFeed {
   [[nodiscard]] const std::optional<SinglePointSolution>& solution() const { return solution_; }
   /// Antenna position that is good for directions: of the last solution, or what the log's file says.
   [[nodiscard]] const std::optional<Eigen::Vector3d>& approximate_E() const { return approximate_E_; }
-  /// Added to the stamps of the epochs from now on.
-  void ShiftTime(double offset_s) { offset_s_ += offset_s; }
+  /// Added to the stamps of the epochs from now on, that at hand included.
+  void ShiftTime(double offset_s);
+  [[nodiscard]] double time_offset_s() const { return offset_s_; }
 
  private:
   [[nodiscard]] double ClockAt(TimeNs tag_ns) const;

@@ -7,6 +7,7 @@
 #include "eval/config_json.h"
 #include "eval/config_yaml.h"
 #include "eval/output_file.h"
+#include "eval/recorder_gnss.h"
 #include "eval/sha256.h"
 
 namespace alidade {
@@ -63,6 +64,9 @@ std::string StatesHeader() {
 
 std::string StatesText(const RunResult& result) {
   std::string text = StatesHeader();
+  if (HasGnss(result)) {
+    text.insert(text.size() - 1, ClockColumns());
+  }
   for (const RunRecord& record : result.records) {
     const NavEstimate& estimate = record.estimate;
     const Eigen::Vector4d xyzw = Quaternion(estimate.nav.R_WB);
@@ -73,6 +77,7 @@ std::string StatesText(const RunResult& result) {
     AppendNumbers(estimate.bias.gyro, ',', &text);
     AppendNumbers(estimate.bias.accel, ',', &text);
     AppendUpperTriangle(estimate.covariance.topLeftCorner<6, 6>(), &text);
+    text += HasGnss(result) ? ClockFields(record) : "";
     text += '\n';
   }
   return text;
@@ -164,6 +169,20 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
                     {"frames_processed", result.records.size()},
                     {"frames_skipped", result.frames_skipped}};
   json["skip_report"] = result.skip_report;
+  if (identity.config.gnss.enabled) {
+    json["gnss"] = {{"aligned", HasGnss(result)},
+                    {"report", result.align_report},
+                    {"epochs_used", result.epochs_used},
+                    {"epochs_skipped", result.epochs_skipped}};
+  }
+  if (HasGnss(result)) {
+    const GlobalFrame& global = *result.global;
+    const Eigen::Vector3d& anchor = global.enu.origin_E;
+    json["gnss"]["aligned_ns"] = global.stamp_ns;
+    json["gnss"]["anchor_E"] = {anchor.x(), anchor.y(), anchor.z()};
+    json["gnss"]["yaw_rad"] = global.yaw_rad;
+    json["gnss"]["yaw_std_rad"] = global.yaw_std_rad;
+  }
   json["config"] = ConfigToJson([&config](ConfigVisitor& visitor) { config.Describe(visitor); });
   json["times"] = {{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}};
   return json;
@@ -193,6 +212,14 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   std::filesystem::remove(path / "bound.csv", ignored);
   if (HasBound(result)) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "bound.csv").string(), BoundText(result)));
+  }
+  for (const char* name : {"trajectory.pos", "gnss.csv"}) {
+    std::filesystem::remove(path / name, ignored);
+  }
+  if (HasGnss(result)) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "trajectory.pos").string(),
+                                                AntennaPositions(result, result.global->time_offset_s)));
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "gnss.csv").string(), SatelliteTable(result)));
   }
   const std::string json =
       RunJson(identity, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,5 +1,7 @@
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "eval/csv.h"
 #include "eval/input_file.h"
@@ -143,6 +145,46 @@ Status ReadBoundRow(const CsvReader& row, RunRecord* record) {
   return Status::Ok();
 }
 
+/// gnss.csv as WriteRun wrote it.
+Status ReadSatellites(const std::string& path, RunResult* result) {
+  constexpr double kDegree = M_PI / 180;
+  Result<CsvReader> row = CsvReader::Open(path);
+  ALIDADE_RETURN_IF_ERROR(row.status());
+  row->NextRow();
+  while (row->NextRow()) {
+    ALIDADE_RETURN_IF_ERROR(row->ExpectColumns(9));
+    std::int64_t stamp = 0;
+    ALIDADE_RETURN_IF_ERROR(row->ReadInt64(0, "timestamp_ns", &stamp));
+    const std::optional<SatelliteId> satellite = ParseSatellite(row->field(1));
+    if (!satellite) {
+      return row->Fault(1, "satellite", "such as G07");
+    }
+    SatelliteResidual s;
+    s.satellite = *satellite;
+    double azimuth = 0, elevation = 0, used = 0, rate_used = 0;
+    const std::tuple<size_t, const char*, double*> values[] = {{2, "azimuth_deg", &azimuth},
+                                                               {3, "elevation_deg", &elevation},
+                                                               {4, "residual_m", &s.residual_m},
+                                                               {5, "deviation_m", &s.deviation_m},
+                                                               {6, "used", &used},
+                                                               {8, "rate_used", &rate_used}};
+    for (const auto& [column, name, value] : values) {
+      ALIDADE_RETURN_IF_ERROR(row->ReadReal(column, name, value));
+    }
+    if (!row->field(7).empty()) {
+      ALIDADE_RETURN_IF_ERROR(row->ReadReal(7, "rate_residual_mps", &s.range_rate_residual_mps.emplace()));
+    }
+    s.direction = {elevation * kDegree, azimuth * kDegree};
+    s.used = used != 0;
+    s.range_rate_used = rate_used != 0;
+    if (result->gnss_residuals.empty() || result->gnss_residuals.back().stamp_ns != stamp) {
+      result->gnss_residuals.push_back({stamp, {}});
+    }
+    result->gnss_residuals.back().satellites.push_back(s);
+  }
+  return Status::Ok();
+}
+
 }  // namespace
 
 Result<RunResult> ReadRun(const std::string& folder) {
@@ -173,6 +215,9 @@ Result<RunResult> ReadRun(const std::string& folder) {
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 14, &result, ReadStatusRow));
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
+  }
+  if (std::filesystem::exists(In(folder, "gnss.csv"))) {
+    ALIDADE_RETURN_IF_ERROR(ReadSatellites(In(folder, "gnss.csv"), &result));
   }
   if (std::filesystem::exists(In(folder, "bound.csv"))) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "bound.csv"), 22, &result, ReadBoundRow));

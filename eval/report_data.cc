@@ -138,6 +138,36 @@ Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
   return values;
 }
 
+bool IsFirstSeed(const Comparison& comparison, const CellResult& cell) {
+  return std::none_of(comparison.cells.begin(), comparison.cells.end(), [&](const CellResult& other) {
+    return other.sequence == cell.sequence && other.estimator == cell.estimator && other.seed < cell.seed;
+  });
+}
+
+/// Directions as points of the disc that has the zenith in its middle: x east, y north, 90 the horizon.
+Json SkyData(const std::vector<SkyTrack>& tracks) {
+  Json list = Json::array();
+  for (const SkyTrack& track : tracks) {
+    Json t = Json::array(), x = Json::array(), y = Json::array(), r = Json::array();
+    for (size_t i = 0; i < track.time_s.size(); ++i) {
+      const double azimuth = track.azimuth_deg[i] / kDegrees;
+      const double down = 90 - track.elevation_deg[i];
+      t.push_back(Rounded(track.time_s[i], 5));
+      x.push_back(Rounded(down * std::sin(azimuth), 4));
+      y.push_back(Rounded(down * std::cos(azimuth), 4));
+      r.push_back(Rounded(track.residual_m[i], 4));
+    }
+    list.push_back({{"s", track.satellite},
+                    {"t", t},
+                    {"x", x},
+                    {"y", y},
+                    {"r", r},
+                    {"used", Rounded(track.used_share, 4)},
+                    {"rms", Rounded(track.rms_m, 4)}});
+  }
+  return list;
+}
+
 Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell,
               int most) {
   Json rpe = Json::array();
@@ -156,7 +186,9 @@ Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, 
           {"align", cell.align},
           {"figures", FigureValues(figures, cell)},
           {"rpe", rpe},
-          {"series", SeriesData(cell.series, most)}};
+          {"series", SeriesData(cell.series, most)},
+          // Of one seed: the sky is the same for all.
+          {"sky", IsFirstSeed(comparison, cell) ? SkyData(cell.sky) : Json(Json::array())}};
 }
 
 Json FigureData(const Figure& figure) {

@@ -9,6 +9,7 @@
 #include "filter/filter.h"
 #include "frontend/initializer.h"
 #include "gnss/alignment.h"
+#include "gnss/inertial_start.h"
 #include "smoother/smoother.h"
 
 namespace alidade {
@@ -29,6 +30,7 @@ class Run {
     if (config.gnss.enabled && log.gnss != nullptr) {
       feed_.emplace(config.gnss, log);
       aligner_.emplace(config.gnss, log.rig.gnss);
+      inertial_start_.emplace(config, log.rig);
     }
   }
 
@@ -36,8 +38,7 @@ class Run {
     const Stopwatch wall;
     const double cpu_start = ThreadCpuSeconds();
     if (config_.gnss.enabled && log_.gnss == nullptr) {
-      result_.status =
-          Status::Input("gnss.enabled: true, but the sequence has no GNSS; expected gnss0 in it, or false");
+      result_.align_report = "the sequence has no GNSS";
     }
     for (size_t i = 0; i < log_.frames.size() && result_.status.ok(); ++i) {
       if (options_.stop != nullptr && options_.stop->load()) {
@@ -51,6 +52,9 @@ class Run {
       if (options_.progress) {
         options_.progress(i + 1, log_.frames.size());
       }
+    }
+    if (feed_ && log_.frames.empty()) {
+      ProcessEpochsAlone();
     }
     if (result_.status.ok() && !initialized_ && !result_.interrupted) {
       result_.status = Status::Diverged("not initialised before the sequence ended: " + Reason());
@@ -101,6 +105,57 @@ class Run {
     }
   }
 
+  /// GNSS and IMU without a camera: a record an epoch.
+  void ProcessEpochsAlone() {
+    const size_t total = log_.gnss->epochs.size();
+    for (size_t done = 1; result_.status.ok() && !result_.interrupted; ++done) {
+      const GnssEpoch* epoch = feed_->Next();
+      if (epoch == nullptr) {
+        return;
+      }
+      const Stopwatch stopwatch;
+      DeliverImu(epoch->stamp_ns + SecondsToNs(initialized_ ? 0 : config_.gnss.max_time_offset_s));
+      if (initialized_) {
+        AddEpoch(*epoch);
+        if (result_.status.ok()) {
+          RecordState(epoch->stamp_ns, stopwatch);
+        }
+      } else {
+        StartWithEpoch(*epoch);
+      }
+      feed_->Pop();
+      if (options_.progress) {
+        options_.progress(done, total);
+      }
+      result_.interrupted = options_.stop != nullptr && options_.stop->load();
+    }
+  }
+
+  void StartWithEpoch(const GnssEpoch& epoch) {
+    inertial_start_->AddEpoch(epoch, feed_->solution());
+    const std::optional<GnssInertialStart::Start> start = inertial_start_->TryStart();
+    result_.align_report = result_.init_report = inertial_start_->report();
+    if (!start) {
+      return;
+    }
+    Begin(start->estimate);
+    if (!initialized_) {
+      return;
+    }
+    result_.init_method = "gnss";
+    result_.status = estimator_.Align(start->alignment);
+    feed_->ShiftTime(start->alignment.time_offset_s);
+    SetGlobal(start->alignment, start->estimate.stamp_ns);
+    result_.global->yaw_std_rad =
+        std::sqrt((start->estimate.nav.R_WB * start->estimate.covariance.topLeftCorner<3, 3>() *
+                   start->estimate.nav.R_WB.transpose())(2, 2));
+  }
+
+  void SetGlobal(const GnssAlignment& alignment, TimeNs stamp_ns) {
+    result_.global = {alignment.enu,          log_.rig.gnss.p_BA, stamp_ns,
+                      feed_->time_offset_s(), alignment.yaw_rad,  std::sqrt(alignment.covariance(0, 0))};
+  }
+
   void AddEpoch(const GnssEpoch& epoch) {
     Status status = estimator_.AddGnss(epoch);
     if (status.code() == StatusCode::kInput) {
@@ -122,7 +177,16 @@ class Run {
     epochs_.clock_jump = epochs_.clock_jump || s.clock_jump;
     epochs_.propagate_ms += s.propagate_ms;
     epochs_.update_ms += s.update_ms;
-    if (const GnssResiduals* residuals = estimator_.last_gnss()) {
+    CollectResiduals();
+  }
+
+  /// The smoother judges an epoch with the frame after it.
+  void CollectResiduals() {
+    const GnssResiduals* residuals = estimator_.last_gnss();
+    const bool is_new =
+        residuals != nullptr && !residuals->satellites.empty() &&
+        (result_.gnss_residuals.empty() || result_.gnss_residuals.back().stamp_ns < residuals->stamp_ns);
+    if (is_new) {
       result_.gnss_residuals.push_back(*residuals);
     }
   }
@@ -148,16 +212,17 @@ class Run {
     }
     feed_->ShiftTime(alignment->time_offset_s);
     result_.align_report = alignment->report;
-    result_.global = {alignment->enu,
-                      log_.rig.gnss.p_BA,
-                      stamp_ns,
-                      alignment->yaw_rad,
-                      std::sqrt(alignment->covariance(0, 0)),
-                      alignment->report};
-    // The record of this frame tells the state as it now stands.
+    SetGlobal(*alignment, stamp_ns);
+    // What was told in the local world is turned with it; the last record tells the state as it now stands.
+    for (RunRecord& record : result_.records) {
+      record.estimate = TurnIntoEnu(*alignment, record.estimate);
+      record.status = "local";
+    }
     if (!result_.records.empty()) {
-      result_.records.back().estimate = estimator_.Latest();
-      result_.records.back().clock = estimator_.LatestClock();
+      RunRecord& record = result_.records.back();
+      record.estimate = estimator_.Latest();
+      record.clock = estimator_.LatestClock();
+      record.status = "ok";
     }
   }
 
@@ -169,6 +234,9 @@ class Run {
         AddImu(sample);
       } else {
         initializer_.AddImu(sample);
+        if (inertial_start_ && log_.frames.empty()) {
+          inertial_start_->AddImu(sample);
+        }
       }
     }
   }
@@ -181,16 +249,20 @@ class Run {
       result_.init_report = start.message();
       return;
     }
-    if (const Status status = estimator_.Initialize(*start); !status.ok()) {
+    Begin(*start);
+  }
+
+  void Begin(const NavEstimate& start) {
+    if (const Status status = estimator_.Initialize(start); !status.ok()) {
       result_.status = Status::Diverged("initial state refused: " + status.message());
       return;
     }
     initialized_ = true;
-    result_.init_stamp_ns = start->stamp_ns;
+    result_.init_stamp_ns = start.stamp_ns;
     // The estimator starts at the initial stamp: it needs the delivered samples from the last one not after
     // it on.
     size_t first = next_imu_;
-    while (first > 0 && (first == next_imu_ || log_.imu[first].stamp_ns > start->stamp_ns)) {
+    while (first > 0 && (first == next_imu_ || log_.imu[first].stamp_ns > start.stamp_ns)) {
       --first;
     }
     for (size_t i = first; i < next_imu_; ++i) {
@@ -241,17 +313,28 @@ class Run {
       result_.status = std::move(status);
       return;
     }
+    RecordState(frame.stamp_ns, stopwatch);
+    if (result_.status.ok()) {
+      result_.records.back().frontend_ms = frame.frontend_ms;
+    }
+  }
+
+  /// A row of the run: the estimator's state after the frame or epoch at `stamp_ns`.
+  void RecordState(TimeNs stamp_ns, const Stopwatch& stopwatch) {
     RunRecord record;
     record.estimate = estimator_.Latest();
     if (!IsFinite(record.estimate)) {
       result_.status =
-          Status::Diverged("state is not finite after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+          Status::Diverged("state is not finite after the frame at " + FormatSeconds(stamp_ns) + " s");
       return;
     }
-    record.statistics = estimator_.last_statistics();
+    if (!result_.records.empty() && record.estimate.stamp_ns <= result_.records.back().estimate.stamp_ns) {
+      return;  // an epoch that was left out
+    }
+    CollectResiduals();
+    record.statistics = log_.frames.empty() ? FrameStatistics() : estimator_.last_statistics();
     AddEpochStatistics(&record.statistics);
     record.clock = estimator_.LatestClock();
-    record.frontend_ms = frame.frontend_ms;
     record.backend_ms = stopwatch.ElapsedMs();
     result_.records.push_back(std::move(record));
   }
@@ -304,7 +387,8 @@ class Run {
   Initializer initializer_;
   std::optional<GnssFeed> feed_;
   std::optional<GnssAligner> aligner_;
-  FrameStatistics epochs_;  ///< of the epochs since the last frame
+  std::optional<GnssInertialStart> inertial_start_;  ///< where there is no camera
+  FrameStatistics epochs_;                           ///< of the epochs since the last frame
   RunResult result_;
   size_t next_imu_ = 0;
   bool initialized_ = false;

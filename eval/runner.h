@@ -35,10 +35,10 @@ struct RunRecord {
 struct GlobalFrame {
   EnuFrame enu;
   Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();
-  TimeNs stamp_ns = 0;  ///< of the first state that stands there
-  double yaw_rad = 0;   ///< by which the local world was turned
+  TimeNs stamp_ns = 0;       ///< of the first state that stands there
+  double time_offset_s = 0;  ///< IMU time less GPST, as given or estimated
+  double yaw_rad = 0;        ///< by which the local world was turned
   double yaw_std_rad = 0;
-  std::string report;
 };
 
 struct RunResult {

@@ -60,6 +60,26 @@ Eigen::Matrix3d GnssAlignment::R_NW() const {
   return RotationZ(yaw_rad);
 }
 
+NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate) {
+  const Eigen::Matrix3d R_NW = alignment.R_NW();
+  NavEstimate turned = estimate;
+  turned.nav.R_WB = R_NW * estimate.nav.R_WB;
+  turned.nav.p_WB = R_NW * estimate.nav.p_WB + alignment.p_NW;
+  turned.nav.v_WB = R_NW * estimate.nav.v_WB;
+  Matrix15d turn = Matrix15d::Identity();
+  turn.block<3, 3>(3, 3) = R_NW;
+  turn.block<3, 3>(6, 6) = R_NW;
+  Eigen::Matrix<double, 15, 4> spread = Eigen::Matrix<double, 15, 4>::Zero();
+  spread.block<3, 1>(0, 0) = turned.nav.R_WB.transpose() * Vector3d::UnitZ();
+  spread.block<3, 1>(3, 0) = Vector3d::UnitZ().cross(turned.nav.p_WB - alignment.p_NW);
+  spread.block<3, 1>(6, 0) = Vector3d::UnitZ().cross(turned.nav.v_WB);
+  spread.block<3, 3>(3, 1).setIdentity();
+  const Matrix15d covariance =
+      turn * estimate.covariance * turn.transpose() + spread * alignment.covariance * spread.transpose();
+  turned.covariance = 0.5 * (covariance + covariance.transpose());
+  return turned;
+}
+
 /// Present values of the unknowns.
 struct GnssAligner::Guess {
   double yaw_rad = 0;

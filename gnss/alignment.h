@@ -27,6 +27,9 @@ struct GnssAlignment {
   [[nodiscard]] Eigen::Matrix3d R_NW() const;
 };
 
+/// An estimate of the local world in the ENU frame, with the alignment's own uncertainty in its covariance.
+[[nodiscard]] NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate);
+
 /// Finds the alignment from epochs and the visual-inertial estimate at their times: least squares over yaw,
 /// p_NW, the clock of each epoch (tied by its process) and the biases between systems, with Huber weights.
 /// Every pseudorange and range rate counts, so that epochs with few satellites accumulate, at any rate, and

@@ -16,11 +16,12 @@ namespace alidade {
 enum class BlockKind {
   kNavState,  ///< quaternion, p, v; tangent (phi, dp, dv)
   kBias,      ///< gyro, accel
+  kClock,     ///< core/clock_state.h
   kLandmark,  ///< (x, y, rho): bearing on the base view's normalised plane and inverse depth [1/m]
 };
 
 [[nodiscard]] constexpr int AmbientSize(BlockKind kind) {
-  return kind == BlockKind::kNavState ? kNavAmbientSize : kind == BlockKind::kBias ? 6 : 3;
+  return kind == BlockKind::kNavState ? kNavAmbientSize : kind == BlockKind::kLandmark ? 3 : 6;
 }
 [[nodiscard]] constexpr int TangentSize(BlockKind kind) {
   return kind == BlockKind::kNavState ? kNavTangentSize : AmbientSize(kind);

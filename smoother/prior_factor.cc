@@ -33,6 +33,9 @@ bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, cons
 PriorFactor::PriorFactor(const LinearPrior* prior) : prior_(prior) {
   blocks_ = {BlockKind::kNavState, BlockKind::kBias};
   blocks_.resize(prior->anchors.size() + 1, BlockKind::kNavState);
+  if (prior->clock_origin) {
+    blocks_.push_back(BlockKind::kClock);
+  }
 }
 
 bool PriorFactor::Evaluate(const double* const* parameters, double* residual,
@@ -63,6 +66,14 @@ bool PriorFactor::Evaluate(const double* const* parameters, double* residual,
   r.noalias() += J.middleCols<6>(9) * shift;
   if (tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
     RowMap<6>(tangent_jacobians[1], rows(), 6) = J.middleCols<6>(9);
+  }
+  if (prior_->clock_origin) {
+    const int block = count + 1;
+    const Eigen::Map<const Vector6d> clock(parameters[block]);
+    r.noalias() += J.rightCols<6>() * (clock - *prior_->clock_origin);
+    if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
+      RowMap<6>(tangent_jacobians[block], rows(), 6) = J.rightCols<6>();
+    }
   }
   return true;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace alidade {
 ///
 /// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision
 /// reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the next one
-/// alone.
+/// alone. Once aligned with GNSS, the clock of the first frame has six more at the end.
 struct LinearPrior {
   struct Anchor {
     const WindowFrame* frame = nullptr;
@@ -23,11 +24,14 @@ struct LinearPrior {
   };
   ErrorConvention convention = ErrorConvention::kRightInvariant;
   std::vector<Anchor> anchors;
-  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1))
+  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1) [+ 6])
   Eigen::VectorXd residual;  ///< m, r0
 
+  std::optional<Vector6d> clock_origin;
+
   [[nodiscard]] static int Column(int anchor) { return anchor == 0 ? 0 : 15 + 6 * (anchor - 1); }
-  [[nodiscard]] int columns() const { return Column(static_cast<int>(anchors.size())); }
+  [[nodiscard]] int columns() const { return ClockColumn() + (clock_origin ? 6 : 0); }
+  [[nodiscard]] int ClockColumn() const { return Column(static_cast<int>(anchors.size())); }
 };
 
 /// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False
@@ -35,7 +39,7 @@ struct LinearPrior {
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior);
 
-/// LinearPrior as a factor; blocks nav and bias of the first frame, then nav of the others.
+/// LinearPrior as a factor; blocks nav and bias of the first frame, nav of the others, clock of the first.
 class PriorFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;

@@ -25,7 +25,8 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
       imu_(config.imu.max_gap_s),
-      rest_(config.vision, config.init, rig.camera) {}
+      rest_(config.vision, config.init, rig.camera),
+      gnss_(config.gnss, rig.gnss, solve_options_.gravity_W) {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(CheckInitialState(initial));
@@ -40,6 +41,7 @@ Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   window_.Clear();
   window_.AddFrame(std::move(frame));
   prior_ = std::move(prior);
+  gnss_.Reset();
   imu_.DropBefore(initial.stamp_ns);
   rest_.Clear();
   latest_ = initial;
@@ -63,6 +65,7 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   }
   const Stopwatch stopwatch;
   statistics_ = {};
+  has_frames_ = true;
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
   ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
@@ -89,6 +92,7 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
   std::unique_ptr<WindowFrame> dropped;
   if (!NewestIsKeyframe()) {
     dropped = window_.RemoveNewest();
+    gnss_.Reattach(dropped.get(), &window_.newest());
   } else if (window_.size() > config_.smoother.window) {
     MarginalizeOldestFrame();
   }
@@ -118,6 +122,7 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   NavState state = from.nav_state();
   PropagateImu(interval_, from.imu_bias(), noise_, solve_options_.gravity_W, &state, nullptr);
   PackNavState(state, frame->nav.data());
+  gnss_.PredictClock(from, frame.get());
   if (dropped) {
     frame->preintegration = std::move(dropped->preintegration);
     frame->preintegration->Add(interval_);
@@ -155,7 +160,7 @@ void SmootherEstimator::MarginalizeOldestFrame() {
       track.Restart();
     }
   }
-  prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W);
+  prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W, gnss_.context());
   window_.RemoveOldest();
   window_.Prune();
 }
@@ -164,7 +169,8 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   for (int i = 1; i < window_.size(); ++i) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
-  const Result<WindowSolveReport> report = SolveWindow(solve_options_, prior_, *tracks, &window_);
+  const Result<WindowSolveReport> report =
+      SolveWindow(solve_options_, prior_, *tracks, &window_, gnss_.context());
   if (!report.ok()) {
     return Lost(report.message());
   }
@@ -172,6 +178,9 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
 
   const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
   GateTracks(geometry, *tracks);
+  if (gnss_.aligned()) {
+    gnss_.Gate(&window_, &statistics_);
+  }
   PoseSystem vision(window_.size());
   for (const WindowTrack* track : *tracks) {
     if (track->views.size() >= kMinViews) {
@@ -189,7 +198,11 @@ Status SmootherEstimator::UpdateLatest(const PoseSystem& vision) {
   latest_.stamp_ns = newest.stamp_ns;
   latest_.nav = newest.nav_state();
   latest_.bias = newest.imu_bias();
-  if (!NewestCovariance(window_, prior_, vision, solve_options_.gravity_W, &latest_.covariance)) {
+  if (gnss_.aligned()) {
+    latest_clock_.mean = newest.clock_state();
+  }
+  if (!NewestCovariance(window_, prior_, vision, solve_options_.gravity_W, &latest_.covariance,
+                        gnss_.context(), &latest_clock_.covariance)) {
     return Lost("smoother: information at " + FormatSeconds(newest.stamp_ns) + " s is not positive definite");
   }
   return Status::Ok();

@@ -7,6 +7,7 @@
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
 #include "core/robust.h"
+#include "smoother/gnss_window.h"
 #include "smoother/track_system.h"
 #include "smoother/window_solver.h"
 
@@ -36,6 +37,10 @@ class SmootherEstimator final : public Estimator {
   Status Initialize(const NavEstimate& initial) override;
   Status AddImu(const ImuSample& sample) override;
   Status AddFrame(const TrackFrame& frame) override;
+  Status Align(const GnssAlignment& alignment) override;
+  Status AddGnss(const GnssEpoch& epoch) override;
+  [[nodiscard]] std::optional<ClockState> LatestClock() const override;
+  [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return latest_; }
   [[nodiscard]] bool initialized() const override { return initialized_; }
   [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
@@ -70,8 +75,11 @@ class SmootherEstimator final : public Estimator {
   ImuBuffer imu_;
   RestDetector rest_;
   Window window_;
+  GnssWindow gnss_;
   LinearPrior prior_;
   NavEstimate latest_;
+  ClockState latest_clock_;
+  bool has_frames_ = false;  ///< a camera has been heard of
   FrameStatistics statistics_;
   TrackWorkspace workspace_;
   std::vector<ImuSample> interval_;

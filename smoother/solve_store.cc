@@ -24,13 +24,18 @@ SolveStore::SolveStore(ErrorConvention error, const ObservationKernel& kernel, c
                        const std::vector<WindowTrack*>& tracks)
     : frames_(frames),
       tracks_(tracks),
-      parameters_(kFrameStride * frames.size() + kLandmarkStride * tracks.size()),
+      has_clocks_(frames.front()->clock.has_value()),
+      parameters_(kFrameStride * frames.size() + kLandmarkStride * tracks.size() +
+                  (has_clocks_ ? kClockStride * frames.size() : 0)),
       manifold_(error),
       kernel_(kernel),
       loss_(MakeLoss(kernel)) {
   for (const std::unique_ptr<WindowFrame>& frame : frames) {
     std::copy(frame->nav.begin(), frame->nav.end(), Nav(frame->index));
     std::copy(frame->bias.begin(), frame->bias.end(), Bias(frame->index));
+    if (has_clocks_) {
+      std::copy(frame->clock->begin(), frame->clock->end(), Clock(frame->index));
+    }
   }
   for (size_t i = 0; i < tracks.size(); ++i) {
     std::copy_n(tracks[i]->landmark.data(), 3, Landmark(i));
@@ -47,6 +52,9 @@ std::unique_ptr<ceres::Problem> SolveStore::MakeProblem() {
   for (const std::unique_ptr<WindowFrame>& frame : frames_) {
     problem->AddParameterBlock(Nav(frame->index), kNavAmbientSize, &manifold_);
     problem->AddParameterBlock(Bias(frame->index), 6);
+    if (has_clocks_) {
+      problem->AddParameterBlock(Clock(frame->index), ClockState::kSize);
+    }
   }
   return problem;
 }
@@ -59,6 +67,9 @@ void SolveStore::AddPrior(const LinearPrior& prior, ceres::Problem* problem) {
     if (i == 0) {
       blocks.push_back(Bias(prior.anchors[i].frame->index));
     }
+  }
+  if (prior.clock_origin) {
+    blocks.push_back(Clock(prior.anchors.front().frame->index));
   }
   problem->AddResidualBlock(&*prior_, nullptr, blocks);
 }
@@ -83,6 +94,30 @@ void SolveStore::AddRest(ceres::Problem* problem) {
     if (frame->rest) {
       rest_.emplace_back(RestFactor(*frame->rest));
       problem->AddResidualBlock(&rest_.back(), nullptr, Nav(frame->index), Bias(frame->index));
+    }
+  }
+}
+
+void SolveStore::AddGnss(const GnssFactorContext& context, ceres::Problem* problem) {
+  GnssResiduals ignored;
+  for (size_t i = 0; i < frames_.size(); ++i) {
+    const WindowFrame& frame = *frames_[i];
+    const int index = static_cast<int>(i);
+    for (const FrameEpoch& epoch : frame.epochs) {
+      const double dt_s = epoch.SecondsAfter(frame.stamp_ns);
+      const FrameEpochRows rows = LinearizeFrameEpoch(context, epoch, dt_s, frame.nav_state(),
+                                                      frame.imu_bias(), frame.clock_state(), true, &ignored);
+      if (rows.residual.size() == 0) {
+        continue;
+      }
+      gnss_.emplace_back(GnssEpochFactor(&context, &epoch, dt_s, static_cast<int>(rows.residual.size())));
+      problem->AddResidualBlock(&gnss_.back(), nullptr, Nav(index), Bias(index), Clock(index));
+    }
+    if (i + 1 < frames_.size()) {
+      const WindowFrame& next = *frames_[i + 1];
+      clock_.emplace_back(ClockFactor(
+          ClockStep(context.config, SecondsBetween(frame.stamp_ns, next.stamp_ns), next.clock_anew)));
+      problem->AddResidualBlock(&clock_.back(), nullptr, Clock(index), Clock(index + 1));
     }
   }
 }
@@ -129,6 +164,10 @@ void SolveStore::WriteBack() const {
   for (WindowTrack* track : tracks_) {
     std::copy_n(block, 3, track->landmark.data());
     block += kLandmarkStride;
+  }
+  for (size_t i = 0; has_clocks_ && i < frames_.size(); ++i) {
+    std::copy_n(block, kClockStride, frames_[i]->clock->begin());
+    block += kClockStride;
   }
 }
 

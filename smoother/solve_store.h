@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/status.h"
+#include "smoother/gnss_factors.h"
 #include "smoother/imu_factor.h"
 #include "smoother/inverse_depth_factor.h"
 #include "smoother/pose_only_factor.h"
@@ -30,6 +31,11 @@ class SolveStore {
 
   [[nodiscard]] double* Nav(int frame) { return &parameters_[kFrameStride * static_cast<size_t>(frame)]; }
   [[nodiscard]] double* Bias(int frame) { return Nav(frame) + kNavAmbientSize; }
+  /// Of an aligned window.
+  [[nodiscard]] double* Clock(int frame) {
+    return Landmark(tracks_.size()) + kClockStride * static_cast<size_t>(frame);
+  }
+  [[nodiscard]] bool has_clocks() const { return has_clocks_; }
   [[nodiscard]] double* Landmark(size_t track) {
     return &parameters_[kFrameStride * frames_.size() + kLandmarkStride * track];
   }
@@ -40,6 +46,8 @@ class SolveStore {
   /// kDiverged: the covariance of an interval is not positive definite.
   Status AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem);
   void AddRest(ceres::Problem* problem);
+  /// Epochs and clocks of an aligned window. `context` must outlive the store.
+  void AddGnss(const GnssFactorContext& context, ceres::Problem* problem);
   /// T_BC must outlive the store.
   void AddInverseDepth(const Pose& T_BC, ceres::Problem* problem);
   void AddPoseOnly(const Pose& T_BC, ceres::Problem* problem);
@@ -52,15 +60,19 @@ class SolveStore {
  private:
   static constexpr size_t kFrameStride = 16;    // nav (10) and bias (6)
   static constexpr size_t kLandmarkStride = 4;  // one spare, so that every block stays 16-byte aligned
+  static constexpr size_t kClockStride = 6;
 
   const Frames& frames_;
   const std::vector<WindowTrack*>& tracks_;
+  bool has_clocks_;
   std::vector<double> parameters_;
   NavStateManifold manifold_;
   ObservationKernel kernel_;
   std::unique_ptr<ceres::LossFunction> loss_;
   std::deque<LiftedCost<ImuFactor>> imu_;
   std::deque<LiftedCost<RestFactor>> rest_;
+  std::deque<LiftedCost<GnssEpochFactor>> gnss_;
+  std::deque<LiftedCost<ClockFactor>> clock_;
   std::deque<LiftedCost<InverseDepthFactor>> inverse_depth_;
   std::deque<LiftedCost<BaseBearingFactor>> base_bearing_;
   std::deque<LiftedCost<DepthPriorFactor>> depth_prior_;

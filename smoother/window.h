@@ -7,10 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/clock_state.h"
 #include "core/measurement_log.h"
 #include "core/preintegration.h"
 #include "core/rest_model.h"
 #include "core/visual_observation.h"
+#include "smoother/frame_epoch.h"
 
 namespace alidade {
 
@@ -24,9 +26,15 @@ struct WindowFrame {
   std::vector<ImuSample> imu;                    ///< from the previous frame to this one; empty in the first
   std::optional<Preintegration> preintegration;  ///< of `imu`, at the previous frame's bias
   std::optional<RestMeasurement> rest;           ///< set when the rig stood still in this frame
+  // Once aligned with GNSS (smoother/gnss_window.h).
+  std::optional<std::array<double, ClockState::kSize>> clock;  ///< a parameter block
+  bool clock_anew = false;         ///< the clock before says nothing about this one
+  std::vector<FrameEpoch> epochs;  ///< from this frame to the next
 
   [[nodiscard]] NavState nav_state() const;
   [[nodiscard]] ImuBias imu_bias() const;
+  /// Precondition: clock.
+  [[nodiscard]] Vector6d clock_state() const { return Eigen::Map<const Vector6d>(clock->data()); }
   /// Mean length of one IMU step [s].
   [[nodiscard]] double mean_step_s() const;
 };

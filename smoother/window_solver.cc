@@ -35,6 +35,9 @@ ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, int fram
     solver.linear_solver_ordering->AddElementToGroup(store->Nav(i), 1);
     solver.linear_solver_ordering->AddElementToGroup(store->Bias(i),
                                                      !explicit_landmarks && i % 2 == 0 ? 0 : 1);
+    if (store->has_clocks()) {
+      solver.linear_solver_ordering->AddElementToGroup(store->Clock(i), 1);
+    }
   }
   return solver;
 }
@@ -42,7 +45,8 @@ ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, int fram
 }  // namespace
 
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
-                                      const std::vector<WindowTrack*>& tracks, Window* window) {
+                                      const std::vector<WindowTrack*>& tracks, Window* window,
+                                      const GnssFactorContext* gnss) {
   const int frames = window->size();
   const ObservationKernel kernel{options.vision.robust_kernel, options.vision.robust_scale_sigma};
   SolveStore store(options.smoother.error, kernel, window->frames(), tracks);
@@ -50,6 +54,9 @@ Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const L
   store.AddPrior(prior, problem.get());
   ALIDADE_RETURN_IF_ERROR(store.AddImu(options.gravity_W, problem.get()));
   store.AddRest(problem.get());
+  if (gnss != nullptr) {
+    store.AddGnss(*gnss, problem.get());
+  }
   if (options.smoother.landmark == SmootherLandmark::kInverseDepth) {
     store.AddInverseDepth(options.T_BC, problem.get());
   } else if (!tracks.empty()) {

@@ -5,6 +5,7 @@
 
 #include "core/estimator_config.h"
 #include "core/status.h"
+#include "smoother/gnss_factors.h"
 #include "smoother/prior_factor.h"
 
 namespace alidade {
@@ -27,8 +28,9 @@ struct WindowSolveReport {
 /// must have landmarks. States are updated in place; with explicit inverse depths the landmarks as well, with
 /// pose-only landmarks they are left for SolveLandmark. One thread and no time limit: equal input, equal
 /// bits. Errors (kDiverged): an IMU factor cannot be whitened, the solver failed, or a state is not finite;
-/// the window is then as before.
+/// the window is then as before. `gnss`: of an aligned window.
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
-                                      const std::vector<WindowTrack*>& tracks, Window* window);
+                                      const std::vector<WindowTrack*>& tracks, Window* window,
+                                      const GnssFactorContext* gnss = nullptr);
 
 }  // namespace alidade

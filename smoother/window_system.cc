@@ -47,6 +47,68 @@ struct RestRows {
   Vector6d residual = Vector6d::Zero();
 };
 
+/// The rows of a frame's epochs, at the present states, kernels included.
+FrameEpochRows EpochRows(const GnssFactorContext& gnss, const WindowFrame& frame) {
+  FrameEpochRows all;
+  GnssResiduals ignored;
+  for (const FrameEpoch& epoch : frame.epochs) {
+    const FrameEpochRows rows =
+        LinearizeFrameEpoch(gnss, epoch, epoch.SecondsAfter(frame.stamp_ns), frame.nav_state(),
+                            frame.imu_bias(), frame.clock_state(), true, &ignored);
+    const Index before = all.residual.size();
+    const Index count = rows.residual.size();
+    all.frame.conservativeResize(before + count, Eigen::NoChange);
+    all.clock.conservativeResize(before + count, Eigen::NoChange);
+    all.residual.conservativeResize(before + count);
+    all.frame.bottomRows(count) = rows.frame;
+    all.clock.bottomRows(count) = rows.clock;
+    all.residual.tail(count) = rows.residual;
+  }
+  return all;
+}
+
+ClockStep StepTo(const GnssFactorContext& gnss, const WindowFrame& from, const WindowFrame& to) {
+  return {gnss.config, SecondsBetween(from.stamp_ns, to.stamp_ns), to.clock_anew};
+}
+
+/// The Hessian over [clocks | frames] from that over the frames (lower triangles): what the prior says about
+/// the first clock, the epochs and the clocks' process are added.
+MatrixXd WithClocks(const Window& window, const LinearPrior& prior, const GnssFactorContext& gnss,
+                    const MatrixXd& frames) {
+  const Index size = window.size();
+  MatrixXd hessian = MatrixXd::Zero(21 * size, 21 * size);
+  const Index offset = 6 * size;
+  hessian.bottomRightCorner(15 * size, 15 * size) = frames;
+  const MatrixXd clock = prior.jacobian.middleCols<6>(prior.ClockColumn());
+  hessian.topLeftCorner<6, 6>() += clock.transpose() * clock;
+  for (Index i = 0; i < static_cast<Index>(prior.anchors.size()); ++i) {
+    const LinearPrior::Anchor& anchor = prior.anchors[static_cast<size_t>(i)];
+    const NavState state = anchor.frame->nav_state();
+    const Matrix9d chain =
+        LocalJacobian(prior.convention, anchor.origin, state) * InverseChartJacobian(prior.convention, state);
+    const int width = i == 0 ? 9 : 6;
+    const MatrixXd pose =
+        prior.jacobian.middleCols(LinearPrior::Column(static_cast<int>(i)), width) * chain.topRows(width);
+    hessian.block<9, 6>(offset + 15 * i, 0) += pose.transpose() * clock;
+  }
+  hessian.block<6, 6>(offset + 9, 0) += prior.jacobian.middleCols<6>(9).transpose() * clock;
+  for (Index i = 0; i < size; ++i) {
+    const WindowFrame& frame = window.frame(static_cast<int>(i));
+    const FrameEpochRows rows = EpochRows(gnss, frame);
+    hessian.block<6, 6>(6 * i, 6 * i).noalias() += rows.clock.transpose() * rows.clock;
+    hessian.block<15, 6>(offset + 15 * i, 6 * i).noalias() += rows.frame.transpose() * rows.clock;
+    hessian.block<15, 15>(offset + 15 * i, offset + 15 * i).noalias() += rows.frame.transpose() * rows.frame;
+    if (i + 1 < size) {
+      const ClockStep step = StepTo(gnss, frame, window.frame(static_cast<int>(i) + 1));
+      const Matrix6d information = step.root.transpose() * step.root;
+      hessian.block<6, 6>(6 * i, 6 * i) += step.phi.transpose() * information * step.phi;
+      hessian.block<6, 6>(6 * i + 6, 6 * i) -= information * step.phi;
+      hessian.block<6, 6>(6 * i + 6, 6 * i + 6) += information;
+    }
+  }
+  return hessian;
+}
+
 }  // namespace
 
 ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second, const Eigen::Vector3d& gravity_W) {
@@ -65,7 +127,8 @@ ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second, const 
 }
 
 bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
-                      const Eigen::Vector3d& gravity_W, Matrix15d* covariance) {
+                      const Eigen::Vector3d& gravity_W, Matrix15d* covariance, const GnssFactorContext* gnss,
+                      Matrix6d* clock_covariance) {
   const Index size = window.size();
   MatrixXd hessian = MatrixXd::Zero(15 * size, 15 * size);
   AddPriorHessian(prior, &hessian);
@@ -82,6 +145,9 @@ bool NewestCovariance(const Window& window, const LinearPrior& prior, const Pose
       hessian.block<6, 6>(15 * i, 15 * j) += vision.hessian.block<6, 6>(6 * i, 6 * j);
     }
   }
+  if (gnss != nullptr) {
+    hessian = WithClocks(window, prior, *gnss, hessian);
+  }
   const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(hessian);
   if (factor.info() != Eigen::Success) {
     return false;
@@ -90,19 +156,33 @@ bool NewestCovariance(const Window& window, const LinearPrior& prior, const Pose
   const Matrix15d corner = hessian.bottomRightCorner<15, 15>().triangularView<Eigen::Lower>();
   const Matrix15d inverse = corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
   *covariance = inverse.transpose() * inverse;
+  if (gnss != nullptr && clock_covariance != nullptr) {
+    const Index newest = 6 * (size - 1);
+    MatrixXd unit = MatrixXd::Zero(hessian.rows(), 6);
+    unit.middleRows<6>(newest).setIdentity();
+    *clock_covariance = MatrixXd(factor.solve(unit)).middleRows<6>(newest);
+  }
   return covariance->allFinite();
 }
 
 LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
-                              const Eigen::Vector3d& gravity_W) {
-  // Columns: the oldest frame (15), the next (15), poses of the others (6 each), the residual.
+                              const Eigen::Vector3d& gravity_W, const GnssFactorContext* gnss) {
+  // Columns: the oldest frame (15), with GNSS its clock (6), the next frame (15), poses of the others (6
+  // each), with GNSS the next clock (6), the residual.
   const int frames = window.size();
-  const auto column = [](int frame) { return frame == 0 ? 0 : frame == 1 ? 15 : 30 + 6 * (frame - 2); };
-  const Index columns = column(frames);
+  const int clock = gnss != nullptr ? 6 : 0;
+  const auto column = [clock](int frame) {
+    return frame == 0 ? 0 : clock + (frame == 1 ? 15 : 30 + 6 * (frame - 2));
+  };
+  const int next_clock = column(frames);
+  const Index columns = next_clock + clock;
+  const int leaving = 15 + clock;
+  const FrameEpochRows epochs = gnss != nullptr ? EpochRows(*gnss, window.frame(0)) : FrameEpochRows();
+  const Index gnss_rows = epochs.residual.size() + clock;
   const Index prior_rows = prior.jacobian.rows();
   const Index vision_rows = vision.hessian.rows();
-  MatrixXd stack =
-      MatrixXd::Zero(std::max(prior_rows + 15 + vision_rows + RestModel::kRows, columns + 1), columns + 1);
+  MatrixXd stack = MatrixXd::Zero(
+      std::max(prior_rows + 15 + vision_rows + RestModel::kRows + gnss_rows, columns + 1), columns + 1);
   VectorXd prior_residual = prior.residual;
   for (size_t i = 0; i < prior.anchors.size(); ++i) {
     const LinearPrior::Anchor& anchor = prior.anchors[i];
@@ -115,12 +195,17 @@ LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, co
     stack.block(0, column(anchor.frame->index), prior_rows, width) = prior.jacobian.middleCols(from, width);
     prior_residual.noalias() += prior.jacobian.middleCols(from, width) * xi.head(width);
   }
+  if (gnss != nullptr) {
+    const MatrixXd jacobian = prior.jacobian.middleCols<6>(prior.ClockColumn());
+    stack.block(0, 15, prior_rows, 6) = jacobian;
+    prior_residual.noalias() += jacobian * (window.frame(0).clock_state() - *prior.clock_origin);
+  }
   stack.col(columns).head(prior_rows) = prior_residual;
 
   const ErrorConvention convention = prior.convention;
   const ImuRows imu = LinearizeImu(window.frame(0), window.frame(1), gravity_W);
   stack.block<15, 15>(prior_rows, 0) = imu.first * ImuChartJacobian(convention, window.frame(0).nav_state());
-  stack.block<15, 15>(prior_rows, 15) =
+  stack.block<15, 15>(prior_rows, leaving) =
       imu.second * ImuChartJacobian(convention, window.frame(1).nav_state());
   stack.col(columns).segment<15>(prior_rows) = imu.residual;
 
@@ -138,12 +223,29 @@ LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, co
       rest.jacobian * ImuChartJacobian(convention, window.frame(0).nav_state());
   stack.col(columns).segment<RestModel::kRows>(prior_rows + 15 + vision_rows) = rest.residual;
 
+  if (gnss != nullptr) {
+    const WindowFrame& oldest = window.frame(0);
+    const Index first = prior_rows + 15 + vision_rows + RestModel::kRows;
+    const Index count = epochs.residual.size();
+    stack.block(first, 0, count, 15) = epochs.frame * ImuChartJacobian(convention, oldest.nav_state());
+    stack.block(first, 15, count, 6) = epochs.clock;
+    stack.col(columns).segment(first, count) = epochs.residual;
+    const ClockStep step = StepTo(*gnss, oldest, window.frame(1));
+    stack.block<6, 6>(first + count, 15) = -step.root * step.phi;
+    stack.block<6, 6>(first + count, next_clock) = step.root;
+    stack.col(columns).segment<6>(first + count) =
+        step.root * (window.frame(1).clock_state() - step.phi * oldest.clock_state());
+  }
+
   const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(stack);
   LinearPrior next;
   next.convention = convention;
-  const Index kept = columns - 15;
-  next.jacobian = stack.block(15, 15, kept, kept).triangularView<Eigen::Upper>();
-  next.residual = stack.col(columns).segment(15, kept);
+  const Index kept = columns - leaving;
+  next.jacobian = stack.block(leaving, leaving, kept, kept).triangularView<Eigen::Upper>();
+  next.residual = stack.col(columns).segment(leaving, kept);
+  if (gnss != nullptr) {
+    next.clock_origin = window.frame(1).clock_state();
+  }
   for (int i = 1; i < frames; ++i) {
     const WindowFrame& frame = window.frame(i);
     next.anchors.push_back({&frame, frame.nav_state(), frame.imu_bias()});

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "smoother/gnss_factors.h"
 #include "smoother/prior_factor.h"
 #include "smoother/track_system.h"
 
@@ -20,8 +21,10 @@ struct ImuRows {
 /// Covariance of the newest frame (canonical chart, phi dp dv dbg dba) from the Gauss-Newton Hessian of the
 /// window at its present states: prior, IMU, rest and `vision` (all landmarks eliminated, kernels included).
 /// False when it is not positive definite.
+/// `gnss`: of an aligned window, whose epochs and clocks then count; clock_covariance is that of the newest.
 bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
-                      const Eigen::Vector3d& gravity_W, Matrix15d* covariance);
+                      const Eigen::Vector3d& gravity_W, Matrix15d* covariance,
+                      const GnssFactorContext* gnss = nullptr, Matrix6d* clock_covariance = nullptr);
 
 /// Marginalises the oldest frame: the old prior, its rest measurement, the IMU factor to the next frame and
 /// `vision` (the tracks that leave with it) are stacked as whitened rows, linearised at the present states,
@@ -32,7 +35,8 @@ bool NewestCovariance(const Window& window, const LinearPrior& prior, const Pose
 /// unchanged (first estimates): re-linearising them would let a direction that was never observed leak in.
 /// With right-invariant errors the gauge directions are the same at every state, so they are then kept
 /// exactly.
+/// Of an aligned window (`gnss`) its epochs and its clock leave with it, tied to the next frame's clock.
 LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
-                              const Eigen::Vector3d& gravity_W);
+                              const Eigen::Vector3d& gravity_W, const GnssFactorContext* gnss = nullptr);
 
 }  // namespace alidade

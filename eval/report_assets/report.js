@@ -150,6 +150,33 @@
       { zero: true, lines: lines(audited, function (series) { return series.rank; }) }));
   }
 
+  // Of runs with GNSS: the sky and each satellite's residuals, of the first such estimator's first seed.
+  function drawSky(entries) {
+    const with_sky = d3.merge(entries.map(function (entry) {
+      return entry.cells.filter(function (cell) { return cell.sky && cell.sky.length; }).map(function (cell) {
+        return { name: entry.name, cell: cell };
+      });
+    }));
+    if (!with_sky.length) { return; }
+    const first = with_sky[0];
+    const colours = d3.scale.category20();
+    const tracks = first.cell.sky.map(function (track) {
+      return { name: track.s + ', rms ' + report.digits(track.rms) + ' m, used ' + (100 * track.used).toFixed(0) + ' %',
+        style: { colour: colours(track.s), dash: null }, width: 2, t: track.t, x: track.x, y: track.y, v: track.r };
+    });
+    const ring = function (radius) {
+      const angles = d3.range(0, 361, 5).map(function (a) { return a * Math.PI / 180; });
+      return { name: (90 - radius) + '\u00b0 of elevation', style: { colour: '#c3ccd4', dash: null }, width: 1,
+        t: angles, x: angles.map(function (a) { return radius * Math.sin(a); }),
+        y: angles.map(function (a) { return radius * Math.cos(a); }) };
+    };
+    const grid = group('Satellites', first.name + ', seed ' + first.cell.seed + ': directions (zenith in the middle, north up, rings at 0, 30 ' +
+      'and 60\u00b0 of elevation) and pseudorange residuals, predicted less measured.', true);
+    report.topView(grid, spec('sky', 'Sky', 'north [\u00b0 from the zenith]', '\u00b0', [], { x: 'east [\u00b0 from the zenith]',
+      height: 380, lines: tracks.concat([ring(90), ring(60), ring(30)]) }));
+    report.timePlot(grid, spec('residuals', 'Residuals by satellite', 'residual [m]', 'm', [], { height: 380, zero: true, lines: tracks }));
+  }
+
   function drawCost(entries) {
     const grid = group('Cost', 'Time of the back end a frame, and the features that updated the state. Boxes: quartiles and median; whiskers: 5 % to 95 %.');
     const medians = entries.map(function (entry) { return entry.series.ms_quantiles[2]; }).filter(function (m) { return m > 0; });
@@ -180,6 +207,7 @@
       'Error about body z'], ['\u03c6x', '\u03c6y', '\u03c6z']);
     drawConsistency(entries);
     drawObservability(entries);
+    drawSky(entries);
     drawCost(entries);
     plots.style.minHeight = '';
     window.scrollTo(0, scroll);
