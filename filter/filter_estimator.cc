@@ -45,6 +45,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   frame_stamp_ns_ = INT64_MIN;
   statistics_ = {};
   initialized_ = true;
+  first_serial_ = serial_ + 1;
   return Status::Ok();
 }
 
@@ -160,6 +161,10 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
       return true;
     case UpdateTiming::kDelayedAll:
       break;
+  }
+  // An uncertain start drifts far in a window's time: the first tracks must not wait for it to fill.
+  if (filter.track_memory != TrackMemoryPolicy::kNone && serial_ - first_serial_ < filter.window) {
+    return true;
   }
   return track.last_serial != serial_ || track.views.front().serial == leaving_serial;
 }
