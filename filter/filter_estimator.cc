@@ -265,8 +265,9 @@ void FilterEstimator::AppendTrack(size_t index, int leaving_serial) {
 
 bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   std::vector<Track>& tracks = tracks_.tracks();
-  update_.Begin(state_);
   slam_.Begin();
+  slam_.Promote(serial_, &tracks_, &state_);
+  update_.Begin(state_);
   appended_.clear();
   for (size_t i = 0; i < tracks.size(); ++i) {
     if (!tracks[i].in_state) {

@@ -25,10 +25,33 @@ void SlamFeatures::Begin() {
 }
 
 bool SlamFeatures::IsCandidate(const FilterState& state, const Track& track, int serial) const {
-  const auto max_landmarks = static_cast<size_t>(filter_.slam_features);
-  return state.landmarks().size() + taken_ < max_landmarks && !track.in_state && !track.memory.active &&
-         track.last_serial == serial && track.observations >= filter_.slam_min_track &&
-         track.views.size() >= 3;
+  return PlaceIsFree(state) && !track.in_state && !track.memory.active && track.last_serial == serial &&
+         track.observations >= filter_.slam_min_track && track.views.size() >= 3;
+}
+
+void SlamFeatures::Promote(int serial, TrackStore* tracks, FilterState* state) {
+  for (Track& track : tracks->tracks()) {
+    if (!PlaceIsFree(*state)) {
+      return;
+    }
+    TrackMemory& memory = track.memory;
+    if (!memory.active || track.last_serial != serial || track.observations < filter_.slam_min_track) {
+      continue;
+    }
+    LandmarkRows& rows = promoted_;
+    const int anchor = state->landmarks_are_anchored() ? memory.anchor : serial;
+    rows.landmark = {track.id, anchor, 0, memory.p_W, memory.p_W};
+    rows.R_f = memory.landmark_rows;
+    rows.t.setZero();
+    rows.T.setZero(3, state->covariance().dimension() - state->CoreOffset());
+    for (size_t i = 0; i < state->clones().size(); ++i) {
+      rows.T.middleCols<6>(state->CloneOffset(i) - state->CoreOffset()) =
+          memory.clone_rows.middleCols<6>(6 * state->clones()[i].slot);
+    }
+    state->AddLandmark(rows);
+    memory.active = false;
+    track.in_state = true;
+  }
 }
 
 LandmarkRows* SlamFeatures::TakeRows() {

@@ -23,6 +23,10 @@ class SlamFeatures {
   /// Forgets what the last frame prepared.
   void Begin();
 
+  /// Makes landmarks of remembered tracks seen in frame `serial` that are long enough, while places are free:
+  /// a memory holds the very rows t = R f~ + T x + n that a landmark enters with. Their newest observation is
+  /// not used by it.
+  void Promote(int serial, TrackStore* tracks, FilterState* state);
   /// True when the track, seen in frame `serial`, has earned a place in the state and one is free.
   [[nodiscard]] bool IsCandidate(const FilterState& state, const Track& track, int serial) const;
   /// Rows to be filled by FeatureUpdate::Append; dropped again by ReturnRows when it did not.
@@ -51,8 +55,13 @@ class SlamFeatures {
   };
 
   FilterConfig filter_;
+  [[nodiscard]] bool PlaceIsFree(const FilterState& state) const {
+    return state.landmarks().size() + taken_ < static_cast<size_t>(filter_.slam_features);
+  }
+
   std::vector<Candidate> candidates_;  ///< the first taken_ are of this frame
   size_t taken_ = 0;
+  LandmarkRows promoted_;
   TrackLinearization linearization_;
 };
 

@@ -193,6 +193,54 @@ TEST_P(EveryConvention, ALandmarkThatCameAndWentLeavesWhatAJointUpdateLeaves) {
   EXPECT_LT((scale.asDiagonal() * (actual - expected) * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-8);
 }
 
+// GIVEN a track that five views made a memory of WHEN it becomes a landmark instead and sees on THEN nothing
+// was lost: the state is that of one joint update of all views.
+TEST_P(EveryConvention, APromotedMemoryLosesNothing) {
+  FilterConfig filter = Flight::Filter();
+  filter.error = GetParam();
+  filter.track_memory = TrackMemoryPolicy::kCarry;
+  filter.memory_depth_deviation = 0.5;
+  FeatureUpdate update(filter, VisionConfig(), 12);
+  SlamFeatures slam(filter, 12);
+  Flight promoted(GetParam(), false);
+  Flight joint(GetParam(), false);
+  for (int i = 0; i < 9; ++i) {
+    promoted.Frame();
+    joint.Frame();
+    Track& track = promoted.track_;
+    if (i == 4) {
+      update.Begin(promoted.state_);
+      ASSERT_EQ(update.Append(promoted.state_, track, true), TrackOutcome::kReady);
+      update.Remember(promoted.state_, 0, 1, &track);
+      ASSERT_TRUE(track.memory.active);
+      VectorXd correction(promoted.state_.covariance().dimension());
+      promoted.state_.covariance().Prepare(update.jacobian());
+      ASSERT_TRUE(
+          promoted.state_.covariance().Apply(update.jacobian(), update.innovation(), correction, nullptr));
+    } else if (i == 5) {
+      TrackStore store;
+      store.tracks().push_back(track);
+      slam.Promote(promoted.serial_, &store, &promoted.state_);
+      track = store.tracks().front();
+      EXPECT_TRUE(track.in_state);
+      EXPECT_FALSE(track.memory.active);
+      ASSERT_EQ(promoted.state_.landmarks().size(), 1u);
+    }
+    if (i >= 5) {
+      promoted.ObserveLandmark(promoted.state_);
+      promoted.Apply();
+    }
+  }
+  promoted.state_.RemoveLandmark(0);
+  joint.update_.Begin(joint.state_);
+  ASSERT_EQ(joint.update_.Append(joint.state_, joint.track_), TrackOutcome::kReady);
+  joint.Apply();
+  const MatrixXd expected = joint.state_.covariance().Covariance();
+  const VectorXd scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd difference = promoted.state_.covariance().Covariance() - expected;
+  EXPECT_LT((scale.asDiagonal() * difference * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-8);
+}
+
 TEST(SlamFeaturesTest, AMovedAnchorChangesNoPredictionAndNoObservation) {
   RandomStream random(2, "anchors");
   Flight flight(ErrorConvention::kRightInvariant, false);
