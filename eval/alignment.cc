@@ -48,6 +48,18 @@ AlignmentTransform AlignUmeyama(const Eigen::Matrix3Xd& truth, const Eigen::Matr
 
 }  // namespace
 
+AlignmentTransform AnchorAtFirst(const std::vector<StatePair>& pairs) {
+  const NavState& truth = pairs.front().truth.nav;
+  const NavState& estimate = pairs.front().estimate.nav;
+  const Eigen::Matrix3d turn = truth.R_WB * estimate.R_WB.transpose();
+  AlignmentTransform transform;
+  transform.rotation = Eigen::AngleAxisd(std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1)),
+                                         Eigen::Vector3d::UnitZ())
+                           .toRotationMatrix();
+  transform.translation = truth.p_WB - transform.rotation * estimate.p_WB;
+  return transform;
+}
+
 std::optional<Alignment> ParseAlignment(std::string_view name) {
   for (const Alignment alignment :
        {Alignment::kNone, Alignment::kPos, Alignment::kPosYaw, Alignment::kSe3, Alignment::kSim3}) {

@@ -15,6 +15,9 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
   evaluation.truth_rows = truth.points.size();
   evaluation.estimate_rows = estimate.points.size();
   evaluation.pairs = std::move(pairs).value();
+  if (options.anchor_at_first) {
+    evaluation.pairs = ApplyAlignment(evaluation.pairs, AnchorAtFirst(evaluation.pairs));
+  }
   evaluation.duration_s =
       SecondsBetween(evaluation.pairs.front().estimate.stamp_ns, evaluation.pairs.back().estimate.stamp_ns);
   evaluation.path_m = PathLength(evaluation.pairs);

@@ -12,6 +12,9 @@ namespace alidade {
 struct EvaluationOptions {
   Alignment alignment = Alignment::kPosYaw;
   AssociationOptions association;
+  /// The estimate's world is its own: it is first moved to the truth's by AnchorAtFirst. Without it
+  /// "unaligned" errors and NEES of such an estimate mean nothing.
+  bool anchor_at_first = false;
   std::vector<double> rpe_distances_m = {8, 16, 24, 32, 40};
 };
 
@@ -20,9 +23,10 @@ struct Evaluation {
   EvaluationOptions options;
   std::size_t truth_rows = 0;
   std::size_t estimate_rows = 0;
-  std::vector<StatePair> pairs;  ///< unaligned; ApplyAlignment(pairs, transform) gives the aligned ones
-  double duration_s = 0;         ///< first to last pair
-  double path_m = 0;             ///< truth path through the pairs
+  std::vector<StatePair>
+      pairs;  ///< unaligned, anchored if so wished; ApplyAlignment(pairs, transform) gives the aligned ones
+  double duration_s = 0;  ///< first to last pair
+  double path_m = 0;      ///< truth path through the pairs
   AlignmentTransform transform;
   AteResult unaligned;
   AteResult ate;                   ///< after the alignment

@@ -142,6 +142,7 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
                            {"max_gap_s", Number(association.max_gap_s)}};
   object["duration_s"] = Number(evaluation.duration_s);
   object["path_m"] = Number(evaluation.path_m);
+  object["anchor_at_first"] = evaluation.options.anchor_at_first;
   object["alignment"] = AlignmentJson(evaluation);
   object["unaligned"] = AteJson(evaluation.unaligned);
   object["ate"] = AteJson(evaluation.ate);

@@ -45,6 +45,10 @@ struct AlignmentTransform {
 /// offset: what a visual-inertial estimator cannot observe), se3 and sim3 (Umeyama 1991). A degenerate cloud
 /// (one point, a line) gives one of its minimisers, always finite.
 [[nodiscard]] AlignmentTransform Align(const std::vector<StatePair>& pairs, Alignment alignment);
+/// Yaw about z and offset that put the first estimate where the truth is, its tilt aside: for an estimate in
+/// a world of its own, whose yaw and position mean nothing at the start and only drift afterwards. Needs a
+/// pair.
+[[nodiscard]] AlignmentTransform AnchorAtFirst(const std::vector<StatePair>& pairs);
 /// The pairs with their estimates moved to the truth's world: position, rotation, velocity and covariance.
 [[nodiscard]] std::vector<StatePair> ApplyAlignment(const std::vector<StatePair>& pairs,
                                                     const AlignmentTransform& transform);

@@ -147,6 +147,8 @@ class PlanParser {
           [&](const Node& n) {
             return reader_.Real(n, "max_dt", 0, kMaxSeconds, &metrics.association.max_dt_s);
           }},
+         {"anchor_at_first",
+          [&](const Node& n) { return reader_.Boolean(n, "anchor_at_first", &metrics.anchor_at_first); }},
          {"interpolate",
           [&](const Node& n) { return reader_.Boolean(n, "interpolate", &metrics.association.interpolate); }},
          {"max_gap", [&](const Node& n) {

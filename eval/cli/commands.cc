@@ -24,7 +24,7 @@ const std::vector<Command>& Commands() {
        RunRun},
       {"evaluate",
        "errors and consistency of a trajectory against truth",
-       {"truth", "estimate", "align", "max_dt", "interpolate", "rpe", "json"},
+       {"truth", "estimate", "align", "anchor_at_first", "max_dt", "interpolate", "rpe", "json"},
        {"truth", "estimate"},
        0,
        RunEvaluate},

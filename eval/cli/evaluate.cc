@@ -19,6 +19,7 @@ Result<EvaluationOptions> OptionsFromFlags() {
                          "', expected none, pos, posyaw, se3 or sim3");
   }
   options.alignment = *alignment;
+  options.anchor_at_first = FLAGS_anchor_at_first;
   options.association.max_dt_s = FLAGS_max_dt;
   options.association.interpolate = FLAGS_interpolate;
   options.rpe_distances_m.clear();

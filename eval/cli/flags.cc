@@ -1,5 +1,8 @@
 #include "eval/cli/flags.h"
 
+DEFINE_bool(
+    anchor_at_first, false,
+    "put the first estimate where the truth is, in yaw and position: for an estimate in a world of its own");
 DEFINE_string(align, "posyaw", "none | pos | posyaw | se3 | sim3: what is taken out before the ATE");
 DEFINE_bool(audit, false, "write observability.csv: what the filter claims to observe");
 DEFINE_string(backend, "", "filter | smoother | batch: replaces the key `backend` of the configuration");

@@ -5,6 +5,7 @@
 // Every flag of the program; eval/cli/commands.cc says which command takes which. The only folder that knows
 // gflags.
 DECLARE_string(align);
+DECLARE_bool(anchor_at_first);
 DECLARE_bool(audit);
 DECLARE_string(backend);
 DECLARE_bool(check);
