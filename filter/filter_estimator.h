@@ -80,8 +80,8 @@ class FilterEstimator : public Estimator {
   FilterObserver* observer_ = nullptr;
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
-  int serial_ = 0;        ///< of the newest frame
-  int first_serial_ = 1;  ///< of the first frame after the initialisation
+  int serial_ = 0;                     ///< of the newest frame
+  int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
   Eigen::Vector3d last_gyro_radps_ = Eigen::Vector3d::Zero();
   // Scratch kept between frames.
