@@ -50,7 +50,7 @@ AlignmentProblem::AlignmentProblem(const DynamicWindow& window, const std::vecto
   InitializeLandmarks();
 }
 
-std::vector<Pose> AlignmentProblem::Cameras(const Variables& variables, const WindowTrack& track) const {
+std::vector<Pose> AlignmentProblem::Cameras(const Variables& variables, const SharedTrack& track) const {
   std::vector<Pose> cameras;
   cameras.reserve(track.frames.size());
   for (const int frame : track.frames) {
@@ -64,7 +64,7 @@ void AlignmentProblem::InitializeLandmarks() {
     if (!active_[t]) {
       continue;
     }
-    const WindowTrack& track = tracks_[t];
+    const SharedTrack& track = tracks_[t];
     const std::vector<Pose> cameras = Cameras(current_, track);
     std::vector<Eigen::Vector2d> points;
     for (const NormalizedObservation& observation : track.observations) {
@@ -82,7 +82,7 @@ void AlignmentProblem::InitializeLandmarks() {
 
 bool AlignmentProblem::TrackResiduals(const Variables& variables, size_t t,
                                       std::vector<double>* squared) const {
-  const WindowTrack& track = tracks_[t];
+  const SharedTrack& track = tracks_[t];
   const std::vector<Pose> cameras = Cameras(variables, track);
   squared->clear();
   bool in_front = true;
@@ -128,7 +128,7 @@ double AlignmentProblem::PriorCost(const Variables& variables) const {
 }
 
 void AlignmentProblem::AddTrack(size_t t) {
-  const WindowTrack& track = tracks_[t];
+  const SharedTrack& track = tracks_[t];
   std::vector<double> squared;
   if (!TrackResiduals(current_, t, &squared)) {
     return;
@@ -231,7 +231,7 @@ double AlignmentProblem::TryStep(double damping) {
       continue;
     }
     // The landmark keeps its place in its first camera while that moves, then follows its own optimum.
-    const WindowTrack& track = tracks_[t];
+    const SharedTrack& track = tracks_[t];
     const std::vector<Pose> cameras = Cameras(trial_, track);
     const Pose before = current_.states[static_cast<size_t>(track.frames.front())].T_WB() * settings_.T_BC;
     trial_.landmarks[t] = cameras.front() * (before.Inverse() * current_.landmarks[t]);
@@ -259,9 +259,9 @@ int AlignmentProblem::DropAbove(double squared_residual) {
     if (!active_[t]) {
       continue;
     }
-    const WindowTrack& track = tracks_[t];
+    const SharedTrack& track = tracks_[t];
     const bool in_front = TrackResiduals(current_, t, &squared);
-    WindowTrack kept{track.track_id, {}, {}};
+    SharedTrack kept{track.track_id, {}, {}};
     for (size_t k = 0; k < squared.size(); ++k) {
       if (squared[k] <= squared_residual) {
         kept.frames.push_back(track.frames[k]);

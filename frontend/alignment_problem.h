@@ -44,7 +44,7 @@ class AlignmentProblem {
     std::vector<Eigen::Vector3d> landmarks;
   };
   void InitializeLandmarks();
-  [[nodiscard]] std::vector<Pose> Cameras(const Variables& variables, const WindowTrack& track) const;
+  [[nodiscard]] std::vector<Pose> Cameras(const Variables& variables, const SharedTrack& track) const;
   /// Squared whitened residual of each observation; false when the landmark is behind a view.
   bool TrackResiduals(const Variables& variables, size_t track, std::vector<double>* squared) const;
   [[nodiscard]] double TrackCost(const Variables& variables, size_t track) const;
@@ -54,7 +54,7 @@ class AlignmentProblem {
   void AddInertial();
   void AddPriors();
 
-  std::vector<WindowTrack> tracks_;
+  std::vector<SharedTrack> tracks_;
   const std::vector<Preintegration>& preintegrations_;
   RefinementSettings settings_;
   Eigen::Vector3d gravity_W_;

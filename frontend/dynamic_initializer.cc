@@ -1,6 +1,7 @@
 #include "frontend/dynamic_initializer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/format.h"
 #include "frontend/alignment_refinement.h"
@@ -20,6 +21,42 @@ constexpr double kMaxInertialChi2 = 3.0;
 constexpr double kMaxBiasPriorSigma = 4.0;
 constexpr double kMaxGyroBiasRadps = 0.3;
 constexpr double kMaxRejectedFraction = 0.6;
+
+// Vibration is not white: averaged over an interval it counts for less than its spread says. With this
+// bound the errors of starts on recorded IMU data are about what their covariance says
+// (docs/initialization.md).
+constexpr double kMaxVibrationFactor = 4.0;
+
+/// How much noisier the samples are than white noise of this density, at least 1 and at most
+/// kMaxVibrationFactor. Second differences leave out motion, which changes little from sample to sample.
+double VibrationFactor(const DynamicWindow& window, const Eigen::Vector3d ImuSample::*signal,
+                       double density) {
+  double sum = 0;
+  double count = 0;
+  double duration_s = 0;
+  double steps = 0;
+  for (const std::vector<ImuSample>& samples : window.imu) {
+    for (size_t i = 1; i + 1 < samples.size(); ++i) {
+      const Eigen::Vector3d second = samples[i + 1].*signal - 2 * samples[i].*signal + samples[i - 1].*signal;
+      sum += second.squaredNorm() / (3 * 6);  // 1 + 4 + 1: of white noise
+      ++count;
+    }
+    duration_s += SecondsBetween(samples.front().stamp_ns, samples.back().stamp_ns);
+    steps += static_cast<double>(samples.size()) - 1;
+  }
+  if (!(count > 0) || !(steps > 0) || !(density > 0)) {
+    return 1;
+  }
+  return std::clamp(std::sqrt(sum / count * duration_s / steps) / density, 1.0, kMaxVibrationFactor);
+}
+
+ImuNoise NoiseInMotion(const DynamicWindow& window, ImuNoise noise) {
+  noise.gyro_noise_density_radps_sqrthz *=
+      VibrationFactor(window, &ImuSample::gyro, noise.gyro_noise_density_radps_sqrthz);
+  noise.accel_noise_density_mps2_sqrthz *=
+      VibrationFactor(window, &ImuSample::accel, noise.accel_noise_density_mps2_sqrthz);
+  return noise;
+}
 
 /// Empty when the solution may be used.
 std::string ReasonAgainst(const RefinedAlignment& refined, double max_scale_std) {
@@ -52,7 +89,7 @@ std::string ReasonAgainst(const RefinedAlignment& refined, double max_scale_std)
 }  // namespace
 
 Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
-                                          const std::deque<TrackFrame>& frames, double max_scale_std,
+                                          const std::deque<TrackFrame>& frames, const DynamicLimits& limits,
                                           ImuBuffer* imu) {
   DynamicWindow window;
   ALIDADE_RETURN_IF_ERROR(BuildDynamicWindow(config, rig.camera, frames, imu, &window));
@@ -60,13 +97,14 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
     return Status::Diverged(Format("moving: %zu tracks shared by frames of the window, need %d",
                                    window.tracks.size(), kMinTracks));
   }
-  std::vector<Preintegration> preintegrations = PreintegrateWindow(window, ImuBias(), rig.imu_noise);
+  const ImuNoise noise = NoiseInMotion(window, rig.imu_noise);
+  std::vector<Preintegration> preintegrations = PreintegrateWindow(window, ImuBias(), noise);
   const GyroAlignment gyro = AlignGyro(window, preintegrations, rig);
-  if (gyro.median_parallax_px < config.init.dynamic_min_parallax_px) {
-    return Status::Diverged(Format("moving: parallax %.1f px of %.1f", gyro.median_parallax_px,
-                                   config.init.dynamic_min_parallax_px));
+  if (gyro.median_parallax_px < limits.min_parallax_px) {
+    return Status::Diverged(
+        Format("moving: parallax %.1f px of %.1f", gyro.median_parallax_px, limits.min_parallax_px));
   }
-  preintegrations = PreintegrateWindow(window, {gyro.gyro_bias, Eigen::Vector3d::Zero()}, rig.imu_noise);
+  preintegrations = PreintegrateWindow(window, {gyro.gyro_bias, Eigen::Vector3d::Zero()}, noise);
   const Result<LinearAlignment> linear =
       AlignLinear(window, preintegrations, {gyro.gyro_bias, Eigen::Vector3d::Zero()}, gyro.inlier, rig.T_BC,
                   config.imu.gravity_mps2);
@@ -85,7 +123,7 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   if (!refined.ok()) {
     return refined.status();
   }
-  if (const std::string reason = ReasonAgainst(*refined, max_scale_std); !reason.empty()) {
+  if (const std::string reason = ReasonAgainst(*refined, limits.scale_std); !reason.empty()) {
     return Status::Diverged(reason);
   }
   const std::string report = Format(

@@ -18,13 +18,19 @@ struct DynamicSolution {
   InitializerWindow window;  ///< likewise
 };
 
+/// What a solution must meet at this point of the search.
+struct DynamicLimits {
+  double scale_std = 0;        ///< relative standard deviation of the scale, at most
+  double min_parallax_px = 0;  ///< median rotation-compensated motion over the window
+};
+
 /// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),
 /// velocity and gravity in closed form (linear_alignment.h), maximum likelihood over the window,
-/// accelerometer bias included (alignment_refinement.h), then the checks that accept it. Stamps of `frames`
-/// are in IMU time. max_scale_std: relative standard deviation of the scale up to which the solution is
-/// accepted. Error (kDiverged): why there is no solution yet, with the figure and its limit.
+/// accelerometer bias included (alignment_refinement.h), then the checks that accept it. The IMU counts as
+/// noisier than its sheet where its samples scatter more. Stamps of `frames` are in IMU time. Error
+/// (kDiverged): why there is no solution yet, with the figure and its limit.
 Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
-                                          const std::deque<TrackFrame>& frames, double max_scale_std,
+                                          const std::deque<TrackFrame>& frames, const DynamicLimits& limits,
                                           ImuBuffer* imu);
 
 }  // namespace alidade

@@ -30,29 +30,29 @@ std::vector<size_t> SelectFrames(const InitConfig& config, const std::deque<Trac
   return selected;
 }
 
-std::vector<WindowTrack> CollectTracks(const EstimatorConfig& config, const CameraModel& camera,
+std::vector<SharedTrack> CollectTracks(const EstimatorConfig& config, const CameraModel& camera,
                                        const std::deque<TrackFrame>& frames,
                                        const std::vector<size_t>& selected) {
-  std::map<std::int64_t, WindowTrack> by_id;
+  std::map<std::int64_t, SharedTrack> by_id;
   for (size_t k = 0; k < selected.size(); ++k) {
     for (const TrackObservation& seen : frames[selected[k]].observations) {
       NormalizedObservation observation;
       if (seen.pixel.allFinite() &&
           NormalizeObservation(camera, seen.pixel, config.vision.pixel_noise_px, &observation)) {
-        WindowTrack& track = by_id[seen.track_id];
+        SharedTrack& track = by_id[seen.track_id];
         track.track_id = seen.track_id;
         track.frames.push_back(static_cast<int>(k));
         track.observations.push_back(observation);
       }
     }
   }
-  std::vector<WindowTrack> tracks;
+  std::vector<SharedTrack> tracks;
   for (auto& [id, track] : by_id) {
     if (track.frames.size() >= 2) {
       tracks.push_back(std::move(track));
     }
   }
-  std::stable_sort(tracks.begin(), tracks.end(), [](const WindowTrack& a, const WindowTrack& b) {
+  std::stable_sort(tracks.begin(), tracks.end(), [](const SharedTrack& a, const SharedTrack& b) {
     return a.frames.size() > b.frames.size();
   });
   if (tracks.size() > kMaxWindowTracks) {

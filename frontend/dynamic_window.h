@@ -12,7 +12,7 @@
 namespace alidade {
 
 /// One track over the frames of a window.
-struct WindowTrack {
+struct SharedTrack {
   std::int64_t track_id = 0;
   std::vector<int> frames;  ///< indices into DynamicWindow::stamps_ns, increasing
   std::vector<NormalizedObservation> observations;
@@ -23,7 +23,7 @@ struct WindowTrack {
 struct DynamicWindow {
   std::vector<TimeNs> stamps_ns;            ///< in IMU time, increasing; M frames
   std::vector<std::vector<ImuSample>> imu;  ///< M-1 intervals, both ends interpolated
-  std::vector<WindowTrack> tracks;          ///< longest first
+  std::vector<SharedTrack> tracks;          ///< longest first
 };
 
 /// Takes frames over init.dynamic_window_s up to the newest one, at least init.dynamic_min_frames of them

@@ -53,7 +53,7 @@ std::vector<PairRay> CollectRays(const DynamicWindow& window, const PairRotation
                                  const Matrix3d& R_BC, int i, int j) {
   std::vector<PairRay> rays;
   for (size_t t = 0; t < window.tracks.size(); ++t) {
-    const WindowTrack& track = window.tracks[t];
+    const SharedTrack& track = window.tracks[t];
     const auto at_i = std::lower_bound(track.frames.begin(), track.frames.end(), i);
     const auto at_j = std::lower_bound(track.frames.begin(), track.frames.end(), j);
     if (at_i == track.frames.end() || *at_i != i || at_j == track.frames.end() || *at_j != j) {
@@ -180,7 +180,7 @@ double MedianParallax(const DynamicWindow& window, const std::vector<Preintegrat
   const Matrix3d& R_BC = rig.T_BC.rotation;
   std::vector<double> parallax;
   for (size_t t = 0; t < window.tracks.size(); ++t) {
-    const WindowTrack& track = window.tracks[t];
+    const SharedTrack& track = window.tracks[t];
     if (!alignment.inlier[t] || track.frames.size() < 3) {
       continue;
     }

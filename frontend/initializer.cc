@@ -1,6 +1,7 @@
 #include "frontend/initializer.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -17,11 +18,13 @@ namespace {
 
 // An attempt in motion costs some ten milliseconds: not on every frame.
 constexpr double kAttemptEveryS = 0.25;
-// A sharp scale is worth a short wait; later a rough one has to do.
-constexpr double kSharpScaleStd = 0.03;
-constexpr double kRoughScaleStd = 0.12;
-constexpr double kSharpForS = 2.0;
-constexpr double kRoughAfterS = 6.0;
+// A sharp scale is worth a short wait; later a rough one has to do. Length of the search in windows
+// (init.dynamic_window_s), relative deviation of the scale, share of init.dynamic_min_parallax_px: slow
+// motion makes up by its length for what it lacks in parallax.
+struct SearchStage {
+  double windows, scale_std, parallax_share;
+};
+constexpr std::array<SearchStage, 3> kSearch = {{{1.0, 0.008, 1.0}, {2.0, 0.012, 0.5}, {2.5, 0.12, 0.25}}};
 
 /// Longest silence inside the samples; an interpolated gap would pass for rest.
 double LongestStep(const std::vector<ImuSample>& samples) {
@@ -57,7 +60,7 @@ struct Initializer::Implementation {
   std::optional<TrackMotion> MotionOverWindow() const;
   RestAssessment Assess(ImuSpread* spread);
   Result<NavEstimate> TryStatic(RestAssessment* assessment);
-  [[nodiscard]] double AcceptedScaleStd() const;
+  [[nodiscard]] DynamicLimits Limits() const;
   Result<NavEstimate> TryDynamic();
 };
 
@@ -134,12 +137,20 @@ Result<NavEstimate> Initializer::Implementation::TryStatic(RestAssessment* asses
   return estimate;
 }
 
-/// Loosens from sharp to rough as the search drags on.
-double Initializer::Implementation::AcceptedScaleStd() const {
-  const double searching_s =
-      SecondsBetween(first_stamp_ns, frames.back().stamp_ns) - config.init.dynamic_window_s - kSharpForS;
-  const double fraction = std::clamp(searching_s / (kRoughAfterS - kSharpForS), 0.0, 1.0);
-  return kSharpScaleStd + fraction * (kRoughScaleStd - kSharpScaleStd);
+/// Loosens as the search drags on: linear between the stages.
+DynamicLimits Initializer::Implementation::Limits() const {
+  const double windows =
+      SecondsBetween(first_stamp_ns, frames.back().stamp_ns) / config.init.dynamic_window_s;
+  size_t next = 1;
+  while (next + 1 < kSearch.size() && windows > kSearch[next].windows) {
+    ++next;
+  }
+  const SearchStage& from = kSearch[next - 1];
+  const SearchStage& to = kSearch[next];
+  const double share = std::clamp((windows - from.windows) / (to.windows - from.windows), 0.0, 1.0);
+  return {from.scale_std + share * (to.scale_std - from.scale_std),
+          config.init.dynamic_min_parallax_px *
+              (from.parallax_share + share * (to.parallax_share - from.parallax_share))};
 }
 
 Result<NavEstimate> Initializer::Implementation::TryDynamic() {
@@ -147,7 +158,7 @@ Result<NavEstimate> Initializer::Implementation::TryDynamic() {
   if (newest < next_attempt_ns) {
     return Status::Diverged(last_refusal);
   }
-  const Result<DynamicSolution> solution = InitializeDynamic(config, rig, frames, AcceptedScaleStd(), &imu);
+  const Result<DynamicSolution> solution = InitializeDynamic(config, rig, frames, Limits(), &imu);
   if (!solution.ok()) {
     next_attempt_ns = newest + SecondsToNs(kAttemptEveryS);
     last_refusal = solution.message();

@@ -105,6 +105,11 @@ bool SmootherEstimator::NewestIsKeyframe() const {
   if (config_.smoother.frames == FramePolicy::kEveryFrame || window_.size() <= 2) {
     return true;
   }
+  // A frame at rest has no parallax, but its zero velocity is all that holds the position: taken out, the
+  // interval around it would be one of free motion, whose scale nothing fixes.
+  if (window_.newest().rest) {
+    return true;
+  }
   const FrameParallax parallax =
       ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), rig_.T_BC);
   const auto seen = std::count_if(window_.tracks().begin(), window_.tracks().end(),

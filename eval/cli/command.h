@@ -38,6 +38,7 @@ int RunEvaluate(const std::vector<std::string>& arguments);
 int RunCompare(const std::vector<std::string>& arguments);
 int RunProbe(const std::vector<std::string>& arguments);
 int RunSpp(const std::vector<std::string>& arguments);
+int RunStarts(const std::vector<std::string>& arguments);
 int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
 int RunConfig(const std::vector<std::string>& arguments);

@@ -20,6 +20,7 @@ DEFINE_bool(interpolate, false, "interpolate truth at the stamps of the estimate
 DEFINE_int32(jobs, 1, "runs at a time; more than one shares the caches, so times are no longer comparable");
 DEFINE_bool(json, false, "answer in JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: what the configuration file is");
+DEFINE_double(limit, 5, "data a start may use [s]");
 DEFINE_double(max_dt, 0.01, "largest stamp difference of a pair [s]");
 DEFINE_string(model, "", "measurement model");
 DEFINE_string(nav, "", "broadcast orbits, RINEX, separated by commas");
@@ -34,5 +35,6 @@ DEFINE_uint32(seed, 1, "seed of the simulation, and of the start that init.metho
 DEFINE_string(set, "", "a.b=value,...: settings over the configuration file; may be repeated");
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
+DEFINE_int32(starts, 100, "starts in all, spread over the sequences of the plan");
 DEFINE_string(truth, "", "ground-truth trajectory file");
 DEFINE_string(windows, "5,10,15,20,25", "clones in the window, separated by commas");

@@ -8,6 +8,7 @@
 
 #include "core/error_convention.h"
 #include "eval/dataset.h"
+#include "eval/start_study.h"
 #include "frontend/initializer.h"
 
 namespace alidade::test {
@@ -40,19 +41,6 @@ inline const TrajectoryPoint* TruthAt(const Trajectory& truth, TimeNs stamp_ns) 
     }
   }
   return best != nullptr && std::abs(best->stamp_ns - stamp_ns) < 6'000'000 ? best : nullptr;
-}
-
-/// Error of the estimate with the truth turned about the vertical and moved onto it: those four are a choice
-/// of frame.
-inline Vector15d GaugeFreeError(const NavEstimate& estimate, const TrajectoryPoint& truth) {
-  const Eigen::Matrix3d difference = truth.nav.R_WB * estimate.nav.R_WB.transpose();
-  const double yaw = std::atan2(difference(1, 0) - difference(0, 1), difference(0, 0) + difference(1, 1));
-  const Eigen::Matrix3d turn = so3::Exp(Eigen::Vector3d(0, 0, -yaw));
-  Vector15d error;
-  error << so3::Log(estimate.nav.R_WB.transpose() * turn * truth.nav.R_WB), Eigen::Vector3d::Zero(),
-      turn * truth.nav.v_WB - estimate.nav.v_WB, truth.bias.gyro - estimate.bias.gyro,
-      truth.bias.accel - estimate.bias.accel;
-  return error;
 }
 
 inline void Compare(const Initializer& initializer, const Dataset& dataset, StartOutcome* outcome) {
