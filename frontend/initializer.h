@@ -23,7 +23,7 @@ struct InitializerWindow {
 /// Static (static_initializer.h): at rest by IMU spread and image motion; gravity gives roll and pitch, the
 /// gyroscope's mean its bias. Dynamic (dynamic_initializer.h): gyroscope bias from epipolar geometry,
 /// velocity and gravity in closed form, maximum likelihood over the window; accepted once the scale is known
-/// to 1.2 %, or, as the search drags on, to 12 %. Auto: static at rest, else dynamic; a rest that is too
+/// to 0.8 %, or, as the search drags on, to 12 %. Auto: static at rest, else dynamic; a rest that is too
 /// short yet is waited for. World: z up, yaw 0 and position 0 at the returned state. Attempts in motion are
 /// made four times a second of data; between them AddFrame repeats the last reason. The caller gives up after
 /// init.max_wait_s. imu.noise_scale and imu.random_walk_scale are applied here: pass the rig as read.
