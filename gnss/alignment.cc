@@ -188,7 +188,7 @@ std::vector<const GnssAligner::Sample*> GnssAligner::Choose() const {
 }
 
 GnssAligner::Fit GnssAligner::Step(const std::vector<const Sample*>& samples, bool yaw_free, bool robust,
-                                   Guess* guess) const {
+                                   double gate_sigma, Guess* guess) const {
   const AntennaMount mount{enu_, receiver_.p_BA};
   const Eigen::Matrix3d R_NW = RotationZ(guess->yaw_rad);
   NormalEquations system(kClocks + 2 * static_cast<Index>(samples.size()));
@@ -231,8 +231,8 @@ GnssAligner::Fit GnssAligner::Step(const std::vector<const Sample*>& samples, bo
     for (const GnssRow& row : rows) {
       const Eigen::Matrix<double, 1, 5> shared = row.jacobian * chart;
       const double r = row.residual / row.deviation;
-      const double weight =
-          robust ? RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r * r) : 1;
+      const double huber = robust ? RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r * r) : 1;
+      const double weight = std::abs(r) < gate_sigma ? huber : 0;
       fit.cost += RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r * r) * r * r;
       whitened.push_back(r);
       std::vector<std::pair<Index, double>> entries = {{kShift, shared[1]},
@@ -324,7 +324,7 @@ GnssAligner::Guess GnssAligner::FirstGuess(const std::vector<const Sample*>& sam
     guess.clock_known.assign(samples.size(), false);
     Fit fit;
     for (int step = 0; step < kSteps; ++step) {
-      fit = Step(samples, false, step > 0, &guess);
+      fit = Step(samples, false, step > 0, INFINITY, &guess);
     }
     if (fit.ok && fit.cost < best_cost) {
       best_cost = fit.cost;
@@ -353,10 +353,13 @@ std::optional<GnssAlignment> GnssAligner::TryAlign() {
     report_ = "the satellites do not determine the alignment";
     return std::nullopt;
   }
-  constexpr int kIterations = 8;
+  constexpr int kIterations = 12;
+  constexpr int kUngated = 6;
+  constexpr double kGateScales = 3.5;
   Fit fit;
   for (int i = 0; i < kIterations; ++i) {
-    fit = Step(samples, true, true, &guess);
+    // Huber's kernel alone is pulled by reflections, which are all late: they go, at a scale that shrinks.
+    fit = Step(samples, true, true, i < kUngated ? INFINITY : kGateScales * fit.scale, &guess);
     if (!fit.ok) {
       report_ = "the satellites do not determine the alignment";
       return std::nullopt;

@@ -69,7 +69,7 @@ class GnssAligner {
   void Locate();
   [[nodiscard]] std::vector<const Sample*> Choose() const;
   [[nodiscard]] Fit Step(const std::vector<const Sample*>& samples, bool yaw_free, bool robust,
-                         Guess* guess) const;
+                         double gate_sigma, Guess* guess) const;
   [[nodiscard]] Guess FirstGuess(const std::vector<const Sample*>& samples) const;
 
   GnssConfig config_;

@@ -35,9 +35,12 @@ ClockTransition PropagateClock(const GnssConfig& config, double dt_s) {
 ClockState FreshClock(const GnssConfig& config, const Vector6d& mean) {
   ClockState clock;
   clock.mean = mean;
-  const double bias = config.inter_system_std_m;
-  clock.covariance.diagonal() << kFreshClockStdM * kFreshClockStdM, kFreshDriftStdMps * kFreshDriftStdMps,
-      Eigen::Vector4d::Constant(bias * bias);
+  clock.covariance(ClockState::kClock, ClockState::kClock) = kFreshClockStdM * kFreshClockStdM;
+  clock.covariance(ClockState::kDrift, ClockState::kDrift) = kFreshDriftStdMps * kFreshDriftStdMps;
+  for (int i = ClockState::kBiases; i < ClockState::kSize; ++i) {
+    const double deviation = mean[i] == 0 ? config.inter_system_std_m : kFreshClockStdM;
+    clock.covariance(i, i) = deviation * deviation;
+  }
   return clock;
 }
 

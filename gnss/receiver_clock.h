@@ -20,11 +20,12 @@ struct ClockTransition {
 /// 0.
 [[nodiscard]] ClockTransition PropagateClock(const GnssConfig& config, double dt_s);
 
-/// A clock that was just found to the precision of one epoch: `clock_m` with kFreshClockStdM, drift likewise,
-/// biases as given.
+/// A clock that was just found: clock and drift with the deviations below, a bias with the clock's where it
+/// is known (not zero), else with inter_system_std_m. Wider, the gate would let reflections into the first
+/// update.
 [[nodiscard]] ClockState FreshClock(const GnssConfig& config, const Vector6d& mean);
 
-inline constexpr double kFreshClockStdM = 30;
-inline constexpr double kFreshDriftStdMps = 3;
+inline constexpr double kFreshClockStdM = 3;
+inline constexpr double kFreshDriftStdMps = 1;
 
 }  // namespace alidade
