@@ -4,12 +4,10 @@
 
 #include "core/check.h"
 #include "core/stopwatch.h"
-#include "eval/gnss_feed.h"
+#include "eval/gnss_run.h"
 #include "eval/truth_start.h"
 #include "filter/filter.h"
 #include "frontend/initializer.h"
-#include "gnss/alignment.h"
-#include "gnss/inertial_start.h"
 #include "smoother/smoother.h"
 
 namespace alidade {
@@ -28,9 +26,7 @@ class Run {
       Estimator* estimator)
       : config_(config), log_(log), options_(options), estimator_(*estimator), initializer_(config, log.rig) {
     if (config.gnss.enabled && log.gnss != nullptr) {
-      feed_.emplace(config.gnss, log);
-      aligner_.emplace(config.gnss, log.rig.gnss);
-      inertial_start_.emplace(config, log.rig);
+      gnss_.emplace(config, log, estimator, &result_);
     }
   }
 
@@ -53,7 +49,7 @@ class Run {
         options_.progress(i + 1, log_.frames.size());
       }
     }
-    if (feed_ && log_.frames.empty()) {
+    if (gnss_ && log_.frames.empty()) {
       ProcessEpochsAlone();
     }
     if (result_.status.ok() && !initialized_ && !result_.interrupted) {
@@ -80,7 +76,9 @@ class Run {
     }
     if (initialized_) {
       AddFrame(frame, stopwatch);
-      Align(ImuStamp(frame));
+      if (gnss_ && result_.status.ok()) {
+        gnss_->Align(ImuStamp(frame), log_.imu[next_imu_ - 1].gyro);
+      }
     } else if (result_.status.ok() &&
                SecondsBetween(log_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
       result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
@@ -90,18 +88,15 @@ class Run {
 
   /// GNSS epochs with an IMU time before `stamp_ns`; the IMU reaches that far.
   void ProcessEpochsBefore(TimeNs stamp_ns) {
-    while (feed_ && result_.status.ok()) {
-      const GnssEpoch* epoch = feed_->Next();
+    while (gnss_ && result_.status.ok()) {
+      const GnssEpoch* epoch = gnss_->NextEpoch();
       if (epoch == nullptr || epoch->stamp_ns >= stamp_ns) {
         return;
       }
       if (result_.global) {
         DeliverImu(epoch->stamp_ns);
-        AddEpoch(*epoch);
-      } else {
-        aligner_->AddEpoch(*epoch, feed_->approximate_E());
       }
-      feed_->Pop();
+      gnss_->TakeEpoch();
     }
   }
 
@@ -109,21 +104,21 @@ class Run {
   void ProcessEpochsAlone() {
     const size_t total = log_.gnss->epochs.size();
     for (size_t done = 1; result_.status.ok() && !result_.interrupted; ++done) {
-      const GnssEpoch* epoch = feed_->Next();
+      const GnssEpoch* epoch = gnss_->NextEpoch();
       if (epoch == nullptr) {
         return;
       }
       const Stopwatch stopwatch;
-      DeliverImu(epoch->stamp_ns + SecondsToNs(initialized_ ? 0 : config_.gnss.max_time_offset_s));
-      if (initialized_) {
-        AddEpoch(*epoch);
-        if (result_.status.ok()) {
-          RecordState(epoch->stamp_ns, stopwatch);
-        }
+      const TimeNs stamp_ns = epoch->stamp_ns;
+      DeliverImu(stamp_ns + SecondsToNs(initialized_ ? 0 : config_.gnss.max_time_offset_s));
+      if (!initialized_) {
+        StartWithEpoch();
       } else {
-        StartWithEpoch(*epoch);
+        gnss_->TakeEpoch();
+        if (result_.status.ok()) {
+          RecordState(stamp_ns, stopwatch);
+        }
       }
-      feed_->Pop();
       if (options_.progress) {
         options_.progress(done, total);
       }
@@ -131,98 +126,14 @@ class Run {
     }
   }
 
-  void StartWithEpoch(const GnssEpoch& epoch) {
-    inertial_start_->AddEpoch(epoch, feed_->solution());
-    const std::optional<GnssInertialStart::Start> start = inertial_start_->TryStart();
-    result_.align_report = result_.init_report = inertial_start_->report();
+  void StartWithEpoch() {
+    const std::optional<GnssInertialStart::Start> start = gnss_->TryStart();
     if (!start) {
       return;
     }
     Begin(start->estimate);
-    if (!initialized_) {
-      return;
-    }
-    result_.init_method = "gnss";
-    result_.status = estimator_.Align(start->alignment);
-    feed_->ShiftTime(start->alignment.time_offset_s);
-    SetGlobal(start->alignment, start->estimate.stamp_ns);
-    result_.global->yaw_std_rad =
-        std::sqrt((start->estimate.nav.R_WB * start->estimate.covariance.topLeftCorner<3, 3>() *
-                   start->estimate.nav.R_WB.transpose())(2, 2));
-  }
-
-  void SetGlobal(const GnssAlignment& alignment, TimeNs stamp_ns) {
-    result_.global = {alignment.enu,          log_.rig.gnss.p_BA, stamp_ns,
-                      feed_->time_offset_s(), alignment.yaw_rad,  std::sqrt(alignment.covariance(0, 0))};
-  }
-
-  void AddEpoch(const GnssEpoch& epoch) {
-    Status status = estimator_.AddGnss(epoch);
-    if (status.code() == StatusCode::kInput) {
-      result_.skip_report = result_.epochs_skipped++ == 0 && result_.skip_report.empty()
-                                ? status.message()
-                                : result_.skip_report;
-      return;
-    }
-    if (!status.ok()) {
-      result_.status = std::move(status);
-      return;
-    }
-    ++result_.epochs_used;
-    const FrameStatistics& s = estimator_.last_statistics();
-    epochs_.satellites_used += s.satellites_used;
-    epochs_.satellites_gated += s.satellites_gated;
-    epochs_.gnss_nis += s.gnss_nis;
-    epochs_.gnss_nis_dof += s.gnss_nis_dof;
-    epochs_.clock_jump = epochs_.clock_jump || s.clock_jump;
-    epochs_.propagate_ms += s.propagate_ms;
-    epochs_.update_ms += s.update_ms;
-    CollectResiduals();
-  }
-
-  /// The smoother judges an epoch with the frame after it.
-  void CollectResiduals() {
-    const GnssResiduals* residuals = estimator_.last_gnss();
-    const bool is_new =
-        residuals != nullptr && !residuals->satellites.empty() &&
-        (result_.gnss_residuals.empty() || result_.gnss_residuals.back().stamp_ns < residuals->stamp_ns);
-    if (is_new) {
-      result_.gnss_residuals.push_back(*residuals);
-    }
-  }
-
-  /// Hands the aligner the newest state, and the estimator the alignment as soon as there is one.
-  void Align(TimeNs stamp_ns) {
-    if (!feed_ || result_.global || !result_.status.ok() || !estimator_.initialized()) {
-      return;
-    }
-    const NavEstimate latest = estimator_.Latest();
-    if (latest.stamp_ns != stamp_ns) {
-      return;  // the frame was refused
-    }
-    aligner_->AddState(stamp_ns, latest.nav, latest.bias, log_.imu[next_imu_ - 1].gyro);
-    const std::optional<GnssAlignment> alignment = aligner_->TryAlign();
-    result_.align_report = aligner_->report();
-    if (!alignment) {
-      return;
-    }
-    if (Status status = estimator_.Align(*alignment); !status.ok()) {
-      result_.status = std::move(status);
-      return;
-    }
-    feed_->ShiftTime(alignment->time_offset_s);
-    result_.align_report = alignment->report;
-    SetGlobal(*alignment, stamp_ns);
-    // What was told in the local world is turned with it; the last record tells the state as it now stands.
-    for (RunRecord& record : result_.records) {
-      record.estimate = TurnIntoEnu(*alignment, record.estimate);
-      record.status = "local";
-    }
-    if (!result_.records.empty()) {
-      RunRecord& record = result_.records.back();
-      record.estimate = estimator_.Latest();
-      record.clock = estimator_.LatestClock();
-      record.status = "ok";
+    if (initialized_) {
+      gnss_->AlignAtStart(*start);
     }
   }
 
@@ -234,8 +145,8 @@ class Run {
         AddImu(sample);
       } else {
         initializer_.AddImu(sample);
-        if (inertial_start_ && log_.frames.empty()) {
-          inertial_start_->AddImu(sample);
+        if (gnss_ && log_.frames.empty()) {
+          gnss_->AddImuBeforeStart(sample);
         }
       }
     }
@@ -331,24 +242,13 @@ class Run {
     if (!result_.records.empty() && record.estimate.stamp_ns <= result_.records.back().estimate.stamp_ns) {
       return;  // an epoch that was left out
     }
-    CollectResiduals();
     record.statistics = log_.frames.empty() ? FrameStatistics() : estimator_.last_statistics();
-    AddEpochStatistics(&record.statistics);
+    if (gnss_) {
+      gnss_->Tell(&record.statistics);
+    }
     record.clock = estimator_.LatestClock();
     record.backend_ms = stopwatch.ElapsedMs();
     result_.records.push_back(std::move(record));
-  }
-
-  /// What the epochs since the frame before did.
-  void AddEpochStatistics(FrameStatistics* statistics) {
-    statistics->satellites_used += epochs_.satellites_used;
-    statistics->satellites_gated += epochs_.satellites_gated;
-    statistics->gnss_nis += epochs_.gnss_nis;
-    statistics->gnss_nis_dof += epochs_.gnss_nis_dof;
-    statistics->clock_jump = statistics->clock_jump || epochs_.clock_jump;
-    statistics->propagate_ms += epochs_.propagate_ms;
-    statistics->update_ms += epochs_.update_ms;
-    epochs_ = {};
   }
 
   void Finalize() {
@@ -385,11 +285,8 @@ class Run {
   const RunOptions& options_;
   Estimator& estimator_;
   Initializer initializer_;
-  std::optional<GnssFeed> feed_;
-  std::optional<GnssAligner> aligner_;
-  std::optional<GnssInertialStart> inertial_start_;  ///< where there is no camera
-  FrameStatistics epochs_;                           ///< of the epochs since the last frame
   RunResult result_;
+  std::optional<GnssRun> gnss_;
   size_t next_imu_ = 0;
   bool initialized_ = false;
 };
@@ -419,31 +316,6 @@ std::string_view ToString(Backend backend) {
       break;
   }
   return "batch";
-}
-
-std::string StatusWord(const RunResult& result) {
-  if (result.interrupted) {
-    return "interrupted";
-  }
-  if (result.status.ok()) {
-    return "ok";
-  }
-  if (result.status.code() != StatusCode::kDiverged) {
-    return "failed";
-  }
-  return result.init_method.empty() ? "not_initialized" : "diverged";
-}
-
-Trajectory TrajectoryOf(const RunResult& result) {
-  Trajectory trajectory;
-  trajectory.has_velocity = trajectory.has_bias = trajectory.has_covariance = true;
-  trajectory.points.reserve(result.records.size());
-  for (const RunRecord& record : result.records) {
-    const NavEstimate& estimate = record.estimate;
-    trajectory.points.push_back(
-        {estimate.stamp_ns, estimate.nav, estimate.bias, estimate.covariance.topLeftCorner<6, 6>()});
-  }
-  return trajectory;
 }
 
 std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config, const RigCalibration& rig) {
