@@ -29,18 +29,34 @@ TimeNs Distance(TimeNs a, TimeNs b) {
   return a < b ? b - a : a - b;
 }
 
+/// The double nearest to the stamp in seconds, as it is read from a decimal text: a long double holds all 63
+/// bits of the stamp.
+double ToDoubleSeconds(TimeNs stamp_ns) {
+  return static_cast<double>(static_cast<long double>(stamp_ns) / 1e9L);
+}
+
+/// Whether two stamps are within the tolerance. At Unix time doubles of seconds, which evo and the rpg tools
+/// keep, have steps of 0.24 us: there stamps that differ by the tolerance exactly are decided as those tools
+/// do.
+bool IsWithin(TimeNs a, TimeNs b, double max_dt_s) {
+  constexpr TimeNs kDoublesHoldNanoseconds = (TimeNs{1} << 22) * 1'000'000'000;
+  if (std::max(a, b) < kDoublesHoldNanoseconds) {
+    return Distance(a, b) <= SecondsToNs(max_dt_s);
+  }
+  return std::abs(ToDoubleSeconds(a) - ToDoubleSeconds(b)) <= max_dt_s;
+}
+
 /// One-to-one pairs, nearest first, sorted by time. An estimate competes only for the truth rows on either
 /// side of it: one that loses both never takes a farther row, so that pairs never cross in time.
-std::vector<Candidate> MatchNearest(const Trajectory& truth, const Trajectory& estimate, TimeNs max_dt_ns) {
+std::vector<Candidate> MatchNearest(const Trajectory& truth, const Trajectory& estimate, double max_dt_s) {
   std::vector<Candidate> candidates;
   candidates.reserve(2 * estimate.points.size());
   for (std::size_t e = 0; e < estimate.points.size(); ++e) {
     const TimeNs stamp = estimate.points[e].stamp_ns;
     const std::size_t after = FirstAtOrAfter(truth.points, stamp);
     for (std::size_t t = after == 0 ? 0 : after - 1; t <= after && t < truth.points.size(); ++t) {
-      const TimeNs distance = Distance(stamp, truth.points[t].stamp_ns);
-      if (distance <= max_dt_ns) {
-        candidates.push_back({distance, t, e});
+      if (IsWithin(stamp, truth.points[t].stamp_ns, max_dt_s)) {
+        candidates.push_back({Distance(stamp, truth.points[t].stamp_ns), t, e});
       }
     }
   }
@@ -81,9 +97,9 @@ std::vector<StatePair> PairByInterpolation(const Trajectory& truth, const Trajec
   return pairs;
 }
 
-std::vector<StatePair> PairByNearest(const Trajectory& truth, const Trajectory& estimate, TimeNs max_dt_ns) {
+std::vector<StatePair> PairByNearest(const Trajectory& truth, const Trajectory& estimate, double max_dt_s) {
   std::vector<StatePair> pairs;
-  for (const Candidate& match : MatchNearest(truth, estimate, max_dt_ns)) {
+  for (const Candidate& match : MatchNearest(truth, estimate, max_dt_s)) {
     pairs.push_back({truth.points[match.truth], estimate.points[match.estimate]});
   }
   return pairs;
@@ -168,7 +184,7 @@ std::string ToleranceHint(const Trajectory& truth, const Trajectory& estimate,
   if (options.interpolate) {
     return GapHint(truth, estimate);
   }
-  std::vector<Candidate> matches = MatchNearest(truth, estimate, SecondsToNs(kMaximumTolerance));
+  std::vector<Candidate> matches = MatchNearest(truth, estimate, kMaximumTolerance);
   if (matches.size() < kMinimumPairs) {
     return "no tolerance would match more than " + std::to_string(matches.size());
   }
@@ -223,7 +239,7 @@ Result<std::vector<StatePair>> Associate(const Trajectory& truth, const Trajecto
   }
   std::vector<StatePair> pairs = options.interpolate
                                      ? PairByInterpolation(truth, estimate, SecondsToNs(options.max_gap_s))
-                                     : PairByNearest(truth, estimate, SecondsToNs(options.max_dt_s));
+                                     : PairByNearest(truth, estimate, options.max_dt_s);
   if (pairs.size() < kMinimumPairs) {
     return TooFewPairs(truth, estimate, options, pairs.size());
   }

@@ -21,9 +21,10 @@ struct StatePair {
 };
 
 /// How truth and estimate rows become pairs.
-/// Nearest: pairs within max_dt_s, nearest first, one to one, never crossing in time.
-/// Interpolated: truth at each estimate stamp (position, velocity, biases linear, rotation geodesic) between
-/// rows at most max_gap_s apart, never over longer gaps nor past the ends; max_dt_s is not used.
+/// Nearest: pairs within max_dt_s (stamps that differ by just that are compared as doubles of seconds, like
+/// evo and the rpg tools do), nearest first, one to one, never crossing in time. Interpolated: truth at each
+/// estimate stamp (position, velocity, biases linear, rotation geodesic) between rows at most max_gap_s
+/// apart, never over longer gaps nor past the ends; max_dt_s is not used.
 struct AssociationOptions {
   double max_dt_s = 0.01;
   bool interpolate = false;
