@@ -28,18 +28,21 @@ struct Dataset {
   std::vector<ImageEntry> images;          ///< cam0/data.csv; empty when there is none
   std::vector<TimeNs> camera_stamps;       ///< cam0/timestamps.csv; empty when there is none
   std::shared_ptr<const GnssLog> gnss;     ///< gnss0: observations and navigation data; null without it
-  std::optional<Trajectory> truth;         ///< state_groundtruth_estimate0/{data.csv | data_pose.csv}
+  std::optional<Trajectory>
+      truth;  ///< state_groundtruth_estimate0/{data.csv | data_pose.csv | data_position.csv}
   std::string truth_path;
 };
 
-/// Reads everything but pixels. Every fault is kInput naming file, line, value and expectation: missing file,
-/// wrong header, torn row, non-finite number, stamps not increasing, non-rigid T_BS, unknown distortion
-/// model, wrong resolution.
+/// Reads everything but pixels; `path` may be a ROS bag too (eval/bag_import.h). Every fault is kInput naming
+/// file, line, value and expectation: missing file, wrong header, torn row, non-finite number, stamps not
+/// increasing, non-rigid T_BS, unknown distortion model, wrong resolution.
 Result<Dataset> ReadDataset(const std::string& path);
 
 /// Writes imu0, cam0 (tracks, stamps) and truth under `path`. Numbers are the shortest text that reads back
 /// equal.
 Status WriteDataset(const Dataset& dataset, const std::string& path);
+/// sensor.yaml of extra_cameras[k].
+[[nodiscard]] std::string ExtraCameraYaml(const Dataset& dataset, size_t k);
 /// Writes cam0/tracks.csv (and its sensor.yaml) alone: the output of the `track` command.
 Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path);
 

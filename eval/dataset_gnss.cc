@@ -17,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct GnssSensor {
-  GnssReceiver receiver;
+struct GnssSensor : GnssSheet {
   std::string observations = "obs.rnx";
   std::vector<std::string> navigation = {"nav.rnx"};
   std::vector<std::string> orbits;
@@ -59,8 +58,23 @@ Status ReadNames(const std::string& path, const YAML::Node& root, const char* ke
   return names->empty() ? Fault(path, node, key, "a file name or a list of them") : Status::Ok();
 }
 
-Result<GnssSensor> ReadGnssSensor(const std::string& path) {
-  const Result<YAML::Node> parsed = ParseYamlFile(path, StatusCode::kInput);
+/// A position on the Earth that may be left out.
+Status ReadPosition(const std::string& path, const YAML::Node& root, const char* key,
+                    std::optional<Eigen::Vector3d>* position_E) {
+  if (!root[key].IsDefined()) {
+    return Status::Ok();
+  }
+  Eigen::Vector3d found;
+  ALIDADE_RETURN_IF_ERROR(ReadVector(path, root, key, &found));
+  constexpr double kLeastRadiusM = 6.3e6;
+  if (found.norm() < kLeastRadiusM || found.norm() > 1.1 * kLeastRadiusM) {
+    return Fault(path, root[key], key, "ECEF coordinates [m] near the Earth's surface");
+  }
+  *position_E = found;
+  return Status::Ok();
+}
+
+Result<GnssSensor> MakeGnssSensor(const Result<YAML::Node>& parsed, const std::string& path) {
   ALIDADE_RETURN_IF_ERROR(parsed.status());
   const YAML::Node& root = *parsed;
   GnssSensor sensor;
@@ -81,15 +95,8 @@ Result<GnssSensor> ReadGnssSensor(const std::string& path) {
       return Fault(path, offset, "time_offset_s", number.message());
     }
   }
-  if (root["anchor_E"].IsDefined()) {
-    Eigen::Vector3d anchor_E;
-    ALIDADE_RETURN_IF_ERROR(ReadVector(path, root, "anchor_E", &anchor_E));
-    constexpr double kLeastRadiusM = 6.3e6;
-    if (anchor_E.norm() < kLeastRadiusM || anchor_E.norm() > 1.1 * kLeastRadiusM) {
-      return Fault(path, root["anchor_E"], "anchor_E", "ECEF coordinates [m] near the Earth's surface");
-    }
-    sensor.receiver.anchor_E = anchor_E;
-  }
+  ALIDADE_RETURN_IF_ERROR(ReadPosition(path, root, "anchor_E", &sensor.receiver.anchor_E));
+  ALIDADE_RETURN_IF_ERROR(ReadPosition(path, root, "approximate_position_E", &sensor.approximate_position_E));
   std::vector<std::string> observations = {sensor.observations};
   ALIDADE_RETURN_IF_ERROR(ReadNames(path, root, "observations", &observations));
   sensor.observations = observations.front();
@@ -110,7 +117,10 @@ std::string VectorText(const Eigen::Vector3d& v) {
   return "[" + ShortestDouble(v.x()) + ", " + ShortestDouble(v.y()) + ", " + ShortestDouble(v.z()) + "]";
 }
 
-std::string GnssSensorYaml(const GnssReceiver& receiver) {
+}  // namespace
+
+std::string GnssSensorYaml(const GnssReceiver& receiver,
+                           const std::optional<Eigen::Vector3d>& approximate_position_E) {
   std::string text =
       "sensor_type: gnss\np_BA: " + VectorText(receiver.p_BA) +
       "  # antenna in the body frame [m]\ntime_offset_s: " + ShortestDouble(receiver.time_offset_s) +
@@ -118,13 +128,22 @@ std::string GnssSensorYaml(const GnssReceiver& receiver) {
   if (receiver.anchor_E) {
     text += "anchor_E: " + VectorText(*receiver.anchor_E) + "  # origin of the truth's ENU frame, ECEF [m]\n";
   }
+  if (approximate_position_E) {
+    text +=
+        "approximate_position_E: " + VectorText(*approximate_position_E) + "  # start of positioning [m]\n";
+  }
   return text + "observations: obs.rnx\nnavigation: nav.rnx\n";
 }
 
-}  // namespace
+Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& where) {
+  const Result<GnssSensor> sensor = MakeGnssSensor(ParseYaml(text, where, StatusCode::kInput), where);
+  ALIDADE_RETURN_IF_ERROR(sensor.status());
+  return GnssSheet(*sensor);
+}
 
 Status ReadGnssFolder(const std::string& folder, Dataset* dataset) {
-  const Result<GnssSensor> sensor = ReadGnssSensor((fs::path(folder) / "sensor.yaml").string());
+  const std::string sheet = (fs::path(folder) / "sensor.yaml").string();
+  const Result<GnssSensor> sensor = MakeGnssSensor(ParseYamlFile(sheet, StatusCode::kInput), sheet);
   ALIDADE_RETURN_IF_ERROR(sensor.status());
   Result<ObservationFile> observations =
       ReadRinexObservation((fs::path(folder) / sensor->observations).string());
@@ -139,7 +158,8 @@ Status ReadGnssFolder(const std::string& folder, Dataset* dataset) {
   log->epochs = std::move(observations->epochs);
   log->glonass_channels = std::move(observations->glonass_channels);
   log->catalog = *catalog;
-  log->approximate_position_E = observations->approximate_position_E;
+  log->approximate_position_E =
+      sensor->approximate_position_E ? sensor->approximate_position_E : observations->approximate_position_E;
   dataset->gnss = std::move(log);
   dataset->rig.gnss = sensor->receiver;
   return Status::Ok();
@@ -153,7 +173,7 @@ Status WriteGnssFolder(const Dataset& dataset, const std::string& folder) {
   file.glonass_channels = dataset.gnss->glonass_channels;
   file.epochs = dataset.gnss->epochs;
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically((path / "sensor.yaml").string(), GnssSensorYaml(dataset.rig.gnss)));
+      WriteFileAtomically((path / "sensor.yaml").string(), GnssSensorYaml(dataset.rig.gnss, std::nullopt)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "obs.rnx").string(), FormatRinexObservation(file)));
   return WriteFileAtomically((path / "nav.rnx").string(),
                              FormatRinexNavigation(dataset.gnss->catalog->navigation()));

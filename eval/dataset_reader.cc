@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "eval/bag_import.h"
 #include "eval/csv.h"
 #include "eval/dataset.h"
 #include "eval/dataset_camera.h"
@@ -45,7 +46,7 @@ Result<std::vector<ImuSample>> ReadImu(const std::string& path) {
 }
 
 Status ReadTruth(const fs::path& folder, Dataset* dataset) {
-  for (const char* name : {"data.csv", "data_pose.csv"}) {
+  for (const char* name : {"data.csv", "data_pose.csv", "data_position.csv"}) {
     const fs::path path = folder / name;
     if (!fs::exists(path)) {
       continue;
@@ -57,7 +58,8 @@ Status ReadTruth(const fs::path& folder, Dataset* dataset) {
     return Status::Ok();
   }
   if (fs::is_directory(folder)) {
-    return Status::Input(folder.string() + ": expected data.csv or data_pose.csv; found neither");
+    return Status::Input(folder.string() +
+                         ": expected data.csv, data_pose.csv or data_position.csv; found none");
   }
   return Status::Ok();
 }
@@ -81,6 +83,9 @@ Status CheckFolders(const std::string& path, const fs::path& mav) {
 }  // namespace
 
 Result<Dataset> ReadDataset(const std::string& path) {
+  if (IsBag(path)) {
+    return ReadBagDataset(path);
+  }
   const fs::path mav = fs::path(path) / "mav0";
   ALIDADE_RETURN_IF_ERROR(CheckFolders(path, mav));
   Dataset dataset;

@@ -45,14 +45,17 @@ std::string TruthCsv(const Trajectory& truth) {
             "q_RS_z [],v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],"
             "b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],"
             "b_a_RS_S_z [m s^-2]\n"
-          : "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n";
+      : truth.has_orientation ? "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n"
+                              : "#timestamp [ns],p_x,p_y,p_z\n";
   text.reserve(truth.points.size() * 340);
   for (const TrajectoryPoint& point : truth.points) {
     const Eigen::Quaterniond q(point.nav.R_WB);
     text += std::to_string(point.stamp_ns);
     Append(&text, point.nav.p_WB);
-    Append(&text, q.w());
-    Append(&text, Eigen::Vector3d(q.vec()));
+    if (truth.has_orientation) {
+      Append(&text, q.w());
+      Append(&text, Eigen::Vector3d(q.vec()));
+    }
     if (truth.has_velocity) {
       Append(&text, point.nav.v_WB);
       Append(&text, point.bias.gyro);
@@ -86,7 +89,20 @@ std::vector<TimeNs> StampsToWrite(const Dataset& dataset) {
   return some_empty ? stamps : std::vector<TimeNs>();
 }
 
+bool HasCamera(const Dataset& dataset) {
+  return !dataset.tracks.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
+}
+
 }  // namespace
+
+std::string ExtraCameraYaml(const Dataset& dataset, size_t k) {
+  const ExtraCamera& extra = dataset.extra_cameras[k];
+  RigCalibration rig = dataset.rig;
+  rig.camera = extra.camera;
+  rig.T_BC = extra.T_BC;
+  rig.camera_time_offset_s = extra.camera_time_offset_s;
+  return CameraSensorYaml(rig, dataset.camera_rate_hz);
+}
 
 Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path) {
   std::string text = "#timestamp [ns],track_id,u [px],v [px]\n";
@@ -109,8 +125,10 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((mav / "imu0" / "sensor.yaml").string(),
                                               ImuSensorYaml(dataset.rig.imu_noise, dataset.imu_rate_hz)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((mav / "imu0" / "data.csv").string(), ImuCsv(dataset.imu)));
-  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((camera / "sensor.yaml").string(),
-                                              CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));
+  if (HasCamera(dataset) || dataset.gnss == nullptr) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((camera / "sensor.yaml").string(),
+                                                CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));
+  }
   if (!dataset.tracks.empty()) {
     ALIDADE_RETURN_IF_ERROR(WriteTracks(dataset.tracks, (camera / "tracks.csv").string()));
   }
@@ -120,19 +138,17 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
   for (size_t k = 0; k < dataset.extra_cameras.size(); ++k) {
     const ExtraCamera& extra = dataset.extra_cameras[k];
     const fs::path folder = mav / ("cam" + std::to_string(k + 1));
-    RigCalibration rig = dataset.rig;
-    rig.camera = extra.camera;
-    rig.T_BC = extra.T_BC;
-    rig.camera_time_offset_s = extra.camera_time_offset_s;
-    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((folder / "sensor.yaml").string(),
-                                                CameraSensorYaml(rig, dataset.camera_rate_hz)));
+    ALIDADE_RETURN_IF_ERROR(
+        WriteFileAtomically((folder / "sensor.yaml").string(), ExtraCameraYaml(dataset, k)));
     ALIDADE_RETURN_IF_ERROR(WriteTracks(extra.frames, (folder / "tracks.csv").string()));
   }
   if (dataset.gnss != nullptr) {
     ALIDADE_RETURN_IF_ERROR(WriteGnssFolder(dataset, (mav / "gnss0").string()));
   }
   if (dataset.truth.has_value()) {
-    const char* name = dataset.truth->has_velocity ? "data.csv" : "data_pose.csv";
+    const char* name = dataset.truth->has_velocity      ? "data.csv"
+                       : dataset.truth->has_orientation ? "data_pose.csv"
+                                                        : "data_position.csv";
     ALIDADE_RETURN_IF_ERROR(
         WriteFileAtomically((mav / "state_groundtruth_estimate0" / name).string(), TruthCsv(*dataset.truth)));
   }

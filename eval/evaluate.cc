@@ -1,14 +1,40 @@
 #include "eval/evaluate.h"
 
+#include <limits>
 #include <utility>
 
 namespace alidade {
+namespace {
+
+/// The pairs with all rotations the identity: their relative errors are then those of displacements in the
+/// world.
+std::vector<StatePair> WithoutOrientation(std::vector<StatePair> pairs) {
+  for (StatePair& pair : pairs) {
+    pair.truth.nav.R_WB.setIdentity();
+    pair.estimate.nav.R_WB.setIdentity();
+  }
+  return pairs;
+}
+
+void ForgetOrientation(Evaluation* evaluation) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  evaluation->unaligned.ori_deg = evaluation->ate.ori_deg = kUnknown;
+  for (RpeResult& rpe : evaluation->rpe) {
+    rpe.ori_rmse_deg = kUnknown;
+  }
+}
+
+}  // namespace
 
 Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
                             const EvaluationOptions& options) {
   Result<std::vector<StatePair>> pairs = Associate(truth, estimate, options.association);
   if (!pairs.ok()) {
     return pairs.status();
+  }
+  const bool oriented = truth.has_orientation && estimate.has_orientation;
+  if (options.anchor_at_first && !oriented) {
+    return Status::Usage("anchor_at_first: needs attitudes, and one of the trajectories has none");
   }
   Evaluation evaluation;
   evaluation.options = options;
@@ -26,8 +52,10 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
   const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
   evaluation.unaligned = ComputeAte(evaluation.pairs);
   evaluation.ate = ComputeAte(aligned);
-  evaluation.rpe = ComputeRpe(aligned, options.rpe_distances_m);
-  if (estimate.has_covariance) {
+  evaluation.rpe = ComputeRpe(oriented ? aligned : WithoutOrientation(aligned), options.rpe_distances_m);
+  if (!oriented) {
+    ForgetOrientation(&evaluation);
+  } else if (estimate.has_covariance) {
     evaluation.nees = ComputeNees(evaluation.pairs);
   }
   return evaluation;

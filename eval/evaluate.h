@@ -34,7 +34,9 @@ struct Evaluation {
   std::optional<NeesResult> nees;  ///< unaligned; absent when the estimate carries no covariance
 };
 
-/// Associates, aligns and scores. Errors: those of Associate.
+/// Associates, aligns and scores. When one of the two has no orientation, figures of it are NaN and there is
+/// no NEES; the relative error is then that of displacements in the truth's world. Errors: those of
+/// Associate; kUsage: anchor_at_first without orientation.
 Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
                             const EvaluationOptions& options);
 

@@ -18,8 +18,8 @@ constexpr double kRoundingError = 1e-14;
 /// One sensor.yaml with its path, for messages.
 class SensorFile {
  public:
-  static Result<SensorFile> Open(const std::string& path, const std::string& sensor_type) {
-    Result<YAML::Node> root = ParseYamlFile(path, StatusCode::kInput);
+  static Result<SensorFile> Make(const Result<YAML::Node>& root, const std::string& path,
+                                 const std::string& sensor_type) {
     if (!root.ok()) {
       return root.status();
     }
@@ -214,10 +214,8 @@ std::string Line(const char* key, double value, const char* comment) {
   return std::string(key) + ": " + ShortestDouble(value) + comment + "\n";
 }
 
-}  // namespace
-
-Result<ImuSensor> ReadImuSensor(const std::string& path) {
-  const Result<SensorFile> file = SensorFile::Open(path, "imu");
+Result<ImuSensor> MakeImuSensor(const Result<YAML::Node>& root, const std::string& path) {
+  const Result<SensorFile> file = SensorFile::Make(root, path, "imu");
   if (!file.ok()) {
     return file.status();
   }
@@ -241,8 +239,8 @@ Result<ImuSensor> ReadImuSensor(const std::string& path) {
   return sensor;
 }
 
-Result<CameraSensor> ReadCameraSensor(const std::string& path) {
-  const Result<SensorFile> file = SensorFile::Open(path, "camera");
+Result<CameraSensor> MakeCameraSensor(const Result<YAML::Node>& root, const std::string& path) {
+  const Result<SensorFile> file = SensorFile::Make(root, path, "camera");
   if (!file.ok()) {
     return file.status();
   }
@@ -257,6 +255,24 @@ Result<CameraSensor> ReadCameraSensor(const std::string& path) {
     }
   }
   return sensor;
+}
+
+}  // namespace
+
+Result<ImuSensor> ReadImuSensor(const std::string& path) {
+  return MakeImuSensor(ParseYamlFile(path, StatusCode::kInput), path);
+}
+
+Result<ImuSensor> ParseImuSensor(const std::string& text, const std::string& where) {
+  return MakeImuSensor(ParseYaml(text, where, StatusCode::kInput), where);
+}
+
+Result<CameraSensor> ReadCameraSensor(const std::string& path) {
+  return MakeCameraSensor(ParseYamlFile(path, StatusCode::kInput), path);
+}
+
+Result<CameraSensor> ParseCameraSensor(const std::string& text, const std::string& where) {
+  return MakeCameraSensor(ParseYaml(text, where, StatusCode::kInput), where);
 }
 
 std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz) {

@@ -30,6 +30,10 @@ Result<ImuSensor> ReadImuSensor(const std::string& path);
 /// rounding (1e-3) is made orthonormal; beyond that it is an error. Errors (kInput) as above.
 Result<CameraSensor> ReadCameraSensor(const std::string& path);
 
+/// The same from text; `where` stands for the file in messages.
+Result<ImuSensor> ParseImuSensor(const std::string& text, const std::string& where);
+Result<CameraSensor> ParseCameraSensor(const std::string& text, const std::string& where);
+
 /// The text of both files; reading it back gives equal values.
 [[nodiscard]] std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz);
 [[nodiscard]] std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz);

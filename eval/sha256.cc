@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
 #include "core/check.h"
@@ -44,10 +45,29 @@ std::string Sha256Hex(std::string_view bytes) {
   return hash.Hex();
 }
 
+namespace {
+
+/// Piece by piece: a bag may be larger than memory.
+Result<std::string> DigestOfFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> piece(std::size_t{1} << 20);
+  Sha256 hash;
+  while (file) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    hash.Add({piece.data(), static_cast<std::size_t>(file.gcount())});
+  }
+  return file.eof() ? Result<std::string>(hash.Hex()) : Status::Input(path + ": cannot be read");
+}
+
+}  // namespace
+
 Result<std::string> DigestOfFolder(const std::string& folder) {
   namespace fs = std::filesystem;
   std::vector<std::string> names;
   std::error_code error;
+  if (fs::is_regular_file(folder, error)) {
+    return DigestOfFile(folder);
+  }
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     if (it->is_regular_file(error)) {
       names.push_back(fs::path(it->path()).lexically_relative(folder).generic_string());

@@ -27,8 +27,8 @@ class Sha256 {
 
 [[nodiscard]] std::string Sha256Hex(std::string_view bytes);
 
-/// Digest of every file below a folder: relative names and contents, in the order of the names. kInput: a
-/// file cannot be read.
+/// Digest of every file below a folder: relative names and contents, in the order of the names; of a file (a
+/// bag): its content. kInput: a file cannot be read.
 Result<std::string> DigestOfFolder(const std::string& folder);
 
 }  // namespace alidade

@@ -141,13 +141,17 @@ Status ReadCovariance(const CsvReader& csv, size_t first, Matrix6d* covariance) 
   return Status::Ok();
 }
 
+constexpr size_t kPositionColumns = 4;
+
 /// One row of the three comma-separated formats: they share their first columns.
 Status ReadCsvPoint(const CsvReader& csv, const Trajectory& trajectory, TrajectoryPoint* point) {
   const bool first = trajectory.points.empty();
   ALIDADE_RETURN_IF_ERROR(
       csv.ReadStamp(first, first ? 0 : trajectory.points.back().stamp_ns, &point->stamp_ns));
   ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 1, "position", &point->nav.p_WB));
-  ALIDADE_RETURN_IF_ERROR(ReadRotation(csv, 4, false, &point->nav.R_WB));
+  if (trajectory.has_orientation) {
+    ALIDADE_RETURN_IF_ERROR(ReadRotation(csv, 4, false, &point->nav.R_WB));
+  }
   if (trajectory.has_velocity) {
     ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 8, "velocity", &point->nav.v_WB));
     ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 11, "gyro bias", &point->bias.gyro));
@@ -167,6 +171,10 @@ Status RecognizeHeader(const CsvReader& csv, Trajectory* trajectory, size_t* col
     trajectory->has_velocity = trajectory->has_bias = trajectory->has_covariance = true;
     return csv.ExpectHeader(StatesHeader(), true);  // clock terms may follow
   }
+  if (*columns == kPositionColumns) {
+    trajectory->has_orientation = false;
+    return csv.ExpectHeader({PoseHeader().begin(), PoseHeader().begin() + kPositionColumns});
+  }
   if (*columns == kPoseColumns) {
     return csv.field(1).starts_with("p_RS_R_x")
                ? csv.ExpectHeader({EurocHeader().begin(), EurocHeader().begin() + kPoseColumns})
@@ -176,9 +184,10 @@ Status RecognizeHeader(const CsvReader& csv, Trajectory* trajectory, size_t* col
     trajectory->has_velocity = trajectory->has_bias = true;
     return csv.ExpectHeader(EurocHeader());
   }
-  return Status::Input(csv.Place() + ": found a first row of " + std::to_string(*columns) +
-                       " columns, expected the header of EuRoC truth (17 or 8 columns) or of states.csv (" +
-                       std::to_string(kStateColumns + kCovarianceColumns) + " or more)");
+  return Status::Input(
+      csv.Place() + ": found a first row of " + std::to_string(*columns) +
+      " columns, expected the header of EuRoC truth (17 or 8 columns), positions (4) or states.csv (" +
+      std::to_string(kStateColumns + kCovarianceColumns) + " or more)");
 }
 
 Result<Trajectory> ReadCsvTrajectory(CsvReader& csv) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Alidade needs on Debian 12 and is missing. `--with-tests-of-report` adds what some tests use and are skipped
-# without: a headless browser for the report page, RTKLIB as oracle of single-point positions.
+# without: a headless browser for the report page, RTKLIB as oracle of single-point positions, rosbag as
+# oracle of bags.
 set -euo pipefail
 
 packages=(
@@ -9,11 +10,11 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-video-dev libopencv-calib3d-dev
   libopencv-features2d-dev
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev
-  libgeographiclib-dev zlib1g-dev
+  libgeographiclib-dev zlib1g-dev libbz2-dev liblz4-dev
   libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3
 )
 if [[ "${1:-}" == "--with-tests-of-report" ]]; then
-  packages+=(chromium rtklib)
+  packages+=(chromium rtklib python3-rosbag python3-sensor-msgs)
 elif [[ $# -gt 0 ]]; then
   echo "usage: $0 [--with-tests-of-report]" >&2
   exit 2

@@ -41,6 +41,7 @@ int RunSpp(const std::vector<std::string>& arguments);
 int RunStarts(const std::vector<std::string>& arguments);
 int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
+int RunConvert(const std::vector<std::string>& arguments);
 int RunConfig(const std::vector<std::string>& arguments);
 
 }  // namespace alidade::cli

@@ -8,9 +8,10 @@ DEFINE_bool(audit, false, "write observability.csv: what the filter claims to ob
 DEFINE_string(backend, "", "filter | smoother | batch: replaces the key `backend` of the configuration");
 DEFINE_bool(check, false, "name the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
+DEFINE_string(compression, "none", "none | bz2 | lz4: how the chunks of a bag are packed");
 DEFINE_string(config, "", "configuration file, YAML");
 DEFINE_string(data, "", "folder that ${data} stands for in a plan");
-DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout");
+DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout, or a ROS 1 bag");
 DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
 DEFINE_string(error, "right_invariant", "right_invariant | left_invariant | so3xrn: the error of Jacobians");
 DEFINE_string(estimate, "", "trajectory file to be scored");
@@ -36,5 +37,7 @@ DEFINE_string(set, "", "a.b=value,...: settings over the configuration file; may
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
 DEFINE_int32(starts, 100, "starts in all, spread over the sequences of the plan");
+DEFINE_string(topics, "",
+              "imu=/topic,cam0=/topic,...: names in a bag that are not the usual ones (docs/bags.md)");
 DEFINE_string(truth, "", "ground-truth trajectory file");
 DEFINE_string(windows, "5,10,15,20,25", "clones in the window, separated by commas");

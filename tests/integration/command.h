@@ -17,11 +17,10 @@ struct CommandResult {
   std::string output;  ///< standard output and standard error
 };
 
-/// Runs the built program with these words, as a shell would.
-inline CommandResult Alidade(const std::string& words) {
+/// Runs a command of the shell.
+inline CommandResult Shell(const std::string& command) {
   CommandResult result;
-  const std::string command = std::string(ALIDADE_BINARY_DIR) + "/alidade " + words + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) {
     return result;
   }
@@ -32,6 +31,11 @@ inline CommandResult Alidade(const std::string& words) {
   const int status = pclose(pipe);
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+/// Runs the built program with these words, as a shell would.
+inline CommandResult Alidade(const std::string& words) {
+  return Shell(std::string(ALIDADE_BINARY_DIR) + "/alidade " + words);
 }
 
 /// Path below the folder -> content, for all files that equal runs must write equally: timing.csv is left

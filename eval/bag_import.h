@@ -1,0 +1,58 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eval/bag_topics.h"
+#include "eval/dataset.h"
+#include "eval/rosbag_reader.h"
+#include "eval/sensor_yaml.h"
+#include "frontend/klt_tracker.h"
+
+namespace alidade {
+
+/// An image of a bag: pixels, or the bytes of a PNG or JPEG file as the bag has them.
+struct BagImage {
+  TimeNs stamp_ns = 0;
+  GreyImage grey;              ///< no pixels when `file` is set
+  std::string_view file;       ///< lives as long as the call that hands it over
+  const char* extension = "";  ///< of `file`: png or jpg
+};
+
+struct BagImportOptions {
+  BagTopics topics;
+  /// Calibration in place of the sheets in the bag.
+  std::optional<ImuSensor> imu;
+  std::optional<CameraSensor> camera;
+  /// Takes an image of the camera. Without it a bag whose camera has images alone is an error.
+  std::function<Status(const BagImage&)> take_image;
+  const std::atomic<bool>* stop = nullptr;
+  std::function<void(std::int64_t done, std::int64_t messages)> progress;
+};
+
+/// A sequence from a bag.
+struct BagImport {
+  Dataset dataset;  ///< without image entries: those are the business of whoever takes the images
+  BagScan scan;
+  std::vector<std::string> remarks;  ///< what was guessed, passed over or is missing, for a person
+};
+
+/// Reads a ROS 1 bag: IMU, tracks or images, GNSS of gnss_comm, truth. What alidade wrote itself comes back
+/// equal. Of other bags: the truth is receiver_pvt with a fixed carrier solution (positions of the antenna in
+/// ENU at the first of them, no attitude); the GNSS time offset is the median over the triggers against the
+/// pulse announced last. Stamps out of order are sorted, double ones passed over, with a remark. Errors
+/// (kInput): no IMU, no calibration, a topic that is not there, two topics that could be meant; kDiverged:
+/// stopped.
+Result<BagImport> ReadBag(const std::string& path, const BagImportOptions& options);
+
+/// ReadBag as a dataset: a bag in place of a sequence's folder. Its images cannot be read from here.
+Result<Dataset> ReadBagDataset(const std::string& path);
+
+/// Whether a path names a bag: a file, by its extension.
+[[nodiscard]] bool IsBag(const std::string& path);
+
+}  // namespace alidade

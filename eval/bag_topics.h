@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "core/status.h"
+
+namespace alidade {
+
+/// Names of topics. Reading, an empty one is found by its type: it must then be the only one of it.
+struct BagTopics {
+  std::string imu = "/imu0";
+  std::string camera = "/cam0/image_raw";
+  std::string tracks = "/cam0/tracks";
+  std::string truth = "/ground_truth";
+  std::string range = "/ublox_driver/range_meas";
+  std::string ephemeris = "/ublox_driver/ephem";
+  std::string glonass_ephemeris = "/ublox_driver/glo_ephem";
+  std::string ionosphere = "/ublox_driver/iono_params";
+  std::string beidou_ionosphere = "/ublox_driver/iono_params_bds";
+  std::string solution = "/ublox_driver/receiver_pvt";
+  std::string time_pulse = "/ublox_driver/time_pulse_info";
+  std::string trigger = "/external_trigger";
+
+  /// Sets "imu=/imu/data,cam0=/left/image_raw": imu, cam0, tracks, truth, range, ephem, glo_ephem, iono, pvt,
+  /// pulse, trigger. kUsage: another word, or no name.
+  Status Set(const std::string& list);
+};
+
+/// The sensor.yaml of a sensor ("imu0", "cam0", "gnss0", "cam1") as text in a bag.
+[[nodiscard]] inline std::string SheetTopic(const std::string& sensor) {
+  return "/" + sensor + "/sensor_yaml";
+}
+
+}  // namespace alidade
