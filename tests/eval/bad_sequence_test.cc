@@ -246,7 +246,7 @@ const FileCase kTruthCases[] = {
     {"truth folder without a file",
      kTruthFile,
      "",
-     {"state_groundtruth_estimate0", "data.csv or data_pose.csv"}},
+     {"state_groundtruth_estimate0", "data.csv, data_pose.csv or data_position.csv"}},
     {"truth of nine columns",
      kTruthFile,
      "#timestamp [ns],a,b,c,d,e,f,g,h\n",
