@@ -1,10 +1,18 @@
 #include "filter/gnss_update.h"
 
+#include <Eigen/QR>
 #include <cmath>
 
 #include "gnss/receiver_clock.h"
 
 namespace alidade {
+namespace {
+
+constexpr Eigen::Index kClock = FilterState::kClockSize;
+constexpr Eigen::Index kCore = SquareRootCovariance::kCore;
+constexpr Eigen::Index kSeen = kClock + kCore;
+
+}  // namespace
 
 GnssUpdate::GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver)
     : config_(config), receiver_(receiver), gate_threshold_(ChiSquareQuantile(1, config.gate_probability)) {}
@@ -64,34 +72,37 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
     statistics->clock_jump = true;
   }
   FillRows(*state);
-  state->covariance().Prepare(jacobian_);
-  Weigh(statistics);
-  if (!state->covariance().Apply(jacobian_, innovation_, correction, &statistics->gnss_nis)) {
+  Weigh(*state, statistics);
+  const double silent = Compress();
+  if (!state->covariance().UpdateByBlock(state->ClockOffset(), jacobian_, innovation_, correction,
+                                         &statistics->gnss_nis)) {
     return false;
   }
+  statistics->gnss_nis += silent;
   clock_ += correction.segment<6>(state->ClockOffset());
   return clock_.allFinite();
 }
 
 void GnssUpdate::FillRows(const FilterState& state) {
   const auto count = static_cast<Eigen::Index>(rows_.size());
-  jacobian_.setZero(count, state.covariance().dimension());
+  jacobian_.resize(count, kSeen);
   innovation_.resize(count);
   const NavState& point = state.first_estimates() ? state.nav_first() : state.nav();
   const Matrix15d chart = ImuChartJacobian(state.convention(), point);
   for (Eigen::Index i = 0; i < count; ++i) {
     const GnssRow& row = rows_[static_cast<std::size_t>(i)];
-    jacobian_.block<1, 6>(i, state.ClockOffset()) = row.ClockJacobian() / row.deviation;
-    jacobian_.block<1, 15>(i, state.CoreOffset()).noalias() = row.jacobian * chart / row.deviation;
+    jacobian_.block<1, kClock>(i, 0) = row.ClockJacobian() / row.deviation;
+    jacobian_.block<1, kCore>(i, kClock).noalias() = row.jacobian * chart / row.deviation;
     innovation_[i] = -row.residual / row.deviation;
   }
 }
 
-void GnssUpdate::Weigh(FrameStatistics* statistics) {
+void GnssUpdate::Weigh(const FilterState& state, FrameStatistics* statistics) {
   nis_.resize(rows_.size());
+  const Eigen::MatrixXd predicted = jacobian_ * state.covariance().Block(state.ClockOffset(), kSeen);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    nis_[i] = innovation_[k] * innovation_[k] / (1 + jacobian_.row(k).squaredNorm());
+    nis_[i] = innovation_[k] * innovation_[k] / (1 + predicted.row(k).dot(jacobian_.row(k)));
   }
   const GnssWeights result = WeighRows(config_, gate_threshold_, nis_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -106,6 +117,18 @@ void GnssUpdate::Weigh(FrameStatistics* statistics) {
   for (const SatelliteResidual& told : residuals_.satellites) {
     ++(told.used || told.range_rate_used ? statistics->satellites_used : statistics->satellites_gated);
   }
+}
+
+double GnssUpdate::Compress() {
+  if (jacobian_.rows() <= kSeen) {
+    return 0;
+  }
+  Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian_);
+  innovation_.applyOnTheLeft(qr.householderQ().adjoint());
+  const double silent = innovation_.tail(innovation_.size() - kSeen).squaredNorm();
+  innovation_.conservativeResize(kSeen);
+  jacobian_ = qr.matrixQR().topRows(kSeen).triangularView<Eigen::Upper>();
+  return silent;
 }
 
 }  // namespace alidade

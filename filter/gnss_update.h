@@ -39,7 +39,9 @@ class GnssUpdate {
   void PropagateClockTo(TimeNs stamp_ns, FilterState* state);
   void ResetClock(double step_m, FilterState* state);
   void FillRows(const FilterState& state);
-  void Weigh(FrameStatistics* statistics);
+  void Weigh(const FilterState& state, FrameStatistics* statistics);
+  /// Rotates the rows into at most as many as they have columns; returns the square of what says nothing.
+  double Compress();
 
   GnssConfig config_;
   GnssReceiver receiver_;
@@ -52,7 +54,7 @@ class GnssUpdate {
   EpochMeasurements located_;
   std::vector<GnssRow> rows_;
   std::vector<double> nis_;
-  Eigen::MatrixXd jacobian_;
+  Eigen::MatrixXd jacobian_;  ///< over clock and core, which is all that an epoch sees
   Eigen::VectorXd innovation_;
 };
 

@@ -65,6 +65,14 @@ class SquareRootCovariance {
              const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> correction, double* nis,
              int sparse_from = -1);
 
+  /// Kalman update with unit-noise rows that see the errors [first, first + rows.cols()) alone, as Prepare
+  /// and Apply. The work grows with their number times dimension() squared: for rows much fewer than the
+  /// error. False when a row is not finite (nothing is changed), or when S and the rows are too
+  /// far apart in size for double precision (S is spent).
+  bool UpdateByBlock(int first, const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                     const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> correction,
+                     double* nis);
+
   [[nodiscard]] int dimension() const { return dimension_; }
   /// Rows before the core block.
   [[nodiscard]] int leading() const { return leading_; }
@@ -74,6 +82,8 @@ class SquareRootCovariance {
   [[nodiscard]] Matrix15d CoreCovariance() const;
   /// Covariance of the rows [row, row + 6) with [column, column + 6).
   [[nodiscard]] Matrix6d PoseBlock(int row, int column) const;
+  /// Covariance of the rows [first, first + size).
+  [[nodiscard]] Eigen::MatrixXd Block(int first, int size) const;
   /// The whole covariance; for tests and reports, not for a hot path.
   [[nodiscard]] Eigen::MatrixXd Covariance() const;
   [[nodiscard]] bool AllFinite() const { return factor().allFinite(); }

@@ -119,6 +119,26 @@ class SquareRootCovarianceTest : public ::testing::Test {
     EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
   }
 
+  /// `count` rows that see the errors [first, first + size) alone.
+  void UpdateByBlock(int first, int size, int count) {
+    const Eigen::Index n = dense_.rows();
+    const MatrixXd rows = RandomMatrix(&random_, count, size);
+    const VectorXd y = RandomMatrix(&random_, count, 1);
+    MatrixXd h = MatrixXd::Zero(count, n);
+    h.middleCols(first, size) = rows;
+    const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(count, count);
+    const MatrixXd gain = s.ldlt().solve(h * dense_).transpose();
+    EXPECT_LT((root_.Block(first, size) - dense_.block(first, first, size, size)).norm(),
+              1e-10 * dense_.norm());
+    const MatrixXd rest = MatrixXd::Identity(n, n) - gain * h;
+    dense_ = rest * dense_ * rest.transpose() + gain * gain.transpose();
+    VectorXd correction(n);
+    double nis = 0;
+    ASSERT_TRUE(root_.UpdateByBlock(first, rows, y, correction, &nis));
+    EXPECT_NEAR(nis, y.dot(s.ldlt().solve(y)), 1e-9 * nis);
+    EXPECT_LT((correction - gain * y).norm(), 1e-10 * correction.norm());
+  }
+
   void ExpectEqual() {
     ASSERT_EQ(root_.dimension(), dense_.rows());
     const double scale = std::max(1.0, dense_.norm());
@@ -183,6 +203,47 @@ TEST_F(SquareRootCovarianceTest, UpdateIsTheKalmanUpdate) {
     Update(unseen);
     ExpectEqual();
   }
+}
+
+TEST_F(SquareRootCovarianceTest, UpdateByBlockIsTheKalmanUpdate) {
+  for (int frame = 0; frame < 8; ++frame) {
+    Propagate();
+    Clone();
+  }
+  AddLeading();
+  AddLeading();
+  for (const int count : {1, 7, 21}) {
+    UpdateByBlock(0, root_.dimension(), count);
+    ExpectEqual();
+    UpdateByBlock(leading_, 15, count);
+    ExpectEqual();
+    UpdateByBlock(root_.dimension() - 6, 6, count);
+    ExpectEqual();
+  }
+}
+
+TEST_F(SquareRootCovarianceTest, UpdateByBlockRefusesRowsThatAreNotFinite) {
+  Clone();
+  const MatrixXd before = root_.Covariance();
+  MatrixXd rows = MatrixXd::Ones(3, 15);
+  rows(1, 2) = std::nan("");
+  VectorXd correction(root_.dimension());
+  EXPECT_FALSE(root_.UpdateByBlock(0, rows, VectorXd::Zero(3), correction, nullptr));
+  rows(1, 2) = 1;
+  EXPECT_FALSE(root_.UpdateByBlock(0, rows, VectorXd::Constant(3, std::nan("")), correction, nullptr));
+  EXPECT_EQ(root_.Covariance(), before);
+}
+
+TEST_F(SquareRootCovarianceTest, UpdateByBlockStaysPositiveUnderRowsFarBetterThanThePrior) {
+  Clone();
+  for (int i = 0; i < 50; ++i) {
+    const MatrixXd rows = 1e9 * RandomMatrix(&random_, 15, 15);
+    VectorXd correction(root_.dimension());
+    ASSERT_TRUE(root_.UpdateByBlock(0, rows, VectorXd::Zero(15), correction, nullptr));
+  }
+  const MatrixXd p = root_.Covariance();
+  ASSERT_TRUE(p.allFinite());
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(p).eigenvalues().minCoeff(), -1e-30);
 }
 
 TEST_F(SquareRootCovarianceTest, ZeroedRowsDoNothing) {
