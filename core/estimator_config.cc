@@ -189,6 +189,11 @@ void SmootherConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer({"keyframe_min_tracked", "-", "fewer tracks from the last keyframe make a new one"},
                   &keyframe_min_tracked, 0, 1000);
   visitor.Integer({"max_landmarks", "-", "longest tracks first"}, &max_landmarks, 10, 5000);
+  visitor.Integer(
+      {"slam_features", "-",
+       "at most this many tracks keep their landmark in the prior, so that its information outlives "
+       "the window; 0 keeps none"},
+      &slam_features, 0, 500);
 }
 
 void BatchConfig::Describe(ConfigVisitor& visitor) {

@@ -139,6 +139,7 @@ struct SmootherConfig {
   double keyframe_parallax_px = 10.0;
   int keyframe_min_tracked = 20;
   int max_landmarks = 150;
+  int slam_features = 0;
 
   void Describe(ConfigVisitor& visitor);
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,23 +16,34 @@ namespace alidade {
 ///
 /// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision
 /// reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the next one
-/// alone. Once aligned with GNSS, the clock of the first frame has six more at the end.
+/// alone. Once aligned with GNSS, the clock of the first frame has six more after them. Landmarks whose
+/// information outlives the window have three each at the end, (x, y, rho) in the camera of a frame that is
+/// in the window: so they do not move with the gauge.
 struct LinearPrior {
   struct Anchor {
     const WindowFrame* frame = nullptr;
     NavState origin;
     ImuBias bias_origin;  ///< used for the first frame
   };
+  struct Landmark {
+    std::int64_t track_id = 0;
+    const WindowFrame* anchor = nullptr;
+    Eigen::Vector3d origin;  ///< (x, y, rho) in the anchor's camera
+  };
   ErrorConvention convention = ErrorConvention::kRightInvariant;
   std::vector<Anchor> anchors;
-  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1) [+ 6])
+  std::vector<Landmark> landmarks;
+  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1) [+ 6] + 3 landmarks)
   Eigen::VectorXd residual;  ///< m, r0
 
   std::optional<Vector6d> clock_origin;
 
   [[nodiscard]] static int Column(int anchor) { return anchor == 0 ? 0 : 15 + 6 * (anchor - 1); }
-  [[nodiscard]] int columns() const { return ClockColumn() + (clock_origin ? 6 : 0); }
+  [[nodiscard]] int columns() const { return LandmarkColumn(static_cast<int>(landmarks.size())); }
   [[nodiscard]] int ClockColumn() const { return Column(static_cast<int>(anchors.size())); }
+  [[nodiscard]] int LandmarkColumn(int landmark) const {
+    return ClockColumn() + (clock_origin ? 6 : 0) + 3 * landmark;
+  }
 };
 
 /// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False
@@ -39,7 +51,8 @@ struct LinearPrior {
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior);
 
-/// LinearPrior as a factor; blocks nav and bias of the first frame, nav of the others, clock of the first.
+/// LinearPrior without landmarks as a factor (with them: smoother/slam_prior_factor.h); blocks nav and bias
+/// of the first frame, nav of the others, clock of the first.
 class PriorFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;

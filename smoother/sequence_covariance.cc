@@ -1,9 +1,9 @@
 #include "smoother/sequence_covariance.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 
+#include "smoother/frame_rows.h"
 #include "smoother/imu_factor.h"
 
 namespace alidade {

@@ -151,38 +151,43 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   }
 }
 
-void SmootherEstimator::MarginalizeOldestFrame() {
-  const WindowFrame* oldest = &window_.frame(0);
-  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
-  PoseSystem vision(window_.size());
-  for (auto& [id, track] : window_.tracks()) {
-    if (track.views.empty() || track.views.front().frame != oldest) {
-      continue;
-    }
-    if (track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) &&
-        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
-        AddTrack(track.views, geometry, kernel_, track.landmark, &workspace_, &vision)) {
-      track.Restart();
-    }
+std::optional<SlamPrior> SmootherEstimator::MakeSlamPrior() const {
+  if (prior_.landmarks.empty()) {
+    return std::nullopt;
   }
-  prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W, gnss_.context());
-  window_.RemoveOldest();
-  window_.Prune();
+  return SlamPrior(&prior_, PriorTracks(prior_, window_), rig_.T_BC, kernel_, window_.size());
 }
 
 Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   for (int i = 1; i < window_.size(); ++i) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
+  std::optional<SlamPrior> slam = MakeSlamPrior();
   const Result<WindowSolveReport> report =
-      SolveWindow(solve_options_, prior_, *tracks, &window_, gnss_.context());
+      SolveWindow(solve_options_, prior_, *tracks, &window_, gnss_.context(), slam ? &*slam : nullptr);
   if (!report.ok()) {
     return Lost(report.message());
   }
   statistics_.iterations = report->iterations;
 
   const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
-  GateTracks(geometry, *tracks);
+  SlamPrior::Reduced reduced;
+  if (slam && !ReduceSlamPrior(*slam, &reduced)) {
+    return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) + " s have no solution");
+  }
+  std::vector<WindowTrack*> gated = *tracks;
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.anchor != nullptr && !track.views.empty()) {
+      gated.push_back(&track);
+    }
+  }
+  if (GateTracks(geometry, gated) && slam) {
+    slam = MakeSlamPrior();
+    if (!ReduceSlamPrior(*slam, &reduced)) {
+      return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) +
+                  " s have no solution");
+    }
+  }
   if (gnss_.aligned()) {
     gnss_.Gate(&window_, &statistics_);
   }
@@ -192,13 +197,26 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
       AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision, track->depth_prior);
     }
   }
-  statistics_.features_used = vision.tracks;
+  statistics_.features_used = vision.tracks + static_cast<int>(gated.size() - tracks->size());
   statistics_.nis = vision.chi2;
   statistics_.nis_dof = vision.dof;
-  return UpdateLatest(vision);
+  return UpdateLatest(vision, slam ? &reduced : nullptr);
 }
 
-Status SmootherEstimator::UpdateLatest(const PoseSystem& vision) {
+bool SmootherEstimator::ReduceSlamPrior(const SlamPrior& slam, SlamPrior::Reduced* reduced) {
+  Eigen::VectorXd landmarks = slam.StartingLandmarks();
+  if (!slam.Reduce(PointOf(window_), &landmarks, reduced)) {
+    return false;
+  }
+  for (size_t i = 0; i < slam.tracks().size(); ++i) {
+    if (const WindowTrack* track = slam.tracks()[i]) {
+      window_.tracks().at(track->id).landmark = landmarks.segment<3>(3 * static_cast<Eigen::Index>(i));
+    }
+  }
+  return true;
+}
+
+Status SmootherEstimator::UpdateLatest(const PoseSystem& vision, const SlamPrior::Reduced* slam) {
   const WindowFrame& newest = window_.newest();
   latest_.stamp_ns = newest.stamp_ns;
   latest_.nav = newest.nav_state();
@@ -207,7 +225,7 @@ Status SmootherEstimator::UpdateLatest(const PoseSystem& vision) {
     latest_clock_.mean = newest.clock_state();
   }
   if (!NewestCovariance(window_, prior_, vision, solve_options_.gravity_W, &latest_.covariance,
-                        gnss_.context(), &latest_clock_.covariance)) {
+                        gnss_.context(), &latest_clock_.covariance, slam)) {
     return Lost("smoother: information at " + FormatSeconds(newest.stamp_ns) + " s is not positive definite");
   }
   return Status::Ok();

@@ -29,7 +29,10 @@ namespace alidade {
 ///              the gate refuses more than vision.max_gated_share the state is suspect and not the tracks:
 ///              they stay, their information scaled down to the gate.
 ///           5. Covariance of the newest state.
-/// The first prior is the covariance of Initialize, which also fixes the gauge (yaw and position).
+/// A long track may keep its landmark instead (smoother.slam_features): a SLAM feature has columns in the
+/// prior, only its view in the oldest frame goes there, and the rest of its views stay. Nothing about it is
+/// lost until the track is. The first prior is the covariance of Initialize, which also fixes the gauge (yaw
+/// and position).
 class SmootherEstimator final : public Estimator {
  public:
   SmootherEstimator(const EstimatorConfig& config, const RigCalibration& rig);
@@ -52,14 +55,20 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool NewestIsKeyframe() const;
   void DetectRest(const TrackFrame& frame);
   void MarginalizeOldestFrame();
+  [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);
+  [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
+                                                      size_t free);
+  [[nodiscard]] std::optional<SlamPrior> MakeSlamPrior() const;
+  bool ReduceSlamPrior(const SlamPrior& slam, SlamPrior::Reduced* reduced);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   bool PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track);
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
-  void GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
-  Status UpdateLatest(const PoseSystem& vision);
+  /// True when a SLAM feature was refused.
+  bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
+  Status UpdateLatest(const PoseSystem& vision, const SlamPrior::Reduced* slam);
   [[nodiscard]] Status Lost(const std::string& message);
 
   // Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.

@@ -65,7 +65,7 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   std::vector<WindowTrack*> selected;
   std::vector<WindowTrack*> without_depth;
   for (auto& [id, track] : window_.tracks()) {
-    if (track.views.size() >= kMinViews) {
+    if (track.anchor == nullptr && track.views.size() >= kMinViews) {
       (PrepareLandmark(geometry, &track) ? selected : without_depth).push_back(&track);
     }
   }
@@ -94,19 +94,23 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   return selected;
 }
 
-void SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
+bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
                                    const std::vector<WindowTrack*>& tracks) {
   std::vector<WindowTrack*> refused;
+  bool feature_refused = false;
   for (WindowTrack* track : tracks) {
-    if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark,
-                       track->depth_prior)) {
+    if (track->anchor == nullptr && !SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
+                                                   &track->landmark, track->depth_prior)) {
       ++statistics_.features_degenerate;
       track->Restart();
       continue;
     }
-    const int dof = 2 * static_cast<int>(track->views.size()) - 3;
-    if (!gate_.Accepts(TrackChiSquare(track->views, geometry, track->landmark), dof)) {
+    if (!gate_.Accepts(TrackChiSquare(*track, geometry), track->dof())) {
       refused.push_back(track);
+    } else if (track->anchor != nullptr && !DepthInRange(track->landmark)) {
+      ++statistics_.features_degenerate;
+      feature_refused = true;
+      track->Restart();
     } else if (track->has_landmark && !DepthInRange(track->landmark)) {
       // It fits, but its depth was none: it falls back on an assumed one.
       ++statistics_.features_degenerate;
@@ -118,13 +122,14 @@ void SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
                                     config_.vision.max_gated_share * static_cast<double>(tracks.size());
   for (WindowTrack* track : refused) {
     if (state_is_suspect) {
-      const int dof = 2 * static_cast<int>(track->views.size()) - 3;
-      track->ScaleInformation(gate_.Threshold(dof) / TrackChiSquare(track->views, geometry, track->landmark));
+      track->ScaleInformation(gate_.Threshold(track->dof()) / TrackChiSquare(*track, geometry));
     } else {
       ++statistics_.features_gated;
+      feature_refused = feature_refused || track->anchor != nullptr;
       track->Restart();
     }
   }
+  return feature_refused;
 }
 
 }  // namespace alidade

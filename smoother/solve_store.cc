@@ -74,6 +74,19 @@ void SolveStore::AddPrior(const LinearPrior& prior, ceres::Problem* problem) {
   problem->AddResidualBlock(&*prior_, nullptr, blocks);
 }
 
+void SolveStore::AddSlamPrior(const SlamPrior& prior, ceres::Problem* problem) {
+  const int frames = static_cast<int>(frames_.size());
+  slam_prior_.emplace(SlamPriorFactor(&prior, frames));
+  std::vector<double*> blocks = {Nav(0), Bias(0)};
+  for (int i = 1; i < frames; ++i) {
+    blocks.push_back(Nav(i));
+  }
+  if (has_clocks_) {
+    blocks.push_back(Clock(0));
+  }
+  problem->AddResidualBlock(&*slam_prior_, nullptr, blocks);
+}
+
 Status SolveStore::AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem) {
   for (size_t i = 0; i + 1 < frames_.size(); ++i) {
     const WindowFrame& next = *frames_[i + 1];

@@ -15,6 +15,7 @@
 #include "smoother/pose_only_factor.h"
 #include "smoother/prior_factor.h"
 #include "smoother/rest_factor.h"
+#include "smoother/slam_prior_factor.h"
 
 namespace alidade {
 
@@ -43,6 +44,8 @@ class SolveStore {
   /// A problem that owns nothing, with the blocks of all frames.
   [[nodiscard]] std::unique_ptr<ceres::Problem> MakeProblem();
   void AddPrior(const LinearPrior& prior, ceres::Problem* problem);
+  /// A prior with landmarks; must outlive the store.
+  void AddSlamPrior(const SlamPrior& prior, ceres::Problem* problem);
   /// kDiverged: the covariance of an interval is not positive definite.
   Status AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem);
   void AddRest(ceres::Problem* problem);
@@ -78,6 +81,7 @@ class SolveStore {
   std::deque<LiftedCost<DepthPriorFactor>> depth_prior_;
   std::optional<LiftedCost<PoseOnlyFactor>> pose_only_;
   std::optional<LiftedCost<PriorFactor>> prior_;
+  std::optional<LiftedCost<SlamPriorFactor>> slam_prior_;
 };
 
 }  // namespace alidade

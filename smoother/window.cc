@@ -73,7 +73,7 @@ std::unique_ptr<WindowFrame> Window::RemoveNewest() {
   for (auto& [id, track] : tracks_) {
     if (!track.views.empty() && track.views.back().frame == frame.get()) {
       track.views.pop_back();
-      track.has_landmark = track.has_landmark && !track.views.empty();
+      track.has_landmark = track.has_landmark && (track.anchor != nullptr || !track.views.empty());
     }
   }
   return frame;
@@ -84,8 +84,10 @@ void Window::RemoveOldest() {
   for (auto& [id, track] : tracks_) {
     if (!track.views.empty() && track.views.front().frame == oldest) {
       track.views.erase(track.views.begin());
-      track.has_landmark = false;  // its coordinates were those of the base
-      track.depth_prior = {};
+      if (track.anchor == nullptr) {
+        track.has_landmark = false;  // its coordinates were those of the base
+        track.depth_prior = {};
+      }
     }
   }
   frames_.erase(frames_.begin());
@@ -95,7 +97,10 @@ void Window::RemoveOldest() {
 }
 
 void Window::Prune() {
-  std::erase_if(tracks_, [](const auto& item) { return !item.second.alive && item.second.views.size() < 2; });
+  std::erase_if(tracks_, [](const auto& item) {
+    const WindowTrack& track = item.second;
+    return !track.alive && track.anchor == nullptr && track.views.size() < 2;
+  });
 }
 
 void Window::Renumber() {

@@ -53,21 +53,27 @@ struct DepthPrior {
   double sqrt_information = 0;  ///< [m]; 0: no prior
 };
 
-/// A landmark seen in the window. The first view is its base.
+/// A landmark seen in the window. The first view is its base. A SLAM feature instead has columns in the prior
+/// (LinearPrior::Landmark) and is anchored in a frame of the window, seen there or not.
 struct WindowTrack {
   std::int64_t id = 0;
   std::vector<WindowView> views;  ///< in time order
-  /// (x, y, rho): bearing on the base's normalised plane and inverse depth [1/m]; set when has_landmark.
+  /// (x, y, rho): bearing on the normalised plane of the base, or of the anchor, and inverse depth [1/m]; set
+  /// when has_landmark.
   Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
-  bool has_landmark = false;  ///< its depth is known from parallax
-  DepthPrior depth_prior;     ///< stands in for parallax while has_landmark is false
-  bool alive = false;         ///< seen in the newest frame
+  const WindowFrame* anchor = nullptr;  ///< of a SLAM feature
+  bool has_landmark = false;            ///< its depth is known from parallax
+  DepthPrior depth_prior;               ///< stands in for parallax while has_landmark is false
+  bool alive = false;                   ///< seen in the newest frame
 
+  /// Degrees of freedom of its residuals: a SLAM feature's landmark is mostly the prior's.
+  [[nodiscard]] int dof() const { return 2 * static_cast<int>(views.size()) - (anchor != nullptr ? 0 : 3); }
   /// Multiplies the information of all observations so far.
   void ScaleInformation(double factor);
   /// Forgets all observations; the next one starts the track anew.
   void Restart() {
     views.clear();
+    anchor = nullptr;
     has_landmark = false;
     depth_prior = {};
   }
@@ -86,9 +92,9 @@ class Window {
   /// Takes the newest frame out, its observations with it, and returns it.
   std::unique_ptr<WindowFrame> RemoveNewest();
   /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one
-  /// becomes base.
+  /// becomes base. No SLAM feature may be anchored there.
   void RemoveOldest();
-  /// Drops tracks that are not seen any more and have fewer than two views left.
+  /// Drops tracks that are not seen any more and have fewer than two views left; SLAM features stay.
   void Prune();
 
   [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }

@@ -46,12 +46,16 @@ ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, int fram
 
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
-                                      const GnssFactorContext* gnss) {
+                                      const GnssFactorContext* gnss, const SlamPrior* slam) {
   const int frames = window->size();
   const ObservationKernel kernel{options.vision.robust_kernel, options.vision.robust_scale_sigma};
   SolveStore store(options.smoother.error, kernel, window->frames(), tracks);
   const std::unique_ptr<ceres::Problem> problem = store.MakeProblem();
-  store.AddPrior(prior, problem.get());
+  if (slam != nullptr) {
+    store.AddSlamPrior(*slam, problem.get());
+  } else {
+    store.AddPrior(prior, problem.get());
+  }
   ALIDADE_RETURN_IF_ERROR(store.AddImu(options.gravity_W, problem.get()));
   store.AddRest(problem.get());
   if (gnss != nullptr) {

@@ -6,7 +6,7 @@
 #include "core/estimator_config.h"
 #include "core/status.h"
 #include "smoother/gnss_factors.h"
-#include "smoother/prior_factor.h"
+#include "smoother/slam_prior.h"
 
 namespace alidade {
 
@@ -28,9 +28,11 @@ struct WindowSolveReport {
 /// must have landmarks. States are updated in place; with explicit inverse depths the landmarks as well, with
 /// pose-only landmarks they are left for SolveLandmark. One thread and no time limit: equal input, equal
 /// bits. Errors (kDiverged): an IMU factor cannot be whitened, the solver failed, or a state is not finite;
-/// the window is then as before. `gnss`: of an aligned window.
+/// the window is then as before. `gnss`: of an aligned window. `slam`: a prior with landmarks, which then
+/// stands for `prior`.
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
-                                      const GnssFactorContext* gnss = nullptr);
+                                      const GnssFactorContext* gnss = nullptr,
+                                      const SlamPrior* slam = nullptr);
 
 }  // namespace alidade

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gnss/carried_state.h"
+#include "smoother/marginalization.h"
 #include "smoother/window_system.h"
 #include "tests/gnss/synthetic_sky.h"
 #include "tests/smoother/window_fixture.h"

@@ -66,6 +66,40 @@ TEST(SmootherEstimatorTest, ExactDataGivesTheTruthForBothLandmarks) {
   }
 }
 
+EstimatorConfig WithSlamFeatures(int count) {
+  EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly);
+  config.smoother.frames = FramePolicy::kEveryFrame;
+  config.smoother.slam_features = count;
+  return config;
+}
+
+// Landmarks change their anchors, are lost and replaced all the time: nothing of it may show on exact data.
+TEST(SmootherEstimatorTest, SlamFeaturesLeaveExactDataExact) {
+  const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
+  const test::ScenarioResult run = RunSmoother(dataset, WithSlamFeatures(20), false);
+  EXPECT_LT(run.max_position_m, 1e-3);
+  const NavState& truth = test::TruthAt(dataset, run.last.stamp_ns).nav;
+  EXPECT_LT((run.last.nav.p_WB - truth.p_WB).norm(), 1e-4);
+}
+
+// Three runs: the information that outlives the window of one second makes the estimate better, and its
+// covariance knows by how much.
+TEST(SmootherEstimatorTest, SlamFeaturesLowerTheErrorAndKeepTheCovarianceTrue) {
+  double with = 0;
+  double without = 0;
+  double nees = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Dataset dataset = MakeSequence({.duration_s = 30, .seed = seed});
+    const test::ScenarioResult kept = RunSmoother(dataset, WithSlamFeatures(30), true, seed);
+    const test::ScenarioResult lost = RunSmoother(dataset, WithSlamFeatures(0), true, seed);
+    with += kept.rmse_orientation_rad;
+    without += lost.rmse_orientation_rad;
+    nees += kept.mean_nees / 3;
+  }
+  EXPECT_LT(with, 0.9 * without);
+  EXPECT_LT(nees, 12);
+}
+
 TEST(SmootherEstimatorTest, BothLandmarksFindTheSameMinimumInNoise) {
   const Dataset dataset = MakeSequence({.duration_s = 6});
   EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 
+#include "smoother/marginalization.h"
 #include "tests/smoother/window_fixture.h"
 #include "tests/support/jacobian_checker.h"
 

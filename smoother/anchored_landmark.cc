@@ -1,0 +1,92 @@
+#include "smoother/anchored_landmark.h"
+
+#include <limits>
+
+#include "core/robust.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kMinViewDepth = 1e-6;  // of the scaled point
+
+/// d (q.x / q.z, q.y / q.z) / dq, times q.z.
+Eigen::Matrix<double, 2, 3> Perspective(const Eigen::Vector2d& projected) {
+  Eigen::Matrix<double, 2, 3> perspective;
+  perspective << 1, 0, -projected.x(), 0, 1, -projected.y();
+  return perspective;
+}
+
+}  // namespace
+
+LandmarkTransfer::LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target,
+                                   const Eigen::Vector3d& l) {
+  const Eigen::Vector3d ray = l.head<2>().homogeneous();
+  const double rho = l.z();
+  const Eigen::Matrix3d to_target = target.T_WC.rotation.transpose();
+  const Eigen::Matrix3d turn = to_target * source.T_WC.rotation;
+  const Eigen::Vector3d shift = to_target * (source.T_WC.translation - target.T_WC.translation);
+  q = turn * ray + rho * shift;
+  landmark << turn.leftCols<2>(), shift;
+  Eigen::Matrix<double, 3, 6> camera;
+  camera << -turn * Skew(ray), rho * to_target;
+  source_frame.noalias() = camera * source.camera_from_body;
+  camera << Skew(q), -rho * to_target;
+  target_frame.noalias() = camera * target.camera_from_body;
+}
+
+bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
+                           const NormalizedObservation& observation, const ObservationKernel& kernel,
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows) {
+  const LandmarkTransfer transfer(anchor, view, landmark);
+  if (!(transfer.q.z() > kMinViewDepth)) {
+    return false;
+  }
+  const Eigen::Vector2d predicted = transfer.q.hnormalized();
+  const Eigen::Matrix<double, 2, 3> weighted =
+      observation.sqrt_information * (Perspective(predicted) / transfer.q.z());
+  rows->anchor.noalias() = weighted * transfer.source_frame;
+  rows->view.noalias() = weighted * transfer.target_frame;
+  rows->landmark.noalias() = weighted * transfer.landmark;
+  rows->residual = observation.sqrt_information * (predicted - observation.z);
+  rows->squared_norm = rows->residual.squaredNorm();
+  rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
+  return true;
+}
+
+double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> geometry) {
+  if (track.anchor == nullptr) {
+    return TrackChiSquare(track.views, geometry, track.landmark);
+  }
+  double chi2 = 0;
+  AnchoredRows rows;
+  for (const WindowView& view : track.views) {
+    if (!LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
+                               geometry[static_cast<size_t>(view.frame->index)], view.observation, {},
+                               track.landmark, &rows)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    chi2 += rows.squared_norm;
+  }
+  return chi2;
+}
+
+bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
+                  AnchorChange* change) {
+  const Eigen::Vector3d q_to = LandmarkTransfer(from, to, l_from).q;
+  if (!(q_to.z() > kMinViewDepth)) {
+    return false;
+  }
+  change->to << q_to.hnormalized(), l_from.z() / q_to.z();
+  const LandmarkTransfer back(to, from, change->to);
+  Eigen::Matrix3d divide = Eigen::Matrix3d::Zero();
+  divide.topRows<2>() = Perspective(l_from.head<2>());
+  divide(2, 2) = -l_from.z();
+  divide /= back.q.z();
+  change->landmark.noalias() = divide * back.landmark;
+  change->landmark(2, 2) += 1 / back.q.z();
+  change->from_frame.noalias() = divide * back.target_frame;
+  change->to_frame.noalias() = divide * back.source_frame;
+  return true;
+}
+
+}  // namespace alidade
