@@ -1,10 +1,10 @@
 #include "smoother/marginalization.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
+#include "smoother/dense_blas.h"
 #include "smoother/frame_rows.h"
 
 namespace alidade {
@@ -234,8 +234,8 @@ LinearPrior OldestStack::Eliminate() {
   if (rows_ < columns + 1) {
     NewRows(columns + 1 - rows_);
   }
-  Eigen::Ref<MatrixXd> rows = stack_.topRows(rows_);
-  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(rows);
+  MatrixXd rows = stack_.topRows(rows_);
+  Triangularize(&rows);
   LinearPrior next;
   next.convention = prior_.convention;
   const Index kept = columns - leaving_;

@@ -1,4 +1,5 @@
 #include "smoother/sequence_covariance.h"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>

@@ -1,8 +1,10 @@
 #include "smoother/slam_prior.h"
 
-#include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include "smoother/dense_blas.h"
 
 namespace alidade {
 namespace {
@@ -56,8 +58,7 @@ SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> t
     : prior_(prior), tracks_(std::move(tracks)), T_BC_(T_BC), kernel_(kernel), frames_(frames) {
   MatrixXd rows(prior->jacobian.rows(), prior->jacobian.cols() + 1);
   rows << prior->jacobian, prior->residual;
-  gram_.setZero(rows.cols(), rows.cols());
-  gram_.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  FormGram(rows, &gram_);
   gram_.triangularView<Eigen::StrictlyUpper>() = gram_.transpose();
   origins_.resize(3 * static_cast<Index>(prior->landmarks.size()));
   for (size_t i = 0; i < prior->landmarks.size(); ++i) {
@@ -187,11 +188,11 @@ bool SlamPrior::Minimize(const VectorXd& xi, const std::vector<FrameGeometry>& g
     }
     hessian.diagonal() *= 1 + kRegularization + damping;
     const VectorXd gradient = pull + views.landmark_gradient;
-    const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(hessian);
-    if (factor.info() != Eigen::Success) {
+    if (!FactorLower(&hessian)) {
       return false;
     }
-    const VectorXd step = -factor.solve(gradient);
+    VectorXd step = -gradient;
+    SolveCholesky(hessian, &step);
     if (!(-step.dot(gradient) > kDecrementTolerance * (1 + *cost))) {
       break;
     }
@@ -242,15 +243,14 @@ bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* r
     hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
   }
   hessian.diagonal() *= 1 + kRegularization;
-  const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(hessian);
-  if (factor.info() != Eigen::Success) {
+  if (!FactorLower(&hessian)) {
     return false;
   }
   MatrixXd coupling = chained.middleRows(frames, size) + views.coupling;
   VectorXd gradient = pull.segment(frames, size) + views.landmark_gradient;
-  factor.matrixL().solveInPlace(coupling);
-  factor.matrixL().solveInPlace(gradient);
-  reduced->hessian.selfadjointView<Eigen::Lower>().rankUpdate(coupling.transpose(), -1.0);
+  SolveLower(hessian, coupling);
+  SolveLower(hessian, gradient);
+  SubtractGram(coupling, &reduced->hessian);
   reduced->gradient.noalias() -= coupling.transpose() * gradient;
   return reduced->hessian.allFinite();
 }

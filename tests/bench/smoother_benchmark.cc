@@ -10,7 +10,7 @@ namespace {
 /// One iteration is one camera frame of the figure-8 in the steady state: marginalisation or removal of a
 /// frame, prediction, solve, gate, covariance. Arguments: window, tracks. At most 8 solver iterations.
 void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKernel kernel,
-                   ErrorConvention error) {
+                   ErrorConvention error, int slam_features) {
   SimulatorConfig sim;
   sim.duration_s = 40;
   sim.path_m = 52.4;
@@ -25,6 +25,8 @@ void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKer
   config.smoother.window = static_cast<int>(state.range(0));
   config.smoother.max_landmarks = sim.max_features;
   config.smoother.max_iterations = 8;
+  config.smoother.slam_features = slam_features;
+  config.smoother.frames = slam_features > 0 ? FramePolicy::kEveryFrame : FramePolicy::kKeyframes;
   const NavEstimate initial = test::DrawInitialState(dataset, 1);
   constexpr size_t kWarmUpFrames = 60;
   std::unique_ptr<Estimator> smoother;
@@ -74,13 +76,16 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
 }
 
 BENCHMARK_CAPTURE(SmootherFrame, pose_only, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
-                  ErrorConvention::kRightInvariant)
+                  ErrorConvention::kRightInvariant, 0)
     ->Apply(Sizes);
 BENCHMARK_CAPTURE(SmootherFrame, inverse_depth, SmootherLandmark::kInverseDepth, RobustKernel::kHuber,
-                  ErrorConvention::kRightInvariant)
+                  ErrorConvention::kRightInvariant, 0)
+    ->Apply(Sizes);
+BENCHMARK_CAPTURE(SmootherFrame, alidade_smoother, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
+                  ErrorConvention::kRightInvariant, 40)
     ->Apply(Sizes);
 BENCHMARK_CAPTURE(SmootherFrame, vins_mono_class, SmootherLandmark::kInverseDepth, RobustKernel::kCauchy,
-                  ErrorConvention::kSo3xRn)
+                  ErrorConvention::kSo3xRn, 0)
     ->Args({10, 150})
     ->Unit(benchmark::kMillisecond);
 
