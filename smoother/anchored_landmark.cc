@@ -19,24 +19,30 @@ Eigen::Matrix<double, 2, 3> Perspective(const Eigen::Vector2d& projected) {
 }  // namespace
 
 LandmarkTransfer::LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target,
-                                   const Eigen::Vector3d& l) {
-  const Eigen::Vector3d ray = l.head<2>().homogeneous();
-  const double rho = l.z();
-  const Eigen::Matrix3d to_target = target.T_WC.rotation.transpose();
-  const Eigen::Matrix3d turn = to_target * source.T_WC.rotation;
-  const Eigen::Vector3d shift = to_target * (source.T_WC.translation - target.T_WC.translation);
-  q = turn * ray + rho * shift;
-  landmark << turn.leftCols<2>(), shift;
+                                   const Eigen::Vector3d& l)
+    : source_(source), target_(target), l_(l) {
+  turn_.noalias() = target.T_WC.rotation.transpose() * source.T_WC.rotation;
+  const Eigen::Vector3d shift =
+      target.T_WC.rotation.transpose() * (source.T_WC.translation - target.T_WC.translation);
+  q = turn_ * l.head<2>().homogeneous() + l.z() * shift;
+  landmark << turn_.leftCols<2>(), shift;
+}
+
+Eigen::Matrix<double, 3, 6> LandmarkTransfer::SourceFrame() const {
   Eigen::Matrix<double, 3, 6> camera;
-  camera << -turn * Skew(ray), rho * to_target;
-  source_frame.noalias() = camera * source.camera_from_body;
-  camera << Skew(q), -rho * to_target;
-  target_frame.noalias() = camera * target.camera_from_body;
+  camera << -turn_ * Skew(l_.head<2>().homogeneous()), l_.z() * target_.T_WC.rotation.transpose();
+  return camera * source_.camera_from_body;
+}
+
+Eigen::Matrix<double, 3, 6> LandmarkTransfer::TargetFrame() const {
+  Eigen::Matrix<double, 3, 6> camera;
+  camera << Skew(q), -l_.z() * target_.T_WC.rotation.transpose();
+  return camera * target_.camera_from_body;
 }
 
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
-                           const Eigen::Vector3d& landmark, AnchoredRows* rows) {
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames) {
   const LandmarkTransfer transfer(anchor, view, landmark);
   if (!(transfer.q.z() > kMinViewDepth)) {
     return false;
@@ -44,8 +50,10 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
   const Eigen::Vector2d predicted = transfer.q.hnormalized();
   const Eigen::Matrix<double, 2, 3> weighted =
       observation.sqrt_information * (Perspective(predicted) / transfer.q.z());
-  rows->anchor.noalias() = weighted * transfer.source_frame;
-  rows->view.noalias() = weighted * transfer.target_frame;
+  if (with_frames) {
+    rows->anchor.noalias() = weighted * transfer.SourceFrame();
+    rows->view.noalias() = weighted * transfer.TargetFrame();
+  }
   rows->landmark.noalias() = weighted * transfer.landmark;
   rows->residual = observation.sqrt_information * (predicted - observation.z);
   rows->squared_norm = rows->residual.squaredNorm();
@@ -62,7 +70,7 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
   for (const WindowView& view : track.views) {
     if (!LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
                                geometry[static_cast<size_t>(view.frame->index)], view.observation, {},
-                               track.landmark, &rows)) {
+                               track.landmark, &rows, false)) {
       return std::numeric_limits<double>::infinity();
     }
     chi2 += rows.squared_norm;
@@ -84,8 +92,8 @@ bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eige
   divide /= back.q.z();
   change->landmark.noalias() = divide * back.landmark;
   change->landmark(2, 2) += 1 / back.q.z();
-  change->from_frame.noalias() = divide * back.target_frame;
-  change->to_frame.noalias() = divide * back.source_frame;
+  change->from_frame.noalias() = divide * back.TargetFrame();
+  change->to_frame.noalias() = divide * back.SourceFrame();
   return true;
 }
 

@@ -12,13 +12,21 @@ namespace alidade {
 ///     q = R_t^T (R_s (x, y, 1) + rho (p_s - p_t)),
 ///
 /// with its derivatives over (phi, dp) of both bodies, canonical chart. rho = 0 is regular.
-struct LandmarkTransfer {
+class LandmarkTransfer {
+ public:
   LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target, const Eigen::Vector3d& l);
 
   Eigen::Vector3d q;
-  Eigen::Matrix3d landmark;                  ///< dq / dl
-  Eigen::Matrix<double, 3, 6> source_frame;  ///< dq / d source body
-  Eigen::Matrix<double, 3, 6> target_frame;  ///< dq / d target body
+  Eigen::Matrix3d landmark;  ///< dq / dl
+
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> SourceFrame() const;  ///< dq / d source body
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> TargetFrame() const;  ///< dq / d target body
+
+ private:
+  const FrameGeometry& source_;
+  const FrameGeometry& target_;
+  Eigen::Vector3d l_;
+  Eigen::Matrix3d turn_;  ///< R_t^T R_s
 };
 
 /// The whitened rows of one view of a landmark that is anchored in another frame's camera, and moves with it:
@@ -31,10 +39,10 @@ struct AnchoredRows {
   double squared_norm = 0;               ///< of the residual
   double weight = 1;                     ///< of all rows: the kernel's
 };
-/// False behind the view.
+/// False behind the view. `with_frames` false leaves out the derivatives over the bodies.
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
-                           const Eigen::Vector3d& landmark, AnchoredRows* rows);
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames = true);
 
 /// Sum of whitened squared residuals (no kernel) of a track at its landmark, SLAM feature or not; infinite
 /// when behind a view.

@@ -4,8 +4,9 @@
 
 namespace alidade {
 
-// The smoother's dense steps that are large enough for a BLAS: Eigen is compiled for any x86-64, OpenBLAS takes
-// the kernels of the machine it runs on. Column-major; only lower triangles of symmetric matrices are read.
+// The smoother's dense steps that are large enough for a BLAS: Eigen is compiled for any x86-64, OpenBLAS
+// takes the kernels of the machine it runs on. Column-major; only lower triangles of symmetric matrices are
+// read.
 
 /// gram <- rows^T rows, lower triangle, zero above.
 void FormGram(const Eigen::MatrixXd& rows, Eigen::MatrixXd* gram);

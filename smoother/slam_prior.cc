@@ -96,7 +96,7 @@ bool SlamPrior::Linearize(const std::vector<FrameGeometry>& geometry, const Vect
       AnchoredRows rows;
       if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)],
                                  geometry[static_cast<size_t>(view.frame->index)], view.observation, kernel_,
-                                 landmarks.segment<3>(row), &rows)) {
+                                 landmarks.segment<3>(row), &rows, with_frames)) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);

@@ -82,7 +82,7 @@ BENCHMARK_CAPTURE(SmootherFrame, inverse_depth, SmootherLandmark::kInverseDepth,
                   ErrorConvention::kRightInvariant, 0)
     ->Apply(Sizes);
 BENCHMARK_CAPTURE(SmootherFrame, alidade_smoother, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
-                  ErrorConvention::kRightInvariant, 40)
+                  ErrorConvention::kRightInvariant, 30)
     ->Apply(Sizes);
 BENCHMARK_CAPTURE(SmootherFrame, vins_mono_class, SmootherLandmark::kInverseDepth, RobustKernel::kCauchy,
                   ErrorConvention::kSo3xRn, 0)

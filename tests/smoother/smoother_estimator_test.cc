@@ -94,7 +94,7 @@ TEST(SmootherEstimatorTest, SlamFeaturesLowerTheErrorAndKeepTheCovarianceTrue) {
     const test::ScenarioResult lost = RunSmoother(dataset, WithSlamFeatures(0), true, seed);
     with += kept.rmse_orientation_rad;
     without += lost.rmse_orientation_rad;
-    nees += kept.mean_nees / 3;
+    nees += kept.nees_pose / 3;
   }
   EXPECT_LT(with, 0.9 * without);
   EXPECT_LT(nees, 12);
