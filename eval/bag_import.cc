@@ -5,6 +5,7 @@
 #include <map>
 
 #include "eval/bag_gnss.h"
+#include "eval/calibration_import.h"
 #include "eval/dataset_camera.h"
 #include "eval/ros_sensor_messages.h"
 
@@ -278,9 +279,11 @@ class Importer {
     if (!sensor) {
       return Status::Input(path_ + ": holds no noise of the IMU, expected --calibration=FILE with it");
     }
-    dataset.rig.imu_noise = sensor->noise;
-    dataset.imu_rate_hz = sensor->rate_hz.value_or(
-        MeasuredRate(dataset.imu.front().stamp_ns, dataset.imu.back().stamp_ns, dataset.imu.size()));
+    const double measured_hz =
+        MeasuredRate(dataset.imu.front().stamp_ns, dataset.imu.back().stamp_ns, dataset.imu.size());
+    const bool per_sample = options_.imu && options_.imu_is_per_sample;
+    dataset.rig.imu_noise = per_sample ? DensitiesOf(sensor->noise, measured_hz) : sensor->noise;
+    dataset.imu_rate_hz = sensor->rate_hz.value_or(measured_hz);
     return Status::Ok();
   }
 

@@ -27,6 +27,7 @@ struct BagImportOptions {
   BagTopics topics;
   /// Calibration in place of the sheets in the bag.
   std::optional<ImuSensor> imu;
+  bool imu_is_per_sample = false;  ///< its noise becomes densities at the rate of the bag's samples
   std::optional<CameraSensor> camera;
   /// Takes an image of the camera. Without it a bag whose camera has images alone is an error.
   std::function<Status(const BagImage&)> take_image;

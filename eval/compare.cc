@@ -1,5 +1,6 @@
 #include "eval/compare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "eval/compare_input.h"
 #include "eval/config_json.h"
 #include "eval/config_yaml.h"
+#include "eval/external_cell.h"
 #include "eval/recorder.h"
 
 namespace alidade {
@@ -135,7 +137,8 @@ class Comparer {
   void AddCells(const PlanSequence& sequence, unsigned seed, CompareInput* input) {
     for (size_t i = 0; i < plan_.estimators.size(); ++i) {
       const PlanEstimator& estimator = plan_.estimators[i];
-      if (estimator.external() && estimator.trajectories.count(sequence.name) == 0) {
+      if (estimator.external() && estimator.command.text.empty() &&
+          estimator.trajectories.count(sequence.name) == 0) {
         continue;
       }
       const EstimatorConfig* config = configs_.at(&sequence)[i].get();
@@ -200,10 +203,7 @@ class Comparer {
       return Fail(cell, "the measurement log changed between two estimators");
     }
     if (cell->config == nullptr) {
-      const Result<Trajectory> estimate =
-          ReadTrajectory(cell->estimator->trajectories.at(cell->sequence->name));
-      return estimate.ok() ? ScoreTrajectory(truth, *estimate, plan_.metrics, &cell->result)
-                           : Fail(cell, estimate.message());
+      return RunExternalCell(*data, cell);
     }
     const std::string folder = FolderOf(*cell);
     const RunIdentity identity{*cell->config,
@@ -236,6 +236,22 @@ class Comparer {
                         : Fail(cell, written.message());
   }
 
+  void RunExternalCell(const CompareInput::Data& data, Cell* cell) {
+    const Trajectory* truth = data.truth ? &*data.truth : nullptr;
+    const ExternalCell external{*cell->estimator,    *cell->sequence, cell->seed, data.log, truth,
+                                data.dataset_digest, FolderOf(*cell)};
+    const Result<ExternalOutcome> outcome = TrajectoryOfExternal(external, options_.resume, options_.stop);
+    if (!outcome.ok()) {
+      return Fail(cell, outcome.message());
+    }
+    ScoreTrajectory(truth, outcome->trajectory, plan_.metrics, &cell->result);
+    if (outcome->run) {
+      cells_reused_ += outcome->reused ? 1 : 0;
+      // All of the program: it is one process to us.
+      cell->result.backend_ms = 1e3 * outcome->run->wall_s / std::max(1, cell->result.frames);
+    }
+  }
+
   Result<CompareOutcome> Finish() {
     CompareOutcome outcome;
     outcome.interrupted = Stopped();
@@ -245,6 +261,9 @@ class Comparer {
     comparison.references = plan_.references;
     comparison.command = options_.command;
     comparison.baseline = plan_.baseline;
+    for (const auto& [name, path] : plan_.absent) {
+      comparison.notes.push_back(name + ": its data is not there, expected the folder " + path);
+    }
     comparison.pair_figures = plan_.pair_figures;
     comparison.pair_across = plan_.pair_across;
     for (const PlanEstimator& estimator : plan_.estimators) {

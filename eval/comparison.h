@@ -80,7 +80,8 @@ struct Comparison {
   std::string title;
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;
-  std::string command;  ///< how to repeat it
+  std::string command;                  ///< how to repeat it
+  std::vector<std::string> notes = {};  ///< said with the tables, such as what was not run
   /// Figures whose paired differences the tables show; pairs.csv has all of them.
   std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
   bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each

@@ -110,6 +110,9 @@ Result<Dataset> ReadDataset(const std::string& path) {
     ALIDADE_RETURN_IF_ERROR(ReadGnssFolder((mav / "gnss0").string(), &dataset));
   }
   ALIDADE_RETURN_IF_ERROR(ReadTruth(mav / "state_groundtruth_estimate0", &dataset));
+  if (!dataset.truth && fs::is_directory(mav / "mocap0")) {  // TUM VI's name
+    ALIDADE_RETURN_IF_ERROR(ReadTruth(mav / "mocap0", &dataset));
+  }
   return dataset;
 }
 

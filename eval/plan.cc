@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "eval/bag_import.h"
 #include "eval/paired.h"
 #include "eval/plan_reader.h"
 #include "eval/suggest.h"
@@ -27,6 +28,10 @@ class PlanParser {
   }
 
   Result<Plan> Parse(const YAML::Node& root) {
+    // Before the sequences, wherever it stands.
+    if (root.IsMap() && root["skip_missing"].IsDefined()) {
+      ALIDADE_RETURN_IF_ERROR(reader_.Boolean(root["skip_missing"], "skip_missing", &plan_.skip_missing));
+    }
     ALIDADE_RETURN_IF_ERROR(reader_.Map(
         root, "a plan",
         {{"title", [&](const YAML::Node& n) { return reader_.Text(n, "title", &plan_.title); }},
@@ -36,6 +41,7 @@ class PlanParser {
           },
           true},
          {"set", [&](const YAML::Node& n) { return reader_.Settings(n, "set", &plan_.settings); }},
+         {"skip_missing", [](const YAML::Node&) { return Status::Ok(); }},
          {"sequences",
           [&](const YAML::Node& n) {
             return reader_.Each(n, "sequences", [&](const YAML::Node& e) { return AddSequence(e); });
@@ -50,6 +56,7 @@ class PlanParser {
           }}}));
     ALIDADE_RETURN_IF_ERROR(CheckTrajectoryNames(root));
     ALIDADE_RETURN_IF_ERROR(CheckBaseline(root));
+    ALIDADE_RETURN_IF_ERROR(CheckAnyThere());
     if (plan_.title.empty()) {
       plan_.title = Stem(plan_.path);
     }
@@ -70,13 +77,22 @@ class PlanParser {
            {"config",
             [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &estimator.config); }},
            {"set", [&](const Node& n) { return reader_.Settings(n, "set", &estimator.settings); }},
-           {"trajectories", [&](const Node& n) { return ReadTrajectories(n, &estimator.trajectories); }}}));
+           {"trajectories", [&](const Node& n) { return ReadTrajectories(n, &estimator.trajectories); }},
+           {"command", [&](const Node& n) { return reader_.Text(n, "command", &estimator.command.text); }},
+           {"result", [&](const Node& n) { return reader_.Text(n, "result", &estimator.command.result); }},
+           {"timeout",
+            [&](const Node& n) {
+              return reader_.Real(n, "timeout", 1, kMaxSeconds, &estimator.command.timeout_s);
+            }},
+           {"frame", [&](const Node& n) { return ReadFrame(n, &estimator.camera_frame); }}}));
     }
-    if (estimator.config.empty() == estimator.trajectories.empty()) {
-      return reader_.Fault(node, "estimators", "either `config` or `trajectories`");
+    const int sources = (estimator.config.empty() ? 0 : 1) + (estimator.trajectories.empty() ? 0 : 1) +
+                        (estimator.command.text.empty() ? 0 : 1);
+    if (sources != 1) {
+      return reader_.Fault(node, "estimators", "one of `config`, `trajectories` and `command`");
     }
     if (estimator.external() && (estimator.name.empty() || !estimator.settings.empty())) {
-      return reader_.Fault(node, "estimators", "`trajectories` with a `name` and without `set`");
+      return reader_.Fault(node, "estimators", "`trajectories` or `command` with a `name` and without `set`");
     }
     if (estimator.name.empty()) {
       estimator.name = Stem(estimator.config);
@@ -96,12 +112,24 @@ class PlanParser {
     return Status::Ok();
   }
 
+  Status ReadFrame(const Node& node, bool* camera_frame) {
+    std::string word;
+    ALIDADE_RETURN_IF_ERROR(reader_.Text(node, "frame", &word));
+    *camera_frame = word == "camera";
+    return word == "camera" || word == "body" ? Status::Ok() : reader_.Fault(node, "frame", "body or camera");
+  }
+
+  Status ReadDatasetPath(const Node& node, std::string* path) {
+    return plan_.skip_missing ? reader_.Path(node, "path", path)
+                              : reader_.ExistingPath(node, "path", true, path);
+  }
+
   Status AddSequence(const Node& node) {
     PlanSequence sequence;
     ALIDADE_RETURN_IF_ERROR(reader_.Map(
         node, "sequences",
         {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &sequence.name); }},
-         {"path", [&](const Node& n) { return reader_.ExistingPath(n, "path", true, &sequence.dataset); }},
+         {"path", [&](const Node& n) { return ReadDatasetPath(n, &sequence.dataset); }},
          {"truth", [&](const Node& n) { return reader_.ExistingPath(n, "truth", false, &sequence.truth); }},
          {"config",
           [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
@@ -121,9 +149,13 @@ class PlanParser {
     }
     if (sequence.name.empty()) {
       const std::filesystem::path source = sequence.dataset.empty() ? sequence.config : sequence.dataset;
-      sequence.name = sequence.dataset.empty()
+      sequence.name = sequence.dataset.empty() || IsBag(sequence.dataset)
                           ? source.stem().string()
                           : (source.has_filename() ? source : source.parent_path()).filename().string();
+    }
+    if (!sequence.dataset.empty() && !PlanReader::IsDataset(sequence.dataset)) {
+      plan_.absent.emplace_back(sequence.name, sequence.dataset);
+      return Status::Ok();
     }
     return Add(node, "sequences", std::move(sequence), &plan_.sequences);
   }
@@ -238,7 +270,18 @@ class PlanParser {
     for (const PlanSequence& sequence : plan_.sequences) {
       names.push_back(sequence.name);
     }
+    for (const auto& [name, path] : plan_.absent) {
+      names.push_back(name);
+    }
     return names;
+  }
+
+  Status CheckAnyThere() const {
+    return !plan_.sequences.empty()
+               ? Status::Ok()
+               : Status::Input(plan_.path + ": none of its " + std::to_string(plan_.absent.size()) +
+                               " sequences is there; the first, " + plan_.absent.front().first +
+                               ", was expected as the folder " + plan_.absent.front().second);
   }
 
   Status CheckBaseline(const Node& root) const {

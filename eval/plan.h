@@ -2,28 +2,33 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/status.h"
 #include "eval/comparison.h"
 #include "eval/evaluate.h"
+#include "eval/external_run.h"
 
 namespace alidade {
 
-/// One row of a comparison: a configured estimator, or trajectories that another program wrote.
+/// One row of a comparison: a configured estimator, trajectories that another program wrote, or a command
+/// that runs one.
 struct PlanEstimator {
   std::string name;
   std::string config;                               ///< path; empty for an external one
   std::vector<std::string> settings;                ///< "a.b=value" over the file
   std::map<std::string, std::string> trajectories;  ///< sequence name -> path; external only
+  ExternalCommand command;                          ///< empty text: none; external only
+  bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
 
   [[nodiscard]] bool external() const { return config.empty(); }
 };
 
-/// One input of a comparison: a dataset folder or a simulation, once a seed.
+/// One input of a comparison: a dataset (a folder or a bag) or a simulation, once a seed.
 struct PlanSequence {
   std::string name;
-  std::string dataset;  ///< folder in the extended ASL layout; empty for a simulation
+  std::string dataset;  ///< folder in the extended ASL layout or bag; empty for a simulation
   std::string truth;    ///< trajectory file to score against instead of the dataset's own; may be empty
   std::string config;   ///< simulation config; empty for a dataset
   std::vector<std::string> settings;            ///< over the simulation config
@@ -44,11 +49,15 @@ struct Plan {
   std::string baseline;  ///< name of the sequence that RMSEs are also given relative to; may be empty
   bool audit = false;    ///< every filter records what it claims to observe
   std::vector<ReferenceFigure> references;
+  /// skip_missing: a sequence whose folder is not there is left out and named in `absent` (name, path).
+  bool skip_missing = false;
+  std::vector<std::pair<std::string, std::string>> absent;
 };
 
 /// Reads a plan. `${data}` in a path or in a setting becomes `data_root`; relative paths are relative to the
 /// plan's folder. Strict: an unknown, duplicate or ill-typed key, two estimators or sequences of one name, a
-/// name that is no folder name, or a file that does not exist is kConfig with file:line:column.
+/// name that is no folder name, or a file that does not exist is kConfig with file:line:column. kInput: with
+/// skip_missing, no sequence is there.
 Result<Plan> ReadPlan(const std::string& path, const std::string& data_root);
 
 }  // namespace alidade

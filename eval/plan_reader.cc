@@ -4,6 +4,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "eval/bag_import.h"
 #include "eval/suggest.h"
 
 namespace alidade {
@@ -106,21 +107,30 @@ Status PlanReader::SubstituteData(const YAML::Node& node, const std::string& nam
   return Status::Ok();
 }
 
-Status PlanReader::ExistingPath(const YAML::Node& node, const std::string& name, bool folder,
-                                std::string* value) const {
+Status PlanReader::Path(const YAML::Node& node, const std::string& name, std::string* value) const {
   std::string text;
   ALIDADE_RETURN_IF_ERROR(Text(node, name, &text));
   ALIDADE_RETURN_IF_ERROR(SubstituteData(node, name, &text));
-  const std::filesystem::path resolved = (std::filesystem::path(path_).parent_path() / text)
-                                             .lexically_normal();  // an absolute `text` replaces the folder
+  // An absolute `text` replaces the folder.
+  *value = (std::filesystem::path(path_).parent_path() / text).lexically_normal().string();
+  return Status::Ok();
+}
+
+bool PlanReader::IsDataset(const std::string& path) {
   std::error_code ignored;
-  if (folder ? !std::filesystem::is_directory(resolved, ignored)
-             : !std::filesystem::is_regular_file(resolved, ignored)) {
-    return Fault(
-        node, name,
-        std::string(folder ? "a folder" : "a file") + " that exists; " + resolved.string() + " does not");
+  return std::filesystem::is_directory(path, ignored) || IsBag(path);
+}
+
+Status PlanReader::ExistingPath(const YAML::Node& node, const std::string& name, bool folder,
+                                std::string* value) const {
+  std::string resolved;
+  ALIDADE_RETURN_IF_ERROR(Path(node, name, &resolved));
+  std::error_code ignored;
+  if (folder ? !IsDataset(resolved) : !std::filesystem::is_regular_file(resolved, ignored)) {
+    return Fault(node, name,
+                 std::string(folder ? "a folder" : "a file") + " that exists; " + resolved + " does not");
   }
-  *value = resolved.string();
+  *value = resolved;
   return Status::Ok();
 }
 

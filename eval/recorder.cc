@@ -9,6 +9,7 @@
 #include "eval/output_file.h"
 #include "eval/recorder_gnss.h"
 #include "eval/sha256.h"
+#include "eval/trajectory_export.h"
 
 namespace alidade {
 namespace {
@@ -27,17 +28,6 @@ Eigen::Vector4d Quaternion(const Eigen::Matrix3d& rotation) {
   const Eigen::Quaterniond q(rotation);
   const Eigen::Vector4d xyzw = q.normalized().coeffs();
   return xyzw[3] < 0 ? Eigen::Vector4d(-xyzw) : xyzw;
-}
-
-std::string TumText(const RunResult& result) {
-  std::string text;
-  for (const RunRecord& record : result.records) {
-    text += FormatSeconds(record.estimate.stamp_ns);
-    AppendNumbers(record.estimate.nav.p_WB, ' ', &text);
-    AppendNumbers(Quaternion(record.estimate.nav.R_WB), ' ', &text);
-    text += '\n';
-  }
-  return text;
 }
 
 /// ",c_00,c_01,...": names of the upper triangle that AppendUpperTriangle writes.
@@ -199,7 +189,8 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   const std::filesystem::path path(folder);
   std::error_code ignored;
   std::filesystem::remove(path / "run.json", ignored);
-  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "trajectory.tum").string(), TumText(result)));
+  ALIDADE_RETURN_IF_ERROR(
+      WriteFileAtomically((path / "trajectory.tum").string(), FormatTum(TrajectoryOf(result))));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "states.csv").string(), StatesText(result)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "timing.csv").string(), TimingText(result)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "status.csv").string(), StatusText(result)));

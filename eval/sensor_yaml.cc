@@ -214,6 +214,11 @@ std::string Line(const char* key, double value, const char* comment) {
   return std::string(key) + ": " + ShortestDouble(value) + comment + "\n";
 }
 
+/// Nothing for a rate that is not known.
+std::string RateLine(double rate_hz) {
+  return rate_hz > 0 ? Line("rate_hz", rate_hz, "") : std::string();
+}
+
 Result<ImuSensor> MakeImuSensor(const Result<YAML::Node>& root, const std::string& path) {
   const Result<SensorFile> file = SensorFile::Make(root, path, "imu");
   if (!file.ok()) {
@@ -276,7 +281,7 @@ Result<CameraSensor> ParseCameraSensor(const std::string& text, const std::strin
 }
 
 std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz) {
-  return "sensor_type: imu\n" + TransformYaml(Pose()) + Line("rate_hz", rate_hz, "") +
+  return "sensor_type: imu\n" + TransformYaml(Pose()) + RateLine(rate_hz) +
          Line("gyroscope_noise_density", noise.gyro_noise_density_radps_sqrthz, "  # rad s^-1 Hz^-0.5") +
          Line("gyroscope_random_walk", noise.gyro_random_walk_radps2_sqrthz, "  # rad s^-2 Hz^-0.5") +
          Line("accelerometer_noise_density", noise.accel_noise_density_mps2_sqrthz, "  # m s^-2 Hz^-0.5") +
@@ -285,7 +290,7 @@ std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz) {
 
 std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
   const CameraModel& camera = rig.camera;
-  std::string text = "sensor_type: camera\n" + TransformYaml(rig.T_BC) + Line("rate_hz", rate_hz, "");
+  std::string text = "sensor_type: camera\n" + TransformYaml(rig.T_BC) + RateLine(rate_hz);
   text +=
       "resolution: [" + std::to_string(camera.width_px()) + ", " + std::to_string(camera.height_px()) + "]\n";
   text += "camera_model: pinhole\nintrinsics: [";

@@ -34,7 +34,7 @@ Result<CameraSensor> ReadCameraSensor(const std::string& path);
 Result<ImuSensor> ParseImuSensor(const std::string& text, const std::string& where);
 Result<CameraSensor> ParseCameraSensor(const std::string& text, const std::string& where);
 
-/// The text of both files; reading it back gives equal values.
+/// The text of both files; reading it back gives equal values. A rate of 0 is left out.
 [[nodiscard]] std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz);
 [[nodiscard]] std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz);
 

@@ -94,6 +94,9 @@ std::string FormatTable(const Comparison& comparison) {
   for (const std::string& line : LostRuns(comparison)) {
     text += line + "\n";
   }
+  for (const std::string& note : comparison.notes) {
+    text += "not run: " + note + "\n";
+  }
   return text;
 }
 

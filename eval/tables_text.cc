@@ -124,6 +124,10 @@ std::string MarkdownText(const Comparison& comparison, const std::vector<TextTab
   for (const std::string& line : lost) {
     text += "- " + EscapeMarkdown(line) + "\n";
   }
+  text += comparison.notes.empty() ? "" : "\n## Not run\n\n";
+  for (const std::string& note : comparison.notes) {
+    text += "- " + EscapeMarkdown(note) + "\n";
+  }
   return comparison.command.empty() ? text : text + "\nRepeat with:\n\n    " + comparison.command + "\n";
 }
 
@@ -136,6 +140,9 @@ std::string LatexText(const Comparison& comparison, const std::vector<TextTable>
   }
   for (const std::string& line : LostRuns(comparison)) {
     text += "\n% Not ok: " + EscapeLatex(line);
+  }
+  for (const std::string& note : comparison.notes) {
+    text += "\n% Not run: " + EscapeLatex(note);
   }
   return text;
 }

@@ -1,12 +1,14 @@
-#include <cstdio>
 #include <filesystem>
 
 #include "core/format.h"
 #include "eval/bag_export.h"
 #include "eval/bag_folder.h"
+#include "eval/calibration_import.h"
 #include "eval/cli/command.h"
+#include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
+#include "eval/output_file.h"
 
 namespace alidade::cli {
 namespace {
@@ -26,12 +28,15 @@ int FolderToBag(const BagTopics& topics, BagCompression compression) {
   return options.stop->load() ? kExitInterrupted : Report(written);
 }
 
-int BagToFolder(const BagTopics& topics) {
+int BagToFolder(const BagTopics& topics, const ImportedCalibration& calibration) {
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }
   BagImportOptions options;
   options.topics = topics;
+  options.imu = calibration.imu;
+  options.imu_is_per_sample = calibration.imu_is_per_sample;
+  options.camera = calibration.camera;
   options.stop = InstallInterruptHandler();
   ProgressLine progress("messages");
   options.progress = [&progress](std::int64_t done, std::int64_t total) {
@@ -50,6 +55,40 @@ int BagToFolder(const BagTopics& topics) {
   return kExitDone;
 }
 
+/// The sensor sheets alone, for a folder that has none.
+int CalibrationToSheets(const ImportedCalibration& calibration) {
+  if (calibration.imu && calibration.imu_is_per_sample) {
+    return Report(Status::Input("convert: " + FLAGS_calibration +
+                                ": gives the IMU's noise a sample; with a bag "
+                                "(--dataset) its rate makes densities of it"));
+  }
+  if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
+    return Report(status);
+  }
+  if (calibration.imu) {
+    const Status status =
+        WriteFileAtomically(FLAGS_output + "/imu0/sensor.yaml",
+                            ImuSensorYaml(calibration.imu->noise, calibration.imu->rate_hz.value_or(0)));
+    if (!status.ok()) {
+      return Report(status);
+    }
+  }
+  if (!calibration.camera) {
+    return kExitDone;
+  }
+  RigCalibration rig;
+  rig.camera = calibration.camera->camera;
+  rig.T_BC = calibration.camera->T_BC;
+  rig.camera_time_offset_s = calibration.camera->time_offset_s;
+  return Report(WriteFileAtomically(FLAGS_output + "/cam0/sensor.yaml",
+                                    CameraSensorYaml(rig, calibration.camera->rate_hz.value_or(0))));
+}
+
+Result<ImportedCalibration> CalibrationFromFlags() {
+  return FLAGS_calibration.empty() ? ImportedCalibration()
+                                   : ImportCalibration(SplitWords(FLAGS_calibration), FLAGS_camera);
+}
+
 }  // namespace
 
 int RunConvert(const std::vector<std::string>&) {
@@ -62,8 +101,19 @@ int RunConvert(const std::vector<std::string>&) {
     return Report(Status::Usage("convert: --compression: found '" + FLAGS_compression +
                                 "', expected none, bz2 or lz4"));
   }
+  const Result<ImportedCalibration> calibration = CalibrationFromFlags();
+  if (!calibration.ok()) {
+    return Report(calibration.status());
+  }
   if (IsBag(FLAGS_dataset)) {
-    return BagToFolder(topics);
+    return BagToFolder(topics, *calibration);
+  }
+  if (FLAGS_dataset.empty() == FLAGS_calibration.empty()) {
+    return Report(Status::Usage(
+        "convert: expected --dataset, of a bag also with --calibration, or --calibration alone"));
+  }
+  if (FLAGS_dataset.empty()) {
+    return CalibrationToSheets(*calibration);
   }
   if (!FLAGS_output.ends_with(".bag")) {
     return Report(

@@ -7,6 +7,8 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
+#include "eval/external_trajectory.h"
+#include "eval/trajectory_export.h"
 
 namespace alidade::cli {
 namespace {
@@ -42,17 +44,24 @@ int RunEvaluate(const std::vector<std::string>&) {
   if (!options.ok()) {
     return Report(options.status());
   }
-  const Result<Trajectory> truth = ReadTrajectory(FLAGS_truth);
+  ExternalContext context;  // positions of both files are then in ENU at the truth's first
+  const Result<Trajectory> truth = ReadExternalTrajectory(FLAGS_truth, &context);
   if (!truth.ok()) {
     return Report(truth.status());
   }
-  const Result<Trajectory> estimate = ReadTrajectory(FLAGS_estimate);
+  const Result<Trajectory> estimate = ReadExternalTrajectory(FLAGS_estimate, &context);
   if (!estimate.ok()) {
     return Report(estimate.status());
   }
   const Result<Evaluation> evaluation = Evaluate(*truth, *estimate, *options);
   if (!evaluation.ok()) {
     return Report(evaluation.status());
+  }
+  if (!FLAGS_export.empty()) {
+    const Status written = WriteForOtherTools(*truth, *estimate, options->alignment, FLAGS_export);
+    if (!written.ok()) {
+      return Report(written);
+    }
   }
   std::fputs((FLAGS_json ? FormatEvaluationJson(*evaluation) : FormatEvaluationText(*evaluation)).c_str(),
              stdout);

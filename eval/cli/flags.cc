@@ -6,6 +6,8 @@ DEFINE_bool(
 DEFINE_string(align, "posyaw", "none | pos | posyaw | se3 | sim3: what is taken out before the ATE");
 DEFINE_bool(audit, false, "write observability.csv: what the filter claims to observe");
 DEFINE_string(backend, "", "filter | smoother | batch: replaces the key `backend` of the configuration");
+DEFINE_string(calibration, "", "files of Kalibr, OpenVINS or VINS, separated by commas");
+DEFINE_string(camera, "cam0", "which camera of a calibration with several");
 DEFINE_bool(check, false, "name the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(compression, "none", "none | bz2 | lz4: how the chunks of a bag are packed");
@@ -17,6 +19,8 @@ DEFINE_string(error, "right_invariant", "right_invariant | left_invariant | so3x
 DEFINE_string(estimate, "", "trajectory file to be scored");
 DEFINE_string(estimator, "", "configuration of the filter that is analysed, YAML");
 DEFINE_string(input, "", "cases, JSON; - reads standard input");
+DEFINE_string(export, "",
+              "folder that gets both trajectories as evo and rpg_trajectory_evaluation read them");
 DEFINE_bool(interpolate, false, "interpolate truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(jobs, 1, "runs at a time; more than one shares the caches, so times are no longer comparable");
 DEFINE_bool(json, false, "answer in JSON");

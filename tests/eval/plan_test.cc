@@ -100,7 +100,7 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
        "plan.yaml:3:1: metrix: unknown key in a plan; did you mean 'metrics'"},
       {sequences + estimators + "title: x\ntitle: y\n", "duplicate"},
       {sequences + "estimators: [estimators/none.yaml]\n", "a file that exists"},
-      {sequences + "estimators: [{name: x}]\n", "either `config` or `trajectories`"},
+      {sequences + "estimators: [{name: x}]\n", "one of `config`, `trajectories` and `command`"},
       {sequences + "estimators: [{config: estimators/a.yaml, name: a/b}]\n", "letters, digits"},
       {sequences + "estimators: [{config: estimators/a.yaml, name: ..}]\n", "letters, digits"},
       {sequences + "estimators: [estimators/a.yaml, {config: estimators/b.yaml, name: a}]\n", "is taken"},
@@ -133,6 +133,62 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
 
 TEST_F(PlanTest, MissingFileIsAConfigurationFault) {
   EXPECT_EQ(ReadPlan(folder_.File("none.yaml"), "").code(), StatusCode::kConfig);
+}
+
+TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
+  const Result<Plan> plan = Read(
+      "estimators:\n"
+      "  - {name: theirs, command: 'run {dataset} {output}', result: out.txt, timeout: 60, frame: camera}\n"
+      "sequences:\n  - config: sim.yaml\n");
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  const PlanEstimator& theirs = plan->estimators.at(0);
+  EXPECT_TRUE(theirs.external());
+  EXPECT_EQ(theirs.command.text, "run {dataset} {output}");
+  EXPECT_EQ(theirs.command.result, "out.txt");
+  EXPECT_EQ(theirs.command.timeout_s, 60);
+  EXPECT_TRUE(theirs.camera_frame);
+  for (const char* wrong : {"{name: x, command: a, config: estimators/a.yaml}", "{command: a}",
+                            "{name: x, command: a, frame: lens}", "{name: x, command: a, set: {b: 1}}"}) {
+    const Result<Plan> refused =
+        Read(std::string("estimators:\n  - ") + wrong + "\nsequences:\n  - config: sim.yaml\n");
+    EXPECT_EQ(refused.code(), StatusCode::kConfig) << wrong;
+  }
+}
+
+TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
+  const std::string rest =
+      "estimators: [estimators/a.yaml]\nsequences:\n  - path: ${data}/seq\n  - {path: '${data}/gone', name: "
+      "far}\n";
+  EXPECT_EQ(Read(rest, folder_.File("data")).code(), StatusCode::kConfig);
+  // Wherever the key stands.
+  const Result<Plan> plan = Read(rest + "skip_missing: true\n", folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  ASSERT_EQ(plan->sequences.size(), 1u);
+  ASSERT_EQ(plan->absent.size(), 1u);
+  EXPECT_EQ(plan->absent[0].first, "far");
+  EXPECT_EQ(plan->absent[0].second, folder_.File("data/gone"));
+  const Result<Plan> none = Read(rest + "skip_missing: true\n", folder_.File("nowhere"));
+  EXPECT_EQ(none.code(), StatusCode::kInput);
+  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is there"));
+}
+
+// The shipped plans of published data read without any of it, and say what they would need.
+TEST(PublishedPlans, SayWhatDataTheyNeed) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"euroc", "tumvi", "gvins"}) {
+    const std::string path = std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/" + name + ".yaml";
+    EXPECT_EQ(ReadPlan(path, "").code(), StatusCode::kConfig) << name;
+    const Result<Plan> none = ReadPlan(path, folder.path());
+    EXPECT_EQ(none.code(), StatusCode::kInput) << name << ": " << none.message();
+    EXPECT_THAT(none.message(), HasSubstr("is there; the first, ")) << name;
+  }
+  folder.Write("V1_02_medium/mav0/x", "");
+  const Result<Plan> one =
+      ReadPlan(std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/euroc.yaml", folder.path());
+  ASSERT_TRUE(one.ok()) << one.message();
+  EXPECT_EQ(one->sequences.size(), 1u);
+  EXPECT_EQ(one->absent.size(), 10u);
+  EXPECT_EQ(one->references.size(), 55u);
 }
 
 }  // namespace

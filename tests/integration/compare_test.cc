@@ -146,5 +146,36 @@ TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
               HasSubstr("figure8_short,rmse_pos_m,moving,good,0,0,1,0,"));
 }
 
+// An external program that knows the truth, as a command: it finds its input, is timed and scored like all
+// others.
+TEST_F(CompareCommand, ACommandIsRunTimedScoredAndKept) {
+  const std::string script = folder_.Write(
+      "program.sh",
+      "set -e\ntest -s $1/mav0/imu0/data.csv\ntest -s $3\nsleep 0.3\necho ran >> " + folder_.File("runs") +
+          "\nawk -F, '!/#/{printf \"%.9f %s %s %s %s %s %s %s\\n\", $1/1e9, $2+1, $3, $4, $6, $7, $8, $5}' "
+          "$1/mav0/state_groundtruth_estimate0/data.csv > $2/out.txt\n");
+  const std::string plan = folder_.Write(
+      "external.yaml",
+      "estimators:\n  - {name: theirs, command: 'sh " + script +
+          " {dataset} {output} {bag}', result: out.txt}\n"
+          "  - {name: broken, command: 'echo no luck; exit 4'}\n"
+          "sequences:\n  - {config: " +
+          Source("configs/datasets/figure8_short.yaml") +
+          ", name: short, set: {duration_s: 5, path_m: 6.5}}\nmetrics: {align: none, rpe: [1]}\n");
+  const auto compare = [&](const std::string& more) {
+    return Alidade("compare --quiet --plan=" + plan + " --output=" + folder_.File("out") + " " + more);
+  };
+  const CommandResult first = compare("");
+  EXPECT_EQ(first.code, 7) << first.output;
+  EXPECT_THAT(first.output, HasSubstr("code 4: no luck"));
+  const std::string summary = ReadFile(folder_.File("out/summary.csv"));
+  EXPECT_THAT(summary, HasSubstr("theirs,external,short,1,ok,"));
+  // One metre off along x, whatever is printed of it.
+  EXPECT_THAT(summary, testing::ContainsRegex(",(1|1\\.0000000[0-9]*|0\\.9999999[0-9]*),"));
+  EXPECT_THAT(ReadFile(folder_.File("out/cells/theirs/short/1/external.json")), HasSubstr("\"wall_s\": "));
+  EXPECT_EQ(compare("--resume").code, 7);
+  EXPECT_EQ(ReadFile(folder_.File("runs")), "ran\n") << "resumed, it is not run again";
+}
+
 }  // namespace
 }  // namespace alidade::test
