@@ -104,9 +104,18 @@ void FrontendConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"corner_threshold", "grey", "FAST contrast below which a corner is not tracked"},
                &corner_threshold, 1, 200);
   visitor.Integer({"pyramid_levels", "-", "levels above the full image"}, &pyramid_levels, 0, 6);
-  visitor.Integer({"window_px", "px", "side of the KLT patch"}, &window_px, 5, 61);
+  visitor.Integer({"window_px", "px", "side of the KLT patch; a larger one feels how the image deforms"},
+                  &window_px, 5, 61);
+  visitor.Integer(
+      {"template_px", "px",
+       "side of the patch kept of a track's first image; every image is matched to it under an affine "
+       "deformation, so that the track does not slide off its corner; 0 goes from frame to frame alone"},
+      &template_px, 0, 41);
+  visitor.Real({"min_correlation", "-", "of the image with that patch; less ends the track"},
+               &min_correlation, 0, 1);
   visitor.Real({"ransac_threshold_px", "px", "distance to the epipolar line"}, &ransac_threshold_px, 0.1, 20);
-  visitor.Real({"forward_backward_px", "px", "a track must come back this close; 0 skips the backward pass"},
+  visitor.Real({"forward_backward_px", "px",
+                "a track must come back this close from frame to frame; 0 skips the backward pass"},
                &forward_backward_px, 0, 10);
   visitor.Boolean({"equalize", "-", "CLAHE before tracking; steadies exposure changes"}, &equalize);
   visitor.Boolean({"imu_prediction", "-", "start each track where the gyroscope says it is"},
@@ -248,6 +257,10 @@ Status EstimatorConfig::Validate() const {
   }
   if (vision.min_depth_m >= vision.max_depth_m) {
     return Status::Config("vision.min_depth_m: must be less than vision.max_depth_m");
+  }
+  if (frontend.template_px != 0 && frontend.template_px < 5) {
+    return Status::Config("frontend.template_px: " + std::to_string(frontend.template_px) +
+                          " px do not tell how they are deformed; expected 0, or at least 5");
   }
   if (gnss.enabled && backend == Backend::kBatch) {
     return Status::Config(

@@ -79,9 +79,11 @@ struct FrontendConfig {
   int grid_rows = 5;
   double corner_threshold = 12.0;
   int pyramid_levels = 3;
-  int window_px = 21;
+  int window_px = 15;
+  int template_px = 13;
+  double min_correlation = 0.8;
   double ransac_threshold_px = 1.0;
-  double forward_backward_px = 0.5;
+  double forward_backward_px = 0.0;
   bool equalize = true;
   bool imu_prediction = true;
 

@@ -13,6 +13,7 @@
 #include "core/stopwatch.h"
 #include "frontend/corner_grid.h"
 #include "frontend/epipolar_rejection.h"
+#include "frontend/feature_track.h"
 #include "frontend/gyro_rotation.h"
 
 namespace alidade {
@@ -28,13 +29,6 @@ constexpr int kClaheTiles = 8;
 // A patch needs this smaller eigenvalue a pixel (OpenCV's normalisation) for its position to be defined.
 constexpr double kMinEigenvalue = 1e-4;
 
-struct FeatureTrack {
-  std::int64_t id = 0;
-  cv::Point2f pixel;
-  Vector2d normalized = Vector2d::Zero();
-  int length = 1;  // frames it was seen in
-};
-
 /// Runs are parallel across sequences, never inside one: a pool of threads under each run would only fight
 /// over the cores.
 void ForbidThreadsInside() {
@@ -43,37 +37,7 @@ void ForbidThreadsInside() {
 }
 
 int BorderPx(const FrontendConfig& config) {
-  return config.window_px / 2;
-}
-
-cv::Point2f ToPoint(const Vector2d& pixel) {
-  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-}
-
-Vector2d ToVector(const cv::Point2f& pixel) {
-  return {pixel.x, pixel.y};
-}
-
-std::vector<cv::Point2f> Pixels(const std::vector<FeatureTrack>& tracks) {
-  std::vector<cv::Point2f> pixels;
-  pixels.reserve(tracks.size());
-  for (const FeatureTrack& track : tracks) {
-    pixels.push_back(track.pixel);
-  }
-  return pixels;
-}
-
-/// Removes the tracks not marked; the others keep their order. Returns how many went.
-int Keep(const std::vector<bool>& marked, std::vector<FeatureTrack>* tracks) {
-  size_t kept = 0;
-  for (size_t i = 0; i < tracks->size(); ++i) {
-    if (marked[i]) {
-      (*tracks)[kept++] = (*tracks)[i];
-    }
-  }
-  const int removed = static_cast<int>(tracks->size() - kept);
-  tracks->resize(kept);
-  return removed;
+  return std::max(config.window_px / 2, config.template_px > 0 ? config.template_px / 2 + 3 : 0);
 }
 
 }  // namespace
@@ -108,6 +72,7 @@ struct KltTracker::Implementation {
   GyroRotation gyro;
 
   cv::Mat equalized;
+  cv::Mat smoothed;
   std::vector<cv::Mat> last_pyramid;
   std::vector<cv::Mat> pyramid;  // image, derivatives, image, derivatives, ... from fine to coarse
   std::optional<TimeNs> last_stamp_ns;
@@ -140,6 +105,10 @@ void KltTracker::Implementation::BuildPyramid(const unsigned char* grey) {
                       const_cast<unsigned char*>(grey));
   if (config.equalize) {
     clahe->apply(image, equalized);
+  }
+  if (config.template_px > 0) {
+    // Bilinear sampling of a sharper image depends on where between the pixels it falls.
+    cv::GaussianBlur(image, smoothed, cv::Size(3, 3), 0);
   }
   std::swap(pyramid, last_pyramid);
   // The derivatives serve this frame's backward pass, the ranking of corners, and the next frame's forward
@@ -179,7 +148,10 @@ std::vector<cv::Point2f> KltTracker::Implementation::Predict(const std::optional
 
 std::vector<bool> KltTracker::Implementation::FollowPixels(const std::vector<cv::Point2f>& from,
                                                            std::vector<cv::Point2f>* to) const {
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.03);
+  // Where a template is matched afterwards, its neighbourhood is enough.
+  const bool rough = config.template_px > 0;
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, rough ? 10 : 20,
+                                  rough ? 0.1 : 0.03);
   std::vector<unsigned char> found;
   cv::calcOpticalFlowPyrLK(last_pyramid, pyramid, from, *to, found, cv::noArray(), window,
                            config.pyramid_levels, criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
@@ -205,6 +177,10 @@ void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, d
   std::vector<BearingPair> pairs;
   for (size_t i = 0; i < tracks.size(); ++i) {
     BearingPair pair{.first = tracks[i].normalized, .second = Vector2d::Zero()};
+    if (alive[i] && config.template_px > 0) {
+      alive[i] = MatchTemplate(smoothed, config, DeformationBy(R_C1C0, rig.camera, tracks[i]), &tracks[i],
+                               &pixels[i]);
+    }
     const Vector2d pixel = ToVector(pixels[i]);
     alive[i] =
         alive[i] && rig.camera.InImage(pixel, BorderPx(config)) && rig.camera.Unproject(pixel, &pair.second);
@@ -242,10 +218,15 @@ void KltTracker::Implementation::Spread() {
 
 void KltTracker::Implementation::Detect() {
   for (const cv::Point2f& corner : grid.Detect(pyramid[0], pyramid[1], Pixels(tracks))) {
-    FeatureTrack track{.id = next_id, .pixel = corner, .normalized = Vector2d::Zero(), .length = 1};
+    FeatureTrack track;
+    track.id = next_id;
+    track.pixel = corner;
+    if (config.template_px > 0) {
+      track.patch = PatchTemplate(smoothed, {corner.x, corner.y}, config.template_px);
+    }
     if (rig.camera.InImage(ToVector(corner), BorderPx(config)) &&
         rig.camera.Unproject(ToVector(corner), &track.normalized)) {
-      tracks.push_back(track);
+      tracks.push_back(std::move(track));
       ++next_id;
       ++statistics.detected;
     }
