@@ -12,8 +12,8 @@
 #include "core/blas.h"
 #include "core/format.h"
 #include "eval/cell_score.h"
+#include "eval/compare_configs.h"
 #include "eval/compare_input.h"
-#include "eval/config_json.h"
 #include "eval/config_yaml.h"
 #include "eval/external_cell.h"
 #include "eval/recorder.h"
@@ -45,75 +45,27 @@ class Comparer {
  public:
   Comparer(const Plan& plan, const CompareOptions& options) : plan_(plan), options_(options) {
     pipeline_.stop = options.stop;
+    pipeline_.jobs = options.jobs;
   }
 
   Result<CompareOutcome> Execute() {
-    ALIDADE_RETURN_IF_ERROR(LoadConfigs());
+    ALIDADE_RETURN_IF_ERROR(configs_.Load(plan_));
     ALIDADE_RETURN_IF_ERROR(MakeCells());
     RunAll();
     return Finish();
   }
 
  private:
-  /// One configuration an estimator and sequence: a sequence may say what holds on it alone, such as its
-  /// pixel noise.
-  Status LoadConfigs() {
-    for (const PlanSequence& sequence : plan_.sequences) {
-      for (const PlanEstimator& estimator : plan_.estimators) {
-        if (estimator.external()) {
-          configs_[&sequence].push_back(nullptr);
-          continue;
-        }
-        std::vector<std::string> settings = plan_.settings;
-        for (const std::vector<std::string>* more : {&estimator.settings, &sequence.estimator_settings}) {
-          settings.insert(settings.end(), more->begin(), more->end());
-        }
-        Result<EstimatorConfig> config = LoadEstimatorConfig(estimator.config, settings);
-        if (!config.ok()) {
-          return Status(config.code(),
-                        "estimator " + estimator.name + " on " + sequence.name + ": " + config.message());
-        }
-        config->name = estimator.name;
-        configs_[&sequence].push_back(std::make_unique<EstimatorConfig>(std::move(*config)));
-      }
-    }
-    return Status::Ok();
-  }
-
-  /// The front end runs once a sequence: where it runs, all estimators must agree on its settings.
-  Result<FrontendConfig> CommonFrontend(const PlanSequence& sequence) const {
-    FrontendConfig common;
-    nlohmann::ordered_json expected;
-    for (const std::unique_ptr<EstimatorConfig>& config : configs_.at(&sequence)) {
-      if (config == nullptr) {
-        continue;
-      }
-      FrontendConfig frontend = config->frontend;
-      const nlohmann::ordered_json found =
-          ConfigToJson([&](ConfigVisitor& visitor) { frontend.Describe(visitor); });
-      if (expected.is_null()) {
-        expected = found;
-        common = frontend;
-      } else if (found != expected && !std::filesystem::exists(sequence.dataset + "/mav0/cam0/tracks.csv")) {
-        return Status::Config("estimator " + config->name +
-                              ": frontend differs from that of the other estimators, but the "
-                              "front end runs once for sequence " +
-                              sequence.name + "; expected equal settings");
-      }
-    }
-    return common;
-  }
-
   Status MakeCells() {
     for (const PlanSequence& sequence : plan_.sequences) {
       if (sequence.dataset.empty()) {
         ALIDADE_RETURN_IF_ERROR(AddSimulation(sequence));
       } else {
-        const Result<FrontendConfig> frontend = CommonFrontend(sequence);
-        if (!frontend.ok()) {
-          return frontend.status();
+        FrontendConfig frontend;
+        if (!std::filesystem::exists(sequence.dataset + "/mav0/cam0/tracks.csv")) {
+          ALIDADE_RETURN_IF_ERROR(configs_.CommonFrontend(sequence, &frontend));
         }
-        inputs_.push_back(std::make_unique<CompareInput>(sequence, *frontend));
+        inputs_.push_back(std::make_unique<CompareInput>(sequence, frontend, CacheOf(sequence, 0)));
         for (const unsigned seed : sequence.seeds) {
           AddCells(sequence, seed, inputs_.back().get());
         }
@@ -127,8 +79,13 @@ class Comparer {
     if (!config.ok()) {
       return Status(config.code(), "sequence " + sequence.name + ": " + config.message());
     }
+    FrontendConfig frontend;
+    if (config->render.enabled) {
+      ALIDADE_RETURN_IF_ERROR(configs_.CommonFrontend(sequence, &frontend));
+    }
     for (const unsigned seed : sequence.seeds) {
-      inputs_.push_back(std::make_unique<CompareInput>(sequence, *config, seed));
+      inputs_.push_back(
+          std::make_unique<CompareInput>(sequence, *config, seed, frontend, CacheOf(sequence, seed)));
       AddCells(sequence, seed, inputs_.back().get());
     }
     return Status::Ok();
@@ -141,7 +98,7 @@ class Comparer {
           estimator.trajectories.count(sequence.name) == 0) {
         continue;
       }
-      const EstimatorConfig* config = configs_.at(&sequence)[i].get();
+      const EstimatorConfig* config = configs_.Of(sequence, i);
       Cell cell{&estimator, config, &sequence, input, seed, UnscoredCell()};
       cell.result.estimator = estimator.name;
       cell.result.backend = estimator.external() ? "external" : std::string(ToString(config->backend));
@@ -196,6 +153,9 @@ class Comparer {
     const Result<CompareInput::Data>& data = cell->input->Acquire(pipeline_);
     if (!data.ok()) {
       return Fail(cell, data.message());
+    }
+    if (data->frontend.has_value()) {
+      NoteFrontend(*cell, *data->frontend);
     }
     const Trajectory* truth = data->truth ? &*data->truth : nullptr;
     cell->result.input_digest = DigestOf(data->log);
@@ -252,6 +212,22 @@ class Comparer {
     }
   }
 
+  /// Says once an input what its front end did, and keeps it for the tables.
+  void NoteFrontend(const Cell& cell, FrontendSummary summary) {
+    summary.sequence = cell.sequence->name;
+    summary.seed = cell.seed;
+    {
+      const std::lock_guard<std::mutex> lock(frontend_mutex_);
+      if (!frontends_.emplace(cell.input, summary).second) {
+        return;
+      }
+    }
+    Say("front end of " + summary.sequence + ": " +
+        Format("%d images, %.2f ms each, %.0f features, tracks of %.0f frames, %.2f %% rejected",
+               summary.images, summary.mean_ms, summary.features_per_frame, summary.mean_length,
+               100 * summary.rejected_share));
+  }
+
   Result<CompareOutcome> Finish() {
     CompareOutcome outcome;
     outcome.interrupted = Stopped();
@@ -263,6 +239,11 @@ class Comparer {
     comparison.baseline = plan_.baseline;
     for (const auto& [name, path] : plan_.absent) {
       comparison.notes.push_back(name + ": its data is not there, expected the folder " + path);
+    }
+    for (const std::unique_ptr<CompareInput>& input : inputs_) {
+      if (const auto found = frontends_.find(input.get()); found != frontends_.end()) {
+        comparison.frontends.push_back(found->second);
+      }
     }
     comparison.pair_figures = plan_.pair_figures;
     comparison.pair_across = plan_.pair_across;
@@ -286,6 +267,10 @@ class Comparer {
            std::to_string(cell.seed);
   }
 
+  [[nodiscard]] FrontendCache CacheOf(const PlanSequence& sequence, unsigned seed) const {
+    return {options_.output + "/logs/" + sequence.name + "/" + std::to_string(seed), options_.resume};
+  }
+
   [[nodiscard]] bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
   void Say(const std::string& line) {
@@ -298,10 +283,11 @@ class Comparer {
   const Plan& plan_;
   const CompareOptions& options_;
   PipelineOptions pipeline_;
-  /// Of each sequence, one an estimator in the plan's order; null when external.
-  std::map<const PlanSequence*, std::vector<std::unique_ptr<EstimatorConfig>>> configs_;
+  CompareConfigs configs_;
   std::vector<std::unique_ptr<CompareInput>> inputs_;
   std::vector<Cell> cells_;
+  std::map<const CompareInput*, FrontendSummary> frontends_;
+  std::mutex frontend_mutex_;
   std::atomic<size_t> next_cell_{0};
   std::atomic<size_t> cells_done_{0};
   std::atomic<int> cells_reused_{0};

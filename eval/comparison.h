@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/frontend_summary.h"
 #include "eval/metrics.h"
 #include "eval/runner.h"
 
@@ -85,7 +86,9 @@ struct Comparison {
   /// Figures whose paired differences the tables show; pairs.csv has all of them.
   std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
   bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each
-  std::string baseline;      ///< sequence that RMSEs are also given relative to; may be empty
+  /// Of each sequence and seed whose tracks the front end made here.
+  std::vector<FrontendSummary> frontends = {};
+  std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
 };
 
 /// Writes summary.csv, aggregate.csv, pairs.csv, nees_over_time.csv, tables.md, tables.tex into `folder`

@@ -31,42 +31,6 @@ Status CloseFrame(TrackFrame* frame, const std::string& place) {
   return Status::Ok();
 }
 
-Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
-  const std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
-  Result<CsvReader> csv = OpenTable(path, header);
-  if (!csv.ok()) {
-    return csv.status();
-  }
-  std::vector<TrackFrame> frames;
-  std::string place;
-  while (csv->NextRow()) {
-    ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
-    TimeNs stamp = 0;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp));
-    if (frames.empty() || stamp != frames.back().stamp_ns) {
-      if (!frames.empty()) {
-        ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frames.back().stamp_ns, &stamp));
-        ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
-      }
-      frames.push_back({stamp, {}, 0});
-      place = csv->Place();
-    }
-    TrackObservation observation;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(1, "track_id", &observation.track_id));
-    if (observation.track_id < 0) {
-      return csv->Fault(1, "track_id", "a number that is not negative");
-    }
-    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(2, "u", &observation.pixel.x()));
-    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(3, "v", &observation.pixel.y()));
-    frames.back().observations.push_back(observation);
-  }
-  if (frames.empty()) {
-    return Status::Input(path + ": holds no track, expected at least one row");
-  }
-  ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
-  return frames;
-}
-
 Result<std::vector<TimeNs>> ReadStamps(const std::string& path) {
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}});
   if (!csv.ok()) {
@@ -198,6 +162,42 @@ double MeasuredCameraRate(const Dataset& dataset) {
 }
 
 }  // namespace
+
+Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
+  const std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
+  Result<CsvReader> csv = OpenTable(path, header);
+  if (!csv.ok()) {
+    return csv.status();
+  }
+  std::vector<TrackFrame> frames;
+  std::string place;
+  while (csv->NextRow()) {
+    ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
+    TimeNs stamp = 0;
+    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp));
+    if (frames.empty() || stamp != frames.back().stamp_ns) {
+      if (!frames.empty()) {
+        ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frames.back().stamp_ns, &stamp));
+        ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
+      }
+      frames.push_back({stamp, {}, 0});
+      place = csv->Place();
+    }
+    TrackObservation observation;
+    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(1, "track_id", &observation.track_id));
+    if (observation.track_id < 0) {
+      return csv->Fault(1, "track_id", "a number that is not negative");
+    }
+    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(2, "u", &observation.pixel.x()));
+    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(3, "v", &observation.pixel.y()));
+    frames.back().observations.push_back(observation);
+  }
+  if (frames.empty()) {
+    return Status::Input(path + ": holds no track, expected at least one row");
+  }
+  ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
+  return frames;
+}
 
 Status ReadCameraFolder(const std::string& folder, Dataset* dataset) {
   const Result<CameraSensor> sensor = ReadCameraSensor((fs::path(folder) / "sensor.yaml").string());

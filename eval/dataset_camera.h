@@ -14,6 +14,10 @@ Result<CsvReader> OpenTable(const std::string& path, const std::vector<CsvColumn
 /// Mean rate of `count` stamps between the first and the last [Hz]; 0 when there are fewer than two.
 [[nodiscard]] double MeasuredRate(TimeNs first, TimeNs last, size_t count);
 
+/// tracks.csv, grouped by stamp, each frame sorted by track id. Errors (kInput): torn rows, stamps out of
+/// order, a track twice in a frame, none at all.
+Result<std::vector<TrackFrame>> ReadTracks(const std::string& path);
+
 /// Reads cam0: sensor.yaml and whichever of tracks.csv, timestamps.csv, data.csv with its images are there,
 /// into the camera's part of `dataset`. Errors (kInput) as ReadDataset's.
 Status ReadCameraFolder(const std::string& folder, Dataset* dataset);

@@ -6,39 +6,56 @@
 
 namespace alidade {
 
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::vector<TimeNs>& stamps,
+                                            const ImageSource& image_of, const FrontendConfig& config,
+                                            const PipelineOptions& options) {
+  KltTracker tracker(config, dataset.rig);
+  std::vector<TrackFrame> frames;
+  frames.reserve(stamps.size());
+  size_t next_imu = 0;
+  for (const TimeNs stamp_ns : stamps) {
+    if (options.stop != nullptr && options.stop->load()) {
+      return Status::Diverged("interrupted");
+    }
+    const TimeNs imu_stamp = stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s);
+    while (next_imu < dataset.imu.size() &&
+           (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
+      tracker.AddImu(dataset.imu[next_imu++]);
+    }
+    const Result<GreyImage> grey = image_of(frames.size());
+    ALIDADE_RETURN_IF_ERROR(grey.status());
+    Result<TrackFrame> frame = tracker.Track(stamp_ns, grey->pixels.data(), grey->width_px, grey->height_px);
+    ALIDADE_RETURN_IF_ERROR(frame.status());
+    frames.push_back(std::move(*frame));
+    if (options.statistics != nullptr) {
+      options.statistics->push_back(tracker.statistics());
+    }
+    if (options.progress) {
+      options.progress(frames.size(), stamps.size());
+    }
+  }
+  return frames;
+}
+
 Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
                                             const PipelineOptions& options) {
   if (dataset.images.empty()) {
     return Status::Input(dataset.path + ": found no images, expected mav0/cam0/data.csv and its image files");
   }
-  KltTracker tracker(config, dataset.rig);
-  std::vector<TrackFrame> frames;
-  frames.reserve(dataset.images.size());
-  size_t next_imu = 0;
+  std::vector<TimeNs> stamps;
   for (const ImageEntry& image : dataset.images) {
-    if (options.stop != nullptr && options.stop->load()) {
-      return Status::Diverged("interrupted");
-    }
-    const TimeNs imu_stamp = image.stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s);
-    while (next_imu < dataset.imu.size() &&
-           (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
-      tracker.AddImu(dataset.imu[next_imu++]);
-    }
+    stamps.push_back(image.stamp_ns);
+  }
+  std::vector<double> decode_ms;
+  const auto image_of = [&](size_t i) -> Result<GreyImage> {
     const Stopwatch stopwatch;
-    const Result<GreyImage> grey = ReadGreyImage(image.path);
-    if (!grey.ok()) {
-      return grey.status();
-    }
-    Result<TrackFrame> frame =
-        tracker.Track(image.stamp_ns, grey->pixels.data(), grey->width_px, grey->height_px);
-    if (!frame.ok()) {
-      return Status(frame.code(), image.path + ": " + frame.message());
-    }
-    frame->frontend_ms = stopwatch.ElapsedMs();
-    frames.push_back(std::move(*frame));
-    if (options.progress) {
-      options.progress(frames.size(), dataset.images.size());
-    }
+    Result<GreyImage> grey = ReadGreyImage(dataset.images[i].path);
+    decode_ms.push_back(stopwatch.ElapsedMs());
+    return grey;
+  };
+  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, stamps, image_of, config, options);
+  for (size_t i = 0; frames.ok() && i < frames->size(); ++i) {
+    (*frames)[i].frontend_ms += decode_ms[i];
   }
   return frames;
 }

@@ -42,4 +42,15 @@ void TakeTracks(SimulatedTracks tracks, Dataset* dataset) {
   }
 }
 
+Status AddSimulatedTracks(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,
+                          TimeNs start_ns, unsigned seed, Dataset* dataset) {
+  const Result<std::vector<Eigen::Vector3d>> landmarks = MakeLandmarks(config, trajectory, seed);
+  ALIDADE_RETURN_IF_ERROR(landmarks.status());
+  dataset->extra_cameras = MakeExtraCameras(config, dataset->rig);
+  TakeTracks(SimulateTracks(config, trajectory, dataset->rig, *landmarks, start_ns, dataset->camera_stamps,
+                            seed, dataset->extra_cameras),
+             dataset);
+  return Status::Ok();
+}
+
 }  // namespace alidade

@@ -42,6 +42,11 @@ struct SimulatedTracks {
 /// Puts the frames into the data set, whose extra cameras are those that were simulated.
 void TakeTracks(SimulatedTracks tracks, Dataset* dataset);
 
+/// Throws landmarks (sim_landmarks.h) and puts the tracks that the rig and its extra cameras see of them at
+/// the camera stamps into the data set. Errors: those of MakeLandmarks.
+Status AddSimulatedTracks(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,
+                          TimeNs start_ns, unsigned seed, Dataset* dataset);
+
 /// Ids of the tracks that camera k alone sees start at k times this.
 inline constexpr std::int64_t kExtraCameraIds = 1'000'000'000;
 

@@ -10,7 +10,6 @@
 #include "eval/recorded_motion.h"
 #include "eval/sim_camera.h"
 #include "eval/sim_gnss.h"
-#include "eval/sim_landmarks.h"
 
 namespace alidade {
 namespace {
@@ -79,7 +78,7 @@ Status CheckGyro(const RecordedMotion& recorded, const std::vector<ImuSample>& i
 
 }  // namespace
 
-Result<Dataset> SimulateHybrid(const SimulatorConfig& config, unsigned seed) {
+Result<Simulation> SimulateHybrid(const SimulatorConfig& config, unsigned seed) {
   const Result<Dataset> real = ReadDataset(config.hybrid_dataset);
   ALIDADE_RETURN_IF_ERROR(real.status());
   Result<RecordedMotion> recorded = LoadRecordedMotion(config.hybrid_dataset, config);
@@ -92,10 +91,9 @@ Result<Dataset> SimulateHybrid(const SimulatorConfig& config, unsigned seed) {
     return Status::Input(config.hybrid_dataset + ": no camera stamp within the truth " + recorded->path +
                          ", expected some");
   }
-  const Result<std::vector<Eigen::Vector3d>> landmarks = MakeLandmarks(config, motion, seed);
-  ALIDADE_RETURN_IF_ERROR(landmarks.status());
 
-  Dataset dataset;
+  Simulation simulation;
+  Dataset& dataset = simulation.dataset;
   dataset.name = config.name;
   dataset.rig = real->rig;
   dataset.imu_rate_hz = real->imu_rate_hz;
@@ -103,14 +101,15 @@ Result<Dataset> SimulateHybrid(const SimulatorConfig& config, unsigned seed) {
   dataset.imu = real->imu;
   TrimImu(stamps.front(), stamps.back() + SecondsToNs(real->rig.camera_time_offset_s), &dataset.imu);
   dataset.camera_stamps = stamps;
-  dataset.extra_cameras = MakeExtraCameras(config, dataset.rig);
-  TakeTracks(SimulateTracks(config, motion, dataset.rig, *landmarks, motion.start_ns(), stamps, seed,
-                            dataset.extra_cameras),
-             &dataset);
+  if (!config.render.enabled) {
+    ALIDADE_RETURN_IF_ERROR(AddSimulatedTracks(config, motion, motion.start_ns(), seed, &dataset));
+  }
   ALIDADE_RETURN_IF_ERROR(AddSimulatedGnss(config, motion, motion.start_ns(), seed, &dataset));
   dataset.truth = std::move(recorded->samples);
   dataset.truth_path = recorded->path;
-  return dataset;
+  simulation.motion_start_ns = motion.start_ns();
+  simulation.motion = std::make_shared<SplineTrajectory>(std::move(recorded->motion));
+  return simulation;
 }
 
 }  // namespace alidade

@@ -19,6 +19,6 @@ namespace alidade {
 ///
 /// Errors: those of ReadDataset and LoadRecordedMotion; no truth, no frames, a motion that the gyroscope
 /// contradicts (kInput); no room for landmarks (kConfig).
-Result<Dataset> SimulateHybrid(const SimulatorConfig& config, unsigned seed);
+Result<Simulation> SimulateHybrid(const SimulatorConfig& config, unsigned seed);
 
 }  // namespace alidade

@@ -15,20 +15,6 @@ namespace {
 constexpr int kMaxTriesPerLandmark = 100;
 constexpr double kMaxThrown = 1e7;
 
-/// Positions of the body about `spacing_m` apart.
-std::vector<Eigen::Vector3d> SamplePath(const ContinuousTrajectory& trajectory, double spacing_m) {
-  constexpr double kStepSeconds = 0.01;
-  std::vector<Eigen::Vector3d> points = {trajectory.At(0).nav.p_WB};
-  const int steps = static_cast<int>(trajectory.DurationSeconds() / kStepSeconds);
-  for (int i = 1; i <= steps; ++i) {
-    const Eigen::Vector3d p_WB = trajectory.At(i * kStepSeconds).nav.p_WB;
-    if ((p_WB - points.back()).norm() >= spacing_m) {
-      points.push_back(p_WB);
-    }
-  }
-  return points;
-}
-
 /// Throws landmarks between two distances around the path.
 class Shell {
  public:
@@ -193,6 +179,19 @@ Result<std::vector<Eigen::Vector3d>> ThrowAll(const Layout& layout, const Simula
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> SamplePath(const ContinuousTrajectory& trajectory, double spacing_m) {
+  constexpr double kStepSeconds = 0.01;
+  std::vector<Eigen::Vector3d> points = {trajectory.At(0).nav.p_WB};
+  const int steps = static_cast<int>(trajectory.DurationSeconds() / kStepSeconds);
+  for (int i = 1; i <= steps; ++i) {
+    const Eigen::Vector3d p_WB = trajectory.At(i * kStepSeconds).nav.p_WB;
+    if ((p_WB - points.back()).norm() >= spacing_m) {
+      points.push_back(p_WB);
+    }
+  }
+  return points;
+}
 
 Result<std::vector<Eigen::Vector3d>> MakeLandmarks(const SimulatorConfig& config,
                                                    const ContinuousTrajectory& trajectory,

@@ -10,6 +10,10 @@
 
 namespace alidade {
 
+/// Positions of the body about `spacing_m` apart, in W [m].
+[[nodiscard]] std::vector<Eigen::Vector3d> SamplePath(const ContinuousTrajectory& trajectory,
+                                                      double spacing_m);
+
 /// Landmarks around the path, in W [m]; none is nearer to the path (sampled every tenth of
 /// landmark_min_distance_m) than that distance: one that is gets thrown again.
 ///

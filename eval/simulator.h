@@ -1,12 +1,15 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/config_schema.h"
 #include "core/status.h"
+#include "eval/continuous_trajectory.h"
 #include "eval/dataset.h"
+#include "eval/render_config.h"
 #include "eval/sim_gnss_config.h"
 
 namespace alidade {
@@ -110,6 +113,7 @@ struct SimulatorConfig {
   double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
 
   SimGnssConfig gnss;
+  RenderConfig render;
 
   [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }
   /// Whether outliers are whole tracks.
@@ -127,6 +131,13 @@ struct SimulatorConfig {
 Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,
                                             const std::vector<std::string>& settings);
 
+/// A simulated sequence and the motion it was made from.
+struct Simulation {
+  Dataset dataset;
+  std::shared_ptr<const ContinuousTrajectory> motion;
+  TimeNs motion_start_ns = 0;  ///< stamp of the motion's time 0
+};
+
 /// Same config and seed, same bytes (and same recording, where one is used).
 ///
 /// IMU: a_m = M_a R^T (a - g) + b_a + n_a, w_m = M_g w + b_g + n_g with g = (0, 0, -gravity_mps2), sampled at
@@ -139,8 +150,11 @@ Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,
 /// others: switching one effect on leaves the numbers of the others.
 ///
 /// trajectory: file moves the body along a spline through a recorded trajectory (recorded_motion.h), stamped
-/// as the recording, for at most duration_s. hybrid_dataset simulates the tracks alone (sim_hybrid.h).
+/// as the recording, for at most duration_s. hybrid_dataset simulates the tracks alone (sim_hybrid.h). With
+/// render.enabled there are camera stamps and no tracks: they come from images (rendered_sequence.h).
 /// Errors: those of Validate (kConfig); a recording that cannot be read or used (kInput).
+Result<Simulation> SimulateWithMotion(const SimulatorConfig& config, unsigned seed);
+/// The sequence alone.
 Result<Dataset> Simulate(const SimulatorConfig& config, unsigned seed);
 
 }  // namespace alidade

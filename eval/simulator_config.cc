@@ -258,6 +258,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeTracks(this, visitor);
   DescribeLandmarks(this, visitor);
   visitor.Section("gnss", "the receiver", [&] { gnss.Describe(visitor); });
+  visitor.Section("render", "images of the camera", [&] { render.Describe(visitor); });
 }
 
 Status SimulatorConfig::Validate() const {
@@ -288,6 +289,8 @@ Status SimulatorConfig::Validate() const {
              "less than landmark_max_distance_m " + Print(landmark_max_distance_m)));
   ALIDADE_RETURN_IF_ERROR(Expect(camera_lever_arm_m.norm() < landmark_min_distance_m, "camera_lever_arm_m",
                                  camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(!render.enabled || camera_count == 1, "camera_count", camera_count, "1 with render.enabled"));
   for (int i = CoefficientCount(distortion); i < 4; ++i) {
     ALIDADE_RETURN_IF_ERROR(
         Expect(distortion_coefficients[i] == 0, "distortion coefficient", distortion_coefficients[i],

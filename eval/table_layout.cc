@@ -171,6 +171,28 @@ TextTable OverviewTable(size_t index, const std::vector<AggregateRow>& rows, con
   return table;
 }
 
+/// What the front end made of the images, where it ran in this comparison.
+TextTable FrontendTable(const std::vector<FrontendSummary>& frontends) {
+  TextTable table;
+  table.title = "Front end: tracks an image, their lives, what ended them, and time";
+  table.header = {"sequence",           "seed",        "images",        "features a frame",
+                  "mean life (frames)", "median life", "lost (%)",      "rejected (%)",
+                  "thinned (%)",        "ms a frame",  "95 % of frames"};
+  for (const FrontendSummary& front : frontends) {
+    TextRow row;
+    row.cells = {{front.sequence}, {std::to_string(front.seed)}, {std::to_string(front.images)}};
+    for (const auto& [value, decimals] :
+         {std::pair(front.features_per_frame, 1), std::pair(front.mean_length, 1),
+          std::pair(front.median_length, 0), std::pair(100 * front.lost_share, 2),
+          std::pair(100 * front.rejected_share, 2), std::pair(100 * front.thinned_share, 2),
+          std::pair(front.mean_ms, 2), std::pair(front.p95_ms, 2)}) {
+      row.cells.push_back({FormatValue(value, decimals)});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 }  // namespace
 
 std::string FormatValue(double value, int decimals) {
@@ -209,6 +231,9 @@ std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::str
   }
   for (const std::string& sequence : sequences) {
     tables.push_back(SequenceTable(sequence, rows, comparison, figures, plus_minus));
+  }
+  if (!comparison.frontends.empty()) {
+    tables.push_back(FrontendTable(comparison.frontends));
   }
   const std::vector<TextTable> efficiency = LayOutEfficiencyTables(comparison);
   tables.insert(tables.end(), efficiency.begin(), efficiency.end());

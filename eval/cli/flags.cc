@@ -22,7 +22,10 @@ DEFINE_string(input, "", "cases, JSON; - reads standard input");
 DEFINE_string(export, "",
               "folder that gets both trajectories as evo and rpg_trajectory_evaluation read them");
 DEFINE_bool(interpolate, false, "interpolate truth at the stamps of the estimate instead of pairing rows");
-DEFINE_int32(jobs, 1, "runs at a time; more than one shares the caches, so times are no longer comparable");
+DEFINE_int32(
+    jobs, 1,
+    "runs at a time; more than one shares the caches, so times are no longer comparable. Images drawn at "
+    "a time");
 DEFINE_bool(json, false, "answer in JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: what the configuration file is");
 DEFINE_double(limit, 5, "data a start may use [s]");
@@ -31,9 +34,11 @@ DEFINE_string(model, "", "measurement model");
 DEFINE_string(nav, "", "broadcast orbits, RINEX, separated by commas");
 DEFINE_string(obs, "", "observations, RINEX");
 DEFINE_string(output, "", "where the results go");
+DEFINE_int32(overlay, 0, "draw the tracks upon every so many images, as overlay/<stamp>.png; 0: none");
 DEFINE_bool(overwrite, false, "write into an output that exists");
 DEFINE_string(plan, "", "comparison plan, YAML");
 DEFINE_bool(quiet, false, "print errors and results alone");
+DEFINE_bool(render, false, "draw what the camera sees instead of simulating tracks (render.enabled)");
 DEFINE_bool(resume, false, "keep the complete cells of an interrupted comparison");
 DEFINE_string(rpe, "8,16,24,32,40", "distances of the relative error [m], separated by commas");
 DEFINE_uint32(seed, 1, "seed of the simulation, and of the start that init.method truth draws");

@@ -30,7 +30,7 @@ Result<std::vector<StartOutcome>> StudySequence(const Plan& plan, const PlanSequ
     if (!simulation.ok()) {
       return simulation.status();
     }
-    input = std::make_unique<CompareInput>(sequence, *simulation, seed);
+    input = std::make_unique<CompareInput>(sequence, *simulation, seed, config->frontend);
   } else {
     input = std::make_unique<CompareInput>(sequence, config->frontend);
   }

@@ -5,7 +5,10 @@
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/config_yaml.h"
+#include "eval/frontend_summary.h"
 #include "eval/image_pipeline.h"
+#include "eval/output_file.h"
+#include "eval/track_overlay.h"
 
 namespace alidade::cli {
 namespace {
@@ -18,6 +21,26 @@ Result<EstimatorConfig> FrontendSettings() {
   ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set),
                                         [&config](ConfigVisitor& visitor) { config.Describe(visitor); }));
   return config;
+}
+
+/// Pictures of every FLAGS_overlay-th image with its tracks.
+Status DrawOverlays(const Dataset& dataset, const std::vector<TrackFrame>& frames) {
+  const auto step = static_cast<size_t>(FLAGS_overlay);
+  for (size_t i = 0; step > 0 && i < frames.size(); i += step) {
+    const Result<GreyImage> image = ReadGreyImage(dataset.images[i].path);
+    ALIDADE_RETURN_IF_ERROR(image.status());
+    ALIDADE_RETURN_IF_ERROR(WriteTrackOverlay(
+        *image, frames, i, FLAGS_output + "/overlay/" + std::to_string(frames[i].stamp_ns) + ".png"));
+  }
+  return Status::Ok();
+}
+
+/// What `track` leaves: the sequence with its tracks, a row an image of what the front end did, and pictures.
+Status WriteAll(const Dataset& dataset, const std::vector<TrackerStatistics>& statistics) {
+  ALIDADE_RETURN_IF_ERROR(WriteDataset(dataset, FLAGS_output));
+  ALIDADE_RETURN_IF_ERROR(
+      WriteFileAtomically(FLAGS_output + "/frontend.csv", FrontendCsv(dataset.tracks, statistics)));
+  return DrawOverlays(dataset, dataset.tracks);
 }
 
 }  // namespace
@@ -34,7 +57,13 @@ int RunTrack(const std::vector<std::string>&) {
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }
+  if (FLAGS_overlay < 0) {
+    return Report(
+        Status::Config("--overlay: found " + std::to_string(FLAGS_overlay) + ", expected 0 or more"));
+  }
+  std::vector<TrackerStatistics> statistics;
   PipelineOptions options;
+  options.statistics = &statistics;
   options.stop = InstallInterruptHandler();
   ProgressLine progress("images");
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
@@ -47,10 +76,16 @@ int RunTrack(const std::vector<std::string>&) {
   }
   dataset->tracks = std::move(*frames);
   const MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks, dataset->extra_cameras};
-  if (const Status status = WriteDataset(*dataset, FLAGS_output); !status.ok()) {
+  if (const Status status = WriteAll(*dataset, statistics); !status.ok()) {
     return Report(status);
   }
+  const FrontendSummary summary = SummarizeFrontend(dataset->tracks, statistics);
   std::printf("%s\n", DescribeLog(log, DigestOf(log)).c_str());
+  std::printf(
+      "%.2f ms an image (95 %%: %.2f), %.1f features, tracks of %.1f frames; %.2f %% lost, %.2f %% "
+      "rejected by the epipolar geometry a frame\n",
+      summary.mean_ms, summary.p95_ms, summary.features_per_frame, summary.mean_length,
+      100 * summary.lost_share, 100 * summary.rejected_share);
   return kExitDone;
 }
 

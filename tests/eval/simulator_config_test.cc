@@ -12,10 +12,10 @@ namespace {
 TEST(SimulatorConfigTest, EveryShippedConfigurationIsValid) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(ALIDADE_SOURCE_DIR "/configs/datasets")) {
-    const Result<SimulatorConfig> config =
-        LoadSimulatorConfig(entry.path().string(), entry.path().stem() == "hybrid"
-                                                       ? std::vector<std::string>{"hybrid_dataset=somewhere"}
-                                                       : std::vector<std::string>{});
+    const Result<SimulatorConfig> config = LoadSimulatorConfig(
+        entry.path().string(), entry.path().stem() == "hybrid" || entry.path().stem() == "rendered"
+                                   ? std::vector<std::string>{"hybrid_dataset=somewhere"}
+                                   : std::vector<std::string>{});
     EXPECT_TRUE(config.ok()) << config.message();
     EXPECT_EQ(config.ok() ? config->name : "", entry.path().stem().string());
     ++count;

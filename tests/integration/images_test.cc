@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <iterator>
 #include <regex>
 
 #include "tests/integration/command.h"
@@ -32,6 +34,70 @@ TEST(Images, TrackAndRunMakeTheSameMeasurementLog) {
     EXPECT_TRUE(run.code == 0 || run.code == 5) << run.output;
     EXPECT_EQ(DigestIn(run.output), digest) << input;
   }
+}
+
+/// A few small images along the figure-8.
+const char* const kTiny =
+    "name: tiny\nduration_s: 3\npath_m: 4\nwidth_px: 188\nheight_px: 120\nfocal_px: 115\n"
+    "landmark_min_distance_m: 0.8\n";
+
+// GIVEN a simulation WHEN it is rendered THEN a folder of images comes out that the front end tracks and
+// draws.
+TEST(Images, ARenderedSequenceIsTracked) {
+  TemporaryFolder folder;
+  const std::string config = folder.Write("tiny.yaml", kTiny);
+  const std::string seq = folder.File("seq");
+  const CommandResult simulated =
+      Alidade("simulate --render --quiet --jobs=2 --config=" + config + " --output=" + seq);
+  ASSERT_EQ(simulated.code, 0) << simulated.output;
+  EXPECT_FALSE(std::filesystem::exists(seq + "/mav0/cam0/tracks.csv")) << "the front end makes them";
+  const CommandResult check = Alidade("check --dataset=" + seq);
+  EXPECT_EQ(check.code, 0) << check.output;
+  const CommandResult tracked =
+      Alidade("track --quiet --overlay=10 --dataset=" + seq + " --output=" + folder.File("tracked"));
+  ASSERT_EQ(tracked.code, 0) << tracked.output;
+  EXPECT_THAT(tracked.output, testing::HasSubstr("31 frames"));
+  EXPECT_TRUE(std::filesystem::exists(folder.File("tracked/frontend.csv")));
+  const auto overlays = std::filesystem::directory_iterator(folder.File("tracked/overlay"));
+  EXPECT_EQ(std::distance(begin(overlays), end(overlays)), 4);
+}
+
+// GIVEN a plan with a rendered simulation WHEN it runs, and again with --resume after its cells are gone THEN
+// the front end ran once and the tables tell what it did.
+TEST(Images, AComparisonFromPixelsKeepsItsLog) {
+  TemporaryFolder folder;
+  folder.Write("tiny.yaml", kTiny);
+  const std::string plan =
+      folder.Write("plan.yaml", "set: {init.method: truth}\nestimators:\n  - " +
+                                    Source("configs/estimators/po_invio_two.yaml") + "\n  - " +
+                                    Source("configs/estimators/invio_l5.yaml") +
+                                    "\nsequences:\n  - {config: tiny.yaml, set: {render.enabled: true}}\n");
+  const std::string out = folder.File("out");
+  const CommandResult first = Alidade("compare --plan=" + plan + " --output=" + out);
+  EXPECT_TRUE(first.code == 0 || first.code == 7) << first.output;
+  EXPECT_THAT(ReadFile(out + "/tables.md"), testing::HasSubstr("Front end"));
+  const std::string log = out + "/logs/tiny/1";
+  const std::string timing = ReadFile(log + "/timing.csv");
+  const std::string summary = ReadFile(out + "/summary.csv");
+  std::filesystem::remove_all(out + "/cells");
+  const CommandResult second = Alidade("compare --resume --plan=" + plan + " --output=" + out);
+  EXPECT_EQ(second.code, first.code) << second.output;
+  EXPECT_EQ(ReadFile(log + "/timing.csv"), timing) << "another run of the front end takes another time";
+  EXPECT_EQ(DigestIn(ReadFile(out + "/summary.csv")), DigestIn(summary));
+}
+
+// Estimators that want different tracks cannot share one run of the front end.
+TEST(Images, AComparisonFromPixelsRefusesTwoFrontends) {
+  TemporaryFolder folder;
+  folder.Write("tiny.yaml", kTiny);
+  const std::string preset = Source("configs/estimators/invio_l5.yaml");
+  const std::string plan =
+      folder.Write("plan.yaml", "estimators:\n  - " + preset + "\n  - {config: " + preset +
+                                    ", name: other, set: {frontend.max_features: 80}}\n"
+                                    "sequences:\n  - {config: tiny.yaml, set: {render.enabled: true}}\n");
+  const CommandResult refused = Alidade("compare --plan=" + plan + " --output=" + folder.File("out"));
+  EXPECT_EQ(refused.code, 3) << refused.output;
+  EXPECT_THAT(refused.output, testing::HasSubstr("frontend differs"));
 }
 
 }  // namespace
