@@ -16,6 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMaxTries = 20;
+constexpr double kMaxObjects = 2e4;
 
 /// Throws what stands in the hall. Coordinates are those of the hall.
 class Builder {
@@ -34,21 +35,29 @@ class Builder {
     }
   }
 
+  /// Boxes and columns that the densities ask for.
+  [[nodiscard]] double ObjectCount() const {
+    const RenderConfig& render = config_.render;
+    return FloorArea() * (render.box_density_per_m2 + render.column_density_per_m2) +
+           (FloorArea() + WallArea()) * render.panel_density_per_m2;
+  }
+
   Hall Build() {
     const RenderConfig& render = config_.render;
     hall_.room = MakeBox(-half_, half_, TextureKind::kBricks);
     hall_.room.faces[4].texture = static_cast<int>(TextureKind::kTiles);
     hall_.room.faces[5].texture = static_cast<int>(TextureKind::kPanels);
-    const double floor_m2 = 4 * half_.x() * half_.y();
-    const double wall_m2 = 8 * half_.z() * (half_.x() + half_.y());
-    ThrowAll(render.column_density_per_m2 * floor_m2, [this] { return ThrowColumn(); });
-    ThrowAll(render.box_density_per_m2 * floor_m2, [this] { return ThrowFloorBox(); });
-    ThrowAll(render.panel_density_per_m2 * wall_m2, [this] { return ThrowPanel(); });
-    ThrowAll(render.panel_density_per_m2 * floor_m2, [this] { return ThrowBeam(); });
+    ThrowAll(render.column_density_per_m2 * FloorArea(), [this] { return ThrowColumn(); });
+    ThrowAll(render.box_density_per_m2 * FloorArea(), [this] { return ThrowFloorBox(); });
+    ThrowAll(render.panel_density_per_m2 * WallArea(), [this] { return ThrowPanel(); });
+    ThrowAll(render.panel_density_per_m2 * FloorArea(), [this] { return ThrowBeam(); });
     return hall_;
   }
 
  private:
+  [[nodiscard]] double FloorArea() const { return 4 * half_.x() * half_.y(); }
+  [[nodiscard]] double WallArea() const { return 8 * half_.z() * (half_.x() + half_.y()); }
+
   template <typename Throw>
   void ThrowAll(double count, const Throw& try_once) {
     for (int i = 0; i < static_cast<int>(std::lround(count)); ++i) {
@@ -182,7 +191,14 @@ Result<Hall> MakeHall(const SimulatorConfig& config, const ContinuousTrajectory&
                           std::to_string(config.landmark_min_distance_m) +
                           " with render.enabled: the walls of the hall are that far from the path");
   }
-  return Builder(config, SamplePath(trajectory, 0.1 * config.landmark_min_distance_m), seed).Build();
+  Builder builder(config, SamplePath(trajectory, 0.1 * config.landmark_min_distance_m), seed);
+  if (builder.ObjectCount() > kMaxObjects) {
+    return Status::Config("render.box_density_per_m2, panel_density_per_m2, column_density_per_m2: found " +
+                          std::to_string(builder.ObjectCount()) +
+                          " boxes and columns in a hall of this size, " + "expected at most " +
+                          std::to_string(kMaxObjects));
+  }
+  return builder.Build();
 }
 
 }  // namespace alidade

@@ -49,7 +49,7 @@ struct Hall {
 /// A hall around the path of the body: its bounding box extended by room_margin_m. Boxes on the floor, panels
 /// on the walls, beams under the ceiling and columns are thrown at the densities of config.render; what would
 /// be nearer to the path than landmark_min_distance_m is thrown again, a few times. Errors (kConfig): the
-/// margin is not larger than that distance, so that a wall would be.
+/// margin is smaller than that distance; more objects than 2e4.
 Result<Hall> MakeHall(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,
                       std::uint64_t seed);
 
