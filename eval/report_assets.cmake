@@ -28,5 +28,5 @@ alidade_embed(kReportHtml ${assets}/report.html)
 alidade_embed(kReportCss ${assets}/report.css)
 alidade_embed(kReportScript ${assets}/report_data.js ${assets}/report_frame.js ${assets}/report_plots.js
               ${assets}/report_tables.js ${assets}/report_pairs.js
-              ${assets}/report_efficiency.js ${assets}/report.js)
+              ${assets}/report_efficiency.js ${assets}/report_frontend.js ${assets}/report.js)
 alidade_embed(kReportD3 ${ALIDADE_D3})

@@ -265,6 +265,24 @@ Json EfficiencyData(const Comparison& comparison) {
   return list;
 }
 
+Json FrontendData(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const FrontendSummary& front : comparison.frontends) {
+    list.push_back({{"sequence", front.sequence},
+                    {"seed", front.seed},
+                    {"images", front.images},
+                    {"features", Rounded(front.features_per_frame, 4)},
+                    {"mean_length", Rounded(front.mean_length, 4)},
+                    {"median_length", Rounded(front.median_length, 4)},
+                    {"lost", Rounded(100 * front.lost_share, 4)},
+                    {"rejected", Rounded(100 * front.rejected_share, 4)},
+                    {"thinned", Rounded(100 * front.thinned_share, 4)},
+                    {"mean_ms", Rounded(front.mean_ms, 4)},
+                    {"p95_ms", Rounded(front.p95_ms, 4)}});
+  }
+  return list;
+}
+
 Json NeesData(const Comparison& comparison, int most) {
   Json list = Json::array();
   for (const NeesCurve& curve : AverageNees(comparison)) {
@@ -355,6 +373,7 @@ std::string ReportData(const Comparison& comparison) {
   data["nees_over_time"] = NeesData(comparison, most);
   data["pairs"] = PairData(comparison, figures, rows);
   data["efficiency"] = EfficiencyData(comparison);
+  data["frontends"] = FrontendData(comparison);
   data["references"] = Json::array();
   for (const ReferenceFigure& reference : comparison.references) {
     data["references"].push_back({{"source", reference.source},

@@ -226,6 +226,7 @@
       ran.frames + ' frames. ' : '') + 'RMSE is of the raw estimate' + (ran && ran.align ? '; ATE after alignment \u201c' + ran.align + '\u201d' : '') + '.';
     element('sequence-table').innerHTML = report.sequenceTable(state.sequence);
     report.drawEfficiency(state.sequence);
+    report.drawFrontend(state.sequence);
     report.drawPairs(state.sequence, state.figure);
     element('failures').innerHTML = cells.filter(function (cell) { return cell.status !== 'ok'; }).map(function (cell) {
       return '<li><span class="bad">' + report.escape(cell.estimator) + ', seed ' + cell.seed + ': ' +
