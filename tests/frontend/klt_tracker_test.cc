@@ -106,7 +106,8 @@ TEST(KltTracker, FollowsAHomographyOverTenFrames) {
       return (homography * u.homogeneous()).hnormalized();
     });
     EXPECT_GE(errors.size(), 60U) << "frame " << k;
-    // Without templates turning and growing pull a patch aside by a few hundredths each frame, and it adds up.
+    // Without templates turning and growing pull a patch aside by a few hundredths each frame, and it adds
+    // up.
     EXPECT_LT(Median(errors), 0.1) << "frame " << k;
     homography = step * homography;
   }
