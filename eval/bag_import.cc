@@ -35,7 +35,7 @@ class Importer {
     Result<RosbagReader> bag = RosbagReader::Open(path_);
     ALIDADE_RETURN_IF_ERROR(bag.status());
     ALIDADE_RETURN_IF_ERROR(ListTopics(&*bag));
-    ALIDADE_RETURN_IF_ERROR(ResolveTopics());
+    ALIDADE_RETURN_IF_ERROR(topics_.Resolve(path_, found_));
     Result<BagScan> scan = bag->Scan([this](const BagMessage& message) { return Take(message); });
     ALIDADE_RETURN_IF_ERROR(scan.status());
     import_.scan = *scan;
@@ -45,18 +45,11 @@ class Importer {
   }
 
  private:
-  struct Topic {
-    std::string type;
-    std::int64_t messages = 0;
-  };
-
   void Remark(const std::string& text) { import_.remarks.push_back(path_ + ": " + text); }
 
   Status ListTopics(RosbagReader* bag) {
     const Result<BagScan> scan = bag->Scan([this](const BagMessage& message) {
-      Topic& topic = found_[message.connection->topic];
-      topic.type = message.connection->type;
-      ++topic.messages;
+      found_[message.connection->topic] = message.connection->type;
       return Stopped();
     });
     ALIDADE_RETURN_IF_ERROR(scan.status());
@@ -66,65 +59,6 @@ class Importer {
 
   [[nodiscard]] Status Stopped() const {
     return options_.stop != nullptr && options_.stop->load() ? Status::Diverged("stopped") : Status::Ok();
-  }
-
-  [[nodiscard]] std::string Inventory() const {
-    std::string text;
-    for (const auto& [name, topic] : found_) {
-      text += (text.empty() ? "" : ", ") + name + " (" + topic.type + ")";
-    }
-    return text;
-  }
-
-  /// The topic of a sensor: as named, else the only one of its types, else none.
-  Status Resolve(const char* word, const std::vector<std::string>& types, const std::string& by_default,
-                 std::string* topic) {
-    const auto fits = [&](const Topic& t) {
-      return std::find(types.begin(), types.end(), t.type) != types.end();
-    };
-    const auto named = found_.find(*topic);
-    if (named != found_.end() && fits(named->second)) {
-      return Status::Ok();
-    }
-    if (*topic != by_default) {
-      return Status::Input(path_ + ": no topic " + *topic + " of type " + types.front() + "; found " +
-                           Inventory());
-    }
-    std::vector<std::string> candidates;
-    for (const auto& [name, other] : found_) {
-      if (fits(other)) {
-        candidates.push_back(name);
-      }
-    }
-    if (candidates.size() > 1) {
-      return Status::Input(path_ + ": " + std::to_string(candidates.size()) + " topics of type " +
-                           types.front() + ", expected --topics=" + word + "=TOPIC to name one; found " +
-                           Inventory());
-    }
-    topic->clear();
-    if (candidates.size() == 1) {
-      *topic = candidates.front();
-    }
-    return Status::Ok();
-  }
-
-  Status ResolveTopics() {
-    const BagTopics usual;
-    ALIDADE_RETURN_IF_ERROR(Resolve("imu", {"sensor_msgs/Imu"}, usual.imu, &topics_.imu));
-    ALIDADE_RETURN_IF_ERROR(
-        Resolve("cam0", {"sensor_msgs/Image", "sensor_msgs/CompressedImage"}, usual.camera, &topics_.camera));
-    ALIDADE_RETURN_IF_ERROR(Resolve("range", {"gnss_comm/GnssMeasMsg"}, usual.range, &topics_.range));
-    ALIDADE_RETURN_IF_ERROR(
-        Resolve("ephem", {"gnss_comm/GnssEphemMsg"}, usual.ephemeris, &topics_.ephemeris));
-    ALIDADE_RETURN_IF_ERROR(Resolve("glo_ephem", {"gnss_comm/GnssGloEphemMsg"}, usual.glonass_ephemeris,
-                                    &topics_.glonass_ephemeris));
-    ALIDADE_RETURN_IF_ERROR(Resolve("pvt", {"gnss_comm/GnssPVTSolnMsg"}, usual.solution, &topics_.solution));
-    ALIDADE_RETURN_IF_ERROR(
-        Resolve("pulse", {"gnss_comm/GnssTimePulseInfoMsg"}, usual.time_pulse, &topics_.time_pulse));
-    if (topics_.imu.empty()) {
-      return Status::Input(path_ + ": no topic of type sensor_msgs/Imu; found " + Inventory());
-    }
-    return Status::Ok();
   }
 
   Status Take(const BagMessage& message) {
@@ -338,7 +272,7 @@ class Importer {
   const std::string& path_;
   const BagImportOptions& options_;
   BagTopics topics_;
-  std::map<std::string, Topic> found_;
+  std::map<std::string, std::string> found_;  ///< topic -> type
   std::map<std::string, std::string> sheets_;
   std::map<std::string, std::int64_t> damaged_;
   std::map<std::size_t, std::vector<TrackFrame>> extra_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "core/status.h"
@@ -24,6 +25,11 @@ struct BagTopics {
   /// Sets "imu=/imu/data,cam0=/left/image_raw": imu, cam0, tracks, truth, range, ephem, glo_ephem, iono, pvt,
   /// pulse, trigger. kUsage: another word, or no name.
   Status Set(const std::string& list);
+
+  /// Replaces a name that a bag does not have by that of the only topic of its types, or by nothing when
+  /// there is none. `found`: topic -> type. kInput: no IMU, a name that was set and is not there, two topics
+  /// that could be meant.
+  Status Resolve(const std::string& path, const std::map<std::string, std::string>& found);
 };
 
 /// The sensor.yaml of a sensor ("imu0", "cam0", "gnss0", "cam1") as text in a bag.

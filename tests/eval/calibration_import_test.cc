@@ -106,7 +106,9 @@ TEST_F(CalibrationImport, VinsModels) {
 TEST_F(CalibrationImport, NamesWhatIsWrong) {
   EXPECT_THAT(Import("a: 1\n").message(), HasSubstr("none of the keys"));
   EXPECT_THAT(ImportCalibration({folder_.File("none.yaml")}).message(), HasSubstr("none.yaml"));
-  EXPECT_THAT(Import("model_type: SCARAMUZZA\n").message(), HasSubstr("model_type"));
+  EXPECT_THAT(Import("model_type: MEI\n").message(), HasSubstr("expected PINHOLE or KANNALA_BRANDT"));
+  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: omni\n  distortion_model: radtan\n")).message(),
+              HasSubstr("expected pinhole"));
   EXPECT_THAT(Import(Vins("model_type: PINHOLE\nprojection_parameters:\n   fx: 1\n")).message(),
               HasSubstr("fy"));
   EXPECT_THAT(Import("relative_config_imu: calibration.yaml\n").message(), HasSubstr("names itself"));
