@@ -167,9 +167,6 @@ Result<NavEstimate> Initializer::Implementation::TryDynamic() {
   method = "dynamic";
   report = solution->report;
   window = solution->window;
-  for (TimeNs& stamp : window.stamps_ns) {
-    stamp -= SecondsToNs(rig.camera_time_offset_s);
-  }
   return solution->estimate;
 }
 
@@ -219,9 +216,6 @@ Result<NavEstimate> Initializer::AddFrame(const TrackFrame& frame) {
   // A short rest is waited for: a static start is the better one.
   if (method != InitMethod::kStatic && assessment.verdict == StaticVerdict::kMoving) {
     estimate = self.TryDynamic();
-  }
-  if (estimate.ok()) {
-    estimate.value().stamp_ns = frame.stamp_ns;
   }
   return estimate;
 }

@@ -13,7 +13,7 @@ namespace alidade {
 
 /// The states a dynamic initialisation found over its window, in the world of the returned state.
 struct InitializerWindow {
-  std::vector<TimeNs> stamps_ns;  ///< of the camera frames used, the returned one last
+  std::vector<TimeNs> stamps_ns;  ///< IMU time of the camera frames used, the returned one last
   std::vector<NavState> states;
   double relative_scale_std = 0;  ///< of the window's size
 };
@@ -35,8 +35,9 @@ class Initializer {
   Initializer& operator=(const Initializer&) = delete;
 
   void AddImu(const ImuSample& sample);
-  /// The state at this frame's stamp with its covariance (canonical chart), or kDiverged with the reason why
-  /// there is none yet ("moving: gyro spread 0.21 rad/s exceeds 0.03", "parallax 4.1 px of 20", ...).
+  /// The state at this frame, stamped with its IMU time (stamp + time offset), with its covariance (canonical
+  /// chart), or kDiverged with the reason why there is none yet ("moving: gyro spread 0.21 rad/s exceeds
+  /// 0.03", "parallax 4.1 px of 20", ...).
   Result<NavEstimate> AddFrame(const TrackFrame& frame);
 
   /// "static" or "dynamic", and what was found, once AddFrame has succeeded.

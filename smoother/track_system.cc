@@ -15,7 +15,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix2x3 = Eigen::Matrix<double, 2, 3>;
 
-constexpr double kMinViewDepth = 1e-6;  // of the scaled point (x, y, 1) + rho t
+constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into its camera no row can be trusted
+constexpr double kMinViewDepth = 1e-6;    // of the scaled point (x, y, 1) + rho t
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Normal equations of the landmark (x, y, rho) with poses fixed.
@@ -216,7 +217,8 @@ bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeome
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior) {
-  if (!LinearizeViews(views, geometry, kernel, landmark, workspace)) {
+  if (!(std::abs(landmark.z()) < kMaxInverseDepth) ||
+      !LinearizeViews(views, geometry, kernel, landmark, workspace)) {
     return false;
   }
   workspace->prior_hessian.setZero();

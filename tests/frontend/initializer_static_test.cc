@@ -77,6 +77,17 @@ struct Bench {
   }
 };
 
+// GIVEN a camera whose stamps are late, WHEN a start is found, THEN it is stamped with the IMU time of its
+// frame, where the state stands.
+TEST(StaticInitializer, GIVEN_a_time_offset_THEN_the_state_bears_the_IMU_time_of_its_frame) {
+  Bench bench;
+  bench.rig.camera_time_offset_s = -0.03;
+  const Result<NavEstimate> estimate = bench.Run();
+  ASSERT_TRUE(estimate.ok()) << estimate.message();
+  constexpr TimeNs kFrameInterval = 50'000'000;
+  EXPECT_EQ((estimate->stamp_ns - kStart) % kFrameInterval, 20'000'000);
+}
+
 TEST(StaticInitializer, GIVEN_rest_with_biases_THEN_tilt_and_biases_are_within_three_sigma) {
   double nees = 0;
   const int runs = 40;
