@@ -94,8 +94,7 @@ class Comparer {
   void AddCells(const PlanSequence& sequence, unsigned seed, CompareInput* input) {
     for (size_t i = 0; i < plan_.estimators.size(); ++i) {
       const PlanEstimator& estimator = plan_.estimators[i];
-      if (estimator.external() && estimator.command.text.empty() &&
-          estimator.trajectories.count(sequence.name) == 0) {
+      if (!estimator.RunsOn(sequence.name)) {
         continue;
       }
       const EstimatorConfig* config = configs_.Of(sequence, i);

@@ -54,7 +54,7 @@ class PlanParser {
          {"reference", [&](const YAML::Node& n) {
             return reader_.Each(n, "reference", [&](const YAML::Node& e) { return AddReference(e); });
           }}}));
-    ALIDADE_RETURN_IF_ERROR(CheckTrajectoryNames(root));
+    ALIDADE_RETURN_IF_ERROR(CheckSequenceNames(root));
     ALIDADE_RETURN_IF_ERROR(CheckBaseline(root));
     ALIDADE_RETURN_IF_ERROR(CheckAnyThere());
     if (plan_.title.empty()) {
@@ -84,7 +84,8 @@ class PlanParser {
             [&](const Node& n) {
               return reader_.Real(n, "timeout", 1, kMaxSeconds, &estimator.command.timeout_s);
             }},
-           {"frame", [&](const Node& n) { return ReadFrame(n, &estimator.camera_frame); }}}));
+           {"frame", [&](const Node& n) { return ReadFrame(n, &estimator.camera_frame); }},
+           {"sequences", [&](const Node& n) { return ReadNames(n, &estimator.sequences); }}}));
     }
     const int sources = (estimator.config.empty() ? 0 : 1) + (estimator.trajectories.empty() ? 0 : 1) +
                         (estimator.command.text.empty() ? 0 : 1);
@@ -122,6 +123,13 @@ class PlanParser {
   Status ReadDatasetPath(const Node& node, std::string* path) {
     return plan_.skip_missing ? reader_.Path(node, "path", path)
                               : reader_.ExistingPath(node, "path", true, path);
+  }
+
+  Status ReadNames(const Node& node, std::vector<std::string>* names) {
+    return reader_.Each(node, "sequences", [&](const Node& entry) {
+      names->emplace_back();
+      return reader_.Text(entry, "sequences", &names->back());
+    });
   }
 
   Status AddSequence(const Node& node) {
@@ -293,15 +301,21 @@ class PlanParser {
                                 ": no such sequence" + Suggestion(plan_.baseline, names));
   }
 
-  /// Trajectories are given by sequence name: a name that no sequence has would be left out silently.
-  Status CheckTrajectoryNames(const Node& root) const {
+  /// A name that no sequence has would be left out silently.
+  Status CheckSequenceNames(const Node& root) const {
     const std::vector<std::string> names = SequenceNames();
     for (const PlanEstimator& estimator : plan_.estimators) {
+      std::vector<std::pair<std::string, std::string>> used;
       for (const auto& [sequence, path] : estimator.trajectories) {
+        used.emplace_back("trajectories", sequence);
+      }
+      for (const std::string& sequence : estimator.sequences) {
+        used.emplace_back("sequences", sequence);
+      }
+      for (const auto& [key, sequence] : used) {
         if (std::find(names.begin(), names.end(), sequence) == names.end()) {
-          return Status::Config(YamlPlace(plan_.path, root["estimators"]) + ": " + estimator.name +
-                                ".trajectories." + sequence + ": no such sequence" +
-                                Suggestion(sequence, names));
+          return Status::Config(YamlPlace(plan_.path, root["estimators"]) + ": " + estimator.name + "." +
+                                key + "." + sequence + ": no such sequence" + Suggestion(sequence, names));
         }
       }
     }
@@ -313,6 +327,12 @@ class PlanParser {
 };
 
 }  // namespace
+
+bool PlanEstimator::RunsOn(const std::string& sequence) const {
+  return trajectories.empty()
+             ? sequences.empty() || std::find(sequences.begin(), sequences.end(), sequence) != sequences.end()
+             : trajectories.count(sequence) > 0;
+}
 
 Result<Plan> ReadPlan(const std::string& path, const std::string& data_root) {
   Result<YAML::Node> root = ParseYamlFile(path, StatusCode::kConfig);

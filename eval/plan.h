@@ -21,8 +21,10 @@ struct PlanEstimator {
   std::map<std::string, std::string> trajectories;  ///< sequence name -> path; external only
   ExternalCommand command;                          ///< empty text: none; external only
   bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
+  std::vector<std::string> sequences;               ///< runs on these alone; empty: on all
 
   [[nodiscard]] bool external() const { return config.empty(); }
+  [[nodiscard]] bool RunsOn(const std::string& sequence) const;
 };
 
 /// One input of a comparison: a dataset (a folder or a bag) or a simulation, once a seed.

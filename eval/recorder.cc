@@ -170,6 +170,8 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
     const Eigen::Vector3d& anchor = global.enu.origin_E;
     json["gnss"]["aligned_ns"] = global.stamp_ns;
     json["gnss"]["anchor_E"] = {anchor.x(), anchor.y(), anchor.z()};
+    json["gnss"]["lever_arm_m"] = {global.p_BA.x(), global.p_BA.y(), global.p_BA.z()};
+    json["gnss"]["time_offset_s"] = global.time_offset_s;
     json["gnss"]["yaw_rad"] = global.yaw_rad;
     json["gnss"]["yaw_std_rad"] = global.yaw_std_rad;
   }

@@ -39,6 +39,24 @@ T Get(const Json& json, const char* key, T fallback) {
   }
 }
 
+Eigen::Vector3d GetVector(const Json& json, const char* key) {
+  const std::vector<double> values = Get(json, key, std::vector<double>());
+  return values.size() == 3 ? Eigen::Vector3d(values.data()) : Eigen::Vector3d::Zero();
+}
+
+/// How the run came to stand in the ENU frame, if it did.
+std::optional<GlobalFrame> ReadGlobalFrame(const Json& gnss) {
+  if (!Get(gnss, "aligned", false)) {
+    return std::nullopt;
+  }
+  return GlobalFrame{EnuFrame::At(GetVector(gnss, "anchor_E")),
+                     GetVector(gnss, "lever_arm_m"),
+                     Get(gnss, "aligned_ns", TimeNs{0}),
+                     Get(gnss, "time_offset_s", 0.0),
+                     Get(gnss, "yaw_rad", 0.0),
+                     Get(gnss, "yaw_std_rad", 0.0)};
+}
+
 Status StatusFromWord(const std::string& word, const std::string& message) {
   if (word == "ok" || word == "interrupted") {
     return Status::Ok();
@@ -204,6 +222,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
   const Json counts = Get(*json, "counts", Json::object());
   result.frames_skipped = Get(counts, "frames_skipped", 0);
   result.imu_rejected = Get(counts, "imu_rejected", 0);
+  result.global = ReadGlobalFrame(Get(*json, "gnss", Json::object()));
   const Json times = Get(*json, "times", Json::object());
   result.wall_s = Get(times, "wall_s", 0.0);
   result.cpu_s = Get(times, "cpu_s", 0.0);

@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "eval/sim_constellation.h"
 #include "eval/sim_imu.h"
+#include "eval/sim_signal_path.h"
 #include "gnss/atmosphere.h"
 #include "gnss/constants.h"
 #include "gnss/gnss_epoch.h"
@@ -20,7 +21,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kMillisecondM = 1e-3 * kSpeedOfLight;
 
 double Round(double value) {
   return std::round(value * 1e3) / 1e3;
@@ -39,69 +39,6 @@ std::pair<SignalCode, SignalCode> SignalsOf(GnssSystem system) {
       return {{'1', 'C'}, {'2', 'W'}};
   }
 }
-
-/// Receiver clock: bias and drift walk as in gnss/receiver_clock.h.
-class SimClock {
- public:
-  SimClock(const SimGnssConfig& config, std::uint64_t seed) : config_(config), stream_(seed, "gnss.clock") {
-    bias_m_ = config.clock_bias_m * stream_.Normal();
-    drift_mps_ = config.clock_drift_mps * stream_.Normal();
-  }
-  void Advance(double dt_s, double time_s) {
-    bias_m_ += drift_mps_ * dt_s + config_.clock_walk_m_sqrts * std::sqrt(dt_s) * stream_.Normal();
-    drift_mps_ += config_.drift_walk_mps_sqrts * std::sqrt(dt_s) * stream_.Normal();
-    if (!jumped_ && config_.clock_jump_at_s >= 0 && time_s >= config_.clock_jump_at_s) {
-      bias_m_ += kMillisecondM;
-      jumped_ = true;
-    }
-  }
-  [[nodiscard]] double bias_m() const { return bias_m_; }
-  [[nodiscard]] double drift_mps() const { return drift_mps_; }
-
- private:
-  const SimGnssConfig& config_;
-  RandomStream stream_;
-  double bias_m_ = 0;
-  double drift_mps_ = 0;
-  bool jumped_ = false;
-};
-
-/// What a satellite's signals suffer from at the receiver.
-class SignalPath {
- public:
-  SignalPath(const SimGnssConfig& config, std::uint64_t seed, const std::string& name)
-      : config_(config),
-        noise_(seed, "gnss.noise." + name),
-        multipath_(seed, "gnss.multipath." + name),
-        nlos_(seed, "gnss.nlos." + name) {
-    multipath_m_ = config.multipath_m * multipath_.Normal();
-    DrawReflection();
-  }
-  void Advance(double dt_s) {
-    const double keep = std::exp(-dt_s / config_.multipath_time_s);
-    multipath_m_ =
-        keep * multipath_m_ + config_.multipath_m * std::sqrt(1 - keep * keep) * multipath_.Normal();
-    if (nlos_.Chance(1 - std::exp(-dt_s / config_.nlos_time_s))) {
-      DrawReflection();
-    }
-  }
-  [[nodiscard]] double delay_m() const { return multipath_m_ + reflection_m_; }
-  double Noise() { return noise_.Normal(); }
-
- private:
-  void DrawReflection() {
-    const bool reflected = nlos_.Chance(config_.nlos_rate);
-    const double extra = nlos_.Uniform(config_.nlos_min_m, config_.nlos_max_m);
-    reflection_m_ = reflected ? extra : 0;
-  }
-
-  const SimGnssConfig& config_;
-  RandomStream noise_;
-  RandomStream multipath_;
-  RandomStream nlos_;
-  double multipath_m_ = 0;
-  double reflection_m_ = 0;
-};
 
 /// One run of the receiver over the sequence.
 class Receiver {
@@ -132,7 +69,7 @@ class Receiver {
       return config.systems.find(Letter(id.system)) == std::string::npos;
     });
     for (const SatelliteId id : satellites_) {
-      paths_.emplace(id, SignalPath(config_, seed, ToString(id)));
+      paths_.emplace(id, SimSignalPath(config_, seed, ToString(id)));
     }
   }
 
@@ -180,14 +117,22 @@ class Receiver {
   /// found by iteration, without the series in omega / c that the models use.
   std::optional<Sight> Look(SatelliteId id, SignalCode signal, TimeNs tag_ns, double clock_m,
                             const Vector3d& antenna_E) const {
+    constexpr double kSurelyBelow = -5 * kDegree;
     Sight sight;
     double range = 7e7 * 0.33 + clock_m;
-    for (int i = 0; i < 6; ++i) {
+    double before = 0;
+    const EnuFrame here = EnuFrame::At(antenna_E);
+    for (int i = 0; i < 6 && range != before; ++i) {
+      before = range;
       sight.fix = catalog_->AtTransmission(id, signal, tag_ns, range);
       if (sight.fix.fault != SatelliteFault::kNone) {
         return std::nullopt;
       }
       const SatelliteState& s = sight.fix.state;
+      sight.direction = DirectionTo(here, s.position_E);
+      if (sight.direction.elevation_rad < kSurelyBelow) {
+        return std::nullopt;
+      }
       double tau = 0.075;
       double distance = 0;
       for (int j = 0; j < 4; ++j) {
@@ -198,8 +143,6 @@ class Receiver {
       }
       range = distance + clock_m - s.clock_m;
     }
-    const EnuFrame here = EnuFrame::At(antenna_E);
-    sight.direction = DirectionTo(here, sight.fix.state.position_E);
     const GeodeticPosition place = ToGeodetic(antenna_E);
     if (sight.direction.elevation_rad < 0) {
       return std::nullopt;
@@ -262,7 +205,7 @@ class Receiver {
   /// Draws its noise whether the satellite is seen or not.
   std::optional<SignalObservation> Measure(SatelliteId id, SignalCode signal, TimeNs tag_ns, double time_s,
                                            double* elevation) {
-    SignalPath& path = paths_.at(id);
+    SimSignalPath& path = paths_.at(id);
     const double code_noise = path.Noise();
     const double rate_noise = path.Noise();
     const std::optional<Sight> now = Look(id, signal, tag_ns, clock_.bias_m(), AntennaAt(time_s));
@@ -300,13 +243,13 @@ class Receiver {
   TimeNs start_gpst_ns_;
   std::uint64_t seed_;
   std::shared_ptr<const SatelliteCatalog> catalog_;
-  SimClock clock_;
+  SimReceiverClock clock_;
   EnuFrame enu_;
   std::map<GnssSystem, double> system_bias_m_;
   double ionosphere_scale_ = 1;
   std::vector<SatelliteId> satellites_;
   std::map<int, int> channels_;
-  std::map<SatelliteId, SignalPath> paths_;
+  std::map<SatelliteId, SimSignalPath> paths_;
 };
 
 }  // namespace

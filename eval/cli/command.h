@@ -39,6 +39,7 @@ int RunCompare(const std::vector<std::string>& arguments);
 int RunProbe(const std::vector<std::string>& arguments);
 int RunSpp(const std::vector<std::string>& arguments);
 int RunStarts(const std::vector<std::string>& arguments);
+int RunGnssStudy(const std::vector<std::string>& arguments);
 int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
 int RunConvert(const std::vector<std::string>& arguments);

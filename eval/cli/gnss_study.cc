@@ -1,0 +1,164 @@
+#include "eval/gnss_study.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "eval/cli/command.h"
+#include "eval/cli/flags.h"
+#include "eval/cli/support.h"
+#include "eval/compare_input.h"
+#include "eval/config_yaml.h"
+#include "eval/recorder.h"
+
+namespace alidade::cli {
+namespace {
+
+std::string FolderOf(const std::string& estimator, const std::string& sequence, unsigned seed) {
+  return FLAGS_input + "/cells/" + estimator + "/" + sequence + "/" + std::to_string(seed);
+}
+
+/// Judges the runs of one plan, one sequence after the other.
+class Study {
+ public:
+  explicit Study(const Plan& plan) : plan_(plan) {}
+
+  Result<std::vector<GnssStudyRow>> Execute() {
+    for (const PlanSequence& sequence : plan_.sequences) {
+      ALIDADE_RETURN_IF_ERROR(AddSequence(sequence));
+      Say(sequence.name + ": " + std::to_string(sequence.seeds.size()) + " seeds");
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  Status AddSequence(const PlanSequence& sequence) {
+    if (!sequence.dataset.empty()) {
+      return Status::Usage("gnss_study: sequence " + sequence.name + " is a dataset, expected a simulation");
+    }
+    const Result<SimulatorConfig> simulation = LoadSimulatorConfig(sequence.config, sequence.settings);
+    ALIDADE_RETURN_IF_ERROR(simulation.status());
+    first_row_ = rows_.size();
+    for (const PlanEstimator& estimator : plan_.estimators) {
+      if (estimator.external() || !estimator.RunsOn(sequence.name)) {
+        continue;
+      }
+      const Result<EstimatorConfig> config = ConfigOf(estimator, sequence);
+      ALIDADE_RETURN_IF_ERROR(config.status());
+      if (config->gnss.enabled) {
+        GnssStudyRow& row = rows_.emplace_back();
+        row.sequence = sequence.name;
+        row.estimator = estimator.name;
+        single_point_ = config->gnss;
+      }
+    }
+    for (const unsigned seed : sequence.seeds) {
+      ALIDADE_RETURN_IF_ERROR(AddSeed(sequence, *simulation, seed));
+    }
+    return Status::Ok();
+  }
+
+  Result<EstimatorConfig> ConfigOf(const PlanEstimator& estimator, const PlanSequence& sequence) const {
+    std::vector<std::string> settings = plan_.settings;
+    for (const std::vector<std::string>* more : {&estimator.settings, &sequence.estimator_settings}) {
+      settings.insert(settings.end(), more->begin(), more->end());
+    }
+    return LoadEstimatorConfig(estimator.config, settings);
+  }
+
+  /// Runs that are not there, as of an interrupted comparison, are left out.
+  Status AddSeed(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed) {
+    std::vector<std::pair<GnssStudyRow*, RunResult>> runs;
+    for (std::size_t i = first_row_; i < rows_.size(); ++i) {
+      const std::string folder = FolderOf(rows_[i].estimator, sequence.name, seed);
+      if (!std::filesystem::exists(folder + "/run.json")) {
+        continue;
+      }
+      Result<RunResult> run = ReadRun(folder);
+      ALIDADE_RETURN_IF_ERROR(run.status());
+      runs.emplace_back(&rows_[i], *std::move(run));
+    }
+    return runs.empty() ? Status::Ok() : Judge(sequence, simulation, seed, runs);
+  }
+
+  Status Judge(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed,
+               const std::vector<std::pair<GnssStudyRow*, RunResult>>& runs) const {
+    CompareInput input(sequence, simulation, seed);
+    input.AddUser();
+    const Result<CompareInput::Data>& data = input.Acquire({});
+    ALIDADE_RETURN_IF_ERROR(data.status());
+    const Trajectory& truth = *data->truth;
+    const TimeNs start_ns = data->log.imu.front().stamp_ns;
+    const GnssScenario scenario = ScenarioOf(simulation.gnss, simulation.rest_s,
+                                             SecondsBetween(start_ns, data->log.imu.back().stamp_ns));
+    const Result<GnssRunFigures> odometry = Odometry(sequence, seed, truth, start_ns, scenario);
+    ALIDADE_RETURN_IF_ERROR(odometry.status());
+    const double single_point_m = SinglePointRmse(single_point_, data->log, truth);
+    for (const auto& [row, run] : runs) {
+      row->scenario = scenario;
+      row->runs.push_back(JudgeGlobalRun(run, truth, start_ns, scenario));
+      row->odometry.push_back(*odometry);
+      row->single_point_m.push_back(single_point_m);
+    }
+    return Status::Ok();
+  }
+
+  /// What the estimator that hears no GNSS did on the same motion; NaN without one.
+  Result<GnssRunFigures> Odometry(const PlanSequence& sequence, unsigned seed, const Trajectory& truth,
+                                  TimeNs start_ns, const GnssScenario& scenario) const {
+    for (const PlanSequence& other : plan_.sequences) {
+      const bool has_seed = std::find(other.seeds.begin(), other.seeds.end(), seed) != other.seeds.end();
+      if (!scenario.HasOutage() || !has_seed || MotionOf(other) != MotionOf(sequence)) {
+        continue;
+      }
+      for (const PlanEstimator& estimator : plan_.estimators) {
+        if (estimator.external() || !estimator.RunsOn(other.name)) {
+          continue;
+        }
+        const Result<EstimatorConfig> config = ConfigOf(estimator, other);
+        ALIDADE_RETURN_IF_ERROR(config.status());
+        if (config->gnss.enabled) {
+          continue;
+        }
+        const std::string folder = FolderOf(estimator.name, other.name, seed);
+        if (!std::filesystem::exists(folder + "/run.json")) {
+          continue;
+        }
+        const Result<RunResult> run = ReadRun(folder);
+        ALIDADE_RETURN_IF_ERROR(run.status());
+        return JudgeOdometry(*run, truth, start_ns, scenario);
+      }
+    }
+    return GnssRunFigures{};
+  }
+
+  /// What makes the trajectory of a simulation: all of it but the receiver.
+  static std::vector<std::string> MotionOf(const PlanSequence& sequence) {
+    std::vector<std::string> motion = sequence.settings;
+    std::erase_if(motion, [](const std::string& setting) { return setting.starts_with("gnss."); });
+    motion.push_back(sequence.config);
+    return motion;
+  }
+
+  const Plan& plan_;
+  GnssConfig single_point_;
+  std::size_t first_row_ = 0;  ///< of the sequence at hand
+  std::vector<GnssStudyRow> rows_;
+};
+
+}  // namespace
+
+int RunGnssStudy(const std::vector<std::string>&) {
+  const Result<Plan> plan = ReadPlan(FLAGS_plan, FLAGS_data);
+  if (!plan.ok()) {
+    return Report(plan.status());
+  }
+  const Result<std::vector<GnssStudyRow>> rows = Study(*plan).Execute();
+  if (!rows.ok()) {
+    return Report(rows.status());
+  }
+  std::fputs(GnssStudyTables(*rows).c_str(), stdout);
+  return kExitDone;
+}
+
+}  // namespace alidade::cli

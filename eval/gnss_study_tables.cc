@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+#include "eval/aggregate.h"
+#include "eval/gnss_study.h"
+#include "eval/metrics.h"
+
+// The tables of the GNSS study.
+
+namespace alidade {
+namespace {
+
+using Member = double GnssRunFigures::*;
+
+Statistic Over(const std::vector<GnssRunFigures>& runs, Member figure) {
+  std::vector<double> values;
+  for (const GnssRunFigures& run : runs) {
+    values.push_back(run.*figure);
+  }
+  return ComputeStatistic(values);
+}
+
+/// Runs whose error during the outage is at most this many times that of odometry.
+int CountNoWorse(const GnssStudyRow& row) {
+  constexpr double kMargin = 1.1;
+  int count = 0;
+  for (std::size_t i = 0; i < row.runs.size(); ++i) {
+    count += row.runs[i].outage_rmse_m <= kMargin * row.odometry[i].outage_rmse_m ? 1 : 0;
+  }
+  return count;
+}
+
+/// A number, or a dash for what does not apply.
+std::string Cell(double value, int decimals) {
+  return std::isnan(value) ? "–" : Format("%.*f", decimals, value);
+}
+
+double RatioToFirst(const std::vector<GnssStudyRow>& rows, const GnssStudyRow& row) {
+  for (const GnssStudyRow& first : rows) {
+    if (first.sequence == rows.front().sequence && first.estimator == row.estimator) {
+      return Over(row.runs, &GnssRunFigures::rmse_m).mean / Over(first.runs, &GnssRunFigures::rmse_m).mean;
+    }
+  }
+  return GnssRunFigures::kNone;
+}
+
+std::string Overview(const std::vector<GnssStudyRow>& rows) {
+  std::string table =
+      "| sequence | estimator | runs aligned | after [s], mean, worst | RMSE [m] | worst [m] | to the first "
+      "sequence | single points [m] | last third to first | NEES position | its band |\n"
+      "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+  for (const GnssStudyRow& row : rows) {
+    const Statistic after = Over(row.runs, &GnssRunFigures::aligned_after_s);
+    const Statistic rmse = Over(row.runs, &GnssRunFigures::rmse_m);
+    const auto [low, high] = NeesBand(3, rmse.count);
+    table += Format(
+        "| %s | `%s` | %d of %zu | %s, %s | %s ± %s | %s | %s | %s | %s | %s | %.2f to %.2f |\n",
+        row.sequence.c_str(), row.estimator.c_str(), after.count, row.runs.size(),
+        Cell(after.mean, 1).c_str(), Cell(after.largest, 1).c_str(), Cell(rmse.mean, 3).c_str(),
+        Cell(rmse.standard_error, 3).c_str(), Cell(rmse.largest, 3).c_str(),
+        Cell(RatioToFirst(rows, row), 2).c_str(), Cell(ComputeStatistic(row.single_point_m).mean, 2).c_str(),
+        Cell(Over(row.runs, &GnssRunFigures::late_m).mean / Over(row.runs, &GnssRunFigures::early_m).mean, 2)
+            .c_str(),
+        Cell(Over(row.runs, &GnssRunFigures::nees_pos).mean, 2).c_str(), low, high);
+  }
+  return table;
+}
+
+std::string Outages(const std::vector<GnssStudyRow>& rows) {
+  std::string table;
+  for (const GnssStudyRow& row : rows) {
+    if (!row.scenario.HasOutage()) {
+      continue;
+    }
+    const Statistic covered = Over(row.runs, &GnssRunFigures::return_covered);
+    const Statistic later = Over(row.runs, &GnssRunFigures::after_2_s_m);
+    const auto mean = [](const std::vector<GnssRunFigures>& runs, Member figure) {
+      return Cell(Over(runs, figure).mean, 3);
+    };
+    table +=
+        Format("| %s | `%s` | %s | %s | %d of %zu | %s | %s | %.0f of %d | %s | %s |\n", row.sequence.c_str(),
+               row.estimator.c_str(), mean(row.runs, &GnssRunFigures::outage_rmse_m).c_str(),
+               mean(row.odometry, &GnssRunFigures::outage_rmse_m).c_str(), CountNoWorse(row), row.runs.size(),
+               mean(row.runs, &GnssRunFigures::return_error_m).c_str(),
+               mean(row.odometry, &GnssRunFigures::return_error_m).c_str(), covered.mean * covered.count,
+               covered.count, Cell(later.mean, 3).c_str(), Cell(later.largest, 3).c_str());
+  }
+  return table.empty()
+             ? table
+             : "\n| sequence | estimator | RMSE meanwhile [m] | VIO alone [m] | at most 1.1 of it | error "
+               "at its end [m] | VIO alone [m] | within 3 sigma | 2 s later [m] | worst [m] |\n"
+               "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n" +
+                   table;
+}
+
+std::string Jumps(const std::vector<GnssStudyRow>& rows) {
+  std::string table;
+  for (const GnssStudyRow& row : rows) {
+    if (row.scenario.clock_jump_s >= 0) {
+      const Statistic step = Over(row.runs, &GnssRunFigures::jump_step_m);
+      table += Format("| %s | `%s` | %s | %s |\n", row.sequence.c_str(), row.estimator.c_str(),
+                      Cell(step.mean, 3).c_str(), Cell(step.largest, 3).c_str());
+    }
+  }
+  return table.empty()
+             ? table
+             : "\n| sequence | estimator | step of the position at the jump, mean [m] | worst [m] |\n"
+               "|---|---|---:|---:|\n" +
+                   table;
+}
+
+}  // namespace
+
+std::string GnssStudyTables(const std::vector<GnssStudyRow>& rows) {
+  return Overview(rows) + Outages(rows) + Jumps(rows);
+}
+
+}  // namespace alidade
