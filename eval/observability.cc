@@ -15,6 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+constexpr int kClock = FilterState::kClockSize;
+
 /// Upper triangular factor of a matrix with at least as many rows as columns.
 MatrixXd Triangle(const MatrixXd& matrix) {
   const Eigen::HouseholderQR<MatrixXd> qr(matrix);
@@ -26,6 +28,15 @@ void EraseRows(Index first, Index size, MatrixXd* matrix) {
   const Index tail = matrix->rows() - first - size;
   matrix->middleRows(first, tail) = matrix->bottomRows(tail).eval();
   matrix->conservativeResize(matrix->rows() - size, Eigen::NoChange);
+}
+
+/// What rows say once the unknowns of columns [first, first + size) are eliminated; these columns are zero
+/// then.
+MatrixXd WithoutColumns(Index first, Index size, const MatrixXd& rows) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.middleCols(first, size));
+  MatrixXd left = (qr.householderQ().adjoint() * rows).bottomRows(rows.rows() - qr.rank());
+  left.middleCols(first, size).setZero();
+  return left;
 }
 
 /// Orthonormal basis of R^15 whose first four columns span those of `directions`.
@@ -48,6 +59,7 @@ void ObservabilityAudit::OnReset(const FilterState& state) {
   theory_ = UnobservableDirections(state.convention(), state.nav());
   map_ = Matrix15d::Identity();
   core_ = 0;
+  has_clock_ = false;
   landmark_firsts_.clear();
   factor_ = Matrix15d::Zero();
   scale_squared_.setZero();
@@ -131,8 +143,16 @@ void ObservabilityAudit::AddRows(const MatrixXd& jacobian) {
   factor_ = Triangle(stacked);
 }
 
+void ObservabilityAudit::OnAlign(const MatrixXd& turn) {
+  CHECK(landmark_firsts_.empty() && !has_clock_);
+  map_ = turn * map_;
+  InsertRows(core_, kClock);
+  has_clock_ = true;
+}
+
 void ObservabilityAudit::OnUpdate(const FilterState& /*state*/, const FilterRows& rows) {
-  AddRows(rows.jacobian);
+  const bool sees_clock = has_clock_ && !rows.jacobian.middleCols<kClock>(core_ - kClock).isZero(0);
+  AddRows(sees_clock ? WithoutColumns(core_ - kClock, kClock, rows.jacobian) : rows.jacobian);
 }
 
 Vector15d ObservabilityAudit::ColumnScale() const {

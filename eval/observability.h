@@ -34,6 +34,9 @@ struct ObservabilityRecord {
 /// Landmarks in the state are unknowns of their own and are eliminated when they leave. O is kept as its
 /// triangular factor, so that nothing is squared.
 ///
+/// The receiver clock is an unknown of every GNSS epoch anew: what ties the clocks of two epochs is left out,
+/// so that rank owes nothing to it. Once aligned, rank 15 is right and the leaks are information.
+///
 /// Rank and angle are of the factor with its columns scaled: column j by the root sum of squares of
 /// (|H| |Phi|)_j, which no cancellation shrinks, so that a value of rounding size is rounding. The
 /// propagation of noise plays no role in O: it tells what is observable, not how well.
@@ -45,6 +48,7 @@ class ObservabilityAudit : public FilterObserver {
   void OnAddLandmark(int first, const Eigen::MatrixXd& rows) override;
   void OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) override;
   void OnRemove(int first, int size) override;
+  void OnAlign(const Eigen::MatrixXd& turn) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
 
@@ -64,8 +68,9 @@ class ObservabilityAudit : public FilterObserver {
   [[nodiscard]] double YawGain(const Vector15d& scale) const;
 
   Eigen::Matrix<double, 15, 4> theory_ = Eigen::Matrix<double, 15, 4>::Zero();
-  Eigen::MatrixXd map_;               ///< error now = map_ * initial core error; zero rows for landmarks
-  int core_ = 0;                      ///< first row of the core
+  Eigen::MatrixXd map_;     ///< error now = map_ * initial core error; zero rows for landmarks and clock
+  int core_ = 0;            ///< first row of the core
+  bool has_clock_ = false;  ///< in the six rows before the core
   std::vector<int> landmark_firsts_;  ///< rows of the landmarks, in the order of factor_'s columns
   Eigen::MatrixXd factor_;            ///< over [landmarks | initial core error]
   Vector15d scale_squared_ = Vector15d::Zero();

@@ -49,9 +49,11 @@ void FilterState::Align(const Eigen::Matrix3d& R_NW, const Vector3d& p_NW, const
   MatrixXd factor = covariance_.factor().triangularView<Eigen::Upper>();
   MatrixXd alignment = MatrixXd::Zero(n, 4);
   const Matrix9d turn = TurnOfChart(R_NW);
+  MatrixXd maps = MatrixXd::Identity(n, n);
   const auto move = [&](const NavState& before, const NavState& after, Index offset, Index size) {
     const Matrix9d to_error = InverseChartJacobian(convention_, after);
     const Matrix9d map = to_error * turn * ChartJacobian(convention_, before);
+    maps.block(offset, offset, size, size) = map.topLeftCorner(size, size);
     const MatrixXd rows = map.topLeftCorner(size, size) * factor.middleRows(offset, size);
     factor.middleRows(offset, size) = rows;
     alignment.middleRows(offset, size) = (to_error * AlignmentJacobian(after, p_NW)).topRows(size);
@@ -78,6 +80,9 @@ void FilterState::Align(const Eigen::Matrix3d& R_NW, const Vector3d& p_NW, const
   stacked.block(kClockSize, kClockSize, n, n) = factor;
   stacked.bottomRightCorner(n, 4) = alignment * root.matrixL().toDenseMatrix();
   covariance_.Assign(kClockSize, stacked);
+  if (observer_ != nullptr) {
+    observer_->OnAlign(maps);
+  }
 }
 
 }  // namespace alidade

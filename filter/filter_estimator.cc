@@ -42,6 +42,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
 void FilterEstimator::SetObserver(FilterObserver* observer) {
   observer_ = observer;
   state_.SetObserver(observer);
+  gnss_.SetObserver(observer);
   update_.SetTracing(observer != nullptr);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <cmath>
+#include <utility>
 
 #include "gnss/receiver_clock.h"
 
@@ -74,6 +75,7 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
   FillRows(*state);
   Weigh(*state, statistics);
   const double silent = Compress();
+  Tell(*state);
   if (!state->covariance().UpdateByBlock(state->ClockOffset(), jacobian_, innovation_, correction,
                                          &statistics->gnss_nis)) {
     return false;
@@ -129,6 +131,15 @@ double GnssUpdate::Compress() {
   innovation_.conservativeResize(kSeen);
   jacobian_ = qr.matrixQR().topRows(kSeen).triangularView<Eigen::Upper>();
   return silent;
+}
+
+void GnssUpdate::Tell(const FilterState& state) const {
+  if (observer_ == nullptr) {
+    return;
+  }
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(jacobian_.rows(), state.covariance().dimension());
+  rows.middleCols(state.ClockOffset(), kSeen) = jacobian_;
+  observer_->OnUpdate(state, {std::move(rows), innovation_, {}});
 }
 
 }  // namespace alidade

@@ -21,6 +21,9 @@ class GnssUpdate {
  public:
   GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver);
 
+  /// Null, the default, observes nothing. It must outlive the object.
+  void SetObserver(FilterObserver* observer) { observer_ = observer; }
+
   /// Turns the state, which holds no landmarks, into the ENU frame and enters the clock.
   void Align(const GnssAlignment& alignment, FilterState* state);
   [[nodiscard]] bool aligned() const { return mount_.has_value(); }
@@ -42,9 +45,11 @@ class GnssUpdate {
   void Weigh(const FilterState& state, FrameStatistics* statistics);
   /// Rotates the rows into at most as many as they have columns; returns the square of what says nothing.
   double Compress();
+  void Tell(const FilterState& state) const;
 
   GnssConfig config_;
   GnssReceiver receiver_;
+  FilterObserver* observer_ = nullptr;
   double gate_threshold_;
   std::optional<AntennaMount> mount_;
   Vector6d clock_ = Vector6d::Zero();

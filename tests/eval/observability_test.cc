@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "eval/runner.h"
 #include "filter/feature_update.h"
 #include "filter/filter.h"
 #include "filter/filter_state.h"
@@ -241,6 +242,44 @@ TEST_P(AuditedFilter, HasTheRankOfItsErrorOnASimulatedRun) {
       EXPECT_LT(values[rank], 1e-3 * kObservabilityTolerance);
     }
   }
+}
+
+// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are told until the state is turned into ENU, and
+// then all fifteen: yaw and position with them, as a system of more than cameras has it.
+TEST(ObservabilityTest, GnssTellsYawAndPosition) {
+  SimulatorConfig sim;
+  sim.start_time_s = 1'700'000'000;
+  sim.duration_s = 8;
+  sim.path_m = 16;
+  sim.gnss.rate_hz = 5;
+  const Dataset dataset = test::SimulateOrDie(sim, 3);
+  const MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss};
+  EstimatorConfig config;
+  config.init.method = InitMethod::kTruth;
+  config.gnss.enabled = true;
+  config.gnss.corrections.model_std_scale = 0;
+  RunOptions options;
+  options.truth = &*dataset.truth;
+  options.seed = 3;
+  options.audit = true;
+  const RunResult run = RunEstimator(config, log, options);
+  ASSERT_TRUE(run.status.ok()) << run.status.message();
+  ASSERT_TRUE(run.global.has_value()) << run.align_report;
+  int local = 0;
+  for (const RunRecord& record : run.records) {
+    ASSERT_TRUE(record.observability.has_value());
+    const ObservabilityRecord& audited = *record.observability;
+    if (record.status == "local") {
+      EXPECT_LE(audited.rank, 11);
+      EXPECT_LT(audited.yaw_leak, 1e-8);
+      ++local;
+    }
+  }
+  EXPECT_GT(local, 5);
+  const ObservabilityRecord& last = *run.records.back().observability;
+  EXPECT_EQ(last.rank, 15);
+  EXPECT_GT(last.position_leak, 100) << "metres: some hundred ranges of half a metre";
+  EXPECT_GT(last.yaw_gain, 1e4) << "a hundredth of a radian";
 }
 
 }  // namespace
