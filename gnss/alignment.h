@@ -7,7 +7,7 @@
 
 #include "core/clock_state.h"
 #include "core/measurement_log.h"
-#include "gnss/epoch_rows.h"
+#include "gnss/alignment_fit.h"
 
 namespace alidade {
 
@@ -51,32 +51,18 @@ class GnssAligner {
   [[nodiscard]] const std::string& report() const { return report_; }
 
  private:
-  struct State {
-    TimeNs stamp_ns = 0;
-    NavState nav;
-    ImuBias bias;
-    Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();
-    Eigen::Vector3d acceleration_W = Eigen::Vector3d::Zero();
-  };
-  struct Sample {
-    State state;
-    EpochMeasurements measurements;
-  };
-  struct Guess;
-  struct Fit;
-
   void MatchEpochs();
   void Locate();
-  [[nodiscard]] std::vector<const Sample*> Choose() const;
-  [[nodiscard]] Fit Step(const std::vector<const Sample*>& samples, bool yaw_free, bool robust,
-                         double gate_sigma, Guess* guess) const;
-  [[nodiscard]] Guess FirstGuess(const std::vector<const Sample*>& samples) const;
+  [[nodiscard]] std::vector<const AlignmentSample*> Choose() const;
+  [[nodiscard]] std::optional<AlignmentGuess> FirstGuess(const AlignmentFit& fit) const;
+  /// The alignment, if its yaw is known well enough; says what came of it.
+  std::optional<GnssAlignment> Judge(const AlignmentGuess& guess, const AlignmentStep& fit);
 
   GnssConfig config_;
   GnssReceiver receiver_;
-  std::deque<State> states_;
+  std::deque<AlignmentState> states_;
   std::deque<GnssEpoch> pending_;
-  std::deque<Sample> samples_;
+  std::deque<AlignmentSample> samples_;
   std::optional<Eigen::Vector3d> approximate_E_;
   std::shared_ptr<const MeasurementBuilder> builder_;
   EnuFrame enu_;
