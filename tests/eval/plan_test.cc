@@ -34,7 +34,8 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "set: {init.method: truth}\n"
       "estimators:\n"
       "  - estimators/a.yaml\n"
-      "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}}\n"
+      "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}, "
+      "sequences: [loud]}\n"
       "  - {name: other, trajectories: {seq: other.tum}}\n"
       "sequences:\n"
       "  - {path: '${data}/seq', seeds: [4, 2]}\n"
@@ -55,7 +56,11 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_EQ(plan->estimators[0].name, "a");
   EXPECT_EQ(plan->estimators[0].config, folder_.File("estimators/a.yaml"));
   EXPECT_THAT(plan->estimators[1].settings, ElementsAre("filter.window=10", "x.v=[1, 2, 3]"));
+  EXPECT_TRUE(plan->estimators[0].RunsOn("sim"));
+  EXPECT_TRUE(plan->estimators[1].RunsOn("loud"));
+  EXPECT_FALSE(plan->estimators[1].RunsOn("sim"));
   EXPECT_TRUE(plan->estimators[2].external());
+  EXPECT_FALSE(plan->estimators[2].RunsOn("sim"));
   EXPECT_EQ(plan->estimators[2].trajectories.at("seq"), folder_.File("other.tum"));
   EXPECT_THAT(plan->pair_figures, ElementsAre("ate_pos_m"));
   EXPECT_TRUE(plan->pair_across);
@@ -121,6 +126,8 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
       {sequences + estimators + "metrics: {interpolate: maybe}\n", "interpolate: found"},
       {sequences + estimators + "pairs: {figures: [rmse_pos]}\n", "did you mean 'rmse_pos_m'"},
       {sequences + estimators + "pairs: {figures: [backend_ms]}\n", "not a time"},
+      {sequences + "estimators: [{config: estimators/a.yaml, sequences: [sin]}]\n",
+       "no such sequence; did you mean 'sim'"},
       {sequences + estimators + "baseline: sin\n", "no such sequence; did you mean 'sim'"},
       {sequences + estimators + "reference: [{source: x}]\n", "missing in reference"}};
   for (const auto& [text, expected] : faults) {
