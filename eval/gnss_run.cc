@@ -72,7 +72,7 @@ void GnssRun::Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps) {
   if (latest.stamp_ns != stamp_ns) {
     return;  // the frame was refused
   }
-  aligner_.AddState(stamp_ns, latest.nav, latest.bias, gyro_radps);
+  aligner_.AddState(stamp_ns, latest.nav, latest.bias, gyro_radps, latest.covariance.block<3, 3>(6, 6));
   const std::optional<GnssAlignment> alignment = aligner_.TryAlign();
   result_.align_report = aligner_.report();
   if (!alignment) {

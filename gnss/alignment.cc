@@ -51,11 +51,11 @@ GnssAligner::GnssAligner(const GnssConfig& config, const GnssReceiver& receiver)
     : config_(config), receiver_(receiver) {}
 
 void GnssAligner::AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias,
-                           const Vector3d& gyro_radps) {
+                           const Vector3d& gyro_radps, const Eigen::Matrix3d& velocity_covariance_W) {
   if (!states_.empty() && stamp_ns <= states_.back().stamp_ns) {
     return;
   }
-  AlignmentState state{stamp_ns, nav, bias, gyro_radps, Vector3d::Zero()};
+  AlignmentState state{stamp_ns, nav, bias, gyro_radps, velocity_covariance_W, Vector3d::Zero()};
   if (!states_.empty()) {
     state.acceleration_W =
         (nav.v_WB - states_.back().nav.v_WB) / SecondsBetween(states_.back().stamp_ns, stamp_ns);

@@ -35,14 +35,16 @@ struct GnssAlignment {
 /// Every pseudorange and range rate counts, so that epochs with few satellites accumulate, at any rate, and
 /// the rates give the yaw from the first metres on. Yaw starts from the best of a ring of candidates.
 ///
-/// The estimate's drift over the window is not modelled; align_inflation covers it, and what all epochs
-/// share.
+/// The estimate's velocity may be off by a constant, as its covariance says (gnss/alignment_fit.h). Its drift
+/// over the window is not modelled otherwise; align_inflation covers it, and what all epochs share.
 class GnssAligner {
  public:
   GnssAligner(const GnssConfig& config, const GnssReceiver& receiver);
 
-  /// The estimate in the local world and the gyroscope's measurement at its stamp; rising stamps.
-  void AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias, const Eigen::Vector3d& gyro_radps);
+  /// The estimate in the local world (covariance: of its velocity) and the gyroscope's measurement at its
+  /// stamp; rising stamps.
+  void AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias, const Eigen::Vector3d& gyro_radps,
+                const Eigen::Matrix3d& velocity_covariance_W);
   /// `approximate_E`: an antenna position (kilometres are enough) or nothing; the last one given counts.
   void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E);
 

@@ -22,8 +22,10 @@ using Eigen::VectorXd;
 constexpr Index kYaw = 0;
 constexpr Index kShift = 1;
 constexpr Index kOffset = 4;
-constexpr Index kBiases = 5;
-constexpr Index kClocks = 9;
+constexpr Index kVelocity = 5;
+constexpr Index kState = 8;  // the columns before act on the state
+constexpr Index kBiases = 8;
+constexpr Index kClocks = 12;
 
 /// Of a difference nothing is known of.
 constexpr double kFreeDriftStdMps = 1e4;
@@ -60,7 +62,7 @@ class AlignmentFit::NormalEquations {
 /// The rows of a sample, and what the unknowns but the clock do to its state, in the canonical chart.
 struct AlignmentFit::Epoch {
   std::vector<GnssRow> rows;
-  Eigen::Matrix<double, 15, 5> chart = Eigen::Matrix<double, 15, 5>::Zero();
+  Eigen::Matrix<double, 15, kState> chart = Eigen::Matrix<double, 15, kState>::Zero();
 };
 
 AlignmentGuess::AlignmentGuess(double yaw, const Vector3d& shift, std::size_t samples)
@@ -74,9 +76,10 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
   const AlignmentState& state = samples_[index]->state;
   const Eigen::Matrix3d R_NW = Eigen::AngleAxisd(guess->yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
   GnssPoint point{state.nav, state.bias, state.gyro_radps, guess->biases};
+  const double since_newest_s = SecondsBetween(samples_.back()->state.stamp_ns, state.stamp_ns);
   point.nav.R_WB = R_NW * state.nav.R_WB;
-  point.nav.p_WB = R_NW * state.nav.p_WB + guess->p_NW;
-  point.nav.v_WB = R_NW * state.nav.v_WB;
+  point.nav.p_WB = R_NW * (state.nav.p_WB + since_newest_s * guess->dv_W) + guess->p_NW;
+  point.nav.v_WB = R_NW * (state.nav.v_WB + guess->dv_W);
   // Where the epoch's offset puts the state.
   const Vector3d acceleration_N = R_NW * state.acceleration_W;
   const Vector3d omega_B = state.gyro_radps - state.bias.gyro;
@@ -103,6 +106,8 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
   epoch.chart.block<3, 1>(0, kOffset) = omega_B;
   epoch.chart.block<3, 1>(3, kOffset) = point.nav.v_WB;
   epoch.chart.block<3, 1>(6, kOffset) = acceleration_N;
+  epoch.chart.block<3, 3>(3, kVelocity) = since_newest_s * R_NW;
+  epoch.chart.block<3, 3>(6, kVelocity) = R_NW;
   return epoch;
 }
 
@@ -111,7 +116,7 @@ void AlignmentFit::AddEpoch(std::size_t index, const Options& options, Alignment
                             std::vector<double>* whitened) const {
   const Epoch epoch = Linearize(index, guess);
   for (const GnssRow& row : epoch.rows) {
-    const Eigen::Matrix<double, 1, 5> shared = row.jacobian * epoch.chart;
+    const Eigen::Matrix<double, 1, kState> shared = row.jacobian * epoch.chart;
     const double r = row.residual / row.deviation;
     const double huber = RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r * r);
     const double weight = std::abs(r) < options.gate_sigma ? (options.robust ? huber : 1) : 0;
@@ -120,6 +125,9 @@ void AlignmentFit::AddEpoch(std::size_t index, const Options& options, Alignment
     NormalEquations::Row entries = {{kShift, shared[1]},
                                     {kShift + 1, shared[2]},
                                     {kShift + 2, shared[3]},
+                                    {kVelocity, shared[kVelocity]},
+                                    {kVelocity + 1, shared[kVelocity + 1]},
+                                    {kVelocity + 2, shared[kVelocity + 2]},
                                     {ClockColumn(index) + (row.is_rate ? 1 : 0), 1.0}};
     if (options.yaw_free) {
       entries.emplace_back(kYaw, shared[kYaw]);
@@ -166,6 +174,15 @@ void AlignmentFit::AddPriors(const Options& options, const AlignmentGuess& guess
   for (Index i = 0; i < 3; ++i) {
     system->Add({{kShift + i, 1.0}}, 0, kFarM);
   }
+  // Over the window the velocity is as uncertain as on average; the axes apart, which is never too sure.
+  Vector3d variance = Vector3d::Zero();
+  for (const AlignmentSample* sample : samples_) {
+    variance += sample->state.velocity_covariance_W.diagonal() / static_cast<double>(samples_.size());
+  }
+  for (Index i = 0; i < 3; ++i) {
+    const double deviation = std::sqrt(std::max(variance[i], 0.0)) + kHeld;
+    system->Add({{kVelocity + i, 1.0}}, guess.dv_W[i], deviation);
+  }
   const bool offset_free = config_.estimate_time_offset && options.yaw_free;
   system->Add({{kOffset, 1.0}}, guess.time_offset_s, offset_free ? 0.5 * config_.max_time_offset_s : kHeld);
   system->Add({{kYaw, 1.0}}, 0, options.yaw_free ? kAnyYawRad : kHeld);
@@ -176,6 +193,7 @@ void AlignmentFit::Move(const VectorXd& step, AlignmentGuess* guess) const {
   guess->p_NW += step.segment<3>(kShift);
   guess->time_offset_s =
       std::clamp(guess->time_offset_s + step[kOffset], -config_.max_time_offset_s, config_.max_time_offset_s);
+  guess->dv_W += step.segment<3>(kVelocity);
   guess->biases.tail<4>() += step.segment<4>(kBiases);
   for (std::size_t k = 0; k < samples_.size(); ++k) {
     guess->clock_m[k] += step[ClockColumn(k)];

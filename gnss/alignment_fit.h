@@ -14,6 +14,7 @@ struct AlignmentState {
   NavState nav;
   ImuBias bias;
   Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d velocity_covariance_W = Eigen::Matrix3d::Zero();
   Eigen::Vector3d acceleration_W = Eigen::Vector3d::Zero();
 };
 
@@ -23,7 +24,8 @@ struct AlignmentSample {
   EpochMeasurements measurements;  ///< located
 };
 
-/// Values of the unknowns: how W stands in N, what time the epochs are off, and the receiver's clock.
+/// Values of the unknowns: how W stands in N, what time the epochs are off, what velocity the estimate is
+/// off, and the receiver's clock.
 struct AlignmentGuess {
   /// All zero, at this yaw and shift, with `samples` clocks that nothing is known of.
   AlignmentGuess(double yaw, const Eigen::Vector3d& shift, std::size_t samples);
@@ -31,6 +33,8 @@ struct AlignmentGuess {
   double yaw_rad = 0;
   Eigen::Vector3d p_NW = Eigen::Vector3d::Zero();
   double time_offset_s = 0;
+  Eigen::Vector3d dv_W =
+      Eigen::Vector3d::Zero();         ///< to be added to all velocities, and in time to positions
   Vector6d biases = Vector6d::Zero();  ///< of systems, by ClockState's index
   std::vector<double> clock_m;         ///< by sample
   std::vector<double> drift_mps;

@@ -17,8 +17,10 @@ constexpr TimeNs kStart = 1'700'000'100 * kSecondNs;
 struct Walk {
   double radius_m = 5;
   double speed_mps = 1;
-  double wobble_rad = 0;  ///< of an uneven pace; an even circle cannot tell time from yaw
-  double yaw_rad = 0.7;   ///< R_NW
+  double wobble_rad = 0;             ///< of an uneven pace; an even circle cannot tell time from yaw
+  double yaw_rad = 0.7;              ///< R_NW
+  Vector3d dv_W = Vector3d::Zero();  ///< by which the estimate's velocity is off
+  double velocity_std_mps = 0;       ///< as it says itself
   Vector3d p_NW = Vector3d(3, -2, 1);
   EnuFrame enu = EnuFrame::At(Vector3d(3582105, 532590, 5232755));
   NavigationData sky = test::SyntheticSky(kStart);
@@ -46,7 +48,10 @@ struct Walk {
   [[nodiscard]] NavState Local(double t) const {
     const Eigen::Matrix3d R_WN = Eigen::AngleAxisd(-yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
     const NavState global = Global(t);
-    return {R_WN * global.R_WB, R_WN * (global.p_WB - p_NW), R_WN * global.v_WB};
+    return {R_WN * global.R_WB, R_WN * (global.p_WB - p_NW) + t * dv_W, R_WN * global.v_WB + dv_W};
+  }
+  [[nodiscard]] Eigen::Matrix3d VelocityCovariance() const {
+    return velocity_std_mps * velocity_std_mps * Eigen::Matrix3d::Identity();
   }
   /// Noise of a fixed pattern; `satellites` of the epoch are kept, others each time.
   [[nodiscard]] GnssEpoch Epoch(double t, std::size_t satellites) const {
@@ -83,7 +88,7 @@ std::optional<GnssAlignment> Follow(const Walk& walk, double seconds, std::size_
     for (; next_epoch < t; next_epoch += 1) {
       aligner->AddEpoch(walk.Epoch(next_epoch, satellites), approximate);
     }
-    aligner->AddState(kStart + SecondsToNs(t), walk.Local(t), ImuBias(), gyro);
+    aligner->AddState(kStart + SecondsToNs(t), walk.Local(t), ImuBias(), gyro, walk.VelocityCovariance());
     if (auto alignment = aligner->TryAlign()) {
       return alignment;
     }
@@ -131,6 +136,24 @@ TEST(GnssAlignerTest, GIVEN_rest_THEN_it_waits_for_motion) {
   EXPECT_NE(aligner.report().find("too little motion"), std::string::npos) << aligner.report();
 }
 
+// GIVEN an estimate that is off by more than the speed it moves at, WHEN it says so, THEN yaw waits until the
+// path has turned enough to tell the two apart, and is within its deviation.
+TEST(GnssAlignerTest, GIVEN_a_velocity_that_is_off_THEN_yaw_is_within_its_deviation) {
+  Walk walk;
+  walk.speed_mps = 0.5;
+  walk.config.align_min_epochs = 4;
+  for (const Vector3d& dv_W : {Vector3d(0, 0.6, 0), Vector3d(-0.6, 0, 0), Vector3d(0.4, -0.4, 0.1)}) {
+    walk.dv_W = dv_W;
+    walk.velocity_std_mps = 0.5;
+    GnssAligner aligner(walk.config, AtAnchor(walk));
+    const auto alignment = Follow(walk, 60, 40, &aligner);
+    ASSERT_TRUE(alignment) << aligner.report();
+    const double yaw_error = std::remainder(alignment->yaw_rad - walk.yaw_rad, 2 * M_PI);
+    EXPECT_LT(std::abs(yaw_error), 3 * std::sqrt(alignment->covariance(0, 0))) << dv_W.transpose();
+    EXPECT_LT(std::abs(yaw_error), 0.2) << dv_W.transpose();
+  }
+}
+
 TEST(GnssAlignerTest, GIVEN_stamps_50_ms_late_WHEN_asked_THEN_the_offset_is_found) {
   Walk walk;
   walk.radius_m = 2;
@@ -146,7 +169,8 @@ TEST(GnssAlignerTest, GIVEN_stamps_50_ms_late_WHEN_asked_THEN_the_offset_is_foun
     GnssEpoch epoch = walk.Epoch(t, 40);
     epoch.stamp_ns -= 50'000'000;  // truth: t_imu = stamp + 50 ms
     aligner.AddEpoch(epoch, approximate);
-    aligner.AddState(kStart + SecondsToNs(t), walk.Local(t), ImuBias(), Vector3d(0, 0, 1.5));
+    aligner.AddState(kStart + SecondsToNs(t), walk.Local(t), ImuBias(), Vector3d(0, 0, 1.5),
+                     walk.VelocityCovariance());
     alignment = aligner.TryAlign();
   }
   ASSERT_TRUE(alignment) << aligner.report();
