@@ -62,7 +62,7 @@ struct GnssStudyRow {
 };
 
 /// Markdown: what the runs came to, and a table each for outages and clock jumps where there are any.
-/// Ratios are those of means, to the same estimator on the first sequence.
+/// A row without runs is left out. Ratios are those of means, to the same estimator on the first sequence.
 [[nodiscard]] std::string GnssStudyTables(const std::vector<GnssStudyRow>& rows);
 
 }  // namespace alidade

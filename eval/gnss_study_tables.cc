@@ -51,6 +51,9 @@ std::string Overview(const std::vector<GnssStudyRow>& rows) {
       "sequence | single points [m] | last third to first | NEES position | its band |\n"
       "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
   for (const GnssStudyRow& row : rows) {
+    if (row.runs.empty()) {
+      continue;
+    }
     const Statistic after = Over(row.runs, &GnssRunFigures::aligned_after_s);
     const Statistic rmse = Over(row.runs, &GnssRunFigures::rmse_m);
     const auto [low, high] = NeesBand(3, rmse.count);
@@ -70,7 +73,7 @@ std::string Overview(const std::vector<GnssStudyRow>& rows) {
 std::string Outages(const std::vector<GnssStudyRow>& rows) {
   std::string table;
   for (const GnssStudyRow& row : rows) {
-    if (!row.scenario.HasOutage()) {
+    if (row.runs.empty() || !row.scenario.HasOutage()) {
       continue;
     }
     const Statistic covered = Over(row.runs, &GnssRunFigures::return_covered);

@@ -61,7 +61,7 @@ class AlignmentFit::NormalEquations {
 
 /// The rows of a sample, and what the unknowns but the clock do to its state, in the canonical chart.
 struct AlignmentFit::Epoch {
-  std::vector<GnssRow> rows;
+  std::vector<GnssRow> rows;  ///< their deviations with the estimate's own
   Eigen::Matrix<double, 15, kState> chart = Eigen::Matrix<double, 15, kState>::Zero();
 };
 
@@ -98,6 +98,12 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
     for (GnssRow& row : epoch.rows) {
       row.residual += row.is_rate ? 0 : common;
     }
+  }
+  // The velocity's error changes over the window too: a part of it is each epoch's own.
+  const Eigen::Matrix3d variance_N = R_NW * state.velocity_covariance_W * R_NW.transpose();
+  for (GnssRow& row : epoch.rows) {
+    const Eigen::RowVector3d e = row.jacobian.segment<3>(6) + since_newest_s * row.jacobian.segment<3>(3);
+    row.deviation = std::sqrt(row.deviation * row.deviation + e.dot(e * variance_N));
   }
   epoch.chart.block<3, 1>(0, kYaw) = point.nav.R_WB.transpose() * Vector3d::UnitZ();
   epoch.chart.block<3, 1>(3, kYaw) = Vector3d::UnitZ().cross(point.nav.p_WB - guess->p_NW);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a checkout to a comparison of seven estimators in minutes: builds, simulates, runs, prints the table.
+# From a checkout to a comparison of ten estimators in minutes: builds, simulates, runs, prints the table.
 # Usage: scripts/demo.sh [output folder]
 set -euo pipefail
 cd "$(dirname "$0")/.."
