@@ -66,6 +66,16 @@ TEST(SmootherEstimatorTest, ExactDataGivesTheTruthForBothLandmarks) {
   }
 }
 
+TEST(SmootherEstimatorTest, BothLandmarksAgreeOnExactData) {
+  const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
+  EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);
+  config.smoother.max_iterations = 50;
+  const test::ScenarioResult explicit_depth = RunSmoother(dataset, config, false);
+  config.smoother.landmark = SmootherLandmark::kPoseOnly;
+  const test::ScenarioResult pose_only = RunSmoother(dataset, config, false);
+  EXPECT_LT((explicit_depth.last.nav.p_WB - pose_only.last.nav.p_WB).norm(), 1e-6);
+}
+
 EstimatorConfig WithSlamFeatures(int count) {
   EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly);
   config.smoother.frames = FramePolicy::kEveryFrame;
