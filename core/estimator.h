@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/calibration.h"
 #include "core/clock_state.h"
 #include "core/estimator_config.h"
 #include "core/measurement_log.h"
@@ -30,6 +31,7 @@ struct FrameStatistics {
   int satellites_gated = 0;
   int iterations = 0;    ///< of the smoother's solver
   bool at_rest = false;  ///< the frame was used as a zero-velocity measurement
+  bool suspect = false;  ///< the gate refused more than vision.max_gated_share; they were used nonetheless
   double nis = 0;        ///< normalised innovation squared of the applied rows
   int nis_dof = 0;       ///< rows applied, vision's
   double gnss_nis = 0;   ///< the same of the epochs since the frame before
@@ -83,6 +85,10 @@ class Estimator {
   [[nodiscard]] virtual NavEstimate Latest() const = 0;
   [[nodiscard]] virtual bool initialized() const = 0;
   [[nodiscard]] virtual const FrameStatistics& last_statistics() const = 0;
+
+  /// The camera's calibration after the last accepted frame; nothing when none is estimated. Frames are
+  /// placed in IMU time by the time offset it tells, and the IMU must have been added as far as that.
+  [[nodiscard]] virtual std::optional<CalibrationEstimate> LatestCalibration() const { return std::nullopt; }
 
   /// Called once, when the log is at its end: revised estimates of all accepted frames, in their order; empty
   /// for an estimator that does not look back. `stop` (may be null) is polled: when it is set the result is

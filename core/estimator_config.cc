@@ -205,6 +205,40 @@ void SmootherConfig::Describe(ConfigVisitor& visitor) {
       &slam_features, 0, 500);
 }
 
+void CalibrationConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Boolean({"extrinsics", "-", "estimate the camera's pose on the body; needs turns about two axes"},
+                  &extrinsics);
+  visitor.Boolean({"time_offset", "-", "estimate the camera's time offset; needs motion that is not uniform"},
+                  &time_offset);
+  visitor.Boolean({"intrinsics", "-", "estimate focal lengths, principal point and lens coefficients"},
+                  &intrinsics);
+  visitor.Real({"rotation_std_rad", "rad", "of the given rotation T_BC, each axis; 2 degrees"},
+               &rotation_std_rad, 1e-6, 0.5);
+  visitor.Real({"translation_std_m", "m", "of the given position in T_BC, each axis"}, &translation_std_m,
+               1e-6, 1);
+  visitor.Real({"time_offset_std_s", "s", "of the given time offset"}, &time_offset_std_s, 1e-7, 0.1);
+  visitor.Real({"focal_std_px", "px", "of each focal length"}, &focal_std_px, 1e-4, 1000);
+  visitor.Real({"center_std_px", "px", "of each coordinate of the principal point"}, &center_std_px, 1e-4,
+               1000);
+  visitor.Real({"distortion_std", "-", "of each lens coefficient; 0 takes them as given"}, &distortion_std, 0,
+               1);
+}
+
+void RecoveryConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Boolean(
+      {"enabled", "-", "a lost estimate starts again from the data that follow; else the run ends"},
+      &enabled);
+  visitor.Real({"max_speed_mps", "m/s", "a faster estimate is lost"}, &max_speed_mps, 1, 1e4);
+  visitor.Real({"max_gyro_bias_radps", "rad/s", "a larger estimated bias is no bias"}, &max_gyro_bias_radps,
+               1e-3, 10);
+  visitor.Real({"max_accel_bias_mps2", "m/s^2", "a larger estimated bias is no bias"}, &max_accel_bias_mps2,
+               1e-3, 100);
+  visitor.Real(
+      {"max_suspect_s", "s",
+       "an estimate that its tracks contradict for so long, without one frame that supports it, is lost"},
+      &max_suspect_s, 0.1, 1e4);
+}
+
 void BatchConfig::Describe(ConfigVisitor& visitor) {
   visitor.Enumeration({"initial", "-", "whose run gives the initial values; set in its own section"},
                       &initial, {{"filter", BatchInitial::kFilter}, {"smoother", BatchInitial::kSmoother}});
@@ -240,6 +274,10 @@ void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("smoother", "the Ceres sliding window", [&] { smoother.Describe(visitor); });
   visitor.Section("batch", "the estimate from the whole sequence at once; a bound",
                   [&] { batch.Describe(visitor); });
+  visitor.Section("calibration", "camera parameters estimated online; the filter",
+                  [&] { calibration.Describe(visitor); });
+  visitor.Section("recovery", "divergence and the start after it, shared by both back ends",
+                  [&] { recovery.Describe(visitor); });
   visitor.Section("gnss", "raw GNSS", [&] { gnss.Describe(visitor); });
 }
 
@@ -266,6 +304,12 @@ Status EstimatorConfig::Validate() const {
     return Status::Config(
         "gnss.enabled: true, but the batch back end takes no GNSS; expected false, or backend: "
         "filter or smoother");
+  }
+  if (calibration.any() && backend != Backend::kFilter) {
+    return Status::Config(
+        "calibration: this back end takes the camera as given; expected extrinsics, time_offset and "
+        "intrinsics "
+        "false, or backend: filter");
   }
   if (const Status systems = gnss.corrections.Validate(); !systems.ok()) {
     return Status::Config("gnss." + systems.message());

@@ -146,6 +146,35 @@ struct SmootherConfig {
   void Describe(ConfigVisitor& visitor);
 };
 
+/// Which parameters of the camera are estimated along with the motion (core/calibration.h); by the
+/// filter alone. The standard deviations say how far the given calibration is trusted, one for each axis or
+/// coefficient.
+struct CalibrationConfig {
+  bool extrinsics = false;
+  bool time_offset = false;
+  bool intrinsics = false;
+  double rotation_std_rad = 0.035;
+  double translation_std_m = 0.03;
+  double time_offset_std_s = 0.01;
+  double focal_std_px = 5.0;
+  double center_std_px = 5.0;
+  double distortion_std = 0.02;
+
+  [[nodiscard]] bool any() const { return extrinsics || time_offset || intrinsics; }
+  void Describe(ConfigVisitor& visitor);
+};
+
+/// When an estimate is given up and a new start is sought (core/health_monitor.h); shared by both back ends.
+struct RecoveryConfig {
+  bool enabled = true;
+  double max_speed_mps = 100.0;
+  double max_gyro_bias_radps = 1.0;
+  double max_accel_bias_mps2 = 5.0;
+  double max_suspect_s = 3.0;
+
+  void Describe(ConfigVisitor& visitor);
+};
+
 /// Whose run gives the batch estimate its initial values; it is set by its own section.
 enum class BatchInitial { kFilter, kSmoother };
 
@@ -171,6 +200,8 @@ struct EstimatorConfig {
   FilterConfig filter;
   SmootherConfig smoother;
   BatchConfig batch;
+  CalibrationConfig calibration;
+  RecoveryConfig recovery;
   GnssConfig gnss;
 
   /// Lists every key with unit, range and reason; the order is the order of configs/base.yaml.

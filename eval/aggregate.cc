@@ -200,6 +200,26 @@ std::vector<Figure> ListFigures(const Comparison& comparison) {
       {"gated_share", "gated", "", Ideal::kNone, 0, 3,
        [](const CellResult& cell) { return HasTrajectory(cell) ? cell.gated_share : kNan; }}};
   figures.insert(figures.end(), rest.begin(), rest.end());
+  const auto known = [&comparison](double CellResult::*member) {
+    return std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                       [member](const CellResult& cell) { return !std::isnan(cell.*member); });
+  };
+  const auto plain = [](double CellResult::*member) {
+    return [member](const CellResult& cell) { return cell.*member; };
+  };
+  if (known(&CellResult::calibration_rotation_deg)) {
+    figures.push_back({"calibration_rotation_deg", "camera rotation", "deg", Ideal::kLow, 0, 3,
+                       plain(&CellResult::calibration_rotation_deg)});
+    figures.push_back({"calibration_translation_m", "camera position", "m", Ideal::kLow, 0, 4,
+                       plain(&CellResult::calibration_translation_m)});
+    figures.push_back({"calibration_time_ms", "time offset", "ms", Ideal::kLow, 0, 3,
+                       plain(&CellResult::calibration_time_ms)});
+  }
+  if (std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                  [](const CellResult& cell) { return cell.restarts > 0; })) {
+    figures.push_back({"restarts", "restarts", "", Ideal::kLow, 0, 1,
+                       [](const CellResult& cell) { return static_cast<double>(cell.restarts); }});
+  }
   return figures;
 }
 

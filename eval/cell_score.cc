@@ -171,6 +171,12 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
   cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;
+  cell->restarts = static_cast<int>(run.restarts.size());
+  if (run.calibration_error) {
+    cell->calibration_rotation_deg = run.calibration_error->rotation_rad * 180 / std::numbers::pi;
+    cell->calibration_translation_m = run.calibration_error->translation_m;
+    cell->calibration_time_ms = 1e3 * run.calibration_error->time_offset_s;
+  }
   FillPredicted(run, cell);
   constexpr size_t kSkyPoints = 24;
   cell->sky = MakeSkyTracks(run.gnss_residuals, kSkyPoints);

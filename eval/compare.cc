@@ -178,6 +178,7 @@ class Comparer {
     } else {
       RunOptions run_options;
       run_options.truth = truth;
+      run_options.true_rig = data->true_rig ? &*data->true_rig : nullptr;
       run_options.seed = cell->seed;
       run_options.stop = options_.stop;
       run_options.audit = identity.audited;

@@ -105,6 +105,7 @@ Result<CompareInput::Data> CompareInput::RunSimulation(const PipelineOptions& op
   data.log = {dataset->rig, std::move(dataset->imu), std::move(dataset->tracks),
               std::move(dataset->extra_cameras), dataset->gnss};
   data.truth = std::move(dataset->truth);
+  data.true_rig = dataset->true_rig;
   SimulatorConfig config = *simulation_;
   data.dataset_digest =
       Sha256Hex(ConfigToYaml([&config](ConfigVisitor& visitor) { config.Describe(visitor); }, false) +

@@ -30,6 +30,7 @@ class CompareInput {
     std::string input_digest;
     std::optional<FrontendSummary>
         frontend;  ///< where the front end ran here, now or in an earlier comparison
+    std::optional<RigCalibration> true_rig = {};  ///< Dataset::true_rig
   };
 
   /// A dataset folder. `frontend` is used when it has images but no tracks.

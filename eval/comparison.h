@@ -65,6 +65,11 @@ struct CellResult {
   /// The same given the data up to each frame alone; of an estimator that looks back and knows it.
   double filtering_sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
   double filtering_sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
+  /// How far the last online calibration is from the truth; NaN when either is missing.
+  double calibration_rotation_deg = std::numeric_limits<double>::quiet_NaN();
+  double calibration_translation_m = std::numeric_limits<double>::quiet_NaN();
+  double calibration_time_ms = std::numeric_limits<double>::quiet_NaN();
+  int restarts = 0;  ///< times the estimate was lost
   CellSeries series;
   std::vector<SkyTrack> sky;  ///< empty without GNSS
 };

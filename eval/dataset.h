@@ -20,6 +20,8 @@ struct Dataset {
   std::string path;
   std::string name;  ///< last folder of the path
   RigCalibration rig;
+  /// The rig as it really is, of a simulation that was told to give a wrong one.
+  std::optional<RigCalibration> true_rig;
   double imu_rate_hz = 0;
   double camera_rate_hz = 0;
   std::vector<ImuSample> imu;

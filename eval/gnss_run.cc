@@ -29,8 +29,10 @@ GnssRun::GnssRun(const EstimatorConfig& config, const MeasurementLog& log, Estim
 
 void GnssRun::TakeEpoch() {
   const GnssEpoch& epoch = *feed_.Next();
-  if (result_.global) {
+  if (result_.global && estimator_.initialized()) {
     AddEpoch(epoch);
+  } else if (result_.global) {
+    ++result_.epochs_skipped;
   } else {
     aligner_.AddEpoch(epoch, feed_.approximate_E());
   }
@@ -82,6 +84,7 @@ void GnssRun::Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps) {
     result_.status = std::move(status);
     return;
   }
+  alignment_ = alignment;
   feed_.ShiftTime(alignment->time_offset_s);
   result_.align_report = alignment->report;
   SetGlobal(*alignment, stamp_ns);
@@ -96,6 +99,24 @@ void GnssRun::Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps) {
     record.clock = estimator_.LatestClock();
     record.status = "ok";
   }
+}
+
+void GnssRun::Realign() {
+  if (!alignment_) {
+    return;
+  }
+  // The state stands in the ENU frame already, its uncertainty there included.
+  GnssAlignment identity = *alignment_;
+  identity.yaw_rad = 0;
+  identity.p_NW.setZero();
+  identity.covariance = 1e-12 * Eigen::Matrix4d::Identity();
+  for (const RunRecord& record : result_.records) {
+    if (record.clock) {
+      identity.clock = record.clock->mean;
+      identity.stamp_ns = record.estimate.stamp_ns;
+    }
+  }
+  result_.status = estimator_.Align(identity);
 }
 
 std::optional<GnssInertialStart::Start> GnssRun::TryStart() {

@@ -27,6 +27,9 @@ class GnssRun {
   /// there is one. `gyro_radps`: of that time.
   void Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps);
 
+  /// The estimator has begun anew with a state that stands in the ENU frame already.
+  void Realign();
+
   // Without a camera.
   void AddImuBeforeStart(const ImuSample& sample) { start_.AddImu(sample); }
   /// Takes an epoch; the start once it is known.
@@ -48,7 +51,8 @@ class GnssRun {
   GnssFeed feed_;
   GnssAligner aligner_;
   GnssInertialStart start_;
-  FrameStatistics epochs_;  ///< of the epochs since the last record
+  std::optional<GnssAlignment> alignment_;  ///< the one in use
+  FrameStatistics epochs_;                  ///< of the epochs since the last record
 };
 
 }  // namespace alidade

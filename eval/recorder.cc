@@ -1,11 +1,13 @@
 #include "eval/recorder.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "eval/config_json.h"
 #include "eval/config_yaml.h"
+#include "eval/csv_text.h"
 #include "eval/output_file.h"
 #include "eval/recorder_gnss.h"
 #include "eval/sha256.h"
@@ -104,7 +106,7 @@ std::string StatusText(const RunResult& result) {
   std::string text =
       "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
       "dof,"
-      "observations_invalid,features_waiting,features_degenerate,iterations,at_rest\n";
+      "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason\n";
   for (const RunRecord& record : result.records) {
     const FrameStatistics& s = record.statistics;
     text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
@@ -117,7 +119,18 @@ std::string StatusText(const RunResult& result) {
                             s.iterations, s.at_rest ? 1 : 0}) {
       text += "," + std::to_string(count);
     }
-    text += '\n';
+    std::string reason = record.reason;
+    std::replace_if(
+        reason.begin(), reason.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
+    text += "," + reason + '\n';
+  }
+  return text;
+}
+
+std::string CalibrationText(const RunResult& result) {
+  std::string text = "timestamp_ns" + CalibrationColumns(*result.records.front().calibration) + "\n";
+  for (const RunRecord& record : result.records) {
+    text += std::to_string(record.estimate.stamp_ns) + CalibrationFields(*record.calibration) + "\n";
   }
   return text;
 }
@@ -159,6 +172,22 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
                     {"frames_processed", result.records.size()},
                     {"frames_skipped", result.frames_skipped}};
   json["skip_report"] = result.skip_report;
+  if (!result.restarts.empty()) {
+    json["restarts"] = Json::array();
+    for (const Restart& restart : result.restarts) {
+      json["restarts"].push_back({{"lost_ns", restart.lost_ns},
+                                  {"reason", restart.reason},
+                                  {"restarted_ns", restart.restarted_ns},
+                                  {"report", restart.init_report}});
+    }
+  }
+  if (result.calibration_error) {
+    const CalibrationError& error = *result.calibration_error;
+    json["calibration_error"] = {{"rotation_rad", error.rotation_rad},
+                                 {"translation_m", error.translation_m},
+                                 {"time_offset_s", error.time_offset_s},
+                                 {"focal_px", error.focal_px}};
+  }
   if (identity.config.gnss.enabled) {
     json["gnss"] = {{"aligned", HasGnss(result)},
                     {"report", result.align_report},
@@ -201,6 +230,11 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
         WriteFileAtomically((path / "observability.csv").string(), ObservabilityText(result)));
   } else {
     std::filesystem::remove(path / "observability.csv", ignored);
+  }
+  std::filesystem::remove(path / "calibration.csv", ignored);
+  if (!result.records.empty() && result.records.front().calibration) {
+    ALIDADE_RETURN_IF_ERROR(
+        WriteFileAtomically((path / "calibration.csv").string(), CalibrationText(result)));
   }
   std::filesystem::remove(path / "bound.csv", ignored);
   if (HasBound(result)) {

@@ -117,6 +117,7 @@ Status ReadTimingRow(const CsvReader& row, RunRecord* record) {
 Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
   FrameStatistics& s = record->statistics;
   record->status = std::string(row.field(1));
+  record->reason = std::string(row.field(14));
   const std::vector<std::pair<size_t, int*>> counts = {{2, &s.tracks_in},
                                                        {3, &s.features_used},
                                                        {4, &s.features_gated},
@@ -223,6 +224,15 @@ Result<RunResult> ReadRun(const std::string& folder) {
   result.frames_skipped = Get(counts, "frames_skipped", 0);
   result.imu_rejected = Get(counts, "imu_rejected", 0);
   result.global = ReadGlobalFrame(Get(*json, "gnss", Json::object()));
+  for (const Json& restart : Get(*json, "restarts", Json::array())) {
+    result.restarts.push_back({Get(restart, "lost_ns", TimeNs{0}), Get(restart, "reason", std::string()),
+                               Get(restart, "restarted_ns", TimeNs{0}),
+                               Get(restart, "report", std::string())});
+  }
+  if (const Json error = Get(*json, "calibration_error", Json()); error.is_object()) {
+    result.calibration_error = {Get(error, "rotation_rad", 0.0), Get(error, "translation_m", 0.0),
+                                Get(error, "time_offset_s", 0.0), Get(error, "focal_px", 0.0)};
+  }
   const Json times = Get(*json, "times", Json::object());
   result.wall_s = Get(times, "wall_s", 0.0);
   result.cpu_s = Get(times, "cpu_s", 0.0);
@@ -231,7 +241,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
-  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 14, &result, ReadStatusRow));
+  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 15, &result, ReadStatusRow));
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/estimator.h"
+#include "eval/calibration_record.h"
 #include "eval/observability.h"
 #include "eval/trajectory.h"
 #include "gnss/geodesy.h"
@@ -23,7 +24,9 @@ struct RunRecord {
   /// Covariance of (phi, dp) given the data up to this frame alone; of an estimator that looks back and knows
   /// it.
   std::optional<Matrix6d> filtering_covariance;
-  std::optional<ClockState> clock;  ///< once aligned with GNSS
+  std::optional<ClockState> clock;                 ///< once aligned with GNSS
+  std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
+  std::string reason;                              ///< of a status that is not ok
 };
 
 /// How a run came to stand in the ENU frame.
@@ -34,6 +37,14 @@ struct GlobalFrame {
   double time_offset_s = 0;  ///< IMU time less GPST, as given or estimated
   double yaw_rad = 0;        ///< by which the local world was turned
   double yaw_std_rad = 0;
+};
+
+/// A time without an estimate.
+struct Restart {
+  TimeNs lost_ns = 0;       ///< IMU time of the frame or epoch at which the estimate was given up
+  std::string reason;       ///< why
+  TimeNs restarted_ns = 0;  ///< stamp of the new start; 0 when there was none
+  std::string init_report;  ///< what the initialiser found
 };
 
 struct RunResult {
@@ -50,6 +61,9 @@ struct RunResult {
   int epochs_used = 0;                        ///< GNSS epochs the estimator took
   int epochs_skipped = 0;                     ///< refused by it
   std::vector<GnssResiduals> gnss_residuals;  ///< of the used epochs
+  std::vector<Restart> restarts;
+  /// Of the last calibration, when the true one is known.
+  std::optional<CalibrationError> calibration_error;
   bool interrupted = false;
   double wall_s = 0;
   double cpu_s = 0;  ///< of the running thread

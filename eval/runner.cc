@@ -2,9 +2,12 @@
 
 #include <time.h>
 
+#include <utility>
+
 #include "core/check.h"
 #include "core/stopwatch.h"
 #include "eval/gnss_run.h"
+#include "eval/recovery.h"
 #include "eval/truth_start.h"
 #include "filter/filter.h"
 #include "frontend/initializer.h"
@@ -24,7 +27,12 @@ class Run {
  public:
   Run(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
       Estimator* estimator)
-      : config_(config), log_(log), options_(options), estimator_(*estimator), initializer_(config, log.rig) {
+      : config_(config),
+        log_(log),
+        options_(options),
+        estimator_(*estimator),
+        initializer_(config, log.rig),
+        recovery_(config, log, &result_) {
     if (config.gnss.enabled && log.gnss != nullptr) {
       gnss_.emplace(config, log, estimator, &result_);
     }
@@ -52,12 +60,16 @@ class Run {
     if (gnss_ && log_.frames.empty()) {
       ProcessEpochsAlone();
     }
+    if (result_.status.ok() && recovery_.lost() && !result_.interrupted) {
+      result_.status = Status::Diverged(recovery_.Message());
+    }
     if (result_.status.ok() && !initialized_ && !result_.interrupted) {
       result_.status = Status::Diverged("not initialised before the sequence ended: " + Reason());
     }
     if (result_.status.ok() && !result_.interrupted) {
       Finalize();
     }
+    CompareCalibration();
     result_.wall_s = wall.ElapsedS();
     result_.cpu_s = ThreadCpuSeconds() - cpu_start;
     return std::move(result_);
@@ -65,21 +77,25 @@ class Run {
 
  private:
   [[nodiscard]] TimeNs ImuStamp(const TrackFrame& frame) const {
-    return frame.stamp_ns + SecondsToNs(log_.rig.camera_time_offset_s);
+    const std::optional<CalibrationEstimate> calibration =
+        initialized_ ? estimator_.LatestCalibration() : std::nullopt;
+    return frame.stamp_ns +
+           SecondsToNs(calibration ? calibration->mean.time_offset_s : log_.rig.camera_time_offset_s);
   }
 
   void ProcessFrame(const TrackFrame& frame) {
     const Stopwatch stopwatch;
-    DeliverImu(ImuStamp(frame));
+    const TimeNs imu_stamp_ns = ImuStamp(frame);
+    DeliverImu(imu_stamp_ns);
     if (!initialized_) {
       TryInitialize(frame);
     }
     if (initialized_) {
       AddFrame(frame, stopwatch);
-      if (gnss_ && result_.status.ok()) {
-        gnss_->Align(ImuStamp(frame), log_.imu[next_imu_ - 1].gyro);
+      if (gnss_ && result_.status.ok() && initialized_) {
+        gnss_->Align(imu_stamp_ns, log_.imu[next_imu_ - 1].gyro);
       }
-    } else if (result_.status.ok() &&
+    } else if (result_.status.ok() && !recovery_.lost() &&
                SecondsBetween(log_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
       result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
                                         std::to_string(config_.init.max_wait_s) + " s: " + Reason());
@@ -97,6 +113,9 @@ class Run {
         DeliverImu(epoch->stamp_ns);
       }
       gnss_->TakeEpoch();
+      if (result_.status.code() == StatusCode::kDiverged) {
+        GiveUp(estimator_.Latest().stamp_ns, std::exchange(result_.status, Status::Ok()));
+      }
     }
   }
 
@@ -131,6 +150,7 @@ class Run {
     if (!start) {
       return;
     }
+    result_.init_stamp_ns = start->estimate.stamp_ns;
     Begin(start->estimate);
     if (initialized_) {
       gnss_->AlignAtStart(*start);
@@ -143,6 +163,8 @@ class Run {
       const ImuSample& sample = log_.imu[next_imu_++];
       if (initialized_) {
         AddImu(sample);
+      } else if (recovery_.lost()) {
+        recovery_.AddImu(sample);
       } else {
         initializer_.AddImu(sample);
         if (gnss_ && log_.frames.empty()) {
@@ -155,12 +177,41 @@ class Run {
   void AddImu(const ImuSample& sample) { result_.imu_rejected += estimator_.AddImu(sample).ok() ? 0 : 1; }
 
   void TryInitialize(const TrackFrame& frame) {
+    if (recovery_.lost()) {
+      TryRestart(frame);
+      return;
+    }
     const Result<NavEstimate> start = InitialState(frame);
     if (!start.ok()) {
       result_.init_report = start.message();
       return;
     }
+    result_.init_stamp_ns = start->stamp_ns;
     Begin(*start);
+  }
+
+  void TryRestart(const TrackFrame& frame) {
+    const Result<NavEstimate> start = recovery_.TryStart(frame, next_imu_);
+    if (!start.ok()) {
+      return;
+    }
+    Begin(*start);
+    if (initialized_) {
+      recovery_.Started(*start);
+      restarted_ = true;
+      if (gnss_) {
+        gnss_->Realign();
+      }
+    }
+  }
+
+  /// The estimate is lost: the run ends unless a new start may be sought.
+  void GiveUp(TimeNs stamp_ns, Status status) {
+    if (recovery_.GiveUp(stamp_ns, status.message())) {
+      initialized_ = false;
+    } else {
+      result_.status = std::move(status);
+    }
   }
 
   void Begin(const NavEstimate& start) {
@@ -169,7 +220,6 @@ class Run {
       return;
     }
     initialized_ = true;
-    result_.init_stamp_ns = start.stamp_ns;
     // The estimator starts at the initial stamp: it needs the delivered samples from the last one not after
     // it on.
     size_t first = next_imu_;
@@ -220,13 +270,26 @@ class Run {
       result_.skip_report = result_.frames_skipped++ == 0 ? status.message() : result_.skip_report;
       return;
     }
+    if (status.ok()) {
+      const std::string reason = recovery_.Check(estimator_.Latest(), estimator_.last_statistics());
+      status = reason.empty()
+                   ? Status::Ok()
+                   : Status::Diverged(reason + " after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+    }
     if (!status.ok()) {
-      result_.status = std::move(status);
+      GiveUp(ImuStamp(frame), std::move(status));
       return;
     }
+    const size_t before = result_.records.size();
     RecordState(frame.stamp_ns, stopwatch);
-    if (result_.status.ok()) {
-      result_.records.back().frontend_ms = frame.frontend_ms;
+    if (result_.status.ok() && result_.records.size() > before) {
+      RunRecord& record = result_.records.back();
+      record.frontend_ms = frame.frontend_ms;
+      if (restarted_ || record.statistics.suspect) {
+        record.status = restarted_ ? "restarted" : "suspect";
+        record.reason = restarted_ ? result_.restarts.back().init_report : "most tracks contradict the state";
+      }
+      restarted_ = false;
     }
   }
 
@@ -247,6 +310,7 @@ class Run {
       gnss_->Tell(&record.statistics);
     }
     record.clock = estimator_.LatestClock();
+    record.calibration = estimator_.LatestCalibration();
     record.backend_ms = stopwatch.ElapsedMs();
     result_.records.push_back(std::move(record));
   }
@@ -276,6 +340,14 @@ class Run {
     }
   }
 
+  void CompareCalibration() {
+    if (options_.true_rig != nullptr && !result_.records.empty() && result_.records.back().calibration) {
+      const RigCalibration& truth = *options_.true_rig;
+      result_.calibration_error = CompareCalibrations(result_.records.back().calibration->mean,
+                                                      {truth.camera, truth.T_BC, truth.camera_time_offset_s});
+    }
+  }
+
   [[nodiscard]] std::string Reason() const {
     return result_.init_report.empty() ? "there is no frame" : result_.init_report;
   }
@@ -286,9 +358,11 @@ class Run {
   Estimator& estimator_;
   Initializer initializer_;
   RunResult result_;
+  Recovery recovery_;
   std::optional<GnssRun> gnss_;
   size_t next_imu_ = 0;
   bool initialized_ = false;
+  bool restarted_ = false;  ///< the next record is the first of a new start
 };
 
 /// Both lists ascend in time; a frame that was lost may be in one of them alone.
@@ -338,6 +412,13 @@ RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
 }
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options) {
+  if (options.audit && config.calibration.any()) {
+    RunResult refused;
+    refused.status = Status::Config(
+        "calibration: the audit knows no camera parameters; expected extrinsics, time_offset and intrinsics "
+        "false");
+    return refused;
+  }
   if (options.audit && config.backend == Backend::kFilter) {
     ObservabilityAudit audit;
     const std::unique_ptr<Estimator> filter = MakeFilter(config, log.rig, &audit);

@@ -19,9 +19,10 @@ namespace alidade {
                                                        const RigCalibration& rig);
 
 struct RunOptions {
-  const Trajectory* truth = nullptr;        ///< read only by init.method truth
-  unsigned seed = 1;                        ///< draws the prior of init.method truth
-  const std::atomic<bool>* stop = nullptr;  ///< polled once a frame
+  const Trajectory* truth = nullptr;         ///< read only by init.method truth
+  const RigCalibration* true_rig = nullptr;  ///< what online calibration is compared with; may be null
+  unsigned seed = 1;                         ///< draws the prior of init.method truth
+  const std::atomic<bool>* stop = nullptr;   ///< polled once a frame
   std::function<void(size_t frames_done, size_t frames)> progress;
   /// Fills RunRecord::observability when the back end is the filter. Its time counts as the estimator's.
   bool audit = false;

@@ -1,8 +1,11 @@
 #include "eval/sim_fault.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <set>
 
 namespace alidade {
 namespace {
@@ -10,7 +13,60 @@ namespace {
 constexpr std::array<SimOutlierKind, 5> kKinds = {SimOutlierKind::kJump, SimOutlierKind::kUniform,
                                                   SimOutlierKind::kSwap, SimOutlierKind::kDrift,
                                                   SimOutlierKind::kMoving};
-constexpr std::uint64_t kOnsets = 4;  // 1 to this many frames after the first
+constexpr std::uint64_t kOnsets = 4;                 // 1 to this many frames after the first
+constexpr std::int64_t kSecondLife = 1'000'000'000;  // added to the id of a track that comes back
+constexpr double kGarbageRate_radps = 3;
+constexpr double kGarbageForce_mps2 = 30;
+
+void BlackOut(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
+  std::set<std::int64_t> before;
+  bool over = false;
+  for (TrackFrame& frame : *frames) {
+    if (fails(frame.stamp_ns)) {
+      frame.observations.clear();
+      over = true;
+    }
+    for (TrackObservation& observation : frame.observations) {
+      if (!over) {
+        before.insert(observation.track_id);
+      } else if (before.count(observation.track_id) > 0) {
+        observation.track_id += kSecondLife;
+      }
+    }
+    std::sort(frame.observations.begin(), frame.observations.end(),
+              [](const TrackObservation& a, const TrackObservation& b) { return a.track_id < b.track_id; });
+  }
+}
+
+void ShuffleIds(const std::function<bool(TimeNs)>& fails, std::uint64_t seed,
+                std::vector<TrackFrame>* frames) {
+  RandomStream random(seed, "fault/tracks");
+  for (TrackFrame& frame : *frames) {
+    if (!fails(frame.stamp_ns)) {
+      continue;
+    }
+    std::vector<Eigen::Vector2d> pixels;
+    for (const TrackObservation& observation : frame.observations) {
+      pixels.push_back(observation.pixel);
+    }
+    random.Shuffle(&pixels);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      frame.observations[i].pixel = pixels[i];
+    }
+  }
+}
+
+void Garble(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, std::vector<ImuSample>* imu) {
+  RandomStream random(seed, "fault/imu");
+  for (ImuSample& sample : *imu) {
+    if (fails(sample.stamp_ns)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        sample.gyro[axis] = random.Uniform(-kGarbageRate_radps, kGarbageRate_radps);
+        sample.accel[axis] = random.Uniform(-kGarbageForce_mps2, kGarbageForce_mps2);
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -62,6 +118,25 @@ Eigen::Vector2d FaultSource::AnyPixel(int landmark, int frame, int width_px, int
   const double u = stream.Uniform(0, width_px - 1.0);
   const double v = stream.Uniform(0, height_px - 1.0);
   return {u, v};
+}
+
+void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
+  const TimeNs begin_ns = start_ns + SecondsToNs(config.fault_start_s);
+  const TimeNs end_ns = begin_ns + SecondsToNs(config.fault_duration_s);
+  const auto fails = [=](TimeNs stamp_ns) { return stamp_ns >= begin_ns && stamp_ns < end_ns; };
+  const bool both = config.fault == SimFaultKind::kBlackoutAndImu;
+  if (both || config.fault == SimFaultKind::kBlackout) {
+    BlackOut(fails, &dataset->tracks);
+    for (ExtraCamera& extra : dataset->extra_cameras) {
+      BlackOut(fails, &extra.frames);
+    }
+  }
+  if (both || config.fault == SimFaultKind::kImu) {
+    Garble(fails, seed, &dataset->imu);
+  }
+  if (config.fault == SimFaultKind::kTracks) {
+    ShuffleIds(fails, seed, &dataset->tracks);
+  }
 }
 
 }  // namespace alidade

@@ -48,4 +48,10 @@ class FaultSource {
   std::string camera_;
 };
 
+/// Fails what SimulatorConfig::fault says, over [fault_start_s, fault_start_s + fault_duration_s) from
+/// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. imu: rates and
+/// specific forces are uniform in +-3 rad/s and +-30 m/s^2. tracks: a frame's ids are shuffled, anew in every
+/// frame.
+void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset);
+
 }  // namespace alidade

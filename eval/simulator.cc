@@ -3,7 +3,9 @@
 #include <memory>
 
 #include "eval/recorded_motion.h"
+#include "eval/sim_calibration.h"
 #include "eval/sim_camera.h"
+#include "eval/sim_fault.h"
 #include "eval/sim_gnss.h"
 #include "eval/sim_hybrid.h"
 #include "eval/sim_imu.h"
@@ -28,10 +30,14 @@ Result<Simulation> MakeMotion(const SimulatorConfig& config, unsigned seed) {
   return simulation;
 }
 
-}  // namespace
+[[nodiscard]] bool IsMiscalibrated(const SimulatorConfig& config) {
+  return config.calibration_rotation_error_rad != 0 || config.calibration_translation_error_m != 0 ||
+         config.calibration_time_error_s != 0 || config.calibration_focal_error_px != 0 ||
+         config.calibration_center_error_px != 0;
+}
 
-Result<Simulation> SimulateWithMotion(const SimulatorConfig& config, unsigned seed) {
-  ALIDADE_RETURN_IF_ERROR(config.Validate());
+/// What really happens, well calibrated and without failures.
+Result<Simulation> SimulateSequence(const SimulatorConfig& config, unsigned seed) {
   if (config.IsHybrid()) {
     return SimulateHybrid(config, seed);
   }
@@ -62,6 +68,25 @@ Result<Simulation> SimulateWithMotion(const SimulatorConfig& config, unsigned se
     ALIDADE_RETURN_IF_ERROR(AddSimulatedTracks(config, trajectory, start_ns, seed, &dataset));
   }
   ALIDADE_RETURN_IF_ERROR(AddSimulatedGnss(config, trajectory, start_ns, seed, &dataset));
+  return simulation;
+}
+
+}  // namespace
+
+Result<Simulation> SimulateWithMotion(const SimulatorConfig& config, unsigned seed) {
+  ALIDADE_RETURN_IF_ERROR(config.Validate());
+  Result<Simulation> simulation = SimulateSequence(config, seed);
+  ALIDADE_RETURN_IF_ERROR(simulation.status());
+  Dataset& dataset = simulation->dataset;
+  if (config.fault != SimFaultKind::kNone) {
+    ApplyFault(config, seed, dataset.imu.front().stamp_ns, &dataset);
+  }
+  if (IsMiscalibrated(config)) {
+    const Result<RigCalibration> wrong = MiscalibratedRig(config, dataset.rig, seed);
+    ALIDADE_RETURN_IF_ERROR(wrong.status());
+    dataset.true_rig = dataset.rig;
+    dataset.rig = *wrong;
+  }
   return simulation;
 }
 

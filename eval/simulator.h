@@ -34,6 +34,14 @@ enum class SimOutlierKind {
   kMoving,   ///< a track's landmark moves through the world at a constant velocity
   kMixed,    ///< each wrong track is one of the above
 };
+/// What fails at once, over fault_start_s and fault_duration_s (eval/sim_fault.h).
+enum class SimFaultKind {
+  kNone,
+  kBlackout,  ///< the camera sees nothing, and all tracks end
+  kImu,       ///< the IMU tells noise
+  kTracks,    ///< the tracks of a frame exchange their ids at random
+  kBlackoutAndImu,
+};
 /// What is wrong at once. Drift, moving and mixed outliers are whole tracks whatever this says.
 enum class SimOutlierUnit { kObservation, kTrack };
 
@@ -103,6 +111,17 @@ struct SimulatorConfig {
   SimOutlierUnit outlier_unit = SimOutlierUnit::kObservation;
   double outlier_px = 20;        ///< mean size of a jump; mean drift in one second
   double outlier_speed_mps = 1;  ///< mean speed of a moving landmark
+
+  SimFaultKind fault = SimFaultKind::kNone;
+  double fault_start_s = 20;  ///< after the first IMU sample
+  double fault_duration_s = 3;
+
+  /// By how much the calibration that the estimators are given is wrong (eval/sim_calibration.h).
+  double calibration_rotation_error_rad = 0;
+  double calibration_translation_error_m = 0;
+  double calibration_time_error_s = 0;
+  double calibration_focal_error_px = 0;
+  double calibration_center_error_px = 0;
 
   SimLandmarkLayout landmark_layout = SimLandmarkLayout::kShell;
   double landmark_min_distance_m = 2;                        ///< of every landmark to the path

@@ -174,6 +174,31 @@ void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
                &config->outlier_speed_mps, 0, 100);
 }
 
+void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Enumeration({"fault", "-",
+                       "what fails for a while: camera, IMU, the tracks' ids; for testing how estimators get "
+                       "lost and come back"},
+                      &config->fault,
+                      {{"none", SimFaultKind::kNone},
+                       {"blackout", SimFaultKind::kBlackout},
+                       {"imu", SimFaultKind::kImu},
+                       {"tracks", SimFaultKind::kTracks},
+                       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu}});
+  visitor.Real({"fault_start_s", "s", "after the first IMU sample"}, &config->fault_start_s, 0, 1e5);
+  visitor.Real({"fault_duration_s", "s", "how long it lasts"}, &config->fault_duration_s, 0, 1e5);
+  visitor.Real({"calibration_rotation_error_rad", "rad",
+                "the given T_BC is turned by this about a random axis; for online calibration"},
+               &config->calibration_rotation_error_rad, 0, 1);
+  visitor.Real({"calibration_translation_error_m", "m", "and moved by this in a random direction"},
+               &config->calibration_translation_error_m, 0, 10);
+  visitor.Real({"calibration_time_error_s", "s", "the given time offset is wrong by this, sign at random"},
+               &config->calibration_time_error_s, 0, 1);
+  visitor.Real({"calibration_focal_error_px", "px", "each given focal length likewise"},
+               &config->calibration_focal_error_px, 0, 1000);
+  visitor.Real({"calibration_center_error_px", "px", "each coordinate of the given principal point likewise"},
+               &config->calibration_center_error_px, 0, 1000);
+}
+
 void DescribeLandmarks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Enumeration({"landmark_layout", "-",
                        "shell: between two distances around the path; room: on floor, ceiling and walls of a "
@@ -256,6 +281,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeCamera(this, visitor);
   DescribeMoreCameras(this, visitor);
   DescribeTracks(this, visitor);
+  DescribeFaults(this, visitor);
   DescribeLandmarks(this, visitor);
   visitor.Section("gnss", "the receiver", [&] { gnss.Describe(visitor); });
   visitor.Section("render", "images of the camera", [&] { render.Describe(visitor); });

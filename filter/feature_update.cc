@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/predicted_observation.h"
 
 namespace alidade {
 
@@ -17,8 +18,12 @@ constexpr double kLeniency = 1.5;     // the two measures of the depth's deviati
 
 }  // namespace
 
-FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones)
-    : filter_(filter), vision_(vision), keeper_(filter, max_clones) {
+FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones,
+                             int calibration_size)
+    : filter_(filter),
+      vision_(vision),
+      calibration_(calibration_size),
+      keeper_(filter, max_clones, calibration_size) {
   const auto views = static_cast<size_t>(max_clones);
   poses_.reserve(views);
   jacobian_poses_.reserve(views);
@@ -35,11 +40,12 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
     linearization.point_jacobian.resize(2 * k, 3);
   }
   residual_.resize(2 * max_clones);
-  track_jacobian_.resize(2 * max_clones, 6 * max_clones);
+  track_jacobian_.resize(2 * max_clones, 6 * max_clones + calibration_);
   Reserve(512);
   successors_.resize(kUsualTracks);
   for (TrackMemory& successor : successors_) {
-    successor.clone_rows.resize(3, filter.track_memory != TrackMemoryPolicy::kNone ? 6 * max_clones : 0);
+    successor.clone_rows.resize(
+        3, filter.track_memory != TrackMemoryPolicy::kNone ? 6 * max_clones + calibration_ : 0);
   }
   blocks_.reserve(kUsualTracks);
 }
@@ -138,6 +144,10 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
   for (size_t k = 0; k < offsets_.size(); ++k) {
     rows->T.middleCols<6>(offsets_[k] - core) = track_jacobian_.block<3, 6>(0, 6 * static_cast<Index>(k));
   }
+  if (calibration_ > 0) {
+    rows->T.rightCols(calibration_) =
+        track_jacobian_.block(0, 6 * static_cast<Index>(offsets_.size()), 3, calibration_);
+  }
   if (state.landmarks_are_anchored()) {
     // An additive error of p_W is f~ - [p_W]x theta_a.
     rows->T.middleCols<3>(offsets_.back() - core) -= rows->R_f * Skew(p_W);
@@ -172,22 +182,34 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   }
   const Index views = static_cast<Index>(poses_.size());
   // Tracing eliminates the landmark from the identity too: what is left maps the observations' noise.
-  const Index columns = (tracing_ ? 8 : 6) * views;
+  const Index states = 6 * views + calibration_;
+  const Index columns = states + (tracing_ ? 2 * views : 0);
   if (track_jacobian_.cols() < columns) {
-    track_jacobian_.resize(track_jacobian_.rows(), 8 * track_jacobian_.rows() / 2);
+    track_jacobian_.resize(track_jacobian_.rows(), 8 * track_jacobian_.rows() / 2 + calibration_);
   }
   auto dense = track_jacobian_.topLeftCorner(2 * views, columns);
   dense.setZero();
-  dense.rightCols(columns - 6 * views).setIdentity();
+  dense.rightCols(columns - states).setIdentity();
   for (Index k = 0; k < views; ++k) {
     dense.block<2, 6>(2 * k, 6 * k).noalias() =
         linearization_->pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
+    if (calibration_ > 0) {
+      const auto view = static_cast<size_t>(k);
+      state.FillCalibrationRows(state.clones()[static_cast<size_t>(clones_[view])],
+                                linearization_->pose_jacobians.middleRows<2>(2 * k),
+                                Predicted(observations_[view], linearization_->residual.segment<2>(2 * k)),
+                                dense.block(2 * k, 6 * views, 2, calibration_));
+    }
   }
   EliminateLandmark(linearization_->point_jacobian, dense, linearization_->residual);
   const Block block = AddBlock(static_cast<int>(2 * views - 3));
   for (Index k = 0; k < views; ++k) {
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =
         dense.block(3, 6 * k, block.rows, 6);
+  }
+  if (calibration_ > 0) {
+    jacobian_.block(block.first, state.CalibrationOffset(), block.rows, calibration_) =
+        dense.block(3, 6 * views, block.rows, calibration_);
   }
   innovation_.segment(block.first, block.rows) = -linearization_->residual.tail(block.rows);
   if (landmark_rows != nullptr) {
@@ -247,6 +269,10 @@ TrackOutcome FeatureUpdate::AppendRemembered(const FilterState& state, const Tra
   for (size_t i = 0; i < state.clones().size(); ++i) {
     jacobian_.block<2, 6>(block.first, state.CloneOffset(i)) =
         keeper_.jacobian().middleCols<6>(6 * state.clones()[i].slot);
+  }
+  if (calibration_ > 0) {
+    jacobian_.block(block.first, state.CalibrationOffset(), 2, calibration_) =
+        keeper_.jacobian().rightCols(calibration_);
   }
   innovation_.segment<2>(block.first) = keeper_.innovation();
   if (tracing_) {

@@ -23,7 +23,9 @@ enum class TrackOutcome {
 /// convention.
 class FeatureUpdate {
  public:
-  FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones);
+  /// calibration_size: of the state's CalibrationLayout.
+  FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones,
+                int calibration_size = 0);
 
   /// Whether traces() is kept.
   void SetTracing(bool tracing) { tracing_ = tracing; }
@@ -86,6 +88,7 @@ class FeatureUpdate {
   VisionConfig vision_;
   int rows_ = 0;
   int dimension_ = 0;
+  Eigen::Index calibration_ = 0;  ///< size of the calibration's error
   std::vector<Block> blocks_;
   bool tracing_ = false;
   std::vector<TracedBlock> traces_;

@@ -16,11 +16,13 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       noise_(config.imu.Scaled(rig.imu_noise)),
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
-      state_(config.filter.error, config.filter.first_estimates, rig.T_BC,
+      state_(config.filter.error, config.filter.first_estimates,
+             InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s}),
              {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled}),
-      update_(config.filter, config.vision, config.filter.window + 1),
+      update_(config.filter, config.vision, config.filter.window + 1, state_.layout().size()),
       slam_(config.filter, config.filter.window + 1),
-      tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone),
+      tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone,
+              state_.layout().size()),
       gnss_(config.gnss, rig.gnss),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
@@ -46,7 +48,15 @@ void FilterEstimator::SetObserver(FilterObserver* observer) {
   update_.SetTracing(observer != nullptr);
 }
 
+std::optional<CalibrationEstimate> FilterEstimator::LatestCalibration() const {
+  return state_.layout().size() > 0 ? std::optional(state_.EstimatedCalibration()) : std::nullopt;
+}
+
 Status FilterEstimator::AddImu(const ImuSample& sample) {
+  // Before the first frame nothing was propagated that would tell the rate there.
+  if (state_.layout().time_offset() >= 0 && serial_ + 1 == first_serial_) {
+    last_gyro_radps_ = sample.gyro;
+  }
   return imu_.Add(sample);
 }
 
@@ -69,14 +79,14 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   statistics_ = {};
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
   Stopwatch stopwatch;
-  ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
+  ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(state_.calibration().time_offset_s)));
   frame_stamp_ns_ = state_.stamp_ns();
   ++serial_;
-  state_.AddClone(serial_);
+  state_.AddClone(serial_, last_gyro_radps_);
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   stopwatch.Restart();
-  statistics_.observations_invalid =
-      tracks_.AddFrame(rig_.camera, config_.vision.pixel_noise_px, serial_, frame.observations);
+  statistics_.observations_invalid = tracks_.AddFrame(
+      state_.calibration().camera, config_.vision.pixel_noise_px, serial_, frame.observations);
   const int leaving = ChooseLeavingClone();
   const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
   bool finite = true;
@@ -191,6 +201,9 @@ void FilterEstimator::Correct() {
     }
   }
   state_.Correct(Correction());
+  if (state_.layout().intrinsics() >= 0) {
+    tracks_.Renormalize(state_.calibration().camera, config_.vision.pixel_noise_px);
+  }
 }
 
 void FilterEstimator::LeaveMemories(size_t leaving) {

@@ -28,6 +28,7 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return state_.Estimate(); }
+  [[nodiscard]] std::optional<CalibrationEstimate> LatestCalibration() const override;
   [[nodiscard]] bool initialized() const override { return initialized_; }
   [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
 
@@ -83,7 +84,7 @@ class FilterEstimator : public Estimator {
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
-  Eigen::Vector3d last_gyro_radps_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_gyro_radps_ = Eigen::Vector3d::Zero();  ///< at the state's stamp
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

@@ -1,16 +1,23 @@
 #include "filter/filter_state.h"
 
+#include <utility>
+
 #include "core/check.h"
 #include "core/visual_observation.h"
 
 namespace alidade {
 
 FilterState::FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits)
+    : FilterState(convention, first_estimates, CalibrationEstimate{{}, {{}, T_BC, 0}, {}}, limits) {}
+
+FilterState::FilterState(ErrorConvention convention, bool first_estimates, CalibrationEstimate calibration,
+                         Limits limits)
     : convention_(convention),
       first_estimates_(first_estimates),
-      T_BC_(T_BC),
+      given_(std::move(calibration)),
+      calibration_(given_.mean),
       covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks +
-                      (limits.clock ? kClockSize : 0),
+                      (limits.clock ? kClockSize : 0) + given_.layout.size(),
                   3 * limits.landmarks + (limits.clock ? kClockSize : 0)) {
   clones_.reserve(static_cast<size_t>(limits.clones));
   landmarks_.reserve(static_cast<size_t>(limits.landmarks));
@@ -24,6 +31,11 @@ Status FilterState::Reset(const NavEstimate& initial) {
   const Matrix15d to_error = InverseImuChartJacobian(convention_, initial.nav);
   const Matrix15d transformed = to_error * initial.covariance * to_error.transpose();
   ALIDADE_RETURN_IF_ERROR(covariance_.Reset(0.5 * (transformed + transformed.transpose())));
+  if (layout().size() > 0) {
+    covariance_.AddTrailing(given_.deviations);
+    calibration_ = given_.mean;
+    calibration_is_sound_ = true;
+  }
   nav_ = initial.nav;
   nav_first_ = nav_;
   bias_ = initial.bias;
@@ -61,7 +73,7 @@ void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& 
   nav_first_ = nav_;
 }
 
-void FilterState::AddClone(int serial) {
+void FilterState::AddClone(int serial, const Eigen::Vector3d& gyro_radps) {
   // In every convention the error of a pose is the first six components of the navigation error.
   covariance_.CloneCore(0, 6);
   if (observer_ != nullptr) {
@@ -77,6 +89,12 @@ void FilterState::AddClone(int serial) {
   clone.T_WB_first = nav_first_.T_WB();
   RefreshClone(&clone);
   clones_.push_back(clone);
+  if (layout().time_offset() >= 0) {
+    const Vector6d rates = BodyRates(gyro_radps - bias_.gyro, nav_.v_WB);
+    covariance_.AddToRows(CloneOffset(clones_.size() - 1),
+                          InverseChartJacobian(convention_, clone.T_WB) * rates,
+                          CalibrationOffset() + layout().time_offset());
+  }
 }
 
 void FilterState::RemoveClone(size_t index) {
@@ -151,6 +169,11 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
   bias_.gyro += correction.segment<3>(core + 9);
   bias_.accel += correction.segment<3>(core + 12);
+  if (layout().size() > 0) {
+    calibration_is_sound_ =
+        Retract(layout(), correction.segment(CalibrationOffset(), layout().size()), &calibration_) &&
+        calibration_is_sound_;
+  }
   for (size_t i = 0; i < clones_.size(); ++i) {
     Clone& clone = clones_[i];
     clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(correction.segment<6>(CloneOffset(i))));
@@ -191,16 +214,24 @@ NavEstimate FilterState::Estimate() const {
   return {stamp_ns_, nav_, bias_, 0.5 * (covariance + covariance.transpose())};
 }
 
+CalibrationEstimate FilterState::EstimatedCalibration() const {
+  CalibrationEstimate estimate{layout(), calibration_, {}};
+  const auto rows = covariance_.factor().middleRows(CalibrationOffset(), layout().size());
+  estimate.deviations = rows.rowwise().norm();
+  return estimate;
+}
+
 bool FilterState::AllFinite() const {
-  return nav_.R_WB.allFinite() && nav_.p_WB.allFinite() && nav_.v_WB.allFinite() && bias_.gyro.allFinite() &&
-         bias_.accel.allFinite() && covariance_.AllFinite();
+  return calibration_is_sound_ && nav_.R_WB.allFinite() && nav_.p_WB.allFinite() && nav_.v_WB.allFinite() &&
+         bias_.gyro.allFinite() && bias_.accel.allFinite() && covariance_.AllFinite();
 }
 
 void FilterState::RefreshClone(Clone* clone) const {
-  clone->T_WC = clone->T_WB * T_BC_;
+  const Pose& T_BC = calibration_.T_BC;
+  clone->T_WC = clone->T_WB * T_BC;
   const Pose& T_WB = first_estimates_ ? clone->T_WB_first : clone->T_WB;
-  clone->T_WC_jacobian = T_WB * T_BC_;
-  clone->camera_from_error = BodyToCameraJacobian(T_WB.rotation, T_BC_) * ChartJacobian(convention_, T_WB);
+  clone->T_WC_jacobian = T_WB * T_BC;
+  clone->camera_from_error = BodyToCameraJacobian(T_WB.rotation, T_BC) * ChartJacobian(convention_, T_WB);
 }
 
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/calibration.h"
 #include "core/error_convention.h"
 #include "core/imu_propagation.h"
 #include "core/measurement_log.h"
@@ -48,9 +49,10 @@ struct LandmarkRows {
 };
 
 /// State and covariance of the filter: landmarks, current navigation state, biases and a window of clones.
-/// The error is [landmarks newest first | theta p v bg ba | clones newest first], each pose in the configured
-/// convention. Once aligned with GNSS, six clock terms (core/clock_state.h) stand directly before the core;
-/// their mean is filter/gnss_update.h's.
+/// The error is [landmarks newest first | theta p v bg ba | clones newest first | calibration], each pose in
+/// the configured convention, calibration as far as it is estimated (core/calibration.h). Once aligned with
+/// GNSS, six clock terms (core/clock_state.h) stand directly before the core; their mean is
+/// filter/gnss_update.h's.
 ///
 /// With `first_estimates`, Jacobians are evaluated at the first estimate of each clone and landmark, and the
 /// transition runs from the first estimate at its start (the prediction, before any update there) to the
@@ -66,15 +68,21 @@ class FilterState {
   };
 
   FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits);
+  /// The camera is `calibration`, estimated as far as its layout says.
+  FilterState(ErrorConvention convention, bool first_estimates, CalibrationEstimate calibration,
+              Limits limits);
 
   /// Null, the default, observes nothing. It must outlive the state.
   void SetObserver(FilterObserver* observer) { observer_ = observer; }
 
-  /// `initial.covariance` is in the canonical chart.
+  /// `initial.covariance` is in the canonical chart. The calibration is the given one again.
   Status Reset(const NavEstimate& initial);
   /// Propagates state and covariance over consecutive samples.
   void Propagate(std::span<const ImuSample> samples, const ImuNoise& noise, const Eigen::Vector3d& gravity_W);
-  void AddClone(int serial);
+  /// Clones the pose at the current time t^. With an estimated time offset the clone's error is that of the
+  /// pose when the frame was really exposed, at t^ + dt: theta and p of the clone have (omega, v) dt besides
+  /// the current ones. gyro_radps: measured at t^.
+  void AddClone(int serial, const Eigen::Vector3d& gyro_radps = Eigen::Vector3d::Zero());
   /// Landmarks anchored in the clone move their anchor to the newest one.
   void RemoveClone(size_t index);
   /// Enters a landmark whose rows were linearised at the present state: p_W moves by R_f^-1 t. R_f must be
@@ -92,6 +100,10 @@ class FilterState {
   [[nodiscard]] int CoreOffset() const { return covariance_.leading(); }
   /// First error row of the clock; only once aligned.
   [[nodiscard]] int ClockOffset() const { return CoreOffset() - kClockSize; }
+  /// First error row of the calibration.
+  [[nodiscard]] int CalibrationOffset() const {
+    return CoreOffset() + SquareRootCovariance::kCore + 6 * static_cast<int>(clones_.size());
+  }
   /// First error row of clone `index` (0 = oldest).
   [[nodiscard]] int CloneOffset(size_t index) const {
     return CoreOffset() + SquareRootCovariance::kCore + 6 * static_cast<int>(clones_.size() - 1 - index);
@@ -105,6 +117,17 @@ class FilterState {
   /// Index of the landmark of this track, or -1.
   [[nodiscard]] int FindLandmark(std::int64_t id) const;
   [[nodiscard]] NavEstimate Estimate() const;
+  [[nodiscard]] const CalibrationLayout& layout() const { return given_.layout; }
+  [[nodiscard]] const CameraCalibration& calibration() const { return calibration_; }
+  [[nodiscard]] CalibrationEstimate EstimatedCalibration() const;
+  /// A view's rows over the calibration, 2 x layout().size(); `camera_rows`: over (phi, dp) of the clone's
+  /// camera. The time offset acts through the clone's own error.
+  void FillCalibrationRows(const Clone& clone, const Eigen::Matrix<double, 2, 6>& camera_rows,
+                           const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows) const {
+    const Pose& T_WB = first_estimates_ ? clone.T_WB_first : clone.T_WB;
+    CalibrationRows(given_.layout, calibration_.camera, T_WB.rotation, nullptr, camera_rows, observation,
+                    rows);
+  }
 
   [[nodiscard]] const std::vector<Clone>& clones() const { return clones_; }           ///< oldest first
   [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarks_; }  ///< oldest first
@@ -137,7 +160,9 @@ class FilterState {
 
   ErrorConvention convention_;
   bool first_estimates_;
-  Pose T_BC_;
+  CalibrationEstimate given_;
+  CameraCalibration calibration_;
+  bool calibration_is_sound_ = true;
   TimeNs stamp_ns_ = 0;
   NavState nav_;
   NavState nav_first_;

@@ -133,6 +133,7 @@ void FilterEstimator::GateBlocks() {
   const bool state_is_suspect =
       refused >= kMinRefusedForConsensus &&
       refused > config_.vision.max_gated_share * static_cast<double>(appended_.size());
+  statistics_.suspect = state_is_suspect;
   Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
   Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();
   for (size_t i = 0; i < appended_.size(); ++i) {

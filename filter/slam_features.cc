@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/predicted_observation.h"
 
 namespace alidade {
 namespace {
@@ -48,6 +49,9 @@ void SlamFeatures::Promote(int serial, TrackStore* tracks, FilterState* state) {
       rows.T.middleCols<6>(state->CloneOffset(i) - state->CoreOffset()) =
           memory.clone_rows.middleCols<6>(6 * state->clones()[i].slot);
     }
+    if (state->layout().size() > 0) {
+      rows.T.rightCols(state->layout().size()) = memory.clone_rows.rightCols(state->layout().size());
+    }
     state->AddLandmark(rows);
     memory.active = false;
     track.in_state = true;
@@ -89,6 +93,11 @@ TrackOutcome SlamFeatures::Append(const FilterState& state, const Track& track, 
   auto rows = jacobian.middleRows<2>(block.first);
   rows.middleCols<6>(state.CloneOffset(state.clones().size() - 1)) =
       linearization_.pose_jacobians.topRows<2>() * clone.camera_from_error;
+  if (state.layout().size() > 0) {
+    state.FillCalibrationRows(clone, linearization_.pose_jacobians.topRows<2>(),
+                              Predicted(observation, residual),
+                              rows.middleCols(state.CalibrationOffset(), state.layout().size()));
+  }
   rows.middleCols<3>(state.LandmarkOffset(static_cast<size_t>(index))) = linearization_.point_jacobian;
   if (state.landmarks_are_anchored()) {
     const auto anchor = static_cast<size_t>(state.FindClone(landmark.anchor_serial));

@@ -112,6 +112,23 @@ void SquareRootCovariance::CloneCore(int first, int size) {
   dimension_ += size;
 }
 
+void SquareRootCovariance::AddTrailing(const Eigen::Ref<const VectorXd>& deviations) {
+  const Index size = deviations.size();
+  CHECK_LE(origin_ + dimension_ + size, capacity());
+  Part(0, dimension_, dimension_ + size, size).setZero();
+  Part(dimension_, 0, size, dimension_).setZero();
+  Part(dimension_, dimension_, size, size).diagonal() = deviations;
+  dimension_ += static_cast<int>(size);
+}
+
+void SquareRootCovariance::AddToRows(int target,
+                                     const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& gain,
+                                     int source) {
+  CHECK(target >= 0 && target + 6 <= source && source + gain.cols() <= dimension_);
+  const Index columns = dimension_ - source;
+  Part(target, source, 6, columns).noalias() += gain * Part(source, source, gain.cols(), columns);
+}
+
 void SquareRootCovariance::AddLeading(const Eigen::Matrix3d& root, const Eigen::Ref<const MatrixXd>& gain) {
   CHECK_EQ(gain.cols(), dimension_ - leading_);
   CHECK_LE(leading_ + 3, max_leading_);

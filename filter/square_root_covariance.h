@@ -11,9 +11,9 @@ namespace alidade {
 
 /// Covariance kept as an upper-triangular factor, P = S S^T: symmetric and positive semi-definite by
 /// construction, whatever is done to it. The error is ordered [leading blocks newest first, core (15), blocks
-/// newest first]. Upper triangularity makes a row depend on the noise of its own and later rows: a leading
-/// block, a linear function of what follows it plus its own noise, is added without touching the rest, and
-/// without leading blocks propagation and cloning touch a corner only. Storage is allocated once.
+/// newest first, constants]. Upper triangularity makes a row depend on the noise of its own and later rows: a
+/// leading block, a linear function of what follows it plus its own noise, is added without touching the
+/// rest, and without leading blocks propagation and cloning touch a corner only. Storage is allocated once.
 class SquareRootCovariance {
  public:
   static constexpr int kCore = 15;
@@ -36,6 +36,13 @@ class SquareRootCovariance {
 
   /// Inserts a copy of the error rows [first, first + size) of the core block directly after the core block.
   void CloneCore(int first, int size);
+
+  /// Appends constants with independent errors at the very end, where clones never come.
+  void AddTrailing(const Eigen::Ref<const Eigen::VectorXd>& deviations);
+
+  /// Rows [target, target + 6) += gain times the rows from `source` on, which lie behind them: one a column.
+  void AddToRows(int target, const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& gain,
+                 int source);
 
   /// Inserts a block f = gain x + root n at the very front; x: the core and all that follows it, n ~ N(0,
   /// I_3) independent of everything. root: upper triangular.

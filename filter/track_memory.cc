@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/predicted_observation.h"
 
 namespace alidade {
 
@@ -37,10 +38,11 @@ Eigen::Matrix<double, 14, 18> RelativeErrors(ErrorConvention convention) {
 
 }  // namespace
 
-TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones)
+TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size)
     : convention_(filter.error),
       max_depth_deviation_(filter.memory_depth_deviation),
-      columns_(6 * max_clones),
+      calibration_(calibration_size),
+      columns_(6 * max_clones + calibration_size),
       pose_(1),
       observation_(1),
       stacked_(5, columns_),
@@ -57,6 +59,10 @@ void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, con
   for (size_t k = 0; k < clones.size(); ++k) {
     const Clone& clone = state.clones()[static_cast<size_t>(clones[k])];
     memory->clone_rows.middleCols<6>(6 * clone.slot) = clone_rows.block<3, 6>(0, 6 * static_cast<Index>(k));
+  }
+  if (calibration_ > 0) {
+    memory->clone_rows.rightCols(calibration_) =
+        clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_);
   }
   if (convention_ == ErrorConvention::kRightInvariant) {
     const Clone& anchor = state.clones()[static_cast<size_t>(clones.back())];
@@ -81,6 +87,11 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
   stacked_.bottomRows<2>().setZero();
   stacked_.block<2, 6>(3, 6 * clone.slot) =
       linearization_.pose_jacobians.topRows<2>() * clone.camera_from_error;
+  if (calibration_ > 0) {
+    state.FillCalibrationRows(clone, linearization_.pose_jacobians.topRows<2>(),
+                              Predicted(observation_[0], linearization_.residual.head<2>()),
+                              stacked_.bottomRightCorner(2, calibration_));
+  }
   if (convention_ == ErrorConvention::kRightInvariant) {
     const int anchor = state.FindClone(memory.anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
@@ -111,6 +122,10 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
   for (size_t i = 0; i < state.clones().size(); ++i) {
     shift -= memory->clone_rows.middleCols<6>(6 * state.clones()[i].slot) *
              correction.segment<6>(state.CloneOffset(i));
+  }
+  if (calibration_ > 0) {
+    shift -= memory->clone_rows.rightCols(calibration_) *
+             correction.segment(state.CalibrationOffset(), calibration_);
   }
   const Vector3d move = memory->landmark_rows.partialPivLu().solve(shift);
   if (convention_ == ErrorConvention::kRightInvariant) {

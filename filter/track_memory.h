@@ -20,8 +20,9 @@ struct TrackMemory {
   int anchor = -1;  ///< serial of the anchor clone; right-invariant only
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   Eigen::Matrix3d landmark_rows = Eigen::Matrix3d::Identity();  ///< R
-  Eigen::Matrix<double, 3, Eigen::Dynamic> clone_rows;          ///< T: six columns a clone slot
-  int refusals = 0;                                             ///< observations refused in a row
+  /// T: six columns a clone slot, then the calibration's
+  Eigen::Matrix<double, 3, Eigen::Dynamic> clone_rows;
+  int refusals = 0;  ///< observations refused in a row
 };
 
 /// The marginalised clone seen from its neighbours in time: x_m = G x_s + w, w ~ N(0, C).
@@ -36,10 +37,11 @@ struct CloneConditional {
 /// Starts, extends and carries the memories of tracks (docs/track_memory.md).
 class TrackMemoryKeeper {
  public:
-  TrackMemoryKeeper(const FilterConfig& filter, int max_clones);
+  /// calibration_size: of the state's CalibrationLayout.
+  TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size = 0);
 
   /// The memory that a first update leaves: the three landmark rows of EliminateLandmark. `dense`: rows over
-  /// six columns a view, in the order of `clones` (indices into the state's clones).
+  /// six columns a view, in the order of `clones` (indices into the state's clones), then the calibration's.
   void Start(const FilterState& state, const Eigen::Vector3d& p_W, const Eigen::Matrix3d& landmark_rows,
              const Eigen::Ref<const Eigen::MatrixXd>& clone_rows, const std::vector<int>& clones,
              TrackMemory* memory) const;
@@ -48,7 +50,7 @@ class TrackMemoryKeeper {
   /// into `extended`, the two landmark-free rows into jacobian() and innovation().
   bool Extend(const FilterState& state, const TrackMemory& memory, size_t clone,
               const NormalizedObservation& observation, double weight, TrackMemory* extended);
-  /// 2 x (6 max_clones) over clone slots, and 2: the rows of the last Extend.
+  /// 2 x (6 max_clones + calibration) over clone slots and calibration, and 2: the rows of the last Extend.
   [[nodiscard]] const Eigen::Matrix<double, 2, Eigen::Dynamic>& jacobian() const { return jacobian_; }
   [[nodiscard]] const Eigen::Vector2d& innovation() const { return innovation_; }
 
@@ -73,6 +75,7 @@ class TrackMemoryKeeper {
  private:
   ErrorConvention convention_;
   double max_depth_deviation_;
+  Eigen::Index calibration_;  ///< size of the calibration's error
   Eigen::Index columns_;
   TrackLinearization linearization_;
   std::vector<Pose> pose_;

@@ -6,7 +6,8 @@
 
 namespace alidade {
 
-TrackStore::TrackStore(int max_views, bool with_memory) : max_views_(max_views), with_memory_(with_memory) {
+TrackStore::TrackStore(int max_views, bool with_memory, int calibration_size)
+    : max_views_(max_views), memory_columns_(with_memory ? 6 * max_views + calibration_size : 0) {
   constexpr size_t kUsualTracks = 256;
   tracks_.reserve(kUsualTracks);
   merged_.reserve(kUsualTracks);
@@ -19,7 +20,7 @@ TrackStore::TrackStore(int max_views, bool with_memory) : max_views_(max_views),
 Track TrackStore::MakeTrack() const {
   Track track;
   track.views.reserve(static_cast<size_t>(max_views_));
-  track.memory.clone_rows.resize(3, with_memory_ ? 6 * max_views_ : 0);
+  track.memory.clone_rows.resize(3, memory_columns_);
   return track;
 }
 
@@ -51,6 +52,7 @@ int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int s
     const bool known = next < tracks_.size() && tracks_[next].id == seen.track_id;
     TrackView view;
     view.serial = serial;
+    view.pixel = seen.pixel;
     if (!NormalizeObservation(camera, seen.pixel, pixel_noise_px, &view.observation)) {
       ++invalid;
       continue;
@@ -65,6 +67,17 @@ int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int s
   }
   tracks_.swap(merged_);
   return invalid;
+}
+
+void TrackStore::Renormalize(const CameraModel& camera, double pixel_noise_px) {
+  for (Track& track : tracks_) {
+    for (TrackView& view : track.views) {
+      NormalizedObservation observation;
+      if (NormalizeObservation(camera, view.pixel, pixel_noise_px, &observation)) {
+        view.observation = observation;
+      }
+    }
+  }
 }
 
 void TrackStore::RemoveEnded(int serial) {

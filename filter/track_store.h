@@ -13,6 +13,7 @@ namespace alidade {
 struct TrackView {
   int serial = 0;  ///< of the clone that saw it
   NormalizedObservation observation;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< what was seen, whatever the intrinsics are
 };
 
 /// A feature track and what the filter has done with it. views.front() is the base.
@@ -31,13 +32,16 @@ class TrackStore {
  public:
   TrackStore() = default;
   /// Sets memory aside for the usual number of tracks of up to max_views views, each with a memory of
-  /// max_views clones if so wished.
-  TrackStore(int max_views, bool with_memory);
+  /// max_views clones if so wished, and of an error of calibration_size.
+  TrackStore(int max_views, bool with_memory, int calibration_size = 0);
 
   /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's
   /// domain.
   int AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
                const std::vector<TrackObservation>& observations);
+  /// Observations of all views anew, after the camera's intrinsics have changed. A view that the camera's
+  /// domain no longer holds stays as it is.
+  void Renormalize(const CameraModel& camera, double pixel_noise_px);
   /// Removes tracks that have ended (not seen by `serial`) and those without views.
   void RemoveEnded(int serial);
   /// Forgets the views of a clone; a base that goes takes its round count with it.
@@ -54,7 +58,7 @@ class TrackStore {
   Track TakeSpare(std::int64_t id);
 
   int max_views_ = 0;
-  bool with_memory_ = false;
+  int memory_columns_ = 0;
   std::vector<Track> tracks_;
   std::vector<Track> merged_;
   std::vector<Track> spare_;

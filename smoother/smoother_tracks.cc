@@ -120,6 +120,7 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
   const bool state_is_suspect = refused.size() >= kMinRefusedForConsensus &&
                                 static_cast<double>(refused.size()) >
                                     config_.vision.max_gated_share * static_cast<double>(tracks.size());
+  statistics_.suspect = state_is_suspect;
   for (WindowTrack* track : refused) {
     if (state_is_suspect) {
       track->ScaleInformation(gate_.Threshold(track->dof()) / TrackChiSquare(*track, geometry));

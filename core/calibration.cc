@@ -1,0 +1,176 @@
+#include "core/calibration.h"
+
+#include <Eigen/LU>
+#include <vector>
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector4d;
+using Eigen::VectorXd;
+
+/// fu fv cu cv and the lens coefficients that the model has not: as many as `size`.
+VectorXd Intrinsics(const CameraModel& camera, int size) {
+  VectorXd all(8);
+  all << camera.intrinsics(), camera.coefficients();
+  return all.head(size);
+}
+
+Result<CameraModel> WithIntrinsics(const CameraModel& camera, const VectorXd& intrinsics) {
+  Vector4d coefficients = camera.coefficients();
+  coefficients.head(intrinsics.size() - 4) = intrinsics.tail(intrinsics.size() - 4);
+  const std::vector<double> used(coefficients.data(), coefficients.data() + CoefficientCount(camera.model()));
+  return CameraModel::Create(camera.model(), intrinsics.head<4>(), used, camera.width_px(),
+                             camera.height_px());
+}
+
+}  // namespace
+
+CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera) {
+  const auto take = [this](bool wanted, int size, int* first) {
+    *first = wanted ? size_ : -1;
+    size_ += wanted ? size : 0;
+  };
+  intrinsics_size_ = 4 + (config.distortion_std > 0 ? CoefficientCount(camera.model()) : 0);
+  take(config.extrinsics, 6, &extrinsics_);
+  take(config.time_offset, 1, &time_offset_);
+  take(config.intrinsics, intrinsics_size_, &intrinsics_);
+}
+
+CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const CameraCalibration& given) {
+  CalibrationEstimate estimate{CalibrationLayout(config, given.camera), given, {}};
+  const CalibrationLayout& layout = estimate.layout;
+  estimate.deviations.resize(layout.size());
+  if (layout.extrinsics() >= 0) {
+    estimate.deviations.segment<3>(layout.extrinsics()).setConstant(config.rotation_std_rad);
+    estimate.deviations.segment<3>(layout.extrinsics() + 3).setConstant(config.translation_std_m);
+  }
+  if (layout.time_offset() >= 0) {
+    estimate.deviations[layout.time_offset()] = config.time_offset_std_s;
+  }
+  if (layout.intrinsics() >= 0) {
+    auto part = estimate.deviations.segment(layout.intrinsics(), layout.intrinsics_size());
+    part.setConstant(config.distortion_std);
+    part.head<2>().setConstant(config.focal_std_px);
+    part.segment<2>(2).setConstant(config.center_std_px);
+  }
+  return estimate;
+}
+
+bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const VectorXd>& error,
+             CameraCalibration* calibration) {
+  if (!error.allFinite()) {
+    return false;
+  }
+  if (layout.intrinsics() >= 0) {
+    const VectorXd moved = Intrinsics(calibration->camera, layout.intrinsics_size()) +
+                           error.segment(layout.intrinsics(), layout.intrinsics_size());
+    Result<CameraModel> camera = WithIntrinsics(calibration->camera, moved);
+    if (!camera.ok()) {
+      return false;
+    }
+    calibration->camera = *camera;
+  }
+  if (layout.extrinsics() >= 0) {
+    Pose& T_BC = calibration->T_BC;
+    T_BC.rotation =
+        so3::Normalize(T_BC.rotation * so3::Exp(Eigen::Vector3d(error.segment<3>(layout.extrinsics()))));
+    T_BC.translation += error.segment<3>(layout.extrinsics() + 3);
+  }
+  if (layout.time_offset() >= 0) {
+    calibration->time_offset_s += error[layout.time_offset()];
+  }
+  return true;
+}
+
+VectorXd Local(const CalibrationLayout& layout, const CameraCalibration& estimate,
+               const CameraCalibration& truth) {
+  VectorXd error(layout.size());
+  if (layout.extrinsics() >= 0) {
+    error.segment<3>(layout.extrinsics()) =
+        so3::Log(estimate.T_BC.rotation.transpose() * truth.T_BC.rotation);
+    error.segment<3>(layout.extrinsics() + 3) = truth.T_BC.translation - estimate.T_BC.translation;
+  }
+  if (layout.time_offset() >= 0) {
+    error[layout.time_offset()] = truth.time_offset_s - estimate.time_offset_s;
+  }
+  if (layout.intrinsics() >= 0) {
+    const int size = layout.intrinsics_size();
+    error.segment(layout.intrinsics(), size) =
+        Intrinsics(truth.camera, size) - Intrinsics(estimate.camera, size);
+  }
+  return error;
+}
+
+bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
+                        Eigen::Matrix<double, 2, 8>* jacobian) {
+  Vector2d distorted;
+  if (!camera.Distort(ideal, &distorted)) {
+    return false;
+  }
+  const double x = ideal.x();
+  const double y = ideal.y();
+  const double r2 = ideal.squaredNorm();
+  Eigen::Matrix<double, 2, 4> lens = Eigen::Matrix<double, 2, 4>::Zero();
+  switch (camera.model()) {
+    case DistortionModel::kRadialTangential:
+      lens << r2 * x, r2 * r2 * x, 2 * x * y, r2 + 2 * x * x, r2 * y, r2 * r2 * y, r2 + 2 * y * y, 2 * x * y;
+      break;
+    case DistortionModel::kEquidistant: {
+      const double r = std::sqrt(r2);
+      const double t = std::atan(r);
+      const double t2 = t * t;
+      const Eigen::RowVector4d powers = t2 * t * Eigen::RowVector4d(1, t2, t2 * t2, t2 * t2 * t2);
+      lens = r > 1e-12 ? Eigen::Matrix<double, 2, 4>(ideal / r * powers) : lens;
+      break;
+    }
+    case DistortionModel::kFov: {
+      const double r = std::sqrt(r2);
+      const double w = camera.coefficients()[0];
+      const double tangent = std::tan(0.5 * w);
+      const double a = 2 * tangent;
+      const double rate = r * (1 + tangent * tangent) / (1 + a * a * r2) / w - std::atan(a * r) / (w * w);
+      lens.col(0) = r > 1e-12 ? Vector2d(ideal * (rate / r)) : Vector2d::Zero();
+      break;
+    }
+    case DistortionModel::kNone:
+      break;
+  }
+  *jacobian << distorted.x(), 0, 1, 0, camera.intrinsics()[0] * lens.row(0),  //
+      0, distorted.y(), 0, 1, camera.intrinsics()[1] * lens.row(1);
+  return true;
+}
+
+Matrix6d ExtrinsicsToCameraJacobian(const Eigen::Matrix3d& R_WB) {
+  Matrix6d jacobian = Matrix6d::Identity();
+  jacobian.bottomRightCorner<3, 3>() = R_WB;
+  return jacobian;
+}
+
+void CalibrationRows(const CalibrationLayout& layout, const CameraModel& camera, const Eigen::Matrix3d& R_WB,
+                     const Vector6d* camera_from_time, const Eigen::Matrix<double, 2, 6>& camera_rows,
+                     const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows) {
+  rows.setZero();
+  if (layout.extrinsics() >= 0) {
+    rows.middleCols<6>(layout.extrinsics()) = camera_rows * ExtrinsicsToCameraJacobian(R_WB);
+  }
+  if (layout.time_offset() >= 0 && camera_from_time != nullptr) {
+    rows.col(layout.time_offset()) = camera_rows * *camera_from_time;
+  }
+  if (layout.intrinsics() < 0) {
+    return;
+  }
+  Eigen::Vector2d distorted;
+  Eigen::Matrix2d of_ideal;
+  Eigen::Matrix<double, 2, 8> of_intrinsics;
+  if (camera.Distort(observation.z, &distorted, &of_ideal) &&
+      IntrinsicsJacobian(camera, observation.z, &of_intrinsics)) {
+    const Eigen::Matrix2d pixel_from_z = camera.intrinsics().head<2>().asDiagonal() * of_ideal;
+    rows.middleCols(layout.intrinsics(), layout.intrinsics_size()) =
+        observation.sqrt_information * pixel_from_z.inverse() *
+        of_intrinsics.leftCols(layout.intrinsics_size());
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/estimator_config.h"
+#include "core/visual_observation.h"
+
+namespace alidade {
+
+/// What online calibration estimates of a camera.
+struct CameraCalibration {
+  CameraModel camera;
+  Pose T_BC;                 ///< camera to body
+  double time_offset_s = 0;  ///< t_imu = t_camera + offset
+};
+
+/// Which coordinates the error of a CameraCalibration has, and where. In this order, each group only when its
+/// key is on:
+///
+///   extrinsics   (phi, dp): R_BC = R^_BC Exp(phi), p_BC = p^_BC + dp     6, rad and m
+///   time offset  additive                                                1, s
+///   intrinsics   fu fv cu cv, then the lens coefficients, additive       4 + CoefficientCount, px and 1
+///
+/// These coordinates are the same in every error convention of the state.
+class CalibrationLayout {
+ public:
+  static constexpr int kMaxSize = 15;
+
+  CalibrationLayout() = default;
+  CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera);
+
+  [[nodiscard]] int size() const { return size_; }
+  /// First coordinate of a group, -1 when it is not estimated.
+  [[nodiscard]] int extrinsics() const { return extrinsics_; }
+  [[nodiscard]] int time_offset() const { return time_offset_; }
+  [[nodiscard]] int intrinsics() const { return intrinsics_; }
+  [[nodiscard]] int intrinsics_size() const { return intrinsics_size_; }
+
+ private:
+  int size_ = 0;
+  int extrinsics_ = -1;
+  int time_offset_ = -1;
+  int intrinsics_ = -1;
+  int intrinsics_size_ = 0;
+};
+
+/// A calibration and what is known about its error.
+struct CalibrationEstimate {
+  CalibrationLayout layout;
+  CameraCalibration mean;
+  Eigen::VectorXd deviations;  ///< standard deviations of the layout's coordinates
+};
+
+/// The given calibration with the configured trust in it.
+[[nodiscard]] CalibrationEstimate InitialCalibration(const CalibrationConfig& config,
+                                                     const CameraCalibration& given);
+
+/// Moves a calibration by `error`. False, with `calibration` untouched, when that is no camera any more or
+/// not finite.
+bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const Eigen::VectorXd>& error,
+             CameraCalibration* calibration);
+/// The error with Retract(layout, error, estimate) == truth in the layout's coordinates.
+[[nodiscard]] Eigen::VectorXd Local(const CalibrationLayout& layout, const CameraCalibration& estimate,
+                                    const CameraCalibration& truth);
+
+/// d zeta_B / d t of a moving body in the canonical chart: (omega_B, v_W). A camera whose time offset is off
+/// by dt sees from where the body is dt later (Li & Mourikis, IJRR 2014).
+[[nodiscard]] inline Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB) {
+  return (Vector6d() << omega_B, v_WB).finished();
+}
+
+/// d pixel / d (fu, fv, cu, cv, coefficients) at an ideal point, 2 x 8; columns of coefficients that the lens
+/// model has not are zero. False outside the camera's domain.
+bool IntrinsicsJacobian(const CameraModel& camera, const Eigen::Vector2d& ideal,
+                        Eigen::Matrix<double, 2, 8>* jacobian);
+
+/// d zeta_C / d (phi, dp) of the extrinsics at a fixed body pose: T_WC = T_WB T_BC turns with phi as it is,
+/// and moves by R_WB dp.
+[[nodiscard]] Matrix6d ExtrinsicsToCameraJacobian(const Eigen::Matrix3d& R_WB);
+
+/// Rows of one view over the calibration, 2 x layout.size(): `camera_rows`, over (phi, dp) of the view's
+/// camera, chained through the extrinsics at R_WB and, through `camera_from_time` (d zeta_C / d time offset;
+/// null where the pose itself carries the offset), the time offset; and W d(predicted - z) / d intrinsics
+/// with W of the observation, whose z is a function of the intrinsics: z = Unproject(pixel), so dz = -(d
+/// pixel / d z)^-1 (d pixel / d intrinsics). Outside the camera's domain the latter are zero.
+void CalibrationRows(const CalibrationLayout& layout, const CameraModel& camera, const Eigen::Matrix3d& R_WB,
+                     const Vector6d* camera_from_time, const Eigen::Matrix<double, 2, 6>& camera_rows,
+                     const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows);
+
+}  // namespace alidade
