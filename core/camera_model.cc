@@ -19,11 +19,26 @@ constexpr double kMinDepthM = 1e-3;
 // tan(89.9 deg): the normalised plane itself ends at 90 degrees off axis.
 constexpr double kMaxRadius = 572.0;
 
+/// Adds the tangential terms of a lens to a distorted point and, unless null, to its Jacobian.
+void AddTangential(const Vector2d& ideal, double p1, double p2, Vector2d* distorted, Matrix2d* jacobian) {
+  const double x = ideal.x();
+  const double y = ideal.y();
+  const double r2 = x * x + y * y;
+  *distorted += Vector2d(2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y);
+  if (jacobian != nullptr) {
+    Matrix2d tangential;
+    tangential << 2 * p1 * y + 6 * p2 * x, 2 * p1 * x + 2 * p2 * y, 2 * p1 * x + 2 * p2 * y,
+        6 * p1 * y + 2 * p2 * x;
+    *jacobian += tangential;
+  }
+}
+
 }  // namespace
 
 std::optional<DistortionModel> ParseDistortionModel(std::string_view name) {
-  for (const DistortionModel model : {DistortionModel::kNone, DistortionModel::kRadialTangential,
-                                      DistortionModel::kEquidistant, DistortionModel::kFov}) {
+  for (const DistortionModel model :
+       {DistortionModel::kNone, DistortionModel::kRadialTangential, DistortionModel::kEquidistant,
+        DistortionModel::kFov, DistortionModel::kMei}) {
     if (name == ToString(model)) {
       return model;
     }
@@ -39,6 +54,8 @@ std::string_view ToString(DistortionModel model) {
       return "equidistant";
     case DistortionModel::kFov:
       return "fov";
+    case DistortionModel::kMei:
+      return "mei";
     case DistortionModel::kNone:
       break;
   }
@@ -52,6 +69,8 @@ int CoefficientCount(DistortionModel model) {
       return 4;
     case DistortionModel::kFov:
       return 1;
+    case DistortionModel::kMei:
+      return 5;
     case DistortionModel::kNone:
       break;
   }
@@ -88,12 +107,17 @@ Result<CameraModel> CameraModel::Create(DistortionModel model, const Vector4d& f
     return Status::Input("distortion_coefficients: fov w must lie in (0, pi), found " +
                          std::to_string(coefficients[0]));
   }
+  constexpr double kMaxMirror = 10;
+  if (model == DistortionModel::kMei && (coefficients[0] < 0 || coefficients[0] > kMaxMirror)) {
+    return Status::Input("distortion_coefficients: mei xi must lie in [0, 10], found " +
+                         std::to_string(coefficients[0]));
+  }
   camera.BoundDomain();
   return camera;
 }
 
 double CameraModel::RadialDistortion(double radius, double* derivative) const {
-  const Vector4d& k = coefficients_;
+  const LensCoefficients& k = coefficients_;
   switch (model_) {
     case DistortionModel::kRadialTangential: {
       const double r2 = radius * radius;
@@ -111,6 +135,15 @@ double CameraModel::RadialDistortion(double radius, double* derivative) const {
       const double a = 2 * std::tan(0.5 * k[0]);
       *derivative = a / (k[0] * (1 + a * a * radius * radius));
       return std::atan(a * radius) / k[0];
+    }
+    case DistortionModel::kMei: {
+      // m = r / (1 + xi n) with n = sqrt(1 + r^2), so dm/dr = (1 + xi / n) / (1 + xi n)^2
+      const double n = std::sqrt(1 + radius * radius);
+      const double scale = 1 / (1 + k[0] * n);
+      const double m = radius * scale;
+      const double m2 = m * m;
+      *derivative = (1 + m2 * (3 * k[1] + 5 * k[2] * m2)) * scale * scale * (1 + k[0] / n);
+      return m * (1 + m2 * (k[1] + k[2] * m2));
     }
     case DistortionModel::kNone:
       break;
@@ -148,6 +181,26 @@ void CameraModel::BoundDomain() {
   max_distorted_radius_ = RadialDistortion(max_radius_, &unused);
 }
 
+void CameraModel::DistortMei(const Vector2d& ideal, Vector2d* distorted, Matrix2d* jacobian) const {
+  const double xi = coefficients_[0], k1 = coefficients_[1], k2 = coefficients_[2];
+  const double n = std::sqrt(1 + ideal.squaredNorm());
+  const double shrink = 1 / (1 + xi * n);
+  const Vector2d m = shrink * ideal;
+  const double m2 = m.squaredNorm();
+  const double scale = 1 + m2 * (k1 + k2 * m2);
+  *distorted = scale * m;
+  if (jacobian != nullptr) {
+    *jacobian = scale * Matrix2d::Identity() + 2 * (k1 + 2 * k2 * m2) * (m * m.transpose());
+  }
+  AddTangential(m, coefficients_[3], coefficients_[4], distorted, jacobian);
+  if (jacobian != nullptr) {
+    // d (shrink x) / d x = shrink I - xi shrink^2 / n x x^T
+    const Matrix2d mirror =
+        shrink * Matrix2d::Identity() - (xi * shrink * shrink / n) * (ideal * ideal.transpose());
+    *jacobian = *jacobian * mirror;
+  }
+}
+
 bool CameraModel::Distort(const Vector2d& ideal, Vector2d* distorted, Matrix2d* jacobian) const {
   const double x = ideal.x();
   const double y = ideal.y();
@@ -160,6 +213,10 @@ bool CameraModel::Distort(const Vector2d& ideal, Vector2d* distorted, Matrix2d* 
     if (jacobian != nullptr) {
       jacobian->setIdentity();
     }
+    return true;
+  }
+  if (model_ == DistortionModel::kMei) {
+    DistortMei(ideal, distorted, jacobian);
     return true;
   }
   const double r = std::sqrt(r2);
@@ -178,15 +235,7 @@ bool CameraModel::Distort(const Vector2d& ideal, Vector2d* distorted, Matrix2d* 
     *jacobian << scale + radial * x * x, radial * x * y, radial * x * y, scale + radial * y * y;
   }
   if (model_ == DistortionModel::kRadialTangential) {
-    const double p1 = coefficients_[2];
-    const double p2 = coefficients_[3];
-    *distorted += Vector2d(2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y);
-    if (jacobian != nullptr) {
-      Matrix2d tangential;
-      tangential << 2 * p1 * y + 6 * p2 * x, 2 * p1 * x + 2 * p2 * y, 2 * p1 * x + 2 * p2 * y,
-          6 * p1 * y + 2 * p2 * x;
-      *jacobian += tangential;
-    }
+    AddTangential(ideal, coefficients_[2], coefficients_[3], distorted, jacobian);
   }
   return true;
 }
@@ -237,7 +286,7 @@ bool CameraModel::Undistort(const Vector2d& distorted, Vector2d* ideal) const {
     RadialDistortion(0, &scale);
     x = distorted / scale;
   }
-  if (model_ != DistortionModel::kRadialTangential) {
+  if (model_ != DistortionModel::kRadialTangential && model_ != DistortionModel::kMei) {
     *ideal = x;
     return true;
   }

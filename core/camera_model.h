@@ -17,9 +17,14 @@ namespace alidade {
 ///   radial-tangential  x_d = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2), likewise y (Brown)
 ///   equidistant        t = atan(r), x_d = x/r t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8)
 ///   fov                r_d = atan(2 r tan(w/2)) / w, x_d = x/r r_d (Devernay, Faugeras 2001)
+///   mei                m = x / (1 + xi sqrt(1 + r^2)), then radial-tangential of m (Mei, Rives 2007): the
+///   unified
+///                      sphere, its mirror parameter xi; fu, fv are the generalised focal lengths gamma
 ///
-/// Radial-tangential coefficients come in OpenCV's order k1 k2 p1 p2; equidistant is Kannala, Brandt 2006.
-enum class DistortionModel { kNone, kRadialTangential, kEquidistant, kFov };
+/// Radial-tangential coefficients come in OpenCV's order k1 k2 p1 p2, mei's are xi k1 k2 p1 p2; equidistant
+/// is Kannala, Brandt 2006. Of mei, too, the half space before the camera alone is modelled.
+enum class DistortionModel { kNone, kRadialTangential, kEquidistant, kFov, kMei };
+using LensCoefficients = Eigen::Matrix<double, 5, 1>;
 
 [[nodiscard]] std::optional<DistortionModel> ParseDistortionModel(std::string_view name);
 [[nodiscard]] std::string_view ToString(DistortionModel model);
@@ -35,7 +40,7 @@ class CameraModel {
   CameraModel() = default;
 
   /// Errors (kInput): non-positive focal length or resolution, wrong number of coefficients, non-finite
-  /// numbers, fov w outside (0, pi).
+  /// numbers, fov w outside (0, pi), mei xi outside [0, 10].
   static Result<CameraModel> Create(DistortionModel model, const Eigen::Vector4d& fu_fv_cu_cv,
                                     const std::vector<double>& coefficients, int width_px, int height_px);
 
@@ -61,8 +66,14 @@ class CameraModel {
 
   [[nodiscard]] DistortionModel model() const { return model_; }
   [[nodiscard]] const Eigen::Vector4d& intrinsics() const { return intrinsics_; }  ///< fu, fv, cu, cv [px]
-  [[nodiscard]] const Eigen::Vector4d& coefficients() const { return coefficients_; }
-  [[nodiscard]] double mean_focal_px() const { return 0.5 * (intrinsics_[0] + intrinsics_[1]); }
+  [[nodiscard]] const LensCoefficients& coefficients() const {
+    return coefficients_;
+  }  ///< zeros behind the model's
+  /// Pixels a radian at the image's centre, distortion aside.
+  [[nodiscard]] double mean_focal_px() const {
+    const double mirror = model_ == DistortionModel::kMei ? 1 + coefficients_[0] : 1;
+    return 0.5 * (intrinsics_[0] + intrinsics_[1]) / mirror;
+  }
   [[nodiscard]] int width_px() const { return width_px_; }
   [[nodiscard]] int height_px() const { return height_px_; }
   /// Largest radius on the ideal normalised plane for which the lens model is one-to-one.
@@ -73,10 +84,12 @@ class CameraModel {
   /// Distorted radius r_d(r) of the radial part and its derivative; tangential terms are left out.
   double RadialDistortion(double radius, double* derivative) const;
   void BoundDomain();
+  /// Distort of mei; the Jacobian may be null.
+  void DistortMei(const Eigen::Vector2d& ideal, Eigen::Vector2d* distorted, Eigen::Matrix2d* jacobian) const;
 
   DistortionModel model_ = DistortionModel::kNone;
   Eigen::Vector4d intrinsics_ = Eigen::Vector4d(1, 1, 0, 0);
-  Eigen::Vector4d coefficients_ = Eigen::Vector4d::Zero();
+  LensCoefficients coefficients_ = LensCoefficients::Zero();
   int width_px_ = 1;
   int height_px_ = 1;
   double max_radius_ = 1e3;

@@ -132,13 +132,28 @@ class Importer {
     camera_place_ = path + ": " + camera_;
     const std::string lens = Flow(camera["distortion_model"]);
     const std::string model = Flow(camera["camera_model"]);
-    const std::string name = lens == "radtan" ? "radial-tangential" : lens == "equi" ? "equidistant" : lens;
-    if (model != "pinhole") {
-      return Status::Input(camera_place_ + ": camera_model: found '" + model + "', expected pinhole");
+    const bool omni = model == "omni";
+    const std::string name = omni               ? "mei"
+                             : lens == "radtan" ? "radial-tangential"
+                             : lens == "equi"   ? "equidistant"
+                                                : lens;
+    if (model != "pinhole" && !(omni && lens == "radtan")) {
+      return Status::Input(camera_place_ + ": camera_model: found '" + model + "' with '" + lens +
+                           "', expected pinhole, or omni with radtan");
     }
-    camera_text_ = Line("resolution", Flow(camera["resolution"])) +
-                   Line("intrinsics", Flow(camera["intrinsics"])) + Line("distortion_model", name) +
-                   Line("distortion_coefficients", Flow(camera["distortion_coeffs"]));
+    std::string intrinsics = Flow(camera["intrinsics"]);
+    std::string coefficients = Flow(camera["distortion_coeffs"]);
+    if (omni) {  // Kalibr: [xi, fu, fv, cu, cv]; xi is a coefficient here
+      const std::size_t comma = intrinsics.find(", ");
+      if (comma == std::string::npos || coefficients.size() < 2) {
+        return Status::Input(camera_place_ + ": intrinsics: found " + intrinsics +
+                             ", expected xi, fu, fv, cu, cv");
+      }
+      coefficients = intrinsics.substr(0, comma) + ", " + coefficients.substr(1);
+      intrinsics = "[" + intrinsics.substr(comma + 2);
+    }
+    camera_text_ = Line("resolution", Flow(camera["resolution"])) + Line("intrinsics", intrinsics) +
+                   Line("distortion_model", name) + Line("distortion_coefficients", coefficients);
     for (const char* key : {"T_cam_imu", "T_imu_cam"}) {
       if (camera[key].IsDefined()) {
         extrinsics_ += Line(key, Flow(camera[key]));
@@ -193,12 +208,21 @@ class Importer {
       model = "radial-tangential";
       intrinsics = ListOf(path, projection, {"fx", "fy", "cx", "cy"});
       coefficients = ListOf(path, distortion, {"k1", "k2", "p1", "p2"});
+    } else if (type == "MEI") {
+      model = "mei";
+      intrinsics = ListOf(path, projection, {"gamma1", "gamma2", "u0", "v0"});
+      const Result<std::string> mirror = ListOf(path, root["mirror_parameters"], {"xi"});
+      const Result<std::string> lens = ListOf(path, distortion, {"k1", "k2", "p1", "p2"});
+      ALIDADE_RETURN_IF_ERROR(mirror.status());
+      ALIDADE_RETURN_IF_ERROR(lens.status());
+      coefficients = mirror->substr(0, mirror->size() - 1) + ", " + lens->substr(1);
     } else if (type == "KANNALA_BRANDT") {
       model = "equidistant";
       intrinsics = ListOf(path, projection, {"mu", "mv", "u0", "v0"});
       coefficients = ListOf(path, projection, {"k2", "k3", "k4", "k5"});
     } else {
-      return Status::Input(path + ": model_type: found '" + type + "', expected PINHOLE or KANNALA_BRANDT");
+      return Status::Input(path + ": model_type: found '" + type +
+                           "', expected PINHOLE, MEI or KANNALA_BRANDT");
     }
     ALIDADE_RETURN_IF_ERROR(intrinsics.status());
     ALIDADE_RETURN_IF_ERROR(coefficients.status());

@@ -20,13 +20,13 @@ struct ImportedCalibration {
 /// Reads calibration files, each known by its keys; the first one that says something counts. `camera`
 /// chooses among several: cam0, cam1.
 ///
-///   Kalibr      camchain (T_cam_imu, timeshift_cam_imu), imu.yaml
+///   Kalibr      camchain (T_cam_imu, timeshift_cam_imu), omni-radtan as the model mei; imu.yaml
 ///   OpenVINS    estimator_config (names the two others), kalibr_imucam_chain (T_imu_cam), kalibr_imu_chain
-///   VINS        model_type PINHOLE or KANNALA_BRANDT; body_T_cam0 or extrinsicRotation and
+///   VINS        model_type PINHOLE, MEI or KANNALA_BRANDT; body_T_cam0 or extrinsicRotation and
 ///               extrinsicTranslation; acc_n, gyr_n, acc_w, gyr_w; td; cam0_calib names the camera's file
 ///
-/// Kalibr's omni and VINS's MEI are refused: there is no camera of that model. Errors (kInput): a file that
-/// is none of these, lacks a key or holds a value that sensor.yaml would not take.
+/// Errors (kInput): a file that is none of these, lacks a key or holds a value that sensor.yaml would not
+/// take.
 Result<ImportedCalibration> ImportCalibration(const std::vector<std::string>& paths,
                                               const std::string& camera = "cam0");
 

@@ -55,7 +55,10 @@ void AddCamera(const CameraModel& camera, const Pose& T_BC, Hasher* hasher) {
   hasher->Add(std::int64_t{camera.width_px()});
   hasher->Add(std::int64_t{camera.height_px()});
   hasher->Add(camera.intrinsics());
-  hasher->Add(camera.coefficients());
+  hasher->Add(Eigen::Vector4d(camera.coefficients().head<4>()));
+  if (camera.model() == DistortionModel::kMei) {
+    hasher->Add(camera.coefficients()[4]);
+  }
   hasher->Add(T_BC.rotation);
   hasher->Add(T_BC.translation);
 }

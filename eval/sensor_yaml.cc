@@ -156,7 +156,7 @@ Status ReadExtrinsics(const SensorFile& file, Pose* T_BC) {
 }
 
 Status ReadDistortionModel(const SensorFile& file, DistortionModel* model) {
-  const std::string known = "one of radial-tangential, equidistant, fov, none";
+  const std::string known = "one of radial-tangential, equidistant, fov, mei, none";
   if (!file.Has("distortion_model") || !file["distortion_model"].IsScalar()) {
     return file.Fault("distortion_model", known);
   }
@@ -164,7 +164,7 @@ Status ReadDistortionModel(const SensorFile& file, DistortionModel* model) {
   const std::optional<DistortionModel> parsed = ParseDistortionModel(name);
   if (!parsed.has_value()) {
     return file.Fault("distortion_model",
-                      known + Suggestion(name, {"radial-tangential", "equidistant", "fov", "none"}));
+                      known + Suggestion(name, {"radial-tangential", "equidistant", "fov", "mei", "none"}));
   }
   *model = *parsed;
   return Status::Ok();
@@ -293,7 +293,8 @@ std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
   std::string text = "sensor_type: camera\n" + TransformYaml(rig.T_BC) + RateLine(rate_hz);
   text +=
       "resolution: [" + std::to_string(camera.width_px()) + ", " + std::to_string(camera.height_px()) + "]\n";
-  text += "camera_model: pinhole\nintrinsics: [";
+  text += camera.model() == DistortionModel::kMei ? "" : "camera_model: pinhole\n";
+  text += "intrinsics: [";
   for (int i = 0; i < 4; ++i) {
     text += (i > 0 ? ", " : "") + ShortestDouble(camera.intrinsics()[i]);
   }

@@ -24,7 +24,8 @@ struct CameraCase {
   int width, height;
 };
 
-// Calibrations of real cameras: EuRoC cam0, TUM-VI cam0, Lenovo Tango fisheye.
+// Calibrations of real cameras: EuRoC cam0, TUM-VI cam0, Lenovo Tango fisheye, left
+// camera of the GVINS dataset.
 const CameraCase kCameras[] = {
     {"none", DistortionModel::kNone, {460, 460, 376, 240}, {}, 752, 480},
     {"radial_tangential",
@@ -40,6 +41,13 @@ const CameraCase kCameras[] = {
      512,
      512},
     {"fov", DistortionModel::kFov, {257.67, 258.16, 327.73, 229.11}, {0.932489670230815}, 640, 480},
+    {"mei",
+     DistortionModel::kMei,
+     {1338.1845333957547, 1340.1190112672946, 378.7909740462579, 217.69105287172025},
+     {1.8476540167437447, -0.06597811223735722, 0.8559479340704287, -0.0006445829733139821,
+      0.0015137487236065916},
+     752,
+     480},
 };
 
 class EveryCamera : public ::testing::TestWithParam<CameraCase> {
@@ -55,6 +63,39 @@ class EveryCamera : public ::testing::TestWithParam<CameraCase> {
 };
 INSTANTIATE_TEST_SUITE_P(Cameras, EveryCamera, ::testing::ValuesIn(kCameras),
                          [](const auto& test_case) { return std::string(test_case.param.name); });
+
+// The unified sphere by its own construction: onto the unit sphere, seen from xi behind its centre.
+TEST(MeiCamera, SeesThePointOnTheSphereFromBehindItsCentre) {
+  constexpr double kMirror = 1.2;
+  const CameraModel camera =
+      *CameraModel::Create(DistortionModel::kMei, {700, 710, 320, 240}, {kMirror, 0, 0, 0, 0}, 640, 480);
+  RandomStates random(11);
+  for (int i = 0; i < 20; ++i) {
+    const Vector3d p(random.Uniform(-2, 2), random.Uniform(-2, 2), random.Uniform(1, 5));
+    const Vector3d on_sphere = p.normalized();
+    Vector2d pixel;
+    ASSERT_TRUE(camera.Project(p, &pixel));
+    EXPECT_NEAR(pixel.x(), 700 * on_sphere.x() / (on_sphere.z() + kMirror) + 320, 1e-9);
+    EXPECT_NEAR(pixel.y(), 710 * on_sphere.y() / (on_sphere.z() + kMirror) + 240, 1e-9);
+  }
+  EXPECT_NEAR(camera.mean_focal_px(), 705 / (1 + kMirror), 1e-12);
+}
+
+// Without a mirror it is the radial-tangential camera.
+TEST(MeiCamera, WithoutMirrorIsRadialTangential) {
+  const CameraModel mei = *CameraModel::Create(DistortionModel::kMei, {920, 918, 367, 248},
+                                               {0, -0.28, 0.07, 2e-4, 2e-5}, 752, 480);
+  // xi = 0 leaves m = x, so that the focal lengths are the pinhole's.
+  const CameraModel brown = *CameraModel::Create(DistortionModel::kRadialTangential, {920, 918, 367, 248},
+                                                 {-0.28, 0.07, 2e-4, 2e-5}, 752, 480);
+  RandomStates random(12);
+  for (int i = 0; i < 20; ++i) {
+    const Vector3d p(random.Uniform(-0.3, 0.3), random.Uniform(-0.2, 0.2), 1);
+    Vector2d a, b;
+    ASSERT_TRUE(mei.Project(p, &a) && brown.Project(p, &b));
+    EXPECT_LT((a - b).norm(), 1e-9);
+  }
+}
 
 TEST_P(EveryCamera, UnprojectInvertsProjectOverTheWholeImage) {
   for (int u = 0; u < camera_.width_px(); u += 16) {
