@@ -7,18 +7,17 @@ namespace alidade {
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector4d;
 using Eigen::VectorXd;
 
 /// fu fv cu cv and the lens coefficients that the model has not: as many as `size`.
 VectorXd Intrinsics(const CameraModel& camera, int size) {
-  VectorXd all(8);
+  VectorXd all(4 + camera.coefficients().size());
   all << camera.intrinsics(), camera.coefficients();
   return all.head(size);
 }
 
 Result<CameraModel> WithIntrinsics(const CameraModel& camera, const VectorXd& intrinsics) {
-  Vector4d coefficients = camera.coefficients();
+  LensCoefficients coefficients = camera.coefficients();
   coefficients.head(intrinsics.size() - 4) = intrinsics.tail(intrinsics.size() - 4);
   const std::vector<double> used(coefficients.data(), coefficients.data() + CoefficientCount(camera.model()));
   return CameraModel::Create(camera.model(), intrinsics.head<4>(), used, camera.width_px(),
@@ -32,7 +31,9 @@ CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const Came
     *first = wanted ? size_ : -1;
     size_ += wanted ? size : 0;
   };
-  intrinsics_size_ = 4 + (config.distortion_std > 0 ? CoefficientCount(camera.model()) : 0);
+  // Mei's mirror parameter and its focal lengths are all but the same direction: the sheet's lens stays.
+  const bool lens = config.distortion_std > 0 && camera.model() != DistortionModel::kMei;
+  intrinsics_size_ = 4 + (lens ? CoefficientCount(camera.model()) : 0);
   take(config.extrinsics, 6, &extrinsics_);
   take(config.time_offset, 1, &time_offset_);
   take(config.intrinsics, intrinsics_size_, &intrinsics_);
@@ -134,6 +135,7 @@ bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
       lens.col(0) = r > 1e-12 ? Vector2d(ideal * (rate / r)) : Vector2d::Zero();
       break;
     }
+    case DistortionModel::kMei:  // the layout has no columns for its lens
     case DistortionModel::kNone:
       break;
   }

@@ -32,6 +32,9 @@ CameraModel MakeCamera(DistortionModel model) {
     case DistortionModel::kFov:
       coefficients = {0.9};
       break;
+    case DistortionModel::kMei:
+      coefficients = {0.9, -0.03, 0.01, 1e-4, -2e-4};
+      break;
     case DistortionModel::kNone:
       break;
   }
@@ -42,7 +45,8 @@ CameraModel MakeCamera(DistortionModel model) {
 }
 
 constexpr DistortionModel kLenses[] = {DistortionModel::kNone, DistortionModel::kRadialTangential,
-                                       DistortionModel::kEquidistant, DistortionModel::kFov};
+                                       DistortionModel::kEquidistant, DistortionModel::kFov,
+                                       DistortionModel::kMei};
 
 CalibrationConfig Everything() {
   CalibrationConfig config;
