@@ -186,7 +186,7 @@ const FileCase kCameraCases[] = {
     {"Kalibr's name of the lens",
      "cam0/sensor.yaml",
      CameraYaml(kIdentity, "distortion_model: radtan\n"),
-     {"sensor.yaml:9:19", "'radtan'", "radial-tangential, equidistant, fov, none"}},
+     {"sensor.yaml:9:19", "'radtan'", "radial-tangential, equidistant, fov, mei, none"}},
     {"too few coefficients",
      "cam0/sensor.yaml",
      CameraYaml(kIdentity, "distortion_model: equidistant\ndistortion_coefficients: [0.1, 0.2]\n"),
