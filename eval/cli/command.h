@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/status.h"
+#include "eval/cli/shipped_configs.h"
 
 namespace alidade::cli {
 
@@ -17,6 +18,13 @@ inline constexpr int kExitOutput = 6;
 inline constexpr int kExitCellsFailed = 7;
 inline constexpr int kExitInterrupted = 130;
 
+struct ExitCode {
+  int code = 0;
+  std::string meaning;
+};
+/// The codes above, as the help names them.
+[[nodiscard]] const std::vector<ExitCode>& ExitCodes();
+
 /// One word of the command line and what it does.
 struct Command {
   std::string name;
@@ -25,6 +33,7 @@ struct Command {
   std::vector<std::string> required;  ///< of them, those that must be given
   size_t max_arguments = 0;           ///< words that are no flags
   int (*run)(const std::vector<std::string>& arguments) = nullptr;
+  ConfigKind config = ConfigKind::kEstimator;  ///< what --config is
 };
 
 /// All commands, in the order of the help text.
@@ -44,5 +53,7 @@ int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
 int RunConvert(const std::vector<std::string>& arguments);
 int RunConfig(const std::vector<std::string>& arguments);
+int RunManual(const std::vector<std::string>& arguments);
+int RunCompletion(const std::vector<std::string>& arguments);
 
 }  // namespace alidade::cli

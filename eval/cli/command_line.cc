@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <set>
 
+#include "eval/cli/flag_description.h"
 #include "eval/cli/flags.h"
 #include "eval/suggest.h"
 
 namespace alidade::cli {
 namespace {
 
+constexpr size_t kHelpColumns = 85;  ///< after which a line of the help ends
+
 std::string WithUnderscores(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-std::string WithDashes(std::string name) {
-  std::replace(name.begin(), name.end(), '_', '-');
   return name;
 }
 
@@ -164,26 +162,27 @@ Result<Parsed> ParseCommandLine(const std::vector<std::string>& words) {
 std::string GeneralHelp() {
   std::string text = "Usage: alidade <command> [--flag=value ...]\n\nCommands:\n";
   for (const Command& command : Commands()) {
-    text += "  " + Padded(command.name, 10) + command.summary + "\n";
+    text += "  " + Padded(command.name, 12) + command.summary + "\n";
   }
-  text += "  " + Padded("help", 10) + "this text; `alidade <command> --help` lists a command's flags\n";
-  text +=
-      "\nExit codes: 0 done; 2 usage; 3 configuration; 4 input data; 5 an estimator diverged or never "
-      "initialised;\n"
-      "6 output could not be written; 7 some cells of a comparison failed; 130 interrupted.\n";
+  text += "  " + Padded("help", 12) + "this text; `alidade <command> --help` lists a command's flags\n";
+  text += "\nExit codes:";
+  size_t line_start = text.size();
+  for (const ExitCode& exit : ExitCodes()) {
+    const bool is_full = text.size() - line_start > kHelpColumns;
+    line_start = is_full ? text.size() : line_start;
+    text += (is_full ? "\n" : " ") + std::to_string(exit.code) + " " + exit.meaning +
+            (&exit == &ExitCodes().back() ? ".\n" : ";");
+  }
   return text;
 }
 
 std::string CommandHelp(const Command& command) {
   std::string text = "alidade " + command.name + ": " + command.summary + "\n\nFlags:\n";
-  for (const std::string& flag : command.flags) {
-    gflags::CommandLineFlagInfo info;
-    gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
-    const std::string fallback =
-        info.type == "string" ? "\"" + info.default_value + "\"" : info.default_value;
-    const bool required = Contains(command.required, flag);
-    text += "  --" + Padded(WithDashes(flag), 13) + info.description + " (" + info.type + ", " +
-            (required ? std::string("required") : "default " + fallback) + ")\n";
+  for (const std::string& name : command.flags) {
+    const FlagDescription flag = DescribeFlag(command, name);
+    const std::string fallback = flag.type == "string" ? "\"" + flag.fallback + "\"" : flag.fallback;
+    text += "  --" + Padded(flag.name, 13) + flag.text + " (" + flag.type + ", " +
+            (flag.required ? std::string("required") : "default " + fallback) + ")\n";
   }
   return text;
 }

@@ -2,6 +2,18 @@
 
 namespace alidade::cli {
 
+const std::vector<ExitCode>& ExitCodes() {
+  static const std::vector<ExitCode> codes = {{kExitDone, "done"},
+                                              {kExitUsage, "usage"},
+                                              {kExitConfig, "configuration"},
+                                              {kExitInput, "input data"},
+                                              {kExitDiverged, "an estimator diverged or never initialised"},
+                                              {kExitOutput, "output could not be written"},
+                                              {kExitCellsFailed, "some cells of a comparison failed"},
+                                              {kExitInterrupted, "interrupted"}};
+  return codes;
+}
+
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = {
       {"simulate",
@@ -9,7 +21,8 @@ const std::vector<Command>& Commands() {
        {"config", "output", "seed", "set", "render", "jobs", "overwrite", "quiet"},
        {"config", "output"},
        0,
-       RunSimulate},
+       RunSimulate,
+       ConfigKind::kSimulator},
       {"track",
        "run the front end alone: images in, tracks out",
        {"dataset", "output", "config", "set", "overlay", "overwrite", "quiet"},
@@ -39,7 +52,8 @@ const std::vector<Command>& Commands() {
        {"config", "estimator", "windows", "seed", "set", "json", "quiet"},
        {"config", "estimator"},
        0,
-       RunAnalyze},
+       RunAnalyze,
+       ConfigKind::kSimulator},
       {"starts",
        "initialise from scratch at random times of a plan's sequences and compare with truth",
        {"plan", "starts", "limit", "output", "data", "quiet"},
@@ -72,11 +86,25 @@ const std::vector<Command>& Commands() {
        0,
        RunConvert},
       {"config",
-       "--show F | --check F | --diff F F2: a configuration, its faults, its differences",
-       {"show", "check", "diff", "kind", "set", "data"},
+       "--show F | --check F | --diff F F2 | --list: a configuration, its faults, its differences; the "
+       "shipped "
+       "ones",
+       {"show", "check", "diff", "list", "kind", "set", "data"},
        {},
        2,
        RunConfig},
+      {"manual",
+       "print the manual page, made from this help: alidade manual | man -l -",
+       {},
+       {},
+       0,
+       RunManual},
+      {"completion",
+       "print the completion of bash, made from this help: source <(alidade completion)",
+       {},
+       {},
+       0,
+       RunCompletion},
   };
   return commands;
 }

@@ -36,6 +36,15 @@ Status Show(const std::string& path) {
       path, [](const Describe& describe) { std::fputs(ConfigToYaml(describe, true).c_str(), stdout); });
 }
 
+Status List(ConfigKind kind) {
+  const Result<std::vector<std::string>> names = ShippedConfigs(kind);
+  ALIDADE_RETURN_IF_ERROR(names.status());
+  for (const std::string& name : *names) {
+    std::printf("%s\n", name.c_str());
+  }
+  return Status::Ok();
+}
+
 Status Check(const std::string& path) {
   if (FLAGS_kind == "plan") {
     return ReadPlan(path, FLAGS_data).status();
@@ -63,16 +72,30 @@ Status Diff(const std::string& path, const std::string& other_path) {
 
 }  // namespace
 
-int RunConfig(const std::vector<std::string>& files) {
-  const size_t wanted = FLAGS_diff ? 2 : 1;
-  if (static_cast<int>(FLAGS_show) + static_cast<int>(FLAGS_check) + static_cast<int>(FLAGS_diff) != 1 ||
-      files.size() != wanted) {
-    return Report(Status::Usage("config: expected --show FILE, --check FILE or --diff FILE FILE2"));
+int RunConfig(const std::vector<std::string>& words) {
+  const size_t wanted = FLAGS_list ? 0 : FLAGS_diff ? 2 : 1;
+  const int actions = static_cast<int>(FLAGS_show) + static_cast<int>(FLAGS_check) +
+                      static_cast<int>(FLAGS_diff) + static_cast<int>(FLAGS_list);
+  if (actions != 1 || words.size() != wanted) {
+    return Report(Status::Usage(
+        "config: expected --show FILE, --check FILE, --diff FILE FILE2 or --list without a file"));
   }
-  const bool plan = FLAGS_kind == "plan";
-  if (FLAGS_kind != "estimator" && FLAGS_kind != "simulator" && !(plan && FLAGS_check)) {
+  const std::optional<ConfigKind> kind = ParseConfigKind(FLAGS_kind);
+  const bool plan_is_fine = FLAGS_check || FLAGS_list;
+  if (!kind || (*kind == ConfigKind::kPlan && !plan_is_fine)) {
     return Report(Status::Usage("config: --kind: found '" + FLAGS_kind + "', expected estimator, simulator" +
-                                (FLAGS_check ? " or plan" : "; a plan has --check alone")));
+                                (plan_is_fine ? " or plan" : "; a plan has --check and --list alone")));
+  }
+  if (FLAGS_list) {
+    return Report(List(*kind));
+  }
+  std::vector<std::string> files;
+  for (const std::string& word : words) {
+    const Result<std::string> file = LocateConfig(*kind, word);
+    if (!file.ok()) {
+      return Report(file.status());
+    }
+    files.push_back(*file);
   }
   const Status status = FLAGS_show    ? Show(files[0])
                         : FLAGS_check ? Check(files[0])

@@ -11,13 +11,14 @@ DEFINE_string(camera, "cam0", "which camera of a calibration with several");
 DEFINE_bool(check, false, "name the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(compression, "none", "none | bz2 | lz4: how the chunks of a bag are packed");
-DEFINE_string(config, "", "configuration file, YAML");
+DEFINE_string(config, "", "configuration: a YAML file, or the name of a shipped one");
 DEFINE_string(data, "", "folder that ${data} stands for in a plan");
 DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout, or a ROS 1 bag");
 DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
 DEFINE_string(error, "right_invariant", "right_invariant | left_invariant | so3xrn: the error of Jacobians");
 DEFINE_string(estimate, "", "trajectory file to be scored");
-DEFINE_string(estimator, "", "configuration of the filter that is analysed, YAML");
+DEFINE_string(estimator, "",
+              "configuration of the filter that is analysed: a YAML file, or the name of a shipped one");
 DEFINE_string(input, "", "cases, JSON; - reads standard input");
 DEFINE_string(export, "",
               "folder that gets both trajectories as evo and rpg_trajectory_evaluation read them");
@@ -30,13 +31,16 @@ DEFINE_bool(json, false, "answer in JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: what the configuration file is");
 DEFINE_double(limit, 5, "data a start may use [s]");
 DEFINE_double(max_dt, 0.01, "largest stamp difference of a pair [s]");
-DEFINE_string(model, "", "measurement model");
+DEFINE_bool(list, false, "print the names of the shipped configurations of this kind");
+DEFINE_string(model, "",
+              "pose_only | inverse_depth | imu_propagation | preintegration | pseudorange | doppler: the "
+              "measurement model");
 DEFINE_string(nav, "", "broadcast orbits, RINEX, separated by commas");
 DEFINE_string(obs, "", "observations, RINEX");
 DEFINE_string(output, "", "where the results go");
 DEFINE_int32(overlay, 0, "draw the tracks upon every so many images, as overlay/<stamp>.png; 0: none");
 DEFINE_bool(overwrite, false, "write into an output that exists");
-DEFINE_string(plan, "", "comparison plan, YAML");
+DEFINE_string(plan, "", "comparison plan: a YAML file, or the name of a shipped one");
 DEFINE_bool(quiet, false, "print errors and results alone");
 DEFINE_bool(render, false, "draw what the camera sees instead of simulating tracks (render.enabled)");
 DEFINE_bool(resume, false, "keep the complete cells of an interrupted comparison");

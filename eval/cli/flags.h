@@ -28,6 +28,7 @@ DECLARE_bool(json);
 DECLARE_string(kind);
 DECLARE_double(limit);
 DECLARE_double(max_dt);
+DECLARE_bool(list);
 DECLARE_string(model);
 DECLARE_string(nav);
 DECLARE_string(obs);

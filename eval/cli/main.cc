@@ -4,10 +4,24 @@
 #include <exception>
 
 #include "eval/cli/command_line.h"
+#include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 
 namespace alidade::cli {
 namespace {
+
+/// Where a flag names a shipped configuration, it names its file from here on.
+Status LocateConfigs(const Command& command) {
+  const std::vector<std::pair<std::string*, ConfigKind>> flags = {{&FLAGS_config, command.config},
+                                                                  {&FLAGS_estimator, ConfigKind::kEstimator},
+                                                                  {&FLAGS_plan, ConfigKind::kPlan}};
+  for (const auto& [flag, kind] : flags) {
+    const Result<std::string> file = LocateConfig(kind, *flag);
+    ALIDADE_RETURN_IF_ERROR(file.status());
+    *flag = *file;
+  }
+  return Status::Ok();
+}
 
 int Main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
@@ -22,6 +36,9 @@ int Main(int argc, char** argv) {
   if (parsed->help) {
     std::fputs((parsed->command == nullptr ? GeneralHelp() : CommandHelp(*parsed->command)).c_str(), stdout);
     return kExitDone;
+  }
+  if (const Status status = LocateConfigs(*parsed->command); !status.ok()) {
+    return Report(status);
   }
   const int code = parsed->command->run(parsed->arguments);
   // A full disk or a closed pipe shows itself only when the buffer is written.

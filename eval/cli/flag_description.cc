@@ -1,0 +1,69 @@
+#include "eval/cli/flag_description.h"
+
+#include <algorithm>
+#include <set>
+
+#include "eval/cli/flags.h"
+
+namespace alidade::cli {
+namespace {
+
+/// "none | bz2 | lz4: how chunks are packed" -> none, bz2, lz4; none for a text without " | ".
+std::vector<std::string> LeadingWords(const std::string& text) {
+  const std::string list = text.substr(0, text.find(':'));
+  const std::string separator = " | ";
+  std::vector<std::string> words;
+  if (list.size() == text.size() || list.find(separator) == std::string::npos) {
+    return words;
+  }
+  for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + separator.size()) {
+    end = list.find(separator, begin);
+    words.push_back(list.substr(begin, end == std::string::npos ? end : end - begin));
+  }
+  return words;
+}
+
+FlagValue ValueOf(const FlagDescription& flag) {
+  static const std::set<std::string> paths = {"calibration", "clk", "data", "dataset", "estimate", "export",
+                                              "input",       "nav", "obs",  "output",  "sp3",      "truth"};
+  if (flag.type == "bool") {
+    return FlagValue::kSwitch;
+  }
+  if (flag.type != "string") {
+    return FlagValue::kNumber;
+  }
+  if (!flag.words.empty()) {
+    return FlagValue::kWord;
+  }
+  if (flag.name == "config" || flag.name == "estimator" || flag.name == "plan") {
+    return FlagValue::kConfig;
+  }
+  return paths.count(flag.name) > 0 ? FlagValue::kPath : FlagValue::kText;
+}
+
+}  // namespace
+
+FlagDescription DescribeFlag(const Command& command, const std::string& flag) {
+  gflags::CommandLineFlagInfo info;
+  gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+  FlagDescription description;
+  description.name = WithDashes(flag);
+  description.text = info.description;
+  description.type = info.type;
+  description.fallback = info.default_value;
+  description.required =
+      std::find(command.required.begin(), command.required.end(), flag) != command.required.end();
+  description.words = LeadingWords(info.description);
+  description.value = ValueOf(description);
+  description.config = flag == "config" ? command.config
+                       : flag == "plan" ? ConfigKind::kPlan
+                                        : ConfigKind::kEstimator;
+  return description;
+}
+
+std::string WithDashes(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+}  // namespace alidade::cli
