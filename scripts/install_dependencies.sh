@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Alidade needs on Debian 12 and is missing. `--with-tests-of-report` adds what some tests use and are skipped
 # without: a headless browser for the report page, RTKLIB as oracle of single-point positions, rosbag as
-# oracle of bags.
+# oracle of bags, man for the manual page.
 set -euo pipefail
 
 packages=(
@@ -12,9 +12,10 @@ packages=(
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev
   libgeographiclib-dev zlib1g-dev libbz2-dev liblz4-dev
   libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3
+  dpkg-dev file
 )
 if [[ "${1:-}" == "--with-tests-of-report" ]]; then
-  packages+=(chromium rtklib python3-rosbag python3-sensor-msgs)
+  packages+=(chromium rtklib python3-rosbag python3-sensor-msgs man-db)
 elif [[ $# -gt 0 ]]; then
   echo "usage: $0 [--with-tests-of-report]" >&2
   exit 2

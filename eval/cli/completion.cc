@@ -30,7 +30,8 @@ _alidade_kind() {
 }
 
 _alidade() {
-  local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} flag= values
+  local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
+  local flag="" values
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     mapfile -t COMPREPLY < <(compgen -W "$_alidade_commands help --help --version" -- "$current")
@@ -38,7 +39,7 @@ _alidade() {
   fi
   # Bash makes a word of the sign between a flag and its value.
   if [[ $current == = ]]; then
-    flag=$before current=
+    flag=$before current=""
   elif [[ $before == = ]]; then
     flag=${COMP_WORDS[COMP_CWORD - 2]}
   elif [[ " $(_alidade_flags "$command") " == *" $before= "* ]]; then

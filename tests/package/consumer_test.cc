@@ -32,7 +32,7 @@ TEST(Consumer, AnotherMinorVersionIsRefused) {
   TemporaryFolder folder;
   folder.Write("CMakeLists.txt",
                "cmake_minimum_required(VERSION 3.22)\nproject(other LANGUAGES CXX)\n"
-               "find_package(alidade 0.99 CONFIG REQUIRED)\n");
+               "find_package(alidade 0.0 CONFIG REQUIRED)\n");
   const CommandResult configured =
       Shell(std::string(ALIDADE_CMAKE) + " -G Ninja -S " + folder.path() + " -B " + folder.File("build") +
             " -DCMAKE_PREFIX_PATH='" ALIDADE_PREFIX "'");

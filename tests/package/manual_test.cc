@@ -19,8 +19,9 @@ TEST(Manual, ShowsEveryCommandFlagAndExitCodeWithoutWarnings) {
   if (Shell("command -v man groff").code != 0) {
     GTEST_SKIP() << "man is not installed (Debian packages man-db and groff-base)";
   }
+  // In braces, so that errors are not thrown away with the page.
   const CommandResult warnings =
-      Shell("LC_ALL=C.UTF-8 MANROFFSEQ= man --warnings -E UTF-8 -l -Tutf8 -Z " + kPage + " >/dev/null");
+      Shell("{ LC_ALL=C.UTF-8 MANROFFSEQ= man --warnings -E UTF-8 -l -Tutf8 -Z " + kPage + " >/dev/null; }");
   EXPECT_EQ(warnings.output, "");
 
   const CommandResult page = Shell("LC_ALL=C.UTF-8 MANWIDTH=500 man -l -Tascii " + kPage + " | col -bx");
