@@ -48,10 +48,44 @@ TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones,
       stacked_(5, columns_),
       jacobian_(2, columns_) {}
 
+double TrackMemoryKeeper::DepthDeviation(const FilterState& state, const Vector3d& ray,
+                                         const Matrix3d& landmark_rows,
+                                         const Eigen::Ref<const MatrixXd>& clone_rows,
+                                         const std::vector<int>& clones) {
+  const Vector3d direction = ray.normalized();
+  const Vector3d along = landmark_rows.triangularView<Eigen::Upper>().transpose().solve(direction);
+  // direction . (f~ - p~_newest), with f~ = R^-1 (t - T x - n) and t = 0.
+  if (depth_row_.size() < state.covariance().capacity()) {
+    depth_row_.resize(state.covariance().capacity());
+    whitened_depth_row_.resize(state.covariance().capacity());
+  }
+  auto row = depth_row_.head(state.covariance().dimension());
+  row.setZero();
+  for (size_t k = 0; k < clones.size(); ++k) {
+    row.segment<6>(state.CloneOffset(static_cast<size_t>(clones[k]))) -=
+        clone_rows.middleCols<6>(6 * static_cast<Index>(k)).transpose() * along;
+  }
+  if (calibration_ > 0) {
+    row.segment(state.CalibrationOffset(), calibration_) -=
+        clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_).transpose() * along;
+  }
+  const auto newest = static_cast<size_t>(clones.back());
+  row.segment<6>(state.CloneOffset(newest)) -=
+      state.clones()[newest].camera_from_error.bottomRows<3>().transpose() * direction;
+  auto whitened = whitened_depth_row_.head(row.size());
+  whitened.noalias() = state.covariance().factor().transpose() * row;
+  return std::sqrt(along.squaredNorm() + whitened.squaredNorm());
+}
+
 void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, const Matrix3d& landmark_rows,
                               const Eigen::Ref<const MatrixXd>& clone_rows, const std::vector<int>& clones,
-                              TrackMemory* memory) const {
-  memory->active = true;
+                              TrackMemory* memory) {
+  const Vector3d ray = p_W - state.clones()[static_cast<size_t>(clones.back())].T_WC.translation;
+  const double deviation = DepthDeviation(state, ray, landmark_rows, clone_rows, clones);
+  memory->active = deviation < max_depth_deviation_ * ray.norm();
+  if (!memory->active) {
+    return;
+  }
   memory->refusals = 0;
   memory->p_W = p_W;
   memory->landmark_rows = landmark_rows.triangularView<Eigen::Upper>();

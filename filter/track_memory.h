@@ -40,11 +40,12 @@ class TrackMemoryKeeper {
   /// calibration_size: of the state's CalibrationLayout.
   TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size = 0);
 
-  /// The memory that a first update leaves: the three landmark rows of EliminateLandmark. `dense`: rows over
+  /// The memory that a first update leaves: the three landmark rows of EliminateLandmark. `clone_rows`: over
   /// six columns a view, in the order of `clones` (indices into the state's clones), then the calibration's.
+  /// Not active when the state is too uncertain to keep rows linearised at it.
   void Start(const FilterState& state, const Eigen::Vector3d& p_W, const Eigen::Matrix3d& landmark_rows,
              const Eigen::Ref<const Eigen::MatrixXd>& clone_rows, const std::vector<int>& clones,
-             TrackMemory* memory) const;
+             TrackMemory* memory);
 
   /// Stacks a view's two rows under the memory's and eliminates the landmark again: the memory that follows
   /// into `extended`, the two landmark-free rows into jacobian() and innovation().
@@ -73,6 +74,12 @@ class TrackMemoryKeeper {
   [[nodiscard]] bool MayStay(const TrackMemory& memory, const Eigen::Vector3d& camera_W) const;
 
  private:
+  /// Deviation of the landmark's depth from the newest view, `ray` its vector from there, the state's own
+  /// uncertainty included; m.
+  double DepthDeviation(const FilterState& state, const Eigen::Vector3d& ray,
+                        const Eigen::Matrix3d& landmark_rows,
+                        const Eigen::Ref<const Eigen::MatrixXd>& clone_rows, const std::vector<int>& clones);
+
   ErrorConvention convention_;
   double max_depth_deviation_;
   Eigen::Index calibration_;  ///< size of the calibration's error
@@ -83,6 +90,8 @@ class TrackMemoryKeeper {
   Eigen::Matrix<double, 5, Eigen::Dynamic> stacked_;
   Eigen::Matrix<double, 2, Eigen::Dynamic> jacobian_;
   Eigen::Vector2d innovation_ = Eigen::Vector2d::Zero();
+  Eigen::VectorXd depth_row_;
+  Eigen::VectorXd whitened_depth_row_;
 };
 
 }  // namespace alidade

@@ -23,9 +23,9 @@ using Eigen::VectorXd;
 constexpr int kFrames = 9;
 
 /// A filter state with a clone for each of the first frames of a simulation; nothing updated yet.
-FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) {
+FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention, const NavEstimate& initial) {
   FilterState state(convention, false, dataset.rig.T_BC, {kFrames + 1, 0});
-  EXPECT_TRUE(state.Reset(test::DrawInitialState(dataset, 1)).ok());
+  EXPECT_TRUE(state.Reset(initial).ok());
   ImuBuffer imu(1.0);
   for (const ImuSample& sample : dataset.imu) {
     EXPECT_TRUE(imu.Add(sample).ok());
@@ -40,6 +40,10 @@ FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) 
     state.AddClone(k);
   }
   return state;
+}
+
+FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) {
+  return CloneEveryFrame(dataset, convention, test::DrawInitialState(dataset, 1));
 }
 
 /// The landmark seen by the estimated clones [first, last), without noise.
@@ -135,6 +139,25 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   const VectorXd scale = expected.diagonal().cwiseSqrt().cwiseInverse();
   const MatrixXd difference = sequential.covariance().Covariance() - expected;
   EXPECT_LT((scale.asDiagonal() * difference * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+// The baseline is as uncertain as the velocity is: rows linearised at it would bias the scale.
+TEST_P(TrackMemoryTest, GivenADepthThatOnlyTheStateLeavesOpenThenNoMemoryStarts) {
+  const auto remembers = [&](double velocity_std) {
+    NavEstimate initial = test::DrawInitialState(dataset_, 1);
+    initial.covariance.diagonal().segment<3>(6).setConstant(velocity_std * velocity_std);
+    const FilterState state = CloneEveryFrame(dataset_, GetParam(), initial);
+    FilterConfig filter = Remembering(GetParam());
+    filter.memory_depth_deviation = 0.2;
+    FeatureUpdate update(filter, vision_, kFrames + 1);
+    Track track = SeenFromClones(state, PointBefore(state), 0, kFrames);
+    update.Begin(state);
+    EXPECT_EQ(update.Append(state, track, true), TrackOutcome::kReady);
+    update.Remember(state, 0, 1, &track);
+    return track.memory.active;
+  };
+  EXPECT_TRUE(remembers(0.01));
+  EXPECT_FALSE(remembers(1.0));
 }
 
 TEST_P(TrackMemoryTest, GivenACloneThatLeavesThenTheRowsAreTheMarginalOfItsConditional) {
@@ -279,6 +302,7 @@ TEST(TrackMemoryFilterTest, MemoryBeyondTheWindowBeatsTheWindowAlone) {
   config.filter.window = 11;
   config.filter.min_observations = 5;
   config.filter.clone_policy = ClonePolicy::kOldest;
+  config.filter.memory_depth_deviation = 0.05;
   double sum[2] = {0, 0};
   double nees = 0;
   for (const unsigned seed : {1U, 2U, 3U}) {
