@@ -274,7 +274,7 @@ void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("smoother", "the Ceres sliding window", [&] { smoother.Describe(visitor); });
   visitor.Section("batch", "the estimate from the whole sequence at once; a bound",
                   [&] { batch.Describe(visitor); });
-  visitor.Section("calibration", "camera parameters estimated online; the filter",
+  visitor.Section("calibration", "camera parameters estimated online, by both back ends",
                   [&] { calibration.Describe(visitor); });
   visitor.Section("recovery", "divergence and the start after it, shared by both back ends",
                   [&] { recovery.Describe(visitor); });
@@ -305,11 +305,10 @@ Status EstimatorConfig::Validate() const {
         "gnss.enabled: true, but the batch back end takes no GNSS; expected false, or backend: "
         "filter or smoother");
   }
-  if (calibration.any() && backend != Backend::kFilter) {
+  if (calibration.any() && backend == Backend::kBatch) {
     return Status::Config(
-        "calibration: this back end takes the camera as given; expected extrinsics, time_offset and "
-        "intrinsics "
-        "false, or backend: filter");
+        "calibration: the batch back end takes the camera as given; expected extrinsics, time_offset and "
+        "intrinsics false, or backend: filter or smoother");
   }
   if (const Status systems = gnss.corrections.Validate(); !systems.ok()) {
     return Status::Config("gnss." + systems.message());

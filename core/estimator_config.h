@@ -146,9 +146,8 @@ struct SmootherConfig {
   void Describe(ConfigVisitor& visitor);
 };
 
-/// Which parameters of the camera are estimated along with the motion (core/calibration.h); by the
-/// filter alone. The standard deviations say how far the given calibration is trusted, one for each axis or
-/// coefficient.
+/// Which parameters of the camera are estimated along with the motion (core/calibration.h). The standard
+/// deviations say how far the given calibration is trusted, one for each axis or coefficient.
 struct CalibrationConfig {
   bool extrinsics = false;
   bool time_offset = false;

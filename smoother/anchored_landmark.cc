@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/predicted_observation.h"
 #include "core/robust.h"
 
 namespace alidade {
@@ -28,21 +29,35 @@ LandmarkTransfer::LandmarkTransfer(const FrameGeometry& source, const FrameGeome
   landmark << turn_.leftCols<2>(), shift;
 }
 
-Eigen::Matrix<double, 3, 6> LandmarkTransfer::SourceFrame() const {
+Eigen::Matrix<double, 3, 6> LandmarkTransfer::SourceCamera() const {
   Eigen::Matrix<double, 3, 6> camera;
   camera << -turn_ * Skew(l_.head<2>().homogeneous()), l_.z() * target_.T_WC.rotation.transpose();
-  return camera * source_.camera_from_body;
+  return camera;
+}
+
+Eigen::Matrix<double, 3, 6> LandmarkTransfer::TargetCamera() const {
+  Eigen::Matrix<double, 3, 6> camera;
+  camera << Skew(q), -l_.z() * target_.T_WC.rotation.transpose();
+  return camera;
+}
+
+Eigen::Matrix<double, 3, 6> LandmarkTransfer::SourceFrame() const {
+  return SourceCamera() * source_.camera_from_body;
 }
 
 Eigen::Matrix<double, 3, 6> LandmarkTransfer::TargetFrame() const {
-  Eigen::Matrix<double, 3, 6> camera;
-  camera << Skew(q), -l_.z() * target_.T_WC.rotation.transpose();
-  return camera * target_.camera_from_body;
+  return TargetCamera() * target_.camera_from_body;
+}
+
+Eigen::Matrix3Xd LandmarkTransfer::Calibration(const CalibrationLayout& layout) const {
+  return SourceCamera() * CalibrationChain(layout, source_) +
+         TargetCamera() * CalibrationChain(layout, target_);
 }
 
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
-                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames) {
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames,
+                           const WindowCalibration* calibration) {
   const LandmarkTransfer transfer(anchor, view, landmark);
   if (!(transfer.q.z() > kMinViewDepth)) {
     return false;
@@ -58,6 +73,14 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
   rows->residual = observation.sqrt_information * (predicted - observation.z);
   rows->squared_norm = rows->residual.squaredNorm();
   rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
+  if (with_frames && calibration != nullptr) {
+    const CalibrationLayout& layout = calibration->layout;
+    Eigen::MatrixXd intrinsics(2,
+                               layout.size());  // the ray's part; the cameras' places come from the transfer
+    CalibrationRows(layout, calibration->mean.camera, view.R_WB, nullptr, Eigen::Matrix<double, 2, 6>::Zero(),
+                    Predicted(observation, rows->residual), intrinsics);
+    rows->calibration = intrinsics + weighted * transfer.Calibration(layout);
+  }
   return true;
 }
 
@@ -79,7 +102,7 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
 }
 
 bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
-                  AnchorChange* change) {
+                  AnchorChange* change, const CalibrationLayout* layout) {
   const Eigen::Vector3d q_to = LandmarkTransfer(from, to, l_from).q;
   if (!(q_to.z() > kMinViewDepth)) {
     return false;
@@ -94,6 +117,9 @@ bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eige
   change->landmark(2, 2) += 1 / back.q.z();
   change->from_frame.noalias() = divide * back.TargetFrame();
   change->to_frame.noalias() = divide * back.SourceFrame();
+  if (layout != nullptr) {
+    change->calibration.noalias() = divide * back.Calibration(*layout);
+  }
   return true;
 }
 

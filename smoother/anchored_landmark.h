@@ -21,8 +21,13 @@ class LandmarkTransfer {
 
   [[nodiscard]] Eigen::Matrix<double, 3, 6> SourceFrame() const;  ///< dq / d source body
   [[nodiscard]] Eigen::Matrix<double, 3, 6> TargetFrame() const;  ///< dq / d target body
+  /// dq / d calibration of the camera that both are, in the layout's columns.
+  [[nodiscard]] Eigen::Matrix3Xd Calibration(const CalibrationLayout& layout) const;
 
  private:
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> SourceCamera() const;
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> TargetCamera() const;
+
   const FrameGeometry& source_;
   const FrameGeometry& target_;
   Eigen::Vector3d l_;
@@ -35,28 +40,33 @@ struct AnchoredRows {
   Eigen::Matrix<double, 2, 6> anchor;    ///< over (phi, dp) of the anchor's body
   Eigen::Matrix<double, 2, 6> view;      ///< over (phi, dp) of the view's body
   Eigen::Matrix<double, 2, 3> landmark;  ///< over (x, y, rho)
+  Eigen::Matrix2Xd calibration;          ///< over the camera's calibration, where it is estimated
   Eigen::Vector2d residual;              ///< predicted - measured
   double squared_norm = 0;               ///< of the residual
   double weight = 1;                     ///< of all rows: the kernel's
 };
-/// False behind the view. `with_frames` false leaves out the derivatives over the bodies.
+/// False behind the view. `with_frames` false leaves out the derivatives over bodies and calibration.
+/// `calibration`: of a camera that is calibrated online.
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
-                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames = true);
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames = true,
+                           const WindowCalibration* calibration = nullptr);
 
 /// Sum of whitened squared residuals (no kernel) of a track at its landmark, SLAM feature or not; infinite
 /// when behind a view.
 [[nodiscard]] double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> geometry);
 
-/// A landmark of the anchor's camera in coordinates of another: l_from as a function of l_to and both bodies.
+/// A landmark of the anchor's camera in coordinates of another: l_from as a function of l_to, both bodies and
+/// the calibration of the camera, whose extrinsics and time offset say where the two cameras are.
 struct AnchorChange {
   Eigen::Vector3d to;                      ///< the landmark in its new anchor
   Eigen::Matrix3d landmark;                ///< d l_from / d l_to
   Eigen::Matrix<double, 3, 6> from_frame;  ///< d l_from / d (phi, dp) of the old anchor's body
   Eigen::Matrix<double, 3, 6> to_frame;    ///< d l_from / d (phi, dp) of the new anchor's body
+  Eigen::Matrix3Xd calibration;            ///< d l_from / d calibration, where a layout is given
 };
 /// False when the landmark lies behind the new anchor's camera.
 bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
-                  AnchorChange* change);
+                  AnchorChange* change, const CalibrationLayout* layout = nullptr);
 
 }  // namespace alidade

@@ -5,12 +5,13 @@
 
 #include "core/inverse_depth.h"
 #include "smoother/lifted_cost.h"
-#include "smoother/window.h"
+#include "smoother/track_system.h"
 
 namespace alidade {
 
 /// One observation of a landmark (x, y, rho) anchored in another frame: InverseDepthModel with the base
-/// bearing (x, y) as part of the landmark, whitened. Blocks nav_base, nav_view, landmark; 2 rows.
+/// bearing (x, y) as part of the landmark, whitened. Blocks nav_base, nav_view, landmark and, of a camera
+/// that is calibrated online, its calibration; 2 rows.
 ///
 /// The model takes the base bearing as exact. It is a measurement like any other, so here the bearing is
 /// estimated too and BaseBearingFactor holds it to the base observation: base noise is then accounted for
@@ -20,36 +21,49 @@ class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;
 
-  InverseDepthFactor(const NormalizedObservation& observation, const Pose* T_BC)
-      : observation_(observation), T_BC_(T_BC) {}
+  InverseDepthFactor(const NormalizedObservation& observation, const Pose* T_BC);
+  /// With a camera that is calibrated online. All must outlive the factor.
+  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return kRows; }
-  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const {
+    return std::span(kBlocks).first(calibration_ == nullptr ? 3 : 4);
+  }
   /// Behind the view the residual is replaced by a large constant with zero Jacobians, so that a trial step
-  /// of the solver is refused rather than the whole solve failing.
+  /// of the solver is refused rather than the whole solve failing. False: the calibration block is no camera.
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:
-  static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kNavState,
-                                                       BlockKind::kLandmark};
+  static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kNavState,
+                                                       BlockKind::kLandmark, BlockKind::kCalibration};
   NormalizedObservation observation_;
-  const Pose* T_BC_;
+  const Pose* T_BC_ = nullptr;
+  const WindowFrame* base_ = nullptr;  ///< with calibration_, as view_
+  const WindowView* view_ = nullptr;
+  const WindowCalibration* calibration_ = nullptr;
 };
 
-/// The base observation of an inverse-depth landmark: W ((x, y) - z). Block landmark; 2 rows.
+/// The base observation of an inverse-depth landmark: W ((x, y) - z). Block landmark and, where the
+/// intrinsics are estimated, the camera's calibration; 2 rows.
 class BaseBearingFactor {
  public:
   static constexpr int kRows = 2;
 
   explicit BaseBearingFactor(const NormalizedObservation& observation) : observation_(observation) {}
+  /// Both must outlive the factor.
+  BaseBearingFactor(const WindowView* view, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return kRows; }
-  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const {
+    return std::span(kBlocks).first(calibration_ == nullptr ? 1 : 2);
+  }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:
-  static constexpr std::array<BlockKind, 1> kBlocks = {BlockKind::kLandmark};
+  static constexpr std::array<BlockKind, 2> kBlocks = {BlockKind::kLandmark, BlockKind::kCalibration};
   NormalizedObservation observation_;
+  const WindowView* view_ = nullptr;  ///< with calibration_
+  const WindowCalibration* calibration_ = nullptr;
 };
 
 /// The weak prior on the inverse depth of a track without parallax. Block landmark; 1 row.

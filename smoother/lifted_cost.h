@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/calibration.h"
 #include "smoother/nav_state_manifold.h"
 
 namespace alidade {
@@ -14,14 +15,26 @@ namespace alidade {
 /// Kinds of parameter blocks. Ceres sees the ambient size; factors work in tangent columns of the canonical
 /// chart.
 enum class BlockKind {
-  kNavState,  ///< quaternion, p, v; tangent (phi, dp, dv)
-  kBias,      ///< gyro, accel
-  kClock,     ///< core/clock_state.h
-  kLandmark,  ///< (x, y, rho): bearing on the base view's normalised plane and inverse depth [1/m]
+  kNavState,     ///< quaternion, p, v; tangent (phi, dp, dv)
+  kBias,         ///< gyro, accel
+  kClock,        ///< core/clock_state.h
+  kCalibration,  ///< smoother/window_calibration.h
+  kLandmark,     ///< (x, y, rho): bearing on the base view's normalised plane and inverse depth [1/m]
 };
 
 [[nodiscard]] constexpr int AmbientSize(BlockKind kind) {
-  return kind == BlockKind::kNavState ? kNavAmbientSize : kind == BlockKind::kLandmark ? 3 : 6;
+  switch (kind) {
+    case BlockKind::kNavState:
+      return kNavAmbientSize;
+    case BlockKind::kCalibration:
+      return CalibrationLayout::kMaxSize;
+    case BlockKind::kLandmark:
+      return 3;
+    case BlockKind::kBias:
+    case BlockKind::kClock:
+      break;
+  }
+  return 6;
 }
 [[nodiscard]] constexpr int TangentSize(BlockKind kind) {
   return kind == BlockKind::kNavState ? kNavTangentSize : AmbientSize(kind);

@@ -16,11 +16,11 @@ using Eigen::VectorXd;
 
 /// Whitened rows over all that the oldest frame's leaving concerns. Columns: the oldest frame (15), with GNSS
 /// its clock (6), landmarks that leave (3 each), the next frame (15), poses of the others (6 each), with GNSS
-/// the next clock (6), landmarks that stay (3 each), the residual.
+/// the next clock (6), the calibration where it is estimated, landmarks that stay (3 each), the residual.
 class OldestStack {
  public:
   OldestStack(const Window& window, const LinearPrior& prior, const SlamChange& slam,
-              const GnssFactorContext* gnss);
+              const GnssFactorContext* gnss, const WindowCalibration* calibration);
 
   void AddPrior();
   void AddImu(const Eigen::Vector3d& gravity_W);
@@ -35,8 +35,10 @@ class OldestStack {
     return frame == 0 ? 0 : leaving_ + (frame == 1 ? 0 : 15 + 6 * (frame - 2));
   }
   [[nodiscard]] Index Clock() const { return Frame(window_.size()); }
+  [[nodiscard]] Index Calibration() const { return Clock() + clock_; }
+  [[nodiscard]] Index calibration_size() const { return prior_.calibration_size(); }
   [[nodiscard]] Index Staying(size_t landmark) const {
-    return Clock() + clock_ + 3 * static_cast<Index>(landmark);
+    return Calibration() + calibration_size() + 3 * static_cast<Index>(landmark);
   }
   [[nodiscard]] Index residual_column() const { return Staying(slam_.after.size()); }
   Index NewRows(Index count);
@@ -51,6 +53,7 @@ class OldestStack {
   const LinearPrior& prior_;
   const SlamChange& slam_;
   const GnssFactorContext* gnss_;
+  const WindowCalibration* calibration_;
   Index clock_;
   Index leaving_;                 ///< columns
   std::vector<Index> column_of_;  ///< of the old prior's landmarks
@@ -61,11 +64,18 @@ class OldestStack {
 };
 
 OldestStack::OldestStack(const Window& window, const LinearPrior& prior, const SlamChange& slam,
-                         const GnssFactorContext* gnss)
-    : window_(window), prior_(prior), slam_(slam), gnss_(gnss), clock_(gnss != nullptr ? 6 : 0) {
+                         const GnssFactorContext* gnss, const WindowCalibration* calibration)
+    : window_(window),
+      prior_(prior),
+      slam_(slam),
+      gnss_(gnss),
+      calibration_(calibration),
+      clock_(gnss != nullptr ? 6 : 0) {
   CHECK(slam.before.size() == prior.landmarks.size());
+  CHECK((calibration == nullptr) == !prior.calibration_origin.has_value());
   if (!slam.before.empty() || !slam.after.empty()) {
-    geometry_ = MakeGeometry(window, slam.T_BC);
+    geometry_ =
+        calibration == nullptr ? MakeGeometry(window, slam.T_BC) : MakeGeometry(window, calibration->mean);
   }
   leaving_ = 15 + clock_;
   for (const WindowTrack* track : slam.before) {
@@ -111,6 +121,12 @@ void OldestStack::AddPrior() {
     stack_.block(0, 15, count, 6) = jacobian;
     residual.noalias() += jacobian * (window_.frame(0).clock_state() - *prior_.clock_origin);
   }
+  if (calibration_ != nullptr) {
+    const WindowCalibration& origin = *prior_.calibration_origin;
+    const MatrixXd jacobian = prior_.jacobian.middleCols(prior_.CalibrationColumn(), calibration_size());
+    stack_.block(0, Calibration(), count, calibration_size()) = jacobian;
+    residual.noalias() += jacobian * Local(origin.layout, origin.mean, calibration_->mean);
+  }
   for (size_t i = 0; i < prior_.landmarks.size(); ++i) {
     AddPriorLandmark(i, count, &residual);
   }
@@ -139,10 +155,13 @@ void OldestStack::AddPriorLandmark(size_t landmark, Index rows, VectorXd* residu
                      track->landmark, &back));
   AnchorChange change;
   CHECK(ChangeAnchor(geometry_[static_cast<size_t>(from)], geometry_[static_cast<size_t>(to)], back.to,
-                     &change));
+                     &change, calibration_ == nullptr ? nullptr : &calibration_->layout));
   stack_.block(0, at, rows, 3).noalias() = columns * change.landmark;
   stack_.block(0, Frame(from), rows, 6).noalias() += columns * (change.from_frame * Chart(from));
   stack_.block(0, Frame(to), rows, 6).noalias() += columns * (change.to_frame * Chart(to));
+  if (calibration_ != nullptr) {
+    stack_.block(0, Calibration(), rows, calibration_size()).noalias() += columns * change.calibration;
+  }
   residual->noalias() += columns * (back.to - known.origin);
 }
 
@@ -165,6 +184,7 @@ void OldestStack::AddVision(const PoseSystem& vision) {
   for (int i = 0; i < window_.size(); ++i) {
     stack_.block(first, Frame(i), count, 6).noalias() = jacobian.middleCols<6>(6 * i) * Chart(i);
   }
+  stack_.block(first, Calibration(), count, calibration_size()) = jacobian.rightCols(calibration_size());
   stack_.col(residual_column()).segment(first, count) = residual;
 }
 
@@ -202,7 +222,7 @@ void OldestStack::AddView(const WindowTrack& track, const WindowView& view, Inde
   const int anchor = track.anchor->index;
   const int seen = view.frame->index;
   if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], geometry_[static_cast<size_t>(seen)],
-                             view.observation, slam_.kernel, track.landmark, &rows)) {
+                             view.observation, slam_.kernel, track.landmark, &rows, true, calibration_)) {
     return;
   }
   const Index first = NewRows(2);
@@ -210,6 +230,9 @@ void OldestStack::AddView(const WindowTrack& track, const WindowView& view, Inde
   if (anchor != seen) {
     stack_.block<2, 6>(first, Frame(anchor)) = root * rows.anchor * Chart(anchor);
     stack_.block<2, 6>(first, Frame(seen)) = root * rows.view * Chart(seen);
+  }
+  if (calibration_ != nullptr) {
+    stack_.block(first, Calibration(), 2, calibration_size()) = root * rows.calibration;
   }
   stack_.block<2, 3>(first, landmark_column) = root * rows.landmark;
   stack_.col(residual_column()).segment<2>(first) = root * rows.residual;
@@ -244,6 +267,9 @@ LinearPrior OldestStack::Eliminate() {
   if (gnss_ != nullptr) {
     next.clock_origin = window_.frame(1).clock_state();
   }
+  if (calibration_ != nullptr) {
+    next.calibration_origin = *calibration_;
+  }
   for (int i = 1; i < window_.size(); ++i) {
     const WindowFrame& frame = window_.frame(i);
     next.anchors.push_back({&frame, frame.nav_state(), frame.imu_bias()});
@@ -259,7 +285,7 @@ LinearPrior OldestStack::Eliminate() {
 LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                               const Eigen::Vector3d& gravity_W, const GnssFactorContext* gnss,
                               const SlamChange& slam) {
-  OldestStack stack(window, prior, slam, gnss);
+  OldestStack stack(window, prior, slam, gnss, vision.calibration);
   stack.AddPrior();
   stack.AddImu(gravity_W);
   stack.AddVision(vision);

@@ -17,7 +17,7 @@ struct SlamChange {
   /// based in the oldest frame. A view in the oldest frame goes into the prior. Of the tracks of `before`
   /// that are not among them every view does, and the landmark is eliminated.
   std::vector<const WindowTrack*> after;
-  Pose T_BC;
+  Pose T_BC;  ///< of a camera that is not calibrated online
   ObservationKernel kernel;
 };
 
@@ -31,7 +31,7 @@ struct SlamChange {
 /// With right-invariant errors the gauge directions are the same at every state, so they are then kept
 /// exactly.
 /// Of an aligned window (`gnss`) its epochs and its clock leave with it, tied to the next frame's clock.
-/// `slam`: the landmarks of the prior.
+/// A calibration that `vision` and `prior` hold stays. `slam`: the landmarks of the prior.
 LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                               const Eigen::Vector3d& gravity_W, const GnssFactorContext* gnss = nullptr,
                               const SlamChange& slam = {});

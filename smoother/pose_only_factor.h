@@ -31,8 +31,11 @@ class PoseOnlyFactor {
   /// `tracks` have landmarks to start from; they and the frames they point to must outlive the factor.
   PoseOnlyFactor(int frames, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
                  const ObservationKernel& kernel);
+  /// With a camera that is calibrated online; its block comes last. Both must outlive the factor.
+  PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks,
+                 const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  [[nodiscard]] int rows() const { return 6 * frames_ + 1; }
+  [[nodiscard]] int rows() const { return 6 * frames_ + calibration_size() + 1; }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
@@ -45,9 +48,13 @@ class PoseOnlyFactor {
     Eigen::VectorXd residual;
     TrackWorkspace workspace;
   };
-  void Linearize(const double* const* parameters) const;
+  /// False when the calibration block is no camera.
+  bool Linearize(const double* const* parameters) const;
+  [[nodiscard]] int calibration_size() const { return calibration_ == nullptr ? 0 : calibration_->size(); }
 
   int frames_;
+  const Window* window_ = nullptr;  ///< with calibration_
+  const WindowCalibration* calibration_ = nullptr;
   std::vector<const WindowTrack*> tracks_;
   Pose T_BC_;
   ObservationKernel kernel_;

@@ -1,6 +1,7 @@
 #include "smoother/prior_factor.h"
 
 #include <Eigen/Cholesky>
+#include <utility>
 
 #include "smoother/imu_factor.h"
 
@@ -30,11 +31,28 @@ bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, cons
   return prior->jacobian.allFinite();
 }
 
-PriorFactor::PriorFactor(const LinearPrior* prior) : prior_(prior) {
+void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior) {
+  const Eigen::Index rows = prior->jacobian.rows();
+  const Eigen::Index columns = prior->jacobian.cols();
+  const Eigen::Index size = estimate.layout.size();
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows + size, columns + size);
+  jacobian.topLeftCorner(rows, columns) = prior->jacobian;
+  jacobian.bottomRightCorner(size, size).diagonal() = estimate.deviations.cwiseInverse();
+  prior->jacobian = std::move(jacobian);
+  prior->residual.conservativeResize(rows + size);
+  prior->residual.tail(size).setZero();
+  prior->calibration_origin = WindowCalibration{estimate.layout, estimate.mean};
+}
+
+PriorFactor::PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration)
+    : prior_(prior), calibration_(calibration) {
   blocks_ = {BlockKind::kNavState, BlockKind::kBias};
   blocks_.resize(prior->anchors.size() + 1, BlockKind::kNavState);
   if (prior->clock_origin) {
     blocks_.push_back(BlockKind::kClock);
+  }
+  if (calibration_ != nullptr) {
+    blocks_.push_back(BlockKind::kCalibration);
   }
 }
 
@@ -70,9 +88,26 @@ bool PriorFactor::Evaluate(const double* const* parameters, double* residual,
   if (prior_->clock_origin) {
     const int block = count + 1;
     const Eigen::Map<const Vector6d> clock(parameters[block]);
-    r.noalias() += J.rightCols<6>() * (clock - *prior_->clock_origin);
+    r.noalias() += J.middleCols<6>(prior_->ClockColumn()) * (clock - *prior_->clock_origin);
     if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
-      RowMap<6>(tangent_jacobians[block], rows(), 6) = J.rightCols<6>();
+      RowMap<6>(tangent_jacobians[block], rows(), 6) = J.middleCols<6>(prior_->ClockColumn());
+    }
+  }
+  if (calibration_ != nullptr) {
+    const int block = count + 1 + (prior_->clock_origin ? 1 : 0);
+    const WindowCalibration& origin = *prior_->calibration_origin;
+    CameraCalibration camera;
+    if (!calibration_->At(parameters[block], &camera)) {
+      return false;
+    }
+    const auto columns = J.middleCols(prior_->CalibrationColumn(), origin.size());
+    r.noalias() += columns * Local(origin.layout, origin.mean, camera);
+    if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
+      constexpr int kWidth = CalibrationLayout::kMaxSize;
+      RowMap<kWidth> out(tangent_jacobians[block], rows(), kWidth);
+      out.setZero();
+      out.leftCols(origin.size()).noalias() = columns * LocalJacobian(origin.layout, origin.mean, camera) *
+                                              calibration_->BlockJacobian(parameters[block]);
     }
   }
   return true;

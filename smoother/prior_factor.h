@@ -7,6 +7,7 @@
 
 #include "smoother/lifted_cost.h"
 #include "smoother/window.h"
+#include "smoother/window_calibration.h"
 
 namespace alidade {
 
@@ -16,9 +17,9 @@ namespace alidade {
 ///
 /// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision
 /// reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the next one
-/// alone. Once aligned with GNSS, the clock of the first frame has six more after them. Landmarks whose
-/// information outlives the window have three each at the end, (x, y, rho) in the camera of a frame that is
-/// in the window: so they do not move with the gauge.
+/// alone. Once aligned with GNSS, the clock of the first frame has six more, then comes the camera's
+/// calibration where it is estimated. Landmarks whose information outlives the window have three each at the
+/// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge.
 struct LinearPrior {
   struct Anchor {
     const WindowFrame* frame = nullptr;
@@ -37,12 +38,16 @@ struct LinearPrior {
   Eigen::VectorXd residual;  ///< m, r0
 
   std::optional<Vector6d> clock_origin;
+  /// Of a camera that is calibrated online.
+  std::optional<WindowCalibration> calibration_origin;
 
   [[nodiscard]] static int Column(int anchor) { return anchor == 0 ? 0 : 15 + 6 * (anchor - 1); }
   [[nodiscard]] int columns() const { return LandmarkColumn(static_cast<int>(landmarks.size())); }
   [[nodiscard]] int ClockColumn() const { return Column(static_cast<int>(anchors.size())); }
+  [[nodiscard]] int CalibrationColumn() const { return ClockColumn() + (clock_origin ? 6 : 0); }
+  [[nodiscard]] int calibration_size() const { return calibration_origin ? calibration_origin->size() : 0; }
   [[nodiscard]] int LandmarkColumn(int landmark) const {
-    return ClockColumn() + (clock_origin ? 6 : 0) + 3 * landmark;
+    return CalibrationColumn() + calibration_size() + 3 * landmark;
   }
 };
 
@@ -51,14 +56,18 @@ struct LinearPrior {
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior);
 
+/// Appends what is known about the calibration, independent of all else, to a prior without landmarks that
+/// has its clock already.
+void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior);
+
 /// LinearPrior without landmarks as a factor (with them: smoother/slam_prior_factor.h); blocks nav and bias
-/// of the first frame, nav of the others, clock of the first.
+/// of the first frame, nav of the others, clock of the first, calibration.
 class PriorFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
 
-  /// `prior` must outlive the factor.
-  explicit PriorFactor(const LinearPrior* prior);
+  /// Both must outlive the factor. calibration: what the calibration's block refers to.
+  explicit PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration = nullptr);
 
   [[nodiscard]] int rows() const { return static_cast<int>(prior_->residual.size()); }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
@@ -66,6 +75,7 @@ class PriorFactor {
 
  private:
   const LinearPrior* prior_;
+  const WindowCalibration* calibration_;
   std::vector<BlockKind> blocks_;
 };
 

@@ -51,6 +51,34 @@ struct SlamPrior::Views {
   MatrixXd coupling;       ///< 3L x columns
   MatrixXd frame_hessian;  ///< full
   VectorXd frame_gradient;
+
+  /// A view's part over the calibration, whose columns begin at `at`, and over its landmark.
+  void AddCalibration(const AnchoredRows& rows, Index landmark, Index at) {
+    const Index size = rows.calibration.cols();
+    const Eigen::MatrixX2d weighted = rows.weight * rows.calibration.transpose();
+    coupling.block(landmark, at, 3, size).noalias() +=
+        rows.weight * rows.landmark.transpose() * rows.calibration;
+    frame_hessian.block(at, at, size, size).noalias() += weighted * rows.calibration;
+    frame_gradient.segment(at, size).noalias() += weighted * rows.residual;
+  }
+  /// And between the calibration and a pose.
+  void Couple(const AnchoredRows& rows, const Eigen::Matrix<double, 2, 6>& pose, Index pose_at, Index at) {
+    const Index size = rows.calibration.cols();
+    const Eigen::MatrixXd both = rows.weight * pose.transpose() * rows.calibration;
+    frame_hessian.block(pose_at, at, 6, size) += both;
+    frame_hessian.block(at, pose_at, size, 6) += both.transpose();
+  }
+};
+
+struct SlamPrior::Scene {
+  std::vector<FrameGeometry> geometry;
+  std::optional<WindowCalibration> calibration;
+  std::vector<std::vector<WindowView>> renormalized;  ///< of each track, where the intrinsics are estimated
+
+  [[nodiscard]] const std::vector<WindowView>& Views(const std::vector<const WindowTrack*>& tracks,
+                                                     size_t track) const {
+    return renormalized.empty() ? tracks[track]->views : renormalized[track];
+  }
 };
 
 SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
@@ -66,6 +94,33 @@ SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> t
   }
 }
 
+SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+                     const WindowCalibration& calibration, const ObservationKernel& kernel)
+    : SlamPrior(prior, std::move(tracks), calibration.mean.T_BC, kernel, window.size()) {
+  window_ = &window;
+  calibration_ = &calibration;
+}
+
+SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
+  Scene scene;
+  for (size_t i = 0; i < point.states.size(); ++i) {
+    scene.geometry.push_back(calibration_ == nullptr ? MakeGeometry(point.states[i], T_BC_)
+                                                     : MakeGeometry(window_->frame(static_cast<int>(i)),
+                                                                    point.states[i], point.camera));
+  }
+  if (calibration_ == nullptr) {
+    return scene;
+  }
+  scene.calibration = WindowCalibration{calibration_->layout, point.camera};
+  if (calibration_->layout.intrinsics() >= 0) {
+    for (const WindowTrack* track : tracks_) {
+      scene.renormalized.push_back(track == nullptr ? std::vector<WindowView>()
+                                                    : Renormalized(point.camera.camera, track->views));
+    }
+  }
+  return scene;
+}
+
 VectorXd SlamPrior::StartingLandmarks() const {
   VectorXd landmarks = origins_;
   for (size_t i = 0; i < tracks_.size(); ++i) {
@@ -76,8 +131,10 @@ VectorXd SlamPrior::StartingLandmarks() const {
   return landmarks;
 }
 
-bool SlamPrior::Linearize(const std::vector<FrameGeometry>& geometry, const VectorXd& landmarks,
-                          bool with_frames, Views* views) const {
+bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool with_frames,
+                          Views* views) const {
+  const std::vector<FrameGeometry>& geometry = scene.geometry;
+  const WindowCalibration* calibration = scene.calibration ? &*scene.calibration : nullptr;
   views->landmark_hessian.assign(tracks_.size(), Eigen::Matrix3d::Zero());
   views->landmark_gradient.setZero(landmarks.size());
   views->robust_cost = 0;
@@ -92,17 +149,20 @@ bool SlamPrior::Linearize(const std::vector<FrameGeometry>& geometry, const Vect
     }
     const Index row = 3 * static_cast<Index>(i);
     const int anchor = tracks_[i]->anchor->index;
-    for (const WindowView& view : tracks_[i]->views) {
+    for (const WindowView& view : scene.Views(tracks_, i)) {
       AnchoredRows rows;
       if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)],
                                  geometry[static_cast<size_t>(view.frame->index)], view.observation, kernel_,
-                                 landmarks.segment<3>(row), &rows, with_frames)) {
+                                 landmarks.segment<3>(row), &rows, with_frames, calibration)) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);
       const Eigen::Matrix<double, 3, 2> weighted = rows.weight * rows.landmark.transpose();
       views->landmark_hessian[i].noalias() += weighted * rows.landmark;
       views->landmark_gradient.segment<3>(row).noalias() += weighted * rows.residual;
+      if (with_frames && calibration != nullptr) {
+        views->AddCalibration(rows, row, CalibrationColumn());
+      }
       if (!with_frames || view.frame->index == anchor) {
         continue;  // seen from its own anchor a landmark concerns no pose
       }
@@ -116,6 +176,9 @@ bool SlamPrior::Linearize(const std::vector<FrameGeometry>& geometry, const Vect
         views->frame_gradient.segment<6>(at[k]) += gradient.segment<6>(6 * k);
         for (int l = 0; l < 2; ++l) {
           views->frame_hessian.block<6, 6>(at[k], at[l]) += hessian.block<6, 6>(6 * k, 6 * l);
+        }
+        if (calibration != nullptr) {
+          views->Couple(rows, both.middleCols<6>(6 * k), at[k], CalibrationColumn());
         }
       }
     }
@@ -137,10 +200,14 @@ VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
   if (prior_->clock_origin) {
     xi.segment<6>(prior_->ClockColumn()) = *point.clock - *prior_->clock_origin;
   }
+  if (prior_->calibration_origin) {
+    const WindowCalibration& camera = *prior_->calibration_origin;
+    xi.segment(prior_->CalibrationColumn(), camera.size()) = Local(camera.layout, camera.mean, point.camera);
+  }
   return xi;
 }
 
-/// Columns over the prior's frames [and clock] to columns of the reduced system.
+/// Columns over the prior's frames [, clock and calibration] to columns of the reduced system.
 MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& columns) const {
   MatrixXd chained = MatrixXd::Zero(columns.rows(), this->columns());
   for (size_t i = 0; i < prior_->anchors.size(); ++i) {
@@ -155,13 +222,18 @@ MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& column
   }
   chained.middleCols<6>(9) = columns.middleCols<6>(9);
   if (prior_->clock_origin) {
-    chained.rightCols<6>() = columns.middleCols<6>(prior_->ClockColumn());
+    chained.middleCols<6>(Column(frames_)) = columns.middleCols<6>(prior_->ClockColumn());
+  }
+  if (prior_->calibration_origin) {
+    const WindowCalibration& camera = *prior_->calibration_origin;
+    chained.rightCols(camera.size()).noalias() =
+        columns.middleCols(prior_->CalibrationColumn(), camera.size()) *
+        LocalJacobian(camera.layout, camera.mean, point.camera);
   }
   return chained;
 }
 
-bool SlamPrior::Minimize(const VectorXd& xi, const std::vector<FrameGeometry>& geometry, VectorXd* landmarks,
-                         double* cost) const {
+bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landmarks, double* cost) const {
   const Index frames = xi.size();
   const Index size = landmarks->size();
   const auto landmark_gram = gram_.block(frames, frames, size, size);
@@ -174,7 +246,7 @@ bool SlamPrior::Minimize(const VectorXd& xi, const std::vector<FrameGeometry>& g
     return offset + (at - origins_).dot(slope + pull) + views.robust_cost;
   };
   Views views;
-  if (!Linearize(geometry, *landmarks, false, &views)) {
+  if (!Linearize(scene, *landmarks, false, &views)) {
     return false;
   }
   VectorXd pull = slope + landmark_gram * (*landmarks - origins_);
@@ -198,7 +270,7 @@ bool SlamPrior::Minimize(const VectorXd& xi, const std::vector<FrameGeometry>& g
     }
     const VectorXd candidate = *landmarks + step;
     Views next;
-    const bool in_front = Linearize(geometry, candidate, false, &next);
+    const bool in_front = Linearize(scene, candidate, false, &next);
     const VectorXd next_pull = slope + landmark_gram * (candidate - origins_);
     const double next_cost = in_front ? total(candidate, next_pull, next) : *cost;
     if (in_front && next_cost <= *cost) {
@@ -218,14 +290,10 @@ bool SlamPrior::Minimize(const VectorXd& xi, const std::vector<FrameGeometry>& g
 }
 
 bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* reduced) const {
-  std::vector<FrameGeometry> geometry;
-  for (const NavState& state : point.states) {
-    geometry.push_back(MakeGeometry(state, T_BC_));
-  }
+  const Scene scene = MakeScene(point);
   const VectorXd xi = Displacement(point);
   Views views;
-  if (!Minimize(xi, geometry, landmarks, &reduced->robust_cost) ||
-      !Linearize(geometry, *landmarks, true, &views)) {
+  if (!Minimize(xi, scene, landmarks, &reduced->robust_cost) || !Linearize(scene, *landmarks, true, &views)) {
     return false;
   }
   const Index frames = xi.size();

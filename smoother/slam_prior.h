@@ -19,6 +19,7 @@ struct WindowPoint {
   std::vector<NavState> states;   ///< of every frame
   ImuBias bias;                   ///< of the first
   std::optional<Vector6d> clock;  ///< of the first, in an aligned window
+  CameraCalibration camera;       ///< where it is calibrated online
 };
 [[nodiscard]] WindowPoint PointOf(const Window& window);
 
@@ -33,16 +34,22 @@ class SlamPrior {
   /// `prior` and `tracks` (PriorTracks) must outlive it.
   SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
             const ObservationKernel& kernel, int frames);
+  /// With a camera that is calibrated online; `window` and `calibration` must outlive it too.
+  SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+            const WindowCalibration& calibration, const ObservationKernel& kernel);
 
   /// Normal equations, landmarks eliminated, canonical chart: 15 columns of the first frame, (phi, dp) of
-  /// every other one, the first clock's six in an aligned window.
+  /// every other one, the first clock's six in an aligned window, the calibration's where it is estimated.
   struct Reduced {
     Eigen::MatrixXd hessian;  ///< lower triangle
     Eigen::VectorXd gradient;
     double robust_cost = 0;
   };
   [[nodiscard]] static int Column(int frame) { return LinearPrior::Column(frame); }
-  [[nodiscard]] int columns() const { return Column(frames_) + (prior_->clock_origin ? 6 : 0); }
+  [[nodiscard]] int CalibrationColumn() const { return Column(frames_) + (prior_->clock_origin ? 6 : 0); }
+  [[nodiscard]] int columns() const { return CalibrationColumn() + prior_->calibration_size(); }
+  /// Null unless it is estimated.
+  [[nodiscard]] const WindowCalibration* calibration() const { return calibration_; }
   [[nodiscard]] const LinearPrior& prior() const { return *prior_; }
   [[nodiscard]] std::span<const WindowTrack* const> tracks() const { return tracks_; }
 
@@ -53,19 +60,22 @@ class SlamPrior {
 
  private:
   struct Views;  // what the views say at a point
-  bool Linearize(const std::vector<FrameGeometry>& geometry, const Eigen::VectorXd& landmarks,
-                 bool with_frames, Views* views) const;
+  struct Scene;  // where the cameras are at a point, and the rays they see
+  [[nodiscard]] Scene MakeScene(const WindowPoint& point) const;
+  bool Linearize(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
   [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point) const;
   [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Eigen::MatrixXd& columns) const;
-  bool Minimize(const Eigen::VectorXd& xi, const std::vector<FrameGeometry>& geometry,
-                Eigen::VectorXd* landmarks, double* cost) const;
+  bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,
+                double* cost) const;
 
   const LinearPrior* prior_;
   std::vector<const WindowTrack*> tracks_;
   Pose T_BC_;
   ObservationKernel kernel_;
   int frames_;
-  Eigen::MatrixXd gram_;  ///< [J r0]^T [J r0], frames (with the clock) first, then landmarks, then r0
+  const Window* window_ = nullptr;  ///< with calibration_
+  const WindowCalibration* calibration_ = nullptr;
+  Eigen::MatrixXd gram_;  ///< [J r0]^T [J r0]: frames, clock and calibration first, then landmarks, then r0
   Eigen::VectorXd origins_;
 };
 

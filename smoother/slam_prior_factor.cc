@@ -21,10 +21,13 @@ SlamPriorFactor::SlamPriorFactor(const SlamPrior* prior, int frames)
   if (prior->prior().clock_origin) {
     blocks_.push_back(BlockKind::kClock);
   }
+  if (prior->calibration() != nullptr) {
+    blocks_.push_back(BlockKind::kCalibration);
+  }
   memo_->landmarks = prior->StartingLandmarks();
 }
 
-void SlamPriorFactor::Linearize(const double* const* parameters) const {
+bool SlamPriorFactor::Linearize(const double* const* parameters) const {
   std::vector<double> values;
   WindowPoint point;
   for (size_t i = 0; i < blocks_.size(); ++i) {
@@ -33,12 +36,14 @@ void SlamPriorFactor::Linearize(const double* const* parameters) const {
       point.states.push_back(UnpackNavState(parameters[i]));
     } else if (blocks_[i] == BlockKind::kBias) {
       point.bias = UnpackBias(parameters[i]);
-    } else {
+    } else if (blocks_[i] == BlockKind::kClock) {
       point.clock = Eigen::Map<const Vector6d>(parameters[i]);
+    } else if (!prior_->calibration()->At(parameters[i], &point.camera)) {
+      return false;
     }
   }
   if (values == memo_->parameters) {
-    return;
+    return true;
   }
   memo_->parameters = std::move(values);
   SlamPrior::Reduced reduced;
@@ -46,18 +51,21 @@ void SlamPriorFactor::Linearize(const double* const* parameters) const {
   if (!prior_->Reduce(point, &landmarks, &reduced)) {
     memo_->jacobian.setZero(prior_->columns(), prior_->columns());
     memo_->residual.setConstant(rows(), std::sqrt(kBehindCost));
-    return;
+    return true;
   }
   memo_->landmarks = std::move(landmarks);
   Eigen::VectorXd root;
   SquareRootRows(reduced.hessian, reduced.gradient, &memo_->jacobian, &root);
   memo_->residual.resize(rows());
   memo_->residual << root, std::sqrt(std::max(0.0, reduced.robust_cost - root.squaredNorm()));
+  return true;
 }
 
 bool SlamPriorFactor::Evaluate(const double* const* parameters, double* residual,
                                double* const* tangent_jacobians) const {
-  Linearize(parameters);
+  if (!Linearize(parameters)) {
+    return false;
+  }
   Eigen::Map<Eigen::VectorXd>(residual, rows()) = memo_->residual;
   const auto write = [&](size_t block, Eigen::Index from, Eigen::Index width) {
     if (tangent_jacobians == nullptr || tangent_jacobians[block] == nullptr) {
@@ -73,8 +81,19 @@ bool SlamPriorFactor::Evaluate(const double* const* parameters, double* residual
   for (int i = 1; i < frames_; ++i) {
     write(static_cast<size_t>(i) + 1, SlamPrior::Column(i), 6);
   }
-  if (blocks_.back() == BlockKind::kClock) {
-    write(blocks_.size() - 1, prior_->columns() - 6, 6);
+  const size_t clock = static_cast<size_t>(frames_) + 1;
+  if (prior_->prior().clock_origin) {
+    write(clock, SlamPrior::Column(frames_), 6);
+  }
+  const size_t last = blocks_.size() - 1;
+  if (blocks_[last] == BlockKind::kCalibration && tangent_jacobians != nullptr &&
+      tangent_jacobians[last] != nullptr) {
+    using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, CalibrationLayout::kMaxSize, Eigen::RowMajor>;
+    Eigen::Map<RowMatrix> out(tangent_jacobians[last], rows(), CalibrationLayout::kMaxSize);
+    const int size = prior_->calibration()->size();
+    out.setZero();
+    out.topLeftCorner(rows() - 1, size).noalias() =
+        memo_->jacobian.rightCols(size) * prior_->calibration()->BlockJacobian(parameters[last]);
   }
   return true;
 }

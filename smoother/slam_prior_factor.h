@@ -11,7 +11,7 @@ namespace alidade {
 
 /// SlamPrior as one factor, handed over as the square root of its normal equations and one last row with the
 /// rest of the cost, as PoseOnlyFactor does. Blocks: nav and bias of the first frame, nav of the others,
-/// clock of the first in an aligned window.
+/// clock of the first in an aligned window, calibration where it is estimated.
 class SlamPriorFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
@@ -30,7 +30,8 @@ class SlamPriorFactor {
     Eigen::MatrixXd jacobian;
     Eigen::VectorXd residual;
   };
-  void Linearize(const double* const* parameters) const;
+  /// False when the calibration block is no camera.
+  bool Linearize(const double* const* parameters) const;
 
   const SlamPrior* prior_;
   int frames_;

@@ -26,12 +26,25 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       gate_(config.vision.gate_probability),
       imu_(config.imu.max_gap_s),
       rest_(config.vision, config.init, rig.camera),
-      gnss_(config.gnss, rig.gnss, solve_options_.gravity_W) {}
+      gnss_(config.gnss, rig.gnss, solve_options_.gravity_W),
+      given_(InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s})),
+      calibration_{given_.layout, given_.mean} {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {
+  calibration_.mean = given_.mean;
+  ALIDADE_RETURN_IF_ERROR(Begin(initial));
+  if (calibrates()) {
+    calibration_deviations_ = given_.deviations;
+    AddCalibrationPrior(given_, &prior_);
+  }
+  return Status::Ok();
+}
+
+Status SmootherEstimator::Begin(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(CheckInitialState(initial));
   auto frame = std::make_unique<WindowFrame>();
   frame->stamp_ns = initial.stamp_ns;
+  frame->time_offset_s = camera().time_offset_s;
   PackNavState(initial.nav, frame->nav.data());
   PackBias(initial.bias, frame->bias.data());
   LinearPrior prior;
@@ -48,6 +61,16 @@ Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   statistics_ = {};
   initialized_ = true;
   return Status::Ok();
+}
+
+std::optional<CalibrationEstimate> SmootherEstimator::LatestCalibration() const {
+  return calibrates() ? std::optional(CalibrationEstimate{calibration_.layout, calibration_.mean,
+                                                          calibration_deviations_})
+                      : std::nullopt;
+}
+
+std::vector<FrameGeometry> SmootherEstimator::Geometry() const {
+  return calibrates() ? MakeGeometry(window_, camera()) : MakeGeometry(window_, camera().T_BC);
 }
 
 Status SmootherEstimator::AddImu(const ImuSample& sample) {
@@ -67,10 +90,10 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   statistics_ = {};
   has_frames_ = true;
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
-  ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(rig_.camera_time_offset_s)));
+  ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(camera().time_offset_s)));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   statistics_.observations_invalid =
-      window_.AddObservations(rig_.camera, config_.vision.pixel_noise_px, frame.observations);
+      window_.AddObservations(camera().camera, config_.vision.pixel_noise_px, frame.observations);
   window_.Prune();
   DetectRest(frame);
   if (window_.size() > 1) {
@@ -111,7 +134,7 @@ bool SmootherEstimator::NewestIsKeyframe() const {
     return true;
   }
   const FrameParallax parallax =
-      ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), rig_.T_BC);
+      ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), camera().T_BC);
   const auto seen = std::count_if(window_.tracks().begin(), window_.tracks().end(),
                                   [](const auto& item) { return item.second.alive; });
   // Most tracks without a view in the last keyframe would lose the one view they have.
@@ -124,6 +147,11 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   auto frame = std::make_unique<WindowFrame>();
   frame->stamp_ns = stamp_ns;
   frame->bias = from.bias;
+  frame->time_offset_s = camera().time_offset_s;
+  frame->gyro_radps = interval_.back().gyro;
+  if (!window_.newest().gyro_radps) {
+    window_.newest().gyro_radps = interval_.front().gyro;  // of the frame it was initialised on
+  }
   NavState state = from.nav_state();
   PropagateImu(interval_, from.imu_bias(), noise_, solve_options_.gravity_W, &state, nullptr);
   PackNavState(state, frame->nav.data());
@@ -144,7 +172,7 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
     return;
   }
   WindowFrame& newest = window_.newest();
-  const RestVerdict verdict = rest_.AddFrame(frame, newest.nav_state().R_WB * rig_.T_BC.rotation);
+  const RestVerdict verdict = rest_.AddFrame(frame, newest.nav_state().R_WB * camera().T_BC.rotation);
   statistics_.at_rest = verdict.no_translation;
   if (verdict.no_translation) {
     newest.rest = MakeRestMeasurement(verdict, rest_.MeanGyro(), config_.vision);
@@ -155,22 +183,30 @@ std::optional<SlamPrior> SmootherEstimator::MakeSlamPrior() const {
   if (prior_.landmarks.empty()) {
     return std::nullopt;
   }
-  return SlamPrior(&prior_, PriorTracks(prior_, window_), rig_.T_BC, kernel_, window_.size());
+  return calibrates() ? SlamPrior(&prior_, PriorTracks(prior_, window_), window_, calibration_, kernel_)
+                      : SlamPrior(&prior_, PriorTracks(prior_, window_), rig_.T_BC, kernel_, window_.size());
 }
 
 Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   for (int i = 1; i < window_.size(); ++i) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
+  if (calibrates()) {
+    window_.UpdateRates();
+  }
   std::optional<SlamPrior> slam = MakeSlamPrior();
   const Result<WindowSolveReport> report =
-      SolveWindow(solve_options_, prior_, *tracks, &window_, gnss_.context(), slam ? &*slam : nullptr);
+      SolveWindow(solve_options_, prior_, *tracks, &window_, gnss_.context(), slam ? &*slam : nullptr,
+                  calibrates() ? &calibration_ : nullptr);
   if (!report.ok()) {
     return Lost(report.message());
   }
   statistics_.iterations = report->iterations;
+  if (calibration_.layout.intrinsics() >= 0) {
+    window_.Renormalize(camera().camera);
+  }
 
-  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
+  const std::vector<FrameGeometry> geometry = Geometry();
   SlamPrior::Reduced reduced;
   if (slam && !ReduceSlamPrior(*slam, &reduced)) {
     return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) + " s have no solution");
@@ -191,7 +227,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (gnss_.aligned()) {
     gnss_.Gate(&window_, &statistics_);
   }
-  PoseSystem vision(window_.size());
+  PoseSystem vision(window_.size(), Calibration());
   for (const WindowTrack* track : *tracks) {
     if (track->views.size() >= kMinViews) {
       AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision, track->depth_prior);
@@ -205,7 +241,9 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
 
 bool SmootherEstimator::ReduceSlamPrior(const SlamPrior& slam, SlamPrior::Reduced* reduced) {
   Eigen::VectorXd landmarks = slam.StartingLandmarks();
-  if (!slam.Reduce(PointOf(window_), &landmarks, reduced)) {
+  WindowPoint point = PointOf(window_);
+  point.camera = camera();
+  if (!slam.Reduce(point, &landmarks, reduced)) {
     return false;
   }
   for (size_t i = 0; i < slam.tracks().size(); ++i) {
@@ -225,7 +263,8 @@ Status SmootherEstimator::UpdateLatest(const PoseSystem& vision, const SlamPrior
     latest_clock_.mean = newest.clock_state();
   }
   if (!NewestCovariance(window_, prior_, vision, solve_options_.gravity_W, &latest_.covariance,
-                        gnss_.context(), &latest_clock_.covariance, slam)) {
+                        gnss_.context(), &latest_clock_.covariance, slam,
+                        calibrates() ? &calibration_deviations_ : nullptr)) {
     return Lost("smoother: information at " + FormatSeconds(newest.stamp_ns) + " s is not positive definite");
   }
   return Status::Ok();

@@ -48,10 +48,22 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool initialized() const override { return initialized_; }
   [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
 
+  [[nodiscard]] std::optional<CalibrationEstimate> LatestCalibration() const override;
+
   [[nodiscard]] const Window& window() const { return window_; }
 
  private:
+  /// Without the calibration's prior.
+  Status Begin(const NavEstimate& initial);
   Status BeginFrame(TimeNs stamp_ns);
+  /// The camera as it is known now.
+  [[nodiscard]] const CameraCalibration& camera() const { return calibration_.mean; }
+  [[nodiscard]] bool calibrates() const { return calibration_.size() > 0; }
+  [[nodiscard]] std::vector<FrameGeometry> Geometry() const;
+  /// Null unless it is calibrated online.
+  [[nodiscard]] const WindowCalibration* Calibration() const {
+    return calibrates() ? &calibration_ : nullptr;
+  }
   [[nodiscard]] bool NewestIsKeyframe() const;
   void DetectRest(const TrackFrame& frame);
   void MarginalizeOldestFrame();
@@ -86,6 +98,9 @@ class SmootherEstimator final : public Estimator {
   Window window_;
   GnssWindow gnss_;
   LinearPrior prior_;
+  CalibrationEstimate given_;  ///< the calibration a run starts with
+  WindowCalibration calibration_;
+  Eigen::VectorXd calibration_deviations_;
   NavEstimate latest_;
   ClockState latest_clock_;
   bool has_frames_ = false;  ///< a camera has been heard of

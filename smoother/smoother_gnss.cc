@@ -12,8 +12,11 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
     return Status::Diverged("smoother: not initialised");
   }
   // The window begins anew at the newest state in the ENU frame: what it knew is in that state's covariance.
-  ALIDADE_RETURN_IF_ERROR(Initialize(TurnIntoEnu(alignment, latest_)));
+  ALIDADE_RETURN_IF_ERROR(Begin(TurnIntoEnu(alignment, latest_)));
   gnss_.Align(alignment, &window_.newest(), &prior_);
+  if (calibrates()) {
+    AddCalibrationPrior(*LatestCalibration(), &prior_);
+  }
   latest_clock_ = FreshClock(config_.gnss, window_.newest().clock_state());
   return Status::Ok();
 }

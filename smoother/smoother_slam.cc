@@ -68,15 +68,15 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
 
 void SmootherEstimator::MarginalizeOldestFrame() {
   const WindowFrame* oldest = &window_.frame(0);
-  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
-  SlamChange slam{PriorTracks(prior_, window_), {}, rig_.T_BC, kernel_};
+  const std::vector<FrameGeometry> geometry = Geometry();
+  SlamChange slam{PriorTracks(prior_, window_), {}, camera().T_BC, kernel_};
   const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
   const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
   const std::vector<WindowTrack*> promoted = NewFeatures(geometry, limit - std::min(limit, staying.size()));
   slam.after.assign(staying.begin(), staying.end());
   slam.after.insert(slam.after.end(), promoted.begin(), promoted.end());
 
-  PoseSystem vision(window_.size());
+  PoseSystem vision(window_.size(), Calibration());
   for (auto& [id, track] : window_.tracks()) {
     if (track.anchor != nullptr || track.views.empty() || track.views.front().frame != oldest) {
       continue;

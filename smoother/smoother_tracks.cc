@@ -61,7 +61,7 @@ double SmootherEstimator::TypicalInverseDepth() const {
 }
 
 std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
-  const std::vector<FrameGeometry> geometry = MakeGeometry(window_, rig_.T_BC);
+  const std::vector<FrameGeometry> geometry = Geometry();
   std::vector<WindowTrack*> selected;
   std::vector<WindowTrack*> without_depth;
   for (auto& [id, track] : window_.tracks()) {

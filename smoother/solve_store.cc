@@ -21,12 +21,14 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
 }  // namespace
 
 SolveStore::SolveStore(ErrorConvention error, const ObservationKernel& kernel, const Frames& frames,
-                       const std::vector<WindowTrack*>& tracks)
+                       const std::vector<WindowTrack*>& tracks, const WindowCalibration* calibration)
     : frames_(frames),
       tracks_(tracks),
+      calibration_(calibration),
       has_clocks_(frames.front()->clock.has_value()),
       parameters_(kFrameStride * frames.size() + kLandmarkStride * tracks.size() +
-                  (has_clocks_ ? kClockStride * frames.size() : 0)),
+                  (has_clocks_ ? kClockStride * frames.size() : 0) +
+                  (calibration != nullptr ? kCalibrationStride : 0)),
       manifold_(error),
       kernel_(kernel),
       loss_(MakeLoss(kernel)) {
@@ -56,11 +58,19 @@ std::unique_ptr<ceres::Problem> SolveStore::MakeProblem() {
       problem->AddParameterBlock(Clock(frame->index), ClockState::kSize);
     }
   }
+  if (calibration_ != nullptr) {
+    std::vector<int> fixed;
+    for (int i = calibration_->size(); i < CalibrationLayout::kMaxSize; ++i) {
+      fixed.push_back(i);
+    }
+    calibration_manifold_ = std::make_unique<ceres::SubsetManifold>(CalibrationLayout::kMaxSize, fixed);
+    problem->AddParameterBlock(Calibration(), CalibrationLayout::kMaxSize, calibration_manifold_.get());
+  }
   return problem;
 }
 
 void SolveStore::AddPrior(const LinearPrior& prior, ceres::Problem* problem) {
-  prior_.emplace(PriorFactor(&prior));
+  prior_.emplace(PriorFactor(&prior, calibration_));
   std::vector<double*> blocks;
   for (size_t i = 0; i < prior.anchors.size(); ++i) {
     blocks.push_back(Nav(prior.anchors[i].frame->index));
@@ -70,6 +80,9 @@ void SolveStore::AddPrior(const LinearPrior& prior, ceres::Problem* problem) {
   }
   if (prior.clock_origin) {
     blocks.push_back(Clock(prior.anchors.front().frame->index));
+  }
+  if (calibration_ != nullptr) {
+    blocks.push_back(Calibration());
   }
   problem->AddResidualBlock(&*prior_, nullptr, blocks);
 }
@@ -83,6 +96,9 @@ void SolveStore::AddSlamPrior(const SlamPrior& prior, ceres::Problem* problem) {
   }
   if (has_clocks_) {
     blocks.push_back(Clock(0));
+  }
+  if (calibration_ != nullptr) {
+    blocks.push_back(Calibration());
   }
   problem->AddResidualBlock(&*slam_prior_, nullptr, blocks);
 }
@@ -138,16 +154,28 @@ void SolveStore::AddGnss(const GnssFactorContext& context, ceres::Problem* probl
 void SolveStore::AddInverseDepth(const Pose& T_BC, ceres::Problem* problem) {
   for (size_t i = 0; i < tracks_.size(); ++i) {
     const std::vector<WindowView>& views = tracks_[i]->views;
-    base_bearing_.emplace_back(BaseBearingFactor(views.front().observation));
-    problem->AddResidualBlock(&base_bearing_.back(), loss_.get(), Landmark(i));
+    if (calibration_ != nullptr && calibration_->layout.intrinsics() >= 0) {
+      base_bearing_.emplace_back(BaseBearingFactor(&views.front(), calibration_));
+      problem->AddResidualBlock(&base_bearing_.back(), loss_.get(), Landmark(i), Calibration());
+    } else {
+      base_bearing_.emplace_back(BaseBearingFactor(views.front().observation));
+      problem->AddResidualBlock(&base_bearing_.back(), loss_.get(), Landmark(i));
+    }
     if (tracks_[i]->depth_prior.sqrt_information > 0) {
       depth_prior_.emplace_back(DepthPriorFactor(tracks_[i]->depth_prior));
       problem->AddResidualBlock(&depth_prior_.back(), nullptr, Landmark(i));
     }
     for (size_t k = 1; k < views.size(); ++k) {
-      inverse_depth_.emplace_back(InverseDepthFactor(views[k].observation, &T_BC));
-      problem->AddResidualBlock(&inverse_depth_.back(), loss_.get(), Nav(views.front().frame->index),
-                                Nav(views[k].frame->index), Landmark(i));
+      double* const base = Nav(views.front().frame->index);
+      double* const view = Nav(views[k].frame->index);
+      if (calibration_ != nullptr) {
+        inverse_depth_.emplace_back(InverseDepthFactor(views.front().frame, &views[k], calibration_));
+        problem->AddResidualBlock(&inverse_depth_.back(), loss_.get(), base, view, Landmark(i),
+                                  Calibration());
+      } else {
+        inverse_depth_.emplace_back(InverseDepthFactor(views[k].observation, &T_BC));
+        problem->AddResidualBlock(&inverse_depth_.back(), loss_.get(), base, view, Landmark(i));
+      }
     }
   }
 }
@@ -159,6 +187,16 @@ void SolveStore::AddPoseOnly(const Pose& T_BC, ceres::Problem* problem) {
     blocks.push_back(Nav(i));
   }
   pose_only_.emplace(PoseOnlyFactor(frames, {tracks_.begin(), tracks_.end()}, T_BC, kernel_));
+  problem->AddResidualBlock(&*pose_only_, nullptr, blocks);
+}
+
+void SolveStore::AddPoseOnly(const Window& window, ceres::Problem* problem) {
+  std::vector<double*> blocks;
+  for (int i = 0; i < window.size(); ++i) {
+    blocks.push_back(Nav(i));
+  }
+  blocks.push_back(Calibration());
+  pose_only_.emplace(PoseOnlyFactor(window, {tracks_.begin(), tracks_.end()}, *calibration_, kernel_));
   problem->AddResidualBlock(&*pose_only_, nullptr, blocks);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <ceres/loss_function.h>
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 
 #include <deque>
@@ -26,9 +27,10 @@ class SolveStore {
  public:
   using Frames = std::vector<std::unique_ptr<WindowFrame>>;
 
-  /// Copies states and landmarks; `frames` and `tracks` must outlive the store.
+  /// Copies states and landmarks; `frames`, `tracks` and `calibration` must outlive the store. calibration:
+  /// of a camera that is calibrated online, else null.
   SolveStore(ErrorConvention error, const ObservationKernel& kernel, const Frames& frames,
-             const std::vector<WindowTrack*>& tracks);
+             const std::vector<WindowTrack*>& tracks, const WindowCalibration* calibration = nullptr);
 
   [[nodiscard]] double* Nav(int frame) { return &parameters_[kFrameStride * static_cast<size_t>(frame)]; }
   [[nodiscard]] double* Bias(int frame) { return Nav(frame) + kNavAmbientSize; }
@@ -36,6 +38,9 @@ class SolveStore {
   [[nodiscard]] double* Clock(int frame) {
     return Landmark(tracks_.size()) + kClockStride * static_cast<size_t>(frame);
   }
+  /// With a calibration.
+  [[nodiscard]] double* Calibration() { return Clock(static_cast<int>(has_clocks_ ? frames_.size() : 0)); }
+  [[nodiscard]] bool has_calibration() const { return calibration_ != nullptr; }
   [[nodiscard]] bool has_clocks() const { return has_clocks_; }
   [[nodiscard]] double* Landmark(size_t track) {
     return &parameters_[kFrameStride * frames_.size() + kLandmarkStride * track];
@@ -54,6 +59,7 @@ class SolveStore {
   /// T_BC must outlive the store.
   void AddInverseDepth(const Pose& T_BC, ceres::Problem* problem);
   void AddPoseOnly(const Pose& T_BC, ceres::Problem* problem);
+  void AddPoseOnly(const Window& window, ceres::Problem* problem);  ///< with a calibration
 
   /// True when every parameter is a finite number.
   [[nodiscard]] bool IsFinite() const;
@@ -64,9 +70,12 @@ class SolveStore {
   static constexpr size_t kFrameStride = 16;    // nav (10) and bias (6)
   static constexpr size_t kLandmarkStride = 4;  // one spare, so that every block stays 16-byte aligned
   static constexpr size_t kClockStride = 6;
+  static constexpr size_t kCalibrationStride = 16;
 
   const Frames& frames_;
   const std::vector<WindowTrack*>& tracks_;
+  const WindowCalibration* calibration_;
+  std::unique_ptr<ceres::SubsetManifold> calibration_manifold_;
   bool has_clocks_;
   std::vector<double> parameters_;
   NavStateManifold manifold_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/pose_only.h"
+#include "core/predicted_observation.h"
 #include "core/robust.h"
 
 namespace alidade {
@@ -87,13 +88,19 @@ double EvaluateLandmark(std::span<const WindowView> views, std::span<const Frame
 /// Row of the depth prior on rho, the inverse depth in the base view: d rho = drho - rho dz_b, z_b the depth
 /// of (x, y, 1) there.
 void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vector3d& landmark,
-                   TrackWorkspace* workspace) {
+                   const CalibrationLayout* layout, TrackWorkspace* workspace) {
   const double rho = landmark.z();
   const Vector3d ray = landmark.head<2>().homogeneous();
   Eigen::Matrix<double, 1, 6> camera;
   camera << -rho * Skew(ray).row(2), rho * rho * base.T_WC.rotation.col(2).transpose();
   const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
   const double residual = prior.sqrt_information * (rho - prior.mean);
+  workspace->prior_residual = residual;
+  if (layout != nullptr) {
+    workspace->prior_calibration.noalias() =
+        prior.sqrt_information * camera * CalibrationChain(*layout, base);
+  }
+  workspace->prior_pose = pose;
   workspace->prior_hessian.noalias() = pose.transpose() * pose;
   workspace->prior_gradient.noalias() = pose.transpose() * residual;
   workspace->coupling[0].col(2).noalias() += pose.transpose() * prior.sqrt_information;
@@ -127,6 +134,46 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   return true;
 }
 
+/// The calibration's part of AddTrack, once the poses' is done: `landmark_root` is L^-T of the scaled
+/// landmark Hessian.
+void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                    const Matrix3d& landmark_root, const Vector3d& reduced_gradient, bool has_prior,
+                    const DepthPrior& prior, const TrackWorkspace& workspace, PoseSystem* system) {
+  const WindowCalibration& calibration = *system->calibration;
+  const Eigen::Index size = calibration.size();
+  const Eigen::Index first = system->hessian.rows() - size;
+  Eigen::MatrixXd rows(2, size);
+  Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(size, 3);
+  auto own = system->hessian.bottomRightCorner(size, size);
+  auto gradient = system->gradient.tail(size);
+  for (size_t k = 0; k < views.size(); ++k) {
+    const ViewRows& view = workspace.rows[k];
+    const FrameGeometry& frame = Geometry(geometry, views[k]);
+    CalibrationRows(calibration.layout, calibration.mean.camera, frame.R_WB, &frame.camera_from_time,
+                    view.camera, Predicted(views[k].observation, view.residual), rows);
+    coupling.noalias() += view.weight * rows.transpose() * view.landmark;
+    own.noalias() += view.weight * rows.transpose() * rows;
+    gradient.noalias() += view.weight * rows.transpose() * view.residual;
+    system->hessian.block(first, 6 * views[k].frame->index, size, 6).noalias() +=
+        view.weight * rows.transpose() * view.pose;
+  }
+  if (has_prior) {
+    const Eigen::RowVectorXd& row = workspace.prior_calibration;
+    coupling.col(2) += row.transpose() * prior.sqrt_information;
+    own.noalias() += row.transpose() * row;
+    gradient += row.transpose() * workspace.prior_residual;
+    system->hessian.block(first, 6 * views.front().frame->index, size, 6).noalias() +=
+        row.transpose() * workspace.prior_pose;
+  }
+  const Eigen::MatrixXd reduced = coupling * landmark_root;
+  own.noalias() -= reduced * reduced.transpose();
+  gradient.noalias() -= reduced * reduced_gradient;
+  for (size_t k = 0; k < views.size(); ++k) {
+    system->hessian.block(first, 6 * views[k].frame->index, size, 6).noalias() -=
+        reduced * workspace.reduced[k].transpose();
+  }
+}
+
 }  // namespace
 
 double ObservationKernel::Rho(double s) const {
@@ -155,6 +202,40 @@ std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC) 
   return geometry;
 }
 
+FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
+  const double later_s = camera.time_offset_s - frame.time_offset_s;
+  const Matrix3d turn = so3::Exp(Vector3d(frame.rates.head<3>() * later_s));
+  FrameGeometry geometry;
+  geometry.R_WB = state.R_WB * turn;
+  const Vector3d p_WB = state.p_WB + frame.rates.tail<3>() * later_s;
+  geometry.T_WC = Pose{geometry.R_WB, p_WB} * camera.T_BC;
+  const Matrix6d camera_from_moved = BodyToCameraJacobian(geometry.R_WB, camera.T_BC);
+  geometry.camera_from_body = camera_from_moved;
+  geometry.camera_from_body.leftCols<3>() = camera_from_moved.leftCols<3>() * turn.transpose();
+  geometry.camera_from_time = camera_from_moved * frame.rates;
+  return geometry;
+}
+
+std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera) {
+  std::vector<FrameGeometry> geometry;
+  geometry.reserve(static_cast<size_t>(window.size()));
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera));
+  }
+  return geometry;
+}
+
+CameraFromCalibration CalibrationChain(const CalibrationLayout& layout, const FrameGeometry& frame) {
+  CameraFromCalibration chain = CameraFromCalibration::Zero(6, layout.size());
+  if (layout.extrinsics() >= 0) {
+    chain.middleCols<6>(layout.extrinsics()) = ExtrinsicsToCameraJacobian(frame.R_WB);
+  }
+  if (layout.time_offset() >= 0) {
+    chain.col(layout.time_offset()) = frame.camera_from_time;
+  }
+  return chain;
+}
+
 bool LinearizeView(const Pose& base, const FrameGeometry& frame, const NormalizedObservation& observation,
                    const ObservationKernel& kernel, const Vector3d& landmark, ViewRows* rows) {
   const Vector3d shift_W = base.translation - frame.T_WC.translation;
@@ -170,17 +251,19 @@ bool LinearizeView(const Pose& base, const FrameGeometry& frame, const Normalize
   const Matrix2x3 weighted = observation.sqrt_information * (perspective / q.z());
   const Matrix2x3 to_world = weighted * frame.T_WC.rotation.transpose();
   rows->landmark << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
-  Eigen::Matrix<double, 2, 6> camera;
-  camera << weighted * Skew(q), -rho * to_world;
-  rows->pose.noalias() = camera * frame.camera_from_body;
+  rows->camera << weighted * Skew(q), -rho * to_world;
+  rows->pose.noalias() = rows->camera * frame.camera_from_body;
   rows->residual = observation.sqrt_information * (predicted - observation.z);
   rows->squared_norm = rows->residual.squaredNorm();
   rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
   return true;
 }
 
-PoseSystem::PoseSystem(int frames)
-    : hessian(Eigen::MatrixXd::Zero(6 * frames, 6 * frames)), gradient(Eigen::VectorXd::Zero(6 * frames)) {}
+PoseSystem::PoseSystem(int frames, const WindowCalibration* of_camera) : calibration(of_camera) {
+  const Eigen::Index size = 6 * frames + calibration_size();
+  hessian = Eigen::MatrixXd::Zero(size, size);
+  gradient = Eigen::VectorXd::Zero(size);
+}
 
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                    const ObservationKernel& kernel, int max_iterations, Vector3d* landmark,
@@ -224,7 +307,8 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   workspace->prior_hessian.setZero();
   workspace->prior_gradient.setZero();
   if (prior.sqrt_information > 0) {
-    AddDepthPrior(prior, Geometry(geometry, views.front()), landmark, workspace);
+    AddDepthPrior(prior, Geometry(geometry, views.front()), landmark,
+                  system->calibration == nullptr ? nullptr : &system->calibration->layout, workspace);
   }
   // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
   const Vector3d scale = workspace->landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
@@ -250,6 +334,10 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
       system->hessian.block<6, 6>(row, 6 * views[l].frame->index).noalias() -=
           workspace->reduced[k] * workspace->reduced[l].transpose();
     }
+  }
+  if (system->calibration_size() > 0) {
+    AddCalibration(views, geometry, inverse_transposed, reduced_gradient, prior.sqrt_information > 0, prior,
+                   *workspace, system);
   }
   system->robust_cost += workspace->robust_cost;
   system->chi2 += workspace->chi2;

@@ -6,6 +6,7 @@
 
 #include "core/estimator_config.h"
 #include "smoother/window.h"
+#include "smoother/window_calibration.h"
 
 namespace alidade {
 
@@ -23,18 +24,36 @@ struct ObservationKernel {
 struct FrameGeometry {
   Pose T_WC;
   Matrix6d camera_from_body;
+  // Of a camera that is calibrated online.
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< when the camera saw
+  Vector6d camera_from_time = Vector6d::Zero();        ///< d zeta_C / d time offset
 };
 [[nodiscard]] FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC);
 [[nodiscard]] std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC);
+/// The same for a camera that is calibrated online: where the frame's body was when the camera saw.
+[[nodiscard]] FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state,
+                                         const CameraCalibration& camera);
+[[nodiscard]] std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera);
+
+/// d zeta_C / d calibration of a frame's camera at a fixed body pose, in the layout's columns. The intrinsics
+/// do not move it.
+using CameraFromCalibration =
+    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, CalibrationLayout::kMaxSize>;
+[[nodiscard]] CameraFromCalibration CalibrationChain(const CalibrationLayout& layout,
+                                                     const FrameGeometry& frame);
 
 /// Normal equations of vision alone, every landmark eliminated (the 2N-3 rows N^T [H | r] of each track; N
 /// the left null space of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical
 /// chart.
 struct PoseSystem {
-  explicit PoseSystem(int frames);
+  /// calibration: of a camera that is calibrated online, else null; it must outlive the system.
+  explicit PoseSystem(int frames, const WindowCalibration* calibration = nullptr);
 
-  Eigen::MatrixXd hessian;   ///< 6F x 6F, lower triangle
-  Eigen::VectorXd gradient;  ///< 6F
+  [[nodiscard]] int calibration_size() const { return calibration == nullptr ? 0 : calibration->size(); }
+
+  const WindowCalibration* calibration;
+  Eigen::MatrixXd hessian;   ///< 6F + calibration squared, lower triangle; the calibration comes last
+  Eigen::VectorXd gradient;  ///< 6F + calibration
   double robust_cost = 0;    ///< sum of rho(s) (twice the cost)
   double chi2 = 0;           ///< sum of s, no kernel
   int dof = 0;               ///< sum of 2N-3
@@ -43,6 +62,7 @@ struct PoseSystem {
 
 /// The whitened rows of one view of a track, before the landmark is eliminated.
 struct ViewRows {
+  Eigen::Matrix<double, 2, 6> camera;    ///< over (phi, dp) of the view's camera pose, canonical chart
   Eigen::Matrix<double, 2, 6> pose;      ///< over (phi, dp) of the view's body pose, canonical chart
   Eigen::Matrix<double, 2, 3> landmark;  ///< over (x, y, rho)
   Eigen::Vector2d residual;              ///< predicted - measured
@@ -62,8 +82,11 @@ struct TrackWorkspace {
   std::vector<Eigen::Matrix<double, 6, 3>> coupling;  ///< B_k^T A_k
   Eigen::Matrix3d landmark_hessian;
   Eigen::Vector3d landmark_gradient;
-  Matrix6d prior_hessian;   ///< of the depth prior, over the base view's pose
-  Vector6d prior_gradient;  ///< likewise
+  Matrix6d prior_hessian;                  ///< of the depth prior, over the base view's pose
+  Vector6d prior_gradient;                 ///< likewise
+  Eigen::Matrix<double, 1, 6> prior_pose;  ///< its row there
+  Eigen::RowVectorXd prior_calibration;    ///< the depth prior's row over the calibration
+  double prior_residual = 0;
   double robust_cost = 0;
   double chi2 = 0;
   std::vector<Eigen::Matrix<double, 6, 3>> reduced;  ///< coupling times L^-T, so that H -= reduced reduced^T

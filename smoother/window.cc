@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/calibration.h"
 #include "core/check.h"
 #include "smoother/imu_factor.h"
 #include "smoother/nav_state_manifold.h"
@@ -29,6 +30,7 @@ double WindowFrame::mean_step_s() const {
 void WindowTrack::ScaleInformation(double factor) {
   for (WindowView& view : views) {
     view.observation.sqrt_information *= std::sqrt(factor);
+    view.root_weight_per_px *= std::sqrt(factor);
   }
 }
 
@@ -62,9 +64,38 @@ int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
     }
     track.id = measured.track_id;
     track.alive = true;
-    track.views.push_back({frames_.back().get(), observation});
+    track.views.push_back({frames_.back().get(), observation, measured.pixel, 1 / pixel_noise_px});
   }
   return invalid;
+}
+
+WindowView Renormalized(const CameraModel& camera, const WindowView& view) {
+  WindowView seen = view;
+  NormalizedObservation observation;
+  if (NormalizeObservation(camera, view.pixel, 1 / view.root_weight_per_px, &observation)) {
+    seen.observation = observation;
+  }
+  return seen;
+}
+
+std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views) {
+  for (WindowView& view : views) {
+    view = Renormalized(camera, view);
+  }
+  return views;
+}
+
+void Window::UpdateRates() {
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    const Eigen::Vector3d bias = frame->imu_bias().gyro;
+    frame->rates = BodyRates(frame->gyro_radps.value_or(bias) - bias, frame->nav_state().v_WB);
+  }
+}
+
+void Window::Renormalize(const CameraModel& camera) {
+  for (auto& [id, track] : tracks_) {
+    track.views = Renormalized(camera, std::move(track.views));
+  }
 }
 
 std::unique_ptr<WindowFrame> Window::RemoveNewest() {

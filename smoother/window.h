@@ -26,6 +26,11 @@ struct WindowFrame {
   std::vector<ImuSample> imu;                    ///< from the previous frame to this one; empty in the first
   std::optional<Preintegration> preintegration;  ///< of `imu`, at the previous frame's bias
   std::optional<RestMeasurement> rest;           ///< set when the rig stood still in this frame
+  // With an estimated time offset: the camera saw from where the body is later by the present offset less
+  // this one, moving on at these rates (core/calibration.h, BodyRates).
+  double time_offset_s = 0;                   ///< that placed the frame in IMU time
+  std::optional<Eigen::Vector3d> gyro_radps;  ///< measured at the frame
+  Vector6d rates = Vector6d::Zero();          ///< kept fixed in a solve
   // Once aligned with GNSS (smoother/gnss_window.h).
   std::optional<std::array<double, ClockState::kSize>> clock;  ///< a parameter block
   bool clock_anew = false;         ///< the clock before says nothing about this one
@@ -43,6 +48,9 @@ struct WindowFrame {
 struct WindowView {
   const WindowFrame* frame = nullptr;
   NormalizedObservation observation;
+  // Whatever the intrinsics are:
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< what was seen
+  double root_weight_per_px = 1;                    ///< whitens the pixel
 };
 
 /// Weak prior on a landmark's inverse depth, for tracks without parallax: sqrt_information (rho - mean). Such
@@ -89,6 +97,10 @@ class Window {
   /// domain.
   int AddObservations(const CameraModel& camera, double pixel_noise_px,
                       const std::vector<TrackObservation>& observations);
+  /// What moves each frame's camera with the time offset, at the present states.
+  void UpdateRates();
+  /// Rays of all views anew, after the camera's intrinsics have changed; see Renormalized.
+  void Renormalize(const CameraModel& camera);
   /// Takes the newest frame out, its observations with it, and returns it.
   std::unique_ptr<WindowFrame> RemoveNewest();
   /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one
@@ -112,6 +124,10 @@ class Window {
   std::vector<std::unique_ptr<WindowFrame>> frames_;
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
+
+/// Views with the rays that their pixels have in `camera`. One outside its domain stays as it is.
+[[nodiscard]] WindowView Renormalized(const CameraModel& camera, const WindowView& view);
+[[nodiscard]] std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views);
 
 /// Mean rotation-compensated motion of the tracks common to two frames, on the normalised plane, and their
 /// number.

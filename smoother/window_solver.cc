@@ -39,6 +39,9 @@ ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, int fram
       solver.linear_solver_ordering->AddElementToGroup(store->Clock(i), 1);
     }
   }
+  if (store->has_calibration()) {
+    solver.linear_solver_ordering->AddElementToGroup(store->Calibration(), 1);
+  }
   return solver;
 }
 
@@ -46,10 +49,11 @@ ceres::Solver::Options SolverOptions(const WindowSolveOptions& options, int fram
 
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
-                                      const GnssFactorContext* gnss, const SlamPrior* slam) {
+                                      const GnssFactorContext* gnss, const SlamPrior* slam,
+                                      WindowCalibration* calibration) {
   const int frames = window->size();
   const ObservationKernel kernel{options.vision.robust_kernel, options.vision.robust_scale_sigma};
-  SolveStore store(options.smoother.error, kernel, window->frames(), tracks);
+  SolveStore store(options.smoother.error, kernel, window->frames(), tracks, calibration);
   const std::unique_ptr<ceres::Problem> problem = store.MakeProblem();
   if (slam != nullptr) {
     store.AddSlamPrior(*slam, problem.get());
@@ -63,6 +67,8 @@ Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const L
   }
   if (options.smoother.landmark == SmootherLandmark::kInverseDepth) {
     store.AddInverseDepth(options.T_BC, problem.get());
+  } else if (!tracks.empty() && calibration != nullptr) {
+    store.AddPoseOnly(*window, problem.get());
   } else if (!tracks.empty()) {
     store.AddPoseOnly(options.T_BC, problem.get());
   }
@@ -71,6 +77,10 @@ Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const L
   if (summary.termination_type == ceres::FAILURE || !store.IsFinite()) {
     return Status::Diverged("smoother: solver failed at " + FormatSeconds(window->newest().stamp_ns) +
                             " s: " + summary.message);
+  }
+  if (calibration != nullptr && !calibration->At(store.Calibration(), &calibration->mean)) {
+    return Status::Diverged("smoother: calibration at " + FormatSeconds(window->newest().stamp_ns) +
+                            " s is no camera");
   }
   store.WriteBack();
   return WindowSolveReport{static_cast<int>(summary.iterations.size()) - 1, summary.initial_cost,

@@ -29,10 +29,11 @@ struct WindowSolveReport {
 /// pose-only landmarks they are left for SolveLandmark. One thread and no time limit: equal input, equal
 /// bits. Errors (kDiverged): an IMU factor cannot be whitened, the solver failed, or a state is not finite;
 /// the window is then as before. `gnss`: of an aligned window. `slam`: a prior with landmarks, which then
-/// stands for `prior`.
+/// stands for `prior`. `calibration`: of a camera that is calibrated online, updated in place.
 Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const LinearPrior& prior,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
                                       const GnssFactorContext* gnss = nullptr,
-                                      const SlamPrior* slam = nullptr);
+                                      const SlamPrior* slam = nullptr,
+                                      WindowCalibration* calibration = nullptr);
 
 }  // namespace alidade

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// J of the prior over 15 canonical coordinates of each anchor's frame, at the present states.
-void AddPriorHessian(const LinearPrior& prior, MatrixXd* hessian) {
+MatrixXd PriorJacobian(const LinearPrior& prior) {
   const Index rows = prior.jacobian.rows();
   const Index count = static_cast<Index>(prior.anchors.size());
   MatrixXd jacobian = MatrixXd::Zero(rows, 15 * count);
@@ -29,8 +29,13 @@ void AddPriorHessian(const LinearPrior& prior, MatrixXd* hessian) {
         prior.jacobian.middleCols(LinearPrior::Column(static_cast<int>(i)), width) * chain.topRows(width);
   }
   jacobian.middleCols<6>(9) = prior.jacobian.middleCols<6>(9);
+  return jacobian;
+}
+
+void AddPriorHessian(const LinearPrior& prior, MatrixXd* hessian) {
+  const MatrixXd jacobian = PriorJacobian(prior);
   // Anchors are the window's first frames, in order: their columns are the leading ones.
-  hessian->topLeftCorner(15 * count, 15 * count)
+  hessian->topLeftCorner(jacobian.cols(), jacobian.cols())
       .selfadjointView<Eigen::Lower>()
       .rankUpdate(jacobian.transpose());
 }
@@ -60,9 +65,10 @@ PriorClock ClockOf(const LinearPrior& prior, Index frames) {
 
 /// The same of a prior with SLAM features, and its Hessian over the frames.
 PriorClock ClockOf(const SlamPrior::Reduced& reduced, Index frames) {
-  PriorClock said{reduced.hessian.bottomRightCorner<6, 6>().selfadjointView<Eigen::Lower>(),
+  const Index clock = SlamPrior::Column(static_cast<int>(frames));
+  PriorClock said{reduced.hessian.block<6, 6>(clock, clock).selfadjointView<Eigen::Lower>(),
                   MatrixXd::Zero(15 * frames, 6)};
-  const auto rows = reduced.hessian.bottomRows<6>();
+  const auto rows = reduced.hessian.middleRows<6>(clock);
   said.coupling.topRows<15>() = rows.leftCols<15>().transpose();
   for (Index i = 1; i < frames; ++i) {
     said.coupling.middleRows<6>(15 * i) =
@@ -108,11 +114,67 @@ MatrixXd WithClocks(const Window& window, const PriorClock& prior, const GnssFac
   return hessian;
 }
 
+/// What the prior says of the calibration: information, and its coupling to [first clock | frames].
+struct PriorCalibration {
+  MatrixXd information;
+  MatrixXd clock;   ///< 6 x k, in an aligned window
+  MatrixXd frames;  ///< 15F x k
+};
+
+PriorCalibration CalibrationOf(const LinearPrior& prior, const CameraCalibration& camera, Index frames) {
+  const Index size = prior.calibration_size();
+  const WindowCalibration& origin = *prior.calibration_origin;
+  const MatrixXd chained = prior.jacobian.middleCols(prior.CalibrationColumn(), size) *
+                           LocalJacobian(origin.layout, origin.mean, camera);
+  PriorCalibration said{chained.transpose() * chained, {}, MatrixXd::Zero(15 * frames, size)};
+  const MatrixXd anchors = PriorJacobian(prior);
+  said.frames.topRows(anchors.cols()) = anchors.transpose() * chained;
+  if (prior.clock_origin) {
+    said.clock = prior.jacobian.middleCols<6>(prior.ClockColumn()).transpose() * chained;
+  }
+  return said;
+}
+
+/// The same of a prior with SLAM features, whose views know the calibration too.
+PriorCalibration CalibrationOf(const SlamPrior::Reduced& reduced, const LinearPrior& prior, Index frames) {
+  const Index size = prior.calibration_size();
+  const auto rows = reduced.hessian.bottomRows(size);
+  PriorCalibration said{
+      rows.rightCols(size).selfadjointView<Eigen::Lower>(), {}, MatrixXd::Zero(15 * frames, size)};
+  said.frames.topRows<15>() = rows.leftCols<15>().transpose();
+  for (Index i = 1; i < frames; ++i) {
+    said.frames.middleRows<6>(15 * i) =
+        rows.middleCols<6>(SlamPrior::Column(static_cast<int>(i))).transpose();
+  }
+  if (prior.clock_origin) {
+    said.clock = rows.middleCols<6>(SlamPrior::Column(static_cast<int>(frames))).transpose();
+  }
+  return said;
+}
+
+/// The Hessian over [calibration | what `rest` is over] (lower triangles), `rest` being over [clocks |
+/// frames].
+MatrixXd WithCalibration(Index frames, const PriorCalibration& prior, const PoseSystem& vision,
+                         const MatrixXd& rest) {
+  const Index size = vision.calibration_size();
+  const Index first = size + rest.rows() - 15 * frames;  // of the frames
+  MatrixXd hessian = MatrixXd::Zero(size + rest.rows(), size + rest.rows());
+  hessian.bottomRightCorner(rest.rows(), rest.rows()) = rest;
+  hessian.topLeftCorner(size, size) = prior.information + vision.hessian.bottomRightCorner(size, size);
+  hessian.block(first, 0, 15 * frames, size) = prior.frames;
+  hessian.block(size, 0, prior.clock.rows(), size) += prior.clock;
+  for (Index i = 0; i < frames; ++i) {
+    hessian.block(first + 15 * i, 0, 6, size) += vision.hessian.block(6 * frames, 6 * i, size, 6).transpose();
+  }
+  return hessian;
+}
+
 }  // namespace
 
 bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                       const Eigen::Vector3d& gravity_W, Matrix15d* covariance, const GnssFactorContext* gnss,
-                      Matrix6d* clock_covariance, const SlamPrior::Reduced* slam) {
+                      Matrix6d* clock_covariance, const SlamPrior::Reduced* slam,
+                      VectorXd* calibration_deviations) {
   const Index size = window.size();
   MatrixXd hessian = MatrixXd::Zero(15 * size, 15 * size);
   if (slam != nullptr) {
@@ -137,6 +199,13 @@ bool NewestCovariance(const Window& window, const LinearPrior& prior, const Pose
     hessian =
         WithClocks(window, slam != nullptr ? ClockOf(*slam, size) : ClockOf(prior, size), *gnss, hessian);
   }
+  const Index calibration = prior.calibration_size();
+  if (calibration > 0) {
+    hessian = WithCalibration(size,
+                              slam != nullptr ? CalibrationOf(*slam, prior, size)
+                                              : CalibrationOf(prior, vision.calibration->mean, size),
+                              vision, hessian);
+  }
   const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(hessian);
   if (factor.info() != Eigen::Success) {
     return false;
@@ -146,10 +215,14 @@ bool NewestCovariance(const Window& window, const LinearPrior& prior, const Pose
   const Matrix15d inverse = corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
   *covariance = inverse.transpose() * inverse;
   if (gnss != nullptr && clock_covariance != nullptr) {
-    const Index newest = 6 * (size - 1);
+    const Index newest = calibration + 6 * (size - 1);
     MatrixXd unit = MatrixXd::Zero(hessian.rows(), 6);
     unit.middleRows<6>(newest).setIdentity();
     *clock_covariance = MatrixXd(factor.solve(unit)).middleRows<6>(newest);
+  }
+  if (calibration_deviations != nullptr) {
+    const MatrixXd unit = MatrixXd::Identity(hessian.rows(), calibration);
+    *calibration_deviations = MatrixXd(factor.solve(unit)).diagonal().cwiseSqrt();
   }
   return covariance->allFinite();
 }
