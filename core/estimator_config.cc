@@ -203,6 +203,11 @@ void SmootherConfig::Describe(ConfigVisitor& visitor) {
        "at most this many tracks keep their landmark in the prior, so that its information outlives "
        "the window; 0 keeps none"},
       &slam_features, 0, 500);
+  visitor.Boolean(
+      {"first_estimates", "-",
+       "Jacobians of a frame that the prior holds stay where the prior was linearised: with so3xrn yaw stays "
+       "unobservable"},
+      &first_estimates);
 }
 
 void CalibrationConfig::Describe(ConfigVisitor& visitor) {

@@ -142,6 +142,7 @@ struct SmootherConfig {
   int keyframe_min_tracked = 20;
   int max_landmarks = 150;
   int slam_features = 0;
+  bool first_estimates = false;
 
   void Describe(ConfigVisitor& visitor);
 };

@@ -20,47 +20,56 @@ Eigen::Matrix<double, 2, 3> Perspective(const Eigen::Vector2d& projected) {
 }  // namespace
 
 LandmarkTransfer::LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target,
-                                   const Eigen::Vector3d& l)
-    : source_(source), target_(target), l_(l) {
-  turn_.noalias() = target.T_WC.rotation.transpose() * source.T_WC.rotation;
-  const Eigen::Vector3d shift =
-      target.T_WC.rotation.transpose() * (source.T_WC.translation - target.T_WC.translation);
+                                   const Eigen::Vector3d& l, At at)
+    : source_(&source), target_(&target), l_(l) {
+  const Pose& from = at == At::kNow ? source.T_WC : source.Linearized();
+  const Pose& to = at == At::kNow ? target.T_WC : target.Linearized();
+  R_WT_ = to.rotation;
+  turn_.noalias() = to.rotation.transpose() * from.rotation;
+  const Eigen::Vector3d shift = to.rotation.transpose() * (from.translation - to.translation);
   q = turn_ * l.head<2>().homogeneous() + l.z() * shift;
   landmark << turn_.leftCols<2>(), shift;
 }
 
 Eigen::Matrix<double, 3, 6> LandmarkTransfer::SourceCamera() const {
   Eigen::Matrix<double, 3, 6> camera;
-  camera << -turn_ * Skew(l_.head<2>().homogeneous()), l_.z() * target_.T_WC.rotation.transpose();
+  camera << -turn_ * Skew(l_.head<2>().homogeneous()), l_.z() * R_WT_.transpose();
   return camera;
 }
 
 Eigen::Matrix<double, 3, 6> LandmarkTransfer::TargetCamera() const {
   Eigen::Matrix<double, 3, 6> camera;
-  camera << Skew(q), -l_.z() * target_.T_WC.rotation.transpose();
+  camera << Skew(q), -l_.z() * R_WT_.transpose();
   return camera;
 }
 
 Eigen::Matrix<double, 3, 6> LandmarkTransfer::SourceFrame() const {
-  return SourceCamera() * source_.camera_from_body;
+  return SourceCamera() * source_->camera_from_body;
 }
 
 Eigen::Matrix<double, 3, 6> LandmarkTransfer::TargetFrame() const {
-  return TargetCamera() * target_.camera_from_body;
+  return TargetCamera() * target_->camera_from_body;
 }
 
 Eigen::Matrix3Xd LandmarkTransfer::Calibration(const CalibrationLayout& layout) const {
-  return SourceCamera() * CalibrationChain(layout, source_) +
-         TargetCamera() * CalibrationChain(layout, target_);
+  return SourceCamera() * CalibrationChain(layout, *source_) +
+         TargetCamera() * CalibrationChain(layout, *target_);
 }
 
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
                            const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames,
                            const WindowCalibration* calibration) {
-  const LandmarkTransfer transfer(anchor, view, landmark);
+  LandmarkTransfer transfer(anchor, view, landmark);
   if (!(transfer.q.z() > kMinViewDepth)) {
     return false;
+  }
+  rows->residual = observation.sqrt_information * (transfer.q.hnormalized() - observation.z);
+  if (with_frames && (anchor.T_WC_first || view.T_WC_first)) {
+    transfer = LandmarkTransfer(anchor, view, landmark, LandmarkTransfer::At::kLinearized);
+    if (!(transfer.q.z() > kMinViewDepth)) {
+      return false;
+    }
   }
   const Eigen::Vector2d predicted = transfer.q.hnormalized();
   const Eigen::Matrix<double, 2, 3> weighted =
@@ -70,7 +79,6 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
     rows->view.noalias() = weighted * transfer.TargetFrame();
   }
   rows->landmark.noalias() = weighted * transfer.landmark;
-  rows->residual = observation.sqrt_information * (predicted - observation.z);
   rows->squared_norm = rows->residual.squaredNorm();
   rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
   if (with_frames && calibration != nullptr) {
@@ -108,7 +116,7 @@ bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eige
     return false;
   }
   change->to << q_to.hnormalized(), l_from.z() / q_to.z();
-  const LandmarkTransfer back(to, from, change->to);
+  const LandmarkTransfer back(to, from, change->to, LandmarkTransfer::At::kLinearized);
   Eigen::Matrix3d divide = Eigen::Matrix3d::Zero();
   divide.topRows<2>() = Perspective(l_from.head<2>());
   divide(2, 2) = -l_from.z();

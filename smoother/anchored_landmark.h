@@ -14,7 +14,10 @@ namespace alidade {
 /// with its derivatives over (phi, dp) of both bodies, canonical chart. rho = 0 is regular.
 class LandmarkTransfer {
  public:
-  LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target, const Eigen::Vector3d& l);
+  /// kNow: between the present cameras, for the value. kLinearized: where their Jacobians are taken.
+  enum class At { kNow, kLinearized };
+  LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target, const Eigen::Vector3d& l,
+                   At at = At::kNow);
 
   Eigen::Vector3d q;
   Eigen::Matrix3d landmark;  ///< dq / dl
@@ -28,9 +31,10 @@ class LandmarkTransfer {
   [[nodiscard]] Eigen::Matrix<double, 3, 6> SourceCamera() const;
   [[nodiscard]] Eigen::Matrix<double, 3, 6> TargetCamera() const;
 
-  const FrameGeometry& source_;
-  const FrameGeometry& target_;
+  const FrameGeometry* source_;
+  const FrameGeometry* target_;
   Eigen::Vector3d l_;
+  Eigen::Matrix3d R_WT_;  ///< of the target camera
   Eigen::Matrix3d turn_;  ///< R_t^T R_s
 };
 
@@ -45,7 +49,8 @@ struct AnchoredRows {
   double squared_norm = 0;               ///< of the residual
   double weight = 1;                     ///< of all rows: the kernel's
 };
-/// False behind the view. `with_frames` false leaves out the derivatives over bodies and calibration.
+/// False behind the view. `with_frames` false leaves out the derivatives over bodies and calibration, and
+/// takes the landmark's at the present cameras: those it is solved for with.
 /// `calibration`: of a camera that is calibrated online.
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,

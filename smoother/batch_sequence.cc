@@ -146,7 +146,7 @@ std::vector<WindowView> BatchSequence::Inliers(const std::vector<FrameGeometry>&
       !SolveLandmark(track.views, geometry, guard, kMaxLandmarkIterations, &landmark)) {
     return track.views;
   }
-  const Pose& base = geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC;
+  const FrameGeometry& base = geometry[static_cast<size_t>(track.views.front().frame->index)];
   std::vector<WindowView> inliers;
   for (const WindowView& view : track.views) {
     ViewRows rows;

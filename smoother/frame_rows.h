@@ -7,7 +7,7 @@
 namespace alidade {
 
 /// Whitened rows of an IMU factor between two frames at their present states, over the 15 canonical
-/// coordinates of each.
+/// coordinates of each; Jacobians at first estimates where the frames have such.
 struct ImuRows {
   Matrix15d first, second;
   Vector15d residual;

@@ -17,6 +17,16 @@ void Split(const Matrix15d& jacobian, double* nav, double* bias) {
   }
 }
 
+NavState PointOf(const FirstEstimate* first, const NavState& now) {
+  return first == nullptr ? now : first->Point(now);
+}
+
+void Chain(const FirstEstimate* first, const NavState& now, Matrix15d* jacobian) {
+  if (first != nullptr) {
+    jacobian->leftCols<9>() = (jacobian->leftCols<9>() * first->Chain(now)).eval();
+  }
+}
+
 }  // namespace
 
 ImuBias UnpackBias(const double* block) {
@@ -29,8 +39,11 @@ void PackBias(const ImuBias& bias, double* block) {
 }
 
 ImuFactor::ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W,
-                     double mean_step_s)
-    : model_{preintegration, gravity_W}, sqrt_information_(Matrix15d::Zero()) {
+                     double mean_step_s, const FirstEstimate* first_i, const FirstEstimate* first_j)
+    : model_{preintegration, gravity_W},
+      sqrt_information_(Matrix15d::Zero()),
+      first_i_(first_i),
+      first_j_(first_j) {
   Matrix15d covariance = preintegration->covariance();
   const double density = preintegration->noise().accel_noise_density_mps2_sqrthz;
   covariance.diagonal().head<3>().array() +=
@@ -52,6 +65,13 @@ bool ImuFactor::Evaluate(const double* const* parameters, double* residual,
   Matrix15d jacobian_j;
   model_.Evaluate(state_i, UnpackBias(parameters[1]), state_j, UnpackBias(parameters[3]), &r,
                   differentiate ? &jacobian_i : nullptr, differentiate ? &jacobian_j : nullptr);
+  if (differentiate && (first_i_ != nullptr || first_j_ != nullptr)) {
+    Vector15d ignored;
+    model_.Evaluate(PointOf(first_i_, state_i), UnpackBias(parameters[1]), PointOf(first_j_, state_j),
+                    UnpackBias(parameters[3]), &ignored, &jacobian_i, &jacobian_j);
+    Chain(first_i_, state_i, &jacobian_i);
+    Chain(first_j_, state_j, &jacobian_j);
+  }
   Eigen::Map<Vector15d>{residual} = sqrt_information_.triangularView<Eigen::Lower>() * r;
   if (differentiate) {
     Split(sqrt_information_.triangularView<Eigen::Lower>() * jacobian_i, tangent_jacobians[0],

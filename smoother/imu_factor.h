@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/preintegration.h"
+#include "smoother/first_estimate.h"
 #include "smoother/lifted_cost.h"
 
 namespace alidade {
@@ -20,8 +21,10 @@ class ImuFactor {
  public:
   static constexpr int kRows = 15;
 
-  /// `preintegration` must outlive the factor. mean_step_s: length of one IMU step.
-  ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W, double mean_step_s);
+  /// `preintegration` must outlive the factor. mean_step_s: length of one IMU step. first_i, first_j: where
+  /// Jacobians over a frame are taken, if not at its present state; they must outlive it too.
+  ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W, double mean_step_s,
+            const FirstEstimate* first_i = nullptr, const FirstEstimate* first_j = nullptr);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
@@ -35,6 +38,8 @@ class ImuFactor {
   PreintegrationModel model_;
   Matrix15d sqrt_information_;  // lower triangular
   bool valid_ = false;
+  const FirstEstimate* first_i_;
+  const FirstEstimate* first_j_;
 };
 
 }  // namespace alidade

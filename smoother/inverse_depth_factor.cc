@@ -42,19 +42,19 @@ NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) 
 
 }  // namespace
 
-InverseDepthFactor::InverseDepthFactor(const NormalizedObservation& observation, const Pose* T_BC)
-    : observation_(observation), T_BC_(T_BC) {}
+InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC)
+    : base_(base), view_(view), T_BC_(T_BC) {}
 
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
                                        const WindowCalibration* calibration)
-    : observation_(view->observation), base_(base), view_(view), calibration_(calibration) {}
+    : base_(base), view_(view), calibration_(calibration) {}
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
   const NavState base_state = UnpackNavState(parameters[0]);
   const NavState view_state = UnpackNavState(parameters[1]);
   WindowCalibration camera;
-  NormalizedObservation observation = observation_;
+  NormalizedObservation observation = view_->observation;
   if (calibration_ != nullptr) {
     camera.layout = calibration_->layout;
     if (!calibration_->At(parameters[3], &camera.mean)) {
@@ -62,11 +62,12 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
     }
     observation = Seen(camera, *view_);
   }
-  const auto geometry = [&](const WindowFrame* frame, const NavState& state) {
-    return calibration_ == nullptr ? MakeGeometry(state, *T_BC_) : MakeGeometry(*frame, state, camera.mean);
+  const auto geometry = [&](const WindowFrame& frame, const NavState& state) {
+    return calibration_ == nullptr ? MakeGeometry(frame, state, *T_BC_)
+                                   : MakeGeometry(frame, state, camera.mean);
   };
-  const FrameGeometry base = geometry(base_, base_state);
-  const FrameGeometry view = geometry(view_ == nullptr ? nullptr : view_->frame, view_state);
+  const FrameGeometry base = geometry(*base_, base_state);
+  const FrameGeometry view = geometry(*view_->frame, view_state);
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   const InverseDepthModel model{landmark.head<2>(), observation.z};
   const bool differentiate = tangent_jacobians != nullptr;
@@ -75,10 +76,15 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   InverseDepthModel::PoseJacobian jacobian_view;
   Vector2d jacobian_rho;
   Eigen::Matrix2d jacobian_bearing;
-  const bool in_front =
+  bool in_front =
       model.Evaluate(base.T_WC, view.T_WC, landmark.z(), &r, differentiate ? &jacobian_base : nullptr,
                      differentiate ? &jacobian_view : nullptr, differentiate ? &jacobian_rho : nullptr,
                      differentiate ? &jacobian_bearing : nullptr);
+  if (differentiate && in_front && (base.T_WC_first || view.T_WC_first)) {
+    Vector2d ignored;
+    in_front = model.Evaluate(base.Linearized(), view.Linearized(), landmark.z(), &ignored, &jacobian_base,
+                              &jacobian_view, &jacobian_rho, &jacobian_bearing);
+  }
   if (!in_front) {
     r.setZero();
     jacobian_base.setZero();

@@ -21,8 +21,9 @@ class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;
 
-  InverseDepthFactor(const NormalizedObservation& observation, const Pose* T_BC);
-  /// With a camera that is calibrated online. All must outlive the factor.
+  /// All must outlive the factor.
+  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC);
+  /// With a camera that is calibrated online.
   InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return kRows; }
@@ -36,10 +37,9 @@ class InverseDepthFactor {
  private:
   static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kNavState,
                                                        BlockKind::kLandmark, BlockKind::kCalibration};
-  NormalizedObservation observation_;
+  const WindowFrame* base_;
+  const WindowView* view_;
   const Pose* T_BC_ = nullptr;
-  const WindowFrame* base_ = nullptr;  ///< with calibration_, as view_
-  const WindowView* view_ = nullptr;
   const WindowCalibration* calibration_ = nullptr;
 };
 

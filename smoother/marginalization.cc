@@ -1,5 +1,6 @@
 #include "smoother/marginalization.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -42,10 +43,10 @@ class OldestStack {
   }
   [[nodiscard]] Index residual_column() const { return Staying(slam_.after.size()); }
   Index NewRows(Index count);
-  /// d xi / d (phi, dp) of a frame's body, inverted.
-  [[nodiscard]] Matrix6d Chart(int frame) const {
-    return ChartJacobian(prior_.convention, window_.frame(frame).nav_state().T_WB());
-  }
+  /// d (phi, dp) of a frame's body / d its columns.
+  [[nodiscard]] Matrix6d Chart(int frame) const;
+  /// The same of its whole state.
+  [[nodiscard]] Matrix15d ImuChart(int frame) const;
   void AddPriorLandmark(size_t landmark, Index rows, VectorXd* residual);
   void AddView(const WindowTrack& track, const WindowView& view, Index landmark_column);
 
@@ -98,6 +99,25 @@ Index OldestStack::NewRows(Index count) {
   }
   stack_.middleRows(first, count).setZero();
   return first;
+}
+
+Matrix6d OldestStack::Chart(int frame) const {
+  if (window_.frame(frame).first) {
+    return ImuChart(frame).topLeftCorner<6, 6>();
+  }
+  return ChartJacobian(prior_.convention, window_.frame(frame).nav_state().T_WB());
+}
+
+Matrix15d OldestStack::ImuChart(int frame) const {
+  const WindowFrame& of = window_.frame(frame);
+  const NavState state = of.nav_state();
+  Matrix15d chart = ImuChartJacobian(prior_.convention, state);
+  if (of.first) {
+    // The columns are the prior's coordinates, around the first estimate.
+    const Matrix9d moved = LocalJacobian(prior_.convention, of.first->Point(state), state);
+    chart.topLeftCorner<9, 9>() = (chart.topLeftCorner<9, 9>() * moved.inverse()).eval();
+  }
+  return chart;
 }
 
 void OldestStack::AddPrior() {
@@ -168,10 +188,8 @@ void OldestStack::AddPriorLandmark(size_t landmark, Index rows, VectorXd* residu
 void OldestStack::AddImu(const Eigen::Vector3d& gravity_W) {
   const Index first = NewRows(15);
   const ImuRows imu = LinearizeImu(window_.frame(0), window_.frame(1), gravity_W);
-  stack_.block<15, 15>(first, 0) =
-      imu.first * ImuChartJacobian(prior_.convention, window_.frame(0).nav_state());
-  stack_.block<15, 15>(first, Frame(1)) =
-      imu.second * ImuChartJacobian(prior_.convention, window_.frame(1).nav_state());
+  stack_.block<15, 15>(first, 0) = imu.first * ImuChart(0);
+  stack_.block<15, 15>(first, Frame(1)) = imu.second * ImuChart(1);
   stack_.col(residual_column()).segment<15>(first) = imu.residual;
 }
 
@@ -194,8 +212,7 @@ void OldestStack::AddRest() {
   }
   const Index first = NewRows(RestModel::kRows);
   const RestRows rest(window_.frame(0));
-  stack_.block<RestModel::kRows, 15>(first, 0) =
-      rest.jacobian * ImuChartJacobian(prior_.convention, window_.frame(0).nav_state());
+  stack_.block<RestModel::kRows, 15>(first, 0) = rest.jacobian * ImuChart(0);
   stack_.col(residual_column()).segment<RestModel::kRows>(first) = rest.residual;
 }
 
@@ -207,7 +224,7 @@ void OldestStack::AddGnss() {
   const FrameEpochRows epochs = EpochRows(*gnss_, oldest);
   const Index count = epochs.residual.size();
   const Index first = NewRows(count + clock_);
-  stack_.block(first, 0, count, 15) = epochs.frame * ImuChartJacobian(prior_.convention, oldest.nav_state());
+  stack_.block(first, 0, count, 15) = epochs.frame * ImuChart(0);
   stack_.block(first, 15, count, 6) = epochs.clock;
   stack_.col(residual_column()).segment(first, count) = epochs.residual;
   const ClockStep step = StepTo(*gnss_, oldest, window_.frame(1));
@@ -272,7 +289,13 @@ LinearPrior OldestStack::Eliminate() {
   }
   for (int i = 1; i < window_.size(); ++i) {
     const WindowFrame& frame = window_.frame(i);
-    next.anchors.push_back({&frame, frame.nav_state(), frame.imu_bias()});
+    const NavState now = frame.nav_state();
+    next.anchors.push_back({&frame, frame.first ? frame.first->Point(now) : now, frame.imu_bias()});
+    if (frame.first) {  // the rows hold at the present state, the origin is another
+      const Index width = i == 1 ? 9 : 6;
+      const Vector9d xi = Local(next.convention, next.anchors.back().origin, now);
+      next.residual.noalias() -= next.jacobian.middleCols(LinearPrior::Column(i - 1), width) * xi.head(width);
+    }
   }
   for (const WindowTrack* track : slam_.after) {
     next.landmarks.push_back({track->id, track->anchor, track->landmark});
@@ -293,6 +316,13 @@ LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, co
   stack.AddGnss();
   stack.AddLandmarkViews();
   return stack.Eliminate();
+}
+
+void KeepFirstEstimates(const LinearPrior& prior, Window* window) {
+  for (size_t i = 0; i < prior.anchors.size(); ++i) {
+    const LinearPrior::Anchor& anchor = prior.anchors[i];
+    window->frame(anchor.frame->index).first = FirstEstimate{prior.convention, anchor.origin, i == 0};
+  }
 }
 
 }  // namespace alidade

@@ -29,11 +29,15 @@ struct SlamChange {
 /// The new prior is anchored at the present states. The old prior's rows are carried over with their Jacobian
 /// unchanged (first estimates): re-linearising them would let a direction that was never observed leak in.
 /// With right-invariant errors the gauge directions are the same at every state, so they are then kept
-/// exactly.
+/// exactly. With others they are where frames have first estimates: rows are then taken at these, and a frame
+/// that has one keeps it as the origin.
 /// Of an aligned window (`gnss`) its epochs and its clock leave with it, tied to the next frame's clock.
 /// A calibration that `vision` and `prior` hold stays. `slam`: the landmarks of the prior.
 LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                               const Eigen::Vector3d& gravity_W, const GnssFactorContext* gnss = nullptr,
                               const SlamChange& slam = {});
+
+/// Gives each frame of a new prior its first estimate: where the prior was linearised.
+void KeepFirstEstimates(const LinearPrior& prior, Window* window);
 
 }  // namespace alidade

@@ -13,19 +13,19 @@ constexpr double kBehindChiSquare = 1e4;
 
 }  // namespace
 
-PoseOnlyFactor::PoseOnlyFactor(int frames, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
+PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
                                const ObservationKernel& kernel)
-    : frames_(frames),
+    : window_(&window),
+      frames_(window.size()),
       tracks_(std::move(tracks)),
       T_BC_(T_BC),
       kernel_(kernel),
-      blocks_(static_cast<size_t>(frames), BlockKind::kNavState),
+      blocks_(static_cast<size_t>(window.size()), BlockKind::kNavState),
       memo_(std::make_unique<Memo>()) {}
 
 PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks,
                                const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : PoseOnlyFactor(window.size(), std::move(tracks), calibration.mean.T_BC, kernel) {
-  window_ = &window;
+    : PoseOnlyFactor(window, std::move(tracks), calibration.mean.T_BC, kernel) {
   calibration_ = &calibration;
   blocks_.push_back(BlockKind::kCalibration);
 }
@@ -45,7 +45,7 @@ bool PoseOnlyFactor::Linearize(const double* const* parameters) const {
   for (int i = 0; i < frames_; ++i) {
     point.insert(point.end(), parameters[i], parameters[i] + kNavAmbientSize);
     const NavState state = UnpackNavState(parameters[i]);
-    geometry.push_back(calibration_ == nullptr ? MakeGeometry(state, T_BC_)
+    geometry.push_back(calibration_ == nullptr ? MakeGeometry(window_->frame(i), state, T_BC_)
                                                : MakeGeometry(window_->frame(i), state, camera.mean));
   }
   if (point == memo_->parameters) {

@@ -28,10 +28,10 @@ class PoseOnlyFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
 
-  /// `tracks` have landmarks to start from; they and the frames they point to must outlive the factor.
-  PoseOnlyFactor(int frames, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
+  /// `tracks` have landmarks to start from; they and the window must outlive the factor.
+  PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
                  const ObservationKernel& kernel);
-  /// With a camera that is calibrated online; its block comes last. Both must outlive the factor.
+  /// With a camera that is calibrated online, which must outlive the factor; its block comes last.
   PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks,
                  const WindowCalibration& calibration, const ObservationKernel& kernel);
 
@@ -52,8 +52,8 @@ class PoseOnlyFactor {
   bool Linearize(const double* const* parameters) const;
   [[nodiscard]] int calibration_size() const { return calibration_ == nullptr ? 0 : calibration_->size(); }
 
+  const Window* window_;
   int frames_;
-  const Window* window_ = nullptr;  ///< with calibration_
   const WindowCalibration* calibration_ = nullptr;
   std::vector<const WindowTrack*> tracks_;
   Pose T_BC_;

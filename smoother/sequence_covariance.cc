@@ -206,7 +206,7 @@ class SequenceFactorization {
       const WindowTrack& track = *problem_.tracks[view.track];
       const Index point = ColumnOf(view.track);
       ViewRows rows;
-      if (!LinearizeView(geometry_[IndexOf(track.views.front())].T_WC, geometry_[k],
+      if (!LinearizeView(geometry_[IndexOf(track.views.front())], geometry_[k],
                          track.views[view.view].observation, problem_.kernel, track.landmark, &rows)) {
         return Status::Diverged("batch: track " + std::to_string(track.id) + " lies behind the camera at " +
                                 FormatSeconds(frame.stamp_ns) + " s");

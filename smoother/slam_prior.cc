@@ -81,9 +81,14 @@ struct SlamPrior::Scene {
   }
 };
 
-SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
-                     const ObservationKernel& kernel, int frames)
-    : prior_(prior), tracks_(std::move(tracks)), T_BC_(T_BC), kernel_(kernel), frames_(frames) {
+SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+                     const Pose& T_BC, const ObservationKernel& kernel)
+    : prior_(prior),
+      tracks_(std::move(tracks)),
+      T_BC_(T_BC),
+      kernel_(kernel),
+      window_(&window),
+      frames_(window.size()) {
   MatrixXd rows(prior->jacobian.rows(), prior->jacobian.cols() + 1);
   rows << prior->jacobian, prior->residual;
   FormGram(rows, &gram_);
@@ -96,17 +101,16 @@ SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> t
 
 SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
                      const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : SlamPrior(prior, std::move(tracks), calibration.mean.T_BC, kernel, window.size()) {
-  window_ = &window;
+    : SlamPrior(prior, std::move(tracks), window, calibration.mean.T_BC, kernel) {
   calibration_ = &calibration;
 }
 
 SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
   Scene scene;
   for (size_t i = 0; i < point.states.size(); ++i) {
-    scene.geometry.push_back(calibration_ == nullptr ? MakeGeometry(point.states[i], T_BC_)
-                                                     : MakeGeometry(window_->frame(static_cast<int>(i)),
-                                                                    point.states[i], point.camera));
+    const WindowFrame& frame = window_->frame(static_cast<int>(i));
+    scene.geometry.push_back(calibration_ == nullptr ? MakeGeometry(frame, point.states[i], T_BC_)
+                                                     : MakeGeometry(frame, point.states[i], point.camera));
   }
   if (calibration_ == nullptr) {
     return scene;

@@ -31,10 +31,10 @@ struct WindowPoint {
 /// together (3L x 3L, damped, re-weighted Gauss-Newton).
 class SlamPrior {
  public:
-  /// `prior` and `tracks` (PriorTracks) must outlive it.
-  SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
-            const ObservationKernel& kernel, int frames);
-  /// With a camera that is calibrated online; `window` and `calibration` must outlive it too.
+  /// `prior`, `tracks` (PriorTracks) and `window` must outlive it.
+  SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+            const Pose& T_BC, const ObservationKernel& kernel);
+  /// With a camera that is calibrated online; `calibration` must outlive it too.
   SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
             const WindowCalibration& calibration, const ObservationKernel& kernel);
 
@@ -72,8 +72,8 @@ class SlamPrior {
   std::vector<const WindowTrack*> tracks_;
   Pose T_BC_;
   ObservationKernel kernel_;
+  const Window* window_;
   int frames_;
-  const Window* window_ = nullptr;  ///< with calibration_
   const WindowCalibration* calibration_ = nullptr;
   Eigen::MatrixXd gram_;  ///< [J r0]^T [J r0]: frames, clock and calibration first, then landmarks, then r0
   Eigen::VectorXd origins_;

@@ -184,7 +184,7 @@ std::optional<SlamPrior> SmootherEstimator::MakeSlamPrior() const {
     return std::nullopt;
   }
   return calibrates() ? SlamPrior(&prior_, PriorTracks(prior_, window_), window_, calibration_, kernel_)
-                      : SlamPrior(&prior_, PriorTracks(prior_, window_), rig_.T_BC, kernel_, window_.size());
+                      : SlamPrior(&prior_, PriorTracks(prior_, window_), window_, rig_.T_BC, kernel_);
 }
 
 Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {

@@ -88,6 +88,9 @@ void SmootherEstimator::MarginalizeOldestFrame() {
     }
   }
   prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W, gnss_.context(), slam);
+  if (config_.smoother.first_estimates) {
+    KeepFirstEstimates(prior_, &window_);
+  }
   for (const WindowTrack* track : slam.before) {
     if (track != nullptr && std::find(slam.after.begin(), slam.after.end(), track) == slam.after.end()) {
       window_.tracks().at(track->id).Restart();

@@ -106,7 +106,8 @@ void SolveStore::AddSlamPrior(const SlamPrior& prior, ceres::Problem* problem) {
 Status SolveStore::AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem) {
   for (size_t i = 0; i + 1 < frames_.size(); ++i) {
     const WindowFrame& next = *frames_[i + 1];
-    const ImuFactor factor(&*next.preintegration, gravity_W, next.mean_step_s());
+    const ImuFactor factor(&*next.preintegration, gravity_W, next.mean_step_s(), frames_[i]->first_estimate(),
+                           next.first_estimate());
     if (!factor.valid()) {
       return Status::Diverged("smoother: IMU covariance up to " + FormatSeconds(next.stamp_ns) +
                               " s is not positive definite");
@@ -173,30 +174,25 @@ void SolveStore::AddInverseDepth(const Pose& T_BC, ceres::Problem* problem) {
         problem->AddResidualBlock(&inverse_depth_.back(), loss_.get(), base, view, Landmark(i),
                                   Calibration());
       } else {
-        inverse_depth_.emplace_back(InverseDepthFactor(views[k].observation, &T_BC));
+        inverse_depth_.emplace_back(InverseDepthFactor(views.front().frame, &views[k], &T_BC));
         problem->AddResidualBlock(&inverse_depth_.back(), loss_.get(), base, view, Landmark(i));
       }
     }
   }
 }
 
-void SolveStore::AddPoseOnly(const Pose& T_BC, ceres::Problem* problem) {
-  const int frames = static_cast<int>(frames_.size());
-  std::vector<double*> blocks;
-  for (int i = 0; i < frames; ++i) {
-    blocks.push_back(Nav(i));
-  }
-  pose_only_.emplace(PoseOnlyFactor(frames, {tracks_.begin(), tracks_.end()}, T_BC, kernel_));
-  problem->AddResidualBlock(&*pose_only_, nullptr, blocks);
-}
-
-void SolveStore::AddPoseOnly(const Window& window, ceres::Problem* problem) {
+void SolveStore::AddPoseOnly(const Window& window, const Pose& T_BC, ceres::Problem* problem) {
   std::vector<double*> blocks;
   for (int i = 0; i < window.size(); ++i) {
     blocks.push_back(Nav(i));
   }
-  blocks.push_back(Calibration());
-  pose_only_.emplace(PoseOnlyFactor(window, {tracks_.begin(), tracks_.end()}, *calibration_, kernel_));
+  std::vector<const WindowTrack*> tracks(tracks_.begin(), tracks_.end());
+  if (calibration_ != nullptr) {
+    blocks.push_back(Calibration());
+    pose_only_.emplace(PoseOnlyFactor(window, std::move(tracks), *calibration_, kernel_));
+  } else {
+    pose_only_.emplace(PoseOnlyFactor(window, std::move(tracks), T_BC, kernel_));
+  }
   problem->AddResidualBlock(&*pose_only_, nullptr, blocks);
 }
 

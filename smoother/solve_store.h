@@ -58,8 +58,8 @@ class SolveStore {
   void AddGnss(const GnssFactorContext& context, ceres::Problem* problem);
   /// T_BC must outlive the store.
   void AddInverseDepth(const Pose& T_BC, ceres::Problem* problem);
-  void AddPoseOnly(const Pose& T_BC, ceres::Problem* problem);
-  void AddPoseOnly(const Window& window, ceres::Problem* problem);  ///< with a calibration
+  /// `window` must outlive the store. T_BC: of a camera that is not calibrated online.
+  void AddPoseOnly(const Window& window, const Pose& T_BC, ceres::Problem* problem);
 
   /// True when every parameter is a finite number.
   [[nodiscard]] bool IsFinite() const;

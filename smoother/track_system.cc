@@ -2,9 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
 
-#include "core/pose_only.h"
 #include "core/predicted_observation.h"
 #include "core/robust.h"
 
@@ -18,73 +16,10 @@ using Matrix2x3 = Eigen::Matrix<double, 2, 3>;
 
 constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into its camera no row can be trusted
 constexpr double kMinViewDepth = 1e-6;    // of the scaled point (x, y, 1) + rho t
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Normal equations of the landmark (x, y, rho) with poses fixed.
-struct LandmarkSystem {
-  Matrix3d hessian = Matrix3d::Zero();
-  Vector3d gradient = Vector3d::Zero();
-};
 
 const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const WindowView& view) {
   return geometry[static_cast<size_t>(view.frame->index)];
 }
-
-/// rho' + 2 s rho'': second derivative of the cost along the residual, kept positive so that a Newton step
-/// descends.
-double RadialCurvature(const ObservationKernel& kernel, double s, double weight) {
-  const double k2 = kernel.scale_sigma * kernel.scale_sigma;
-  double ratio = 1;
-  if (kernel.kernel == RobustKernel::kHuber && s > k2) {
-    ratio = 0;
-  } else if (kernel.kernel == RobustKernel::kCauchy) {
-    ratio = (k2 - s) / (k2 + s);
-  }
-  return weight * std::max(ratio, 0.01);
-}
-
-/// Robust cost (sum of rho) of the landmark; fills `system` when given. Infinite behind a view.
-double EvaluateLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                        const ObservationKernel& kernel, const Vector3d& landmark, const DepthPrior& prior,
-                        LandmarkSystem* system) {
-  const Pose& base = Geometry(geometry, views.front()).T_WC;
-  const Vector3d ray_W = base.rotation * Vector3d(landmark.x(), landmark.y(), 1);
-  const double depth_residual = prior.sqrt_information * (landmark.z() - prior.mean);
-  double cost = depth_residual * depth_residual;
-  if (system != nullptr) {
-    system->gradient.z() += prior.sqrt_information * depth_residual;
-    system->hessian(2, 2) += prior.sqrt_information * prior.sqrt_information;
-  }
-  for (const WindowView& view : views) {
-    const Pose& T_WC = Geometry(geometry, view).T_WC;
-    const Vector3d shift_W = base.translation - T_WC.translation;
-    const Vector3d q = T_WC.rotation.transpose() * (ray_W + landmark.z() * shift_W);
-    if (!(q.z() > kMinViewDepth)) {
-      return kInfinity;
-    }
-    const Vector2d predicted = q.hnormalized();
-    const Vector2d residual = view.observation.sqrt_information * (predicted - view.observation.z);
-    const double s = residual.squaredNorm();
-    cost += kernel.Rho(s);
-    if (system != nullptr) {
-      Matrix2x3 perspective;
-      perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-      const Matrix2x3 to_world =
-          view.observation.sqrt_information * (perspective / q.z()) * T_WC.rotation.transpose();
-      Matrix2x3 jacobian;
-      jacobian << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
-      const double weight = RobustWeight(kernel.kernel, kernel.scale_sigma, s);
-      const Vector3d slope = jacobian.transpose() * residual;
-      system->gradient += weight * slope;
-      // Newton's curvature of the kernel, along the residual; plain re-weighting converges linearly only.
-      system->hessian +=
-          weight * jacobian.transpose() * jacobian -
-          (weight - RadialCurvature(kernel, s, weight)) / std::max(s, 1e-300) * slope * slope.transpose();
-    }
-  }
-  return cost;
-}
-
 /// Row of the depth prior on rho, the inverse depth in the base view: d rho = drho - rho dz_b, z_b the depth
 /// of (x, y, 1) there.
 void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vector3d& landmark,
@@ -92,7 +27,7 @@ void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vec
   const double rho = landmark.z();
   const Vector3d ray = landmark.head<2>().homogeneous();
   Eigen::Matrix<double, 1, 6> camera;
-  camera << -rho * Skew(ray).row(2), rho * rho * base.T_WC.rotation.col(2).transpose();
+  camera << -rho * Skew(ray).row(2), rho * rho * base.Linearized().rotation.col(2).transpose();
   const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
   const double residual = prior.sqrt_information * (rho - prior.mean);
   workspace->prior_residual = residual;
@@ -112,7 +47,7 @@ void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vec
 /// Weighted rows of every view over its own pose and the landmark. False behind a view.
 bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                     const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace) {
-  const Pose& base = Geometry(geometry, views.front()).T_WC;
+  const FrameGeometry& base = Geometry(geometry, views.front());
   workspace->rows.resize(views.size());
   workspace->coupling.resize(views.size());
   workspace->reduced.resize(views.size());
@@ -174,6 +109,16 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
   }
 }
 
+/// The point (x, y, 1) / rho of the base camera in another, times rho.
+struct ScaledPoint {
+  ScaledPoint(const Pose& base, const Pose& T_WC, const Vector3d& landmark)
+      : shift_W(base.translation - T_WC.translation) {
+    const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
+    q = T_WC.rotation.transpose() * (ray_W + landmark.z() * shift_W);
+  }
+  Vector3d shift_W;
+  Vector3d q;
+};
 }  // namespace
 
 double ObservationKernel::Rho(double s) const {
@@ -188,72 +133,31 @@ double ObservationKernel::Rho(double s) const {
   }
   return s;
 }
-
-FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC) {
-  return {state.T_WB() * T_BC, BodyToCameraJacobian(state.R_WB, T_BC)};
-}
-
-std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC) {
-  std::vector<FrameGeometry> geometry;
-  geometry.reserve(static_cast<size_t>(window.size()));
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    geometry.push_back(MakeGeometry(frame->nav_state(), T_BC));
-  }
-  return geometry;
-}
-
-FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
-  const double later_s = camera.time_offset_s - frame.time_offset_s;
-  const Matrix3d turn = so3::Exp(Vector3d(frame.rates.head<3>() * later_s));
-  FrameGeometry geometry;
-  geometry.R_WB = state.R_WB * turn;
-  const Vector3d p_WB = state.p_WB + frame.rates.tail<3>() * later_s;
-  geometry.T_WC = Pose{geometry.R_WB, p_WB} * camera.T_BC;
-  const Matrix6d camera_from_moved = BodyToCameraJacobian(geometry.R_WB, camera.T_BC);
-  geometry.camera_from_body = camera_from_moved;
-  geometry.camera_from_body.leftCols<3>() = camera_from_moved.leftCols<3>() * turn.transpose();
-  geometry.camera_from_time = camera_from_moved * frame.rates;
-  return geometry;
-}
-
-std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera) {
-  std::vector<FrameGeometry> geometry;
-  geometry.reserve(static_cast<size_t>(window.size()));
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera));
-  }
-  return geometry;
-}
-
-CameraFromCalibration CalibrationChain(const CalibrationLayout& layout, const FrameGeometry& frame) {
-  CameraFromCalibration chain = CameraFromCalibration::Zero(6, layout.size());
-  if (layout.extrinsics() >= 0) {
-    chain.middleCols<6>(layout.extrinsics()) = ExtrinsicsToCameraJacobian(frame.R_WB);
-  }
-  if (layout.time_offset() >= 0) {
-    chain.col(layout.time_offset()) = frame.camera_from_time;
-  }
-  return chain;
-}
-
-bool LinearizeView(const Pose& base, const FrameGeometry& frame, const NormalizedObservation& observation,
-                   const ObservationKernel& kernel, const Vector3d& landmark, ViewRows* rows) {
-  const Vector3d shift_W = base.translation - frame.T_WC.translation;
-  const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
+bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
+                   const NormalizedObservation& observation, const ObservationKernel& kernel,
+                   const Vector3d& landmark, ViewRows* rows) {
   const double rho = landmark.z();
-  const Vector3d q = frame.T_WC.rotation.transpose() * (ray_W + rho * shift_W);
-  if (!(q.z() > kMinViewDepth)) {
+  ScaledPoint seen(base.T_WC, frame.T_WC, landmark);
+  if (!(seen.q.z() > kMinViewDepth)) {
     return false;
   }
-  const Vector2d predicted = q.hnormalized();
+  rows->residual = observation.sqrt_information * (seen.q.hnormalized() - observation.z);
+  const Pose& T_WC = frame.Linearized();
+  const Pose& T_W_base = base.Linearized();
+  if (base.T_WC_first || frame.T_WC_first) {
+    seen = ScaledPoint(T_W_base, T_WC, landmark);
+    if (!(seen.q.z() > kMinViewDepth)) {
+      return false;
+    }
+  }
+  const Vector2d predicted = seen.q.hnormalized();
   Matrix2x3 perspective;
   perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-  const Matrix2x3 weighted = observation.sqrt_information * (perspective / q.z());
-  const Matrix2x3 to_world = weighted * frame.T_WC.rotation.transpose();
-  rows->landmark << to_world * base.rotation.leftCols<2>(), to_world * shift_W;
-  rows->camera << weighted * Skew(q), -rho * to_world;
+  const Matrix2x3 weighted = observation.sqrt_information * (perspective / seen.q.z());
+  const Matrix2x3 to_world = weighted * T_WC.rotation.transpose();
+  rows->landmark << to_world * T_W_base.rotation.leftCols<2>(), to_world * seen.shift_W;
+  rows->camera << weighted * Skew(seen.q), -rho * to_world;
   rows->pose.noalias() = rows->camera * frame.camera_from_body;
-  rows->residual = observation.sqrt_information * (predicted - observation.z);
   rows->squared_norm = rows->residual.squaredNorm();
   rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
   return true;
@@ -264,39 +168,6 @@ PoseSystem::PoseSystem(int frames, const WindowCalibration* of_camera) : calibra
   hessian = Eigen::MatrixXd::Zero(size, size);
   gradient = Eigen::VectorXd::Zero(size);
 }
-
-bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                   const ObservationKernel& kernel, int max_iterations, Vector3d* landmark,
-                   const DepthPrior& prior) {
-  LandmarkSystem system;
-  double cost = EvaluateLandmark(views, geometry, kernel, *landmark, prior, &system);
-  double damping = 0;
-  for (int i = 0; i < max_iterations && std::isfinite(cost); ++i) {
-    Matrix3d damped = system.hessian;
-    damped.diagonal() *= 1 + damping;
-    const Vector3d step = -damped.llt().solve(system.gradient);
-    const double decrement = -step.dot(system.gradient);
-    if (!(decrement > 1e-14 * (1 + cost))) {
-      break;
-    }
-    LandmarkSystem next;
-    const Vector3d candidate = *landmark + step;
-    const double candidate_cost = EvaluateLandmark(views, geometry, kernel, candidate, prior, &next);
-    if (candidate_cost <= cost * (1 + 1e-15)) {
-      *landmark = candidate;
-      cost = candidate_cost;
-      system = next;
-      damping = damping < 1e-6 ? 0 : damping * 0.1;
-    } else {
-      damping = std::max(damping * 100, 1e-4);
-      if (damping > 1e8) {
-        break;
-      }
-    }
-  }
-  return std::isfinite(cost) && landmark->allFinite();
-}
-
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior) {
@@ -345,30 +216,6 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   ++system->tracks;
   return true;
 }
-
-double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                      const Vector3d& landmark) {
-  return EvaluateLandmark(views, geometry, ObservationKernel{}, landmark, {}, nullptr);
-}
-
-bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                        double max_relative_deviation, Vector3d* landmark) {
-  std::vector<Pose> poses;
-  std::vector<Vector2d> z;
-  for (const WindowView& view : views) {
-    poses.push_back(Geometry(geometry, view).T_WC);
-    z.push_back(view.observation.z);
-  }
-  PoseOnlyDepth depth;
-  if (!ComputePoseOnlyDepth(poses, z, 0, DepthViews::kMulti, &depth) || !(std::abs(depth.depth) > 1e-9)) {
-    return false;
-  }
-  *landmark << z.front(), 1.0 / depth.depth;
-  const int other_views = static_cast<int>(views.size()) - 1;
-  return landmark->allFinite() &&
-         DepthIsDetermined(depth, other_views, views.front().observation.deviation(), max_relative_deviation);
-}
-
 void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                     Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
   const Eigen::Index size = hessian.rows();

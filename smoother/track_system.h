@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "smoother/window.h"
-#include "smoother/window_calibration.h"
+#include "smoother/frame_geometry.h"
 
 namespace alidade {
 
@@ -18,29 +17,6 @@ struct ObservationKernel {
 
   [[nodiscard]] double Rho(double squared_norm) const;
 };
-
-/// Camera pose of a frame and its error's chain to the body error; computed once a frame and evaluation
-/// point.
-struct FrameGeometry {
-  Pose T_WC;
-  Matrix6d camera_from_body;
-  // Of a camera that is calibrated online.
-  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< when the camera saw
-  Vector6d camera_from_time = Vector6d::Zero();        ///< d zeta_C / d time offset
-};
-[[nodiscard]] FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC);
-[[nodiscard]] std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC);
-/// The same for a camera that is calibrated online: where the frame's body was when the camera saw.
-[[nodiscard]] FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state,
-                                         const CameraCalibration& camera);
-[[nodiscard]] std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera);
-
-/// d zeta_C / d calibration of a frame's camera at a fixed body pose, in the layout's columns. The intrinsics
-/// do not move it.
-using CameraFromCalibration =
-    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, CalibrationLayout::kMaxSize>;
-[[nodiscard]] CameraFromCalibration CalibrationChain(const CalibrationLayout& layout,
-                                                     const FrameGeometry& frame);
 
 /// Normal equations of vision alone, every landmark eliminated (the 2N-3 rows N^T [H | r] of each track; N
 /// the left null space of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical
@@ -70,11 +46,13 @@ struct ViewRows {
   double weight = 1;                     ///< of both rows: the kernel's
 };
 
-/// Linearises one view. The landmark's three coordinates (x, y, rho) are taken in the base camera's frame as
-/// it is NOW, `base`, which then stands still: a point of the world. So every row, the base's too, concerns
-/// one pose, and rho = 0 is regular. False behind the view.
-bool LinearizeView(const Pose& base, const FrameGeometry& frame, const NormalizedObservation& observation,
-                   const ObservationKernel& kernel, const Eigen::Vector3d& landmark, ViewRows* rows);
+/// Linearises one view, its Jacobians at first estimates where the frames have such. The landmark's three
+/// coordinates (x, y, rho) are taken in the base camera's frame as it is NOW, `base`, which then stands
+/// still: a point of the world. So every row, the base's too, concerns one pose, and rho = 0 is regular.
+/// False behind the view.
+bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
+                   const NormalizedObservation& observation, const ObservationKernel& kernel,
+                   const Eigen::Vector3d& landmark, ViewRows* rows);
 
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {

@@ -12,6 +12,7 @@
 #include "core/preintegration.h"
 #include "core/rest_model.h"
 #include "core/visual_observation.h"
+#include "smoother/first_estimate.h"
 #include "smoother/frame_epoch.h"
 
 namespace alidade {
@@ -31,6 +32,8 @@ struct WindowFrame {
   double time_offset_s = 0;                   ///< that placed the frame in IMU time
   std::optional<Eigen::Vector3d> gyro_radps;  ///< measured at the frame
   Vector6d rates = Vector6d::Zero();          ///< kept fixed in a solve
+  /// With smoother.first_estimates, once the prior holds the frame.
+  std::optional<FirstEstimate> first;
   // Once aligned with GNSS (smoother/gnss_window.h).
   std::optional<std::array<double, ClockState::kSize>> clock;  ///< a parameter block
   bool clock_anew = false;         ///< the clock before says nothing about this one
@@ -38,6 +41,8 @@ struct WindowFrame {
 
   [[nodiscard]] NavState nav_state() const;
   [[nodiscard]] ImuBias imu_bias() const;
+  /// Null unless the frame has one.
+  [[nodiscard]] const FirstEstimate* first_estimate() const { return first ? &*first : nullptr; }
   /// Precondition: clock.
   [[nodiscard]] Vector6d clock_state() const { return Eigen::Map<const Vector6d>(clock->data()); }
   /// Mean length of one IMU step [s].

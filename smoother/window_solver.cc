@@ -67,10 +67,8 @@ Result<WindowSolveReport> SolveWindow(const WindowSolveOptions& options, const L
   }
   if (options.smoother.landmark == SmootherLandmark::kInverseDepth) {
     store.AddInverseDepth(options.T_BC, problem.get());
-  } else if (!tracks.empty() && calibration != nullptr) {
-    store.AddPoseOnly(*window, problem.get());
   } else if (!tracks.empty()) {
-    store.AddPoseOnly(options.T_BC, problem.get());
+    store.AddPoseOnly(*window, options.T_BC, problem.get());
   }
   ceres::Solver::Summary summary;
   ceres::Solve(SolverOptions(options, frames, tracks.size(), &store), problem.get(), &summary);

@@ -159,7 +159,7 @@ TEST(InverseDepthFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConv
     WindowFixture fixture(seed, 3, 4, 1.0);
     const WindowTrack& track = *fixture.tracks().front();
     const LiftedCost<InverseDepthFactor> cost(
-        InverseDepthFactor(track.views.back().observation, &fixture.T_BC));
+        InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.T_BC));
     const Point point = {Nav(track.views.front().frame->nav_state()),
                          Nav(track.views.back().frame->nav_state()), track.landmark};
     ExpectJacobianInAllConventions(cost, point, 1e-7);
@@ -179,7 +179,7 @@ TEST(InverseDepthFactorTest, ALandmarkBehindTheCameraCostsMuchButDoesNotFailTheS
   WindowFixture fixture(5, 3, 4);
   const WindowTrack& track = *fixture.tracks().front();
   const LiftedCost<InverseDepthFactor> cost(
-      InverseDepthFactor(track.views.back().observation, &fixture.T_BC));
+      InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.T_BC));
   Eigen::VectorXd landmark = track.landmark;
   landmark[2] = -1e3;  // far behind: rho t outweighs the ray
   const NavState base = track.views.front().frame->nav_state();
@@ -223,7 +223,7 @@ TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
       track.depth_prior = {0.15, id % 3 == 0 ? 30.0 : 0.0};
     }
     const LiftedCost<PoseOnlyFactor> cost(
-        PoseOnlyFactor(4, fixture.tracks(), fixture.T_BC, {GetParam(), 1.5}));
+        PoseOnlyFactor(fixture.window, fixture.tracks(), fixture.T_BC, {GetParam(), 1.5}));
     Point point;
     for (const auto& frame : fixture.window.frames()) {
       Vector9d shift;

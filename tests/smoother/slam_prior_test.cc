@@ -187,7 +187,7 @@ TEST_P(SlamPriorTest, ReducedSystemIsThatOfTheMinimumOverTheLandmarks) {
     const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
     const SlamPrior slam = fixture.calibrated()
                                ? SlamPrior(&prior, tracks, fixture.window, fixture.calibration, {kernel, 1.5})
-                               : SlamPrior(&prior, tracks, fixture.T_BC, {kernel, 1.5}, frames);
+                               : SlamPrior(&prior, tracks, fixture.window, fixture.T_BC, {kernel, 1.5});
     WindowPoint origin = PointOf(fixture.window);
     origin.camera = fixture.calibration.mean;
     const auto reduce = [&](const VectorXd& zeta) {
@@ -266,7 +266,7 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
   const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
   const SlamPrior slam = fixture.calibrated()
                              ? SlamPrior(&prior, tracks, fixture.window, fixture.calibration, {})
-                             : SlamPrior(&prior, tracks, fixture.T_BC, {}, fixture.window.size());
+                             : SlamPrior(&prior, tracks, fixture.window, fixture.T_BC, {});
   WindowPoint point = PointOf(fixture.window);
   point.camera = fixture.calibration.mean;
   VectorXd landmarks = slam.StartingLandmarks();

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/error_convention.h"
+
+namespace alidade {
+
+/// Where the Jacobians of a frame are taken once the prior holds it (first estimates, after Huang, Mourikis
+/// and Roumeliotis, ISER 2008, and Leutenegger et al., IJRR 2015). What the prior says was linearised there
+/// and stays so. Factors that were linearised elsewhere would not leave turns about gravity and shifts of
+/// everything undecided along the same directions as the prior, and their sum would then claim to know them.
+/// Residuals stay at the present state.
+struct FirstEstimate {
+  ErrorConvention convention = ErrorConvention::kRightInvariant;  ///< of the prior
+  NavState state;  ///< its velocity counts once the prior holds it: from when the frame is the oldest
+  bool holds_velocity = false;
+
+  /// The point itself, for a frame that is at `now`.
+  [[nodiscard]] NavState Point(const NavState& now) const;
+  /// d zeta of the point / d zeta of `now`, 9 x 9, canonical chart: with a Jacobian J taken at the point,
+  /// J Chain(now) is over the chart at `now`, such that both move the prior's coordinates alike.
+  [[nodiscard]] Matrix9d Chain(const NavState& now) const;
+};
+
+}  // namespace alidade
