@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <unordered_map>
 
 #include "core/error_convention.h"
+#include "eval/metrics.h"
+#include "eval/series_rows.h"
 #include "eval/sky_tracks.h"
 
 namespace alidade {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// Points of a curve beyond these are not seen on a screen.
+/// Regular points of a curve beyond these are not seen on a screen.
 constexpr size_t kMaxSeriesPoints = 600;
 
 double Mean(const std::vector<double>& values) {
@@ -51,22 +54,28 @@ void FillFigures(const Evaluation& evaluation, CellResult* cell) {
   }
 }
 
-void FillSeries(const Evaluation& evaluation, CellSeries* series) {
+/// One row a pair.
+CellSeries MakeSeries(const Evaluation& evaluation) {
+  CellSeries series;
   const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
-  const size_t stride = (evaluation.pairs.size() + kMaxSeriesPoints - 1) / kMaxSeriesPoints;
-  for (size_t i = 0; i < evaluation.pairs.size(); i += stride) {
+  for (size_t i = 0; i < evaluation.pairs.size(); ++i) {
     const StatePair& pair = evaluation.pairs[i];
-    series->time_s.push_back(
+    series.time_s.push_back(
         SecondsBetween(evaluation.pairs.front().estimate.stamp_ns, pair.estimate.stamp_ns));
-    series->truth_position.push_back(pair.truth.nav.p_WB);
-    series->position.push_back(aligned[i].estimate.nav.p_WB);
-    series->error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
-    series->sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
-    series->nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kUnknown);
+    series.truth_position.push_back(pair.truth.nav.p_WB);
+    series.position.push_back(aligned[i].estimate.nav.p_WB);
+    series.error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
+    series.sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
+    series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kUnknown);
   }
+  return series;
 }
 
-/// backend_ms, features_used and what an audit recorded, at the stamps that FillSeries kept.
+double NisRatio(const FrameStatistics& statistics) {
+  return statistics.nis_dof > 0 ? statistics.nis / statistics.nis_dof : kUnknown;
+}
+
+/// What the frames of the pairs did to the estimator, and what an audit recorded.
 void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
   const bool audited = std::any_of(run.records.begin(), run.records.end(),
                                    [](const RunRecord& record) { return record.observability.has_value(); });
@@ -74,12 +83,13 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
   for (const RunRecord& record : run.records) {
     by_stamp[record.estimate.stamp_ns] = &record;
   }
-  const size_t stride = (evaluation.pairs.size() + kMaxSeriesPoints - 1) / kMaxSeriesPoints;
-  for (size_t i = 0; i < evaluation.pairs.size(); i += stride) {
-    const auto record = by_stamp.find(evaluation.pairs[i].estimate.stamp_ns);
+  for (const StatePair& pair : evaluation.pairs) {
+    const auto record = by_stamp.find(pair.estimate.stamp_ns);
     const bool found = record != by_stamp.end();
     series->backend_ms.push_back(found ? record->second->backend_ms : kUnknown);
     series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
+    series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kUnknown);
+    series->nis_ratio.push_back(found ? NisRatio(record->second->statistics) : kUnknown);
     if (audited) {
       const bool has = found && record->second->observability.has_value();
       series->rank.push_back(has ? record->second->observability->rank : kUnknown);
@@ -87,6 +97,32 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
       series->position_leak.push_back(has ? record->second->observability->position_leak : kUnknown);
     }
   }
+}
+
+InnovationSummary SummarizeInnovations(const std::vector<RunRecord>& records) {
+  std::map<int, std::pair<double, double>> bands;  // of a sum of squares, by its number
+  std::vector<double> rows;
+  double nis = 0, dof = 0, inside = 0;
+  for (const RunRecord& record : records) {
+    const FrameStatistics& frame = record.statistics;
+    if (frame.nis_dof > 0) {
+      const auto [band, added] = bands.try_emplace(frame.nis_dof);
+      band->second = added ? NeesBand(frame.nis_dof, 1) : band->second;
+      inside += frame.nis >= band->second.first && frame.nis <= band->second.second ? 1 : 0;
+      nis += frame.nis;
+      dof += frame.nis_dof;
+      rows.push_back(frame.nis_dof);
+    }
+  }
+  InnovationSummary summary;
+  if (!rows.empty()) {
+    summary.ratio = nis / dof;
+    summary.inside = inside / static_cast<double>(rows.size());
+    const double median = Percentile(rows, 0.5);
+    const std::pair<double, double> band = bands.at(static_cast<int>(median));
+    summary.band = {band.first / median, band.second / median};
+  }
+  return summary;
 }
 
 /// Root mean squares of predicted deviations.
@@ -125,13 +161,11 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
     return;
   }
   FillFigures(*evaluation, cell);
-  FillSeries(*evaluation, &cell->series);
+  CellSeries series = MakeSeries(*evaluation);
   if (run != nullptr) {
-    FillRunSeries(*evaluation, *run, &cell->series);
-  } else {
-    cell->series.backend_ms.assign(cell->series.time_s.size(), kUnknown);
-    cell->series.features_used.assign(cell->series.time_s.size(), kUnknown);
+    FillRunSeries(*evaluation, *run, &series);
   }
+  cell->series = TakeRows(series, PickRows(series, kMaxSeriesPoints));
 }
 
 }  // namespace
@@ -157,17 +191,22 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
               CellResult* cell) {
   cell->status = StatusWord(run);
   cell->message = run.status.message();
-  std::vector<double> frontend_ms, backend_ms, features;
+  std::vector<double> frontend_ms, backend_ms, propagate_ms, update_ms, features;
   double used = 0, gated = 0;
   for (const RunRecord& record : run.records) {
     frontend_ms.push_back(record.frontend_ms);
     backend_ms.push_back(record.backend_ms);
+    propagate_ms.push_back(record.statistics.propagate_ms);
+    update_ms.push_back(record.statistics.update_ms);
     features.push_back(record.statistics.features_used);
     used += record.statistics.features_used;
     gated += record.statistics.features_gated;
   }
   cell->frontend_ms = Mean(frontend_ms);
   cell->backend_ms = Mean(backend_ms);
+  cell->propagate_ms = Mean(propagate_ms);
+  cell->update_ms = Mean(update_ms);
+  cell->innovations = SummarizeInnovations(run.records);
   cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
   cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;

@@ -12,24 +12,12 @@
 #include "core/blas.h"
 #include "core/format.h"
 #include "eval/cell_score.h"
+#include "eval/compare_cell.h"
 #include "eval/compare_configs.h"
-#include "eval/compare_input.h"
 #include "eval/config_yaml.h"
-#include "eval/external_cell.h"
-#include "eval/recorder.h"
 
 namespace alidade {
 namespace {
-
-/// One estimator on one sequence with one seed.
-struct Cell {
-  const PlanEstimator* estimator = nullptr;
-  const EstimatorConfig* config = nullptr;  ///< null when external
-  const PlanSequence* sequence = nullptr;
-  CompareInput* input = nullptr;
-  unsigned seed = 0;
-  CellResult result;
-};
 
 std::string OneLine(const CellResult& cell) {
   const std::string figures = std::isfinite(cell.ate_pos_m)
@@ -98,7 +86,9 @@ class Comparer {
         continue;
       }
       const EstimatorConfig* config = configs_.Of(sequence, i);
-      Cell cell{&estimator, config, &sequence, input, seed, UnscoredCell()};
+      CompareCell cell{&estimator, config, &sequence, input, seed, "", UnscoredCell()};
+      cell.folder =
+          options_.output + "/cells/" + estimator.name + "/" + sequence.name + "/" + std::to_string(seed);
       cell.result.estimator = estimator.name;
       cell.result.backend = estimator.external() ? "external" : std::string(ToString(config->backend));
       cell.result.sequence = sequence.name;
@@ -126,94 +116,17 @@ class Comparer {
 
   void Work() {
     for (size_t i = next_cell_++; i < cells_.size() && !Stopped(); i = next_cell_++) {
-      Cell& cell = cells_[i];
-      RunGuarded(&cell);
+      CompareCell& cell = cells_[i];
+      const auto note = [this, &cell](const FrontendSummary& front) { NoteFrontend(cell, front); };
+      cells_reused_ += RunCompareCell(plan_, options_, pipeline_, note, &cell) ? 1 : 0;
       cell.input->Release();
       Say("[" + std::to_string(++cells_done_) + "/" + std::to_string(cells_.size()) + "] " +
           OneLine(cell.result));
     }
   }
 
-  /// Nothing that one cell does may end the others, an exception of a library least of all.
-  void RunGuarded(Cell* cell) {
-    try {
-      RunCell(cell);
-    } catch (const std::exception& error) {
-      Fail(cell, error.what());
-    }
-  }
-
-  static void Fail(Cell* cell, const std::string& message) {
-    cell->result.status = "failed";
-    cell->result.message = message;
-  }
-
-  void RunCell(Cell* cell) {
-    const Result<CompareInput::Data>& data = cell->input->Acquire(pipeline_);
-    if (!data.ok()) {
-      return Fail(cell, data.message());
-    }
-    if (data->frontend.has_value()) {
-      NoteFrontend(*cell, *data->frontend);
-    }
-    const Trajectory* truth = data->truth ? &*data->truth : nullptr;
-    cell->result.input_digest = DigestOf(data->log);
-    if (cell->result.input_digest != data->input_digest) {
-      return Fail(cell, "the measurement log changed between two estimators");
-    }
-    if (cell->config == nullptr) {
-      return RunExternalCell(*data, cell);
-    }
-    const std::string folder = FolderOf(*cell);
-    const RunIdentity identity{*cell->config,
-                               cell->sequence->name,
-                               data->dataset_digest,
-                               data->input_digest,
-                               cell->seed,
-                               data->log.imu.size(),
-                               data->log.frames.size(),
-                               plan_.audit && cell->config->backend == Backend::kFilter};
-    if (options_.resume && HoldsRun(folder, identity)) {
-      ++cells_reused_;
-    } else {
-      RunOptions run_options;
-      run_options.truth = truth;
-      run_options.true_rig = data->true_rig ? &*data->true_rig : nullptr;
-      run_options.seed = cell->seed;
-      run_options.stop = options_.stop;
-      run_options.audit = identity.audited;
-      const RunResult result = RunEstimator(*cell->config, data->log, run_options);
-      if (result.interrupted) {
-        return Fail(cell, "interrupted");
-      }
-      if (const Status status = WriteRun(identity, result, folder); !status.ok()) {
-        return Fail(cell, status.message());
-      }
-    }
-    // Scored from what was written: fresh and resumed comparisons give the same figures to the last digit.
-    const Result<RunResult> written = ReadRun(folder);
-    return written.ok() ? ScoreRun(truth, *written, plan_.metrics, &cell->result)
-                        : Fail(cell, written.message());
-  }
-
-  void RunExternalCell(const CompareInput::Data& data, Cell* cell) {
-    const Trajectory* truth = data.truth ? &*data.truth : nullptr;
-    const ExternalCell external{*cell->estimator,    *cell->sequence, cell->seed, data.log, truth,
-                                data.dataset_digest, FolderOf(*cell)};
-    const Result<ExternalOutcome> outcome = TrajectoryOfExternal(external, options_.resume, options_.stop);
-    if (!outcome.ok()) {
-      return Fail(cell, outcome.message());
-    }
-    ScoreTrajectory(truth, outcome->trajectory, plan_.metrics, &cell->result);
-    if (outcome->run) {
-      cells_reused_ += outcome->reused ? 1 : 0;
-      // All of the program: it is one process to us.
-      cell->result.backend_ms = 1e3 * outcome->run->wall_s / std::max(1, cell->result.frames);
-    }
-  }
-
   /// Says once an input what its front end did, and keeps it for the tables.
-  void NoteFrontend(const Cell& cell, FrontendSummary summary) {
+  void NoteFrontend(const CompareCell& cell, FrontendSummary summary) {
     summary.sequence = cell.sequence->name;
     summary.seed = cell.seed;
     {
@@ -237,9 +150,7 @@ class Comparer {
     comparison.references = plan_.references;
     comparison.command = options_.command;
     comparison.baseline = plan_.baseline;
-    for (const auto& [name, path] : plan_.absent) {
-      comparison.notes.push_back(name + ": its data is not there, expected the folder " + path);
-    }
+    comparison.notes = NotesOfAbsent();
     for (const std::unique_ptr<CompareInput>& input : inputs_) {
       if (const auto found = frontends_.find(input.get()); found != frontends_.end()) {
         comparison.frontends.push_back(found->second);
@@ -248,7 +159,7 @@ class Comparer {
     comparison.pair_figures = plan_.pair_figures;
     comparison.pair_across = plan_.pair_across;
     for (const PlanEstimator& estimator : plan_.estimators) {
-      for (Cell& cell : cells_) {
+      for (CompareCell& cell : cells_) {
         if (cell.estimator == &estimator) {
           outcome.cells_failed += cell.result.status == "ok" ? 0 : 1;
           comparison.cells.push_back(std::move(cell.result));
@@ -257,14 +168,25 @@ class Comparer {
     }
     if (!outcome.interrupted) {
       ALIDADE_RETURN_IF_ERROR(WriteTables(comparison, options_.output));
+      ALIDADE_RETURN_IF_ERROR(WriteFigureFiles(comparison, options_.figures, options_.output));
       ALIDADE_RETURN_IF_ERROR(WriteReport(comparison, options_.output + "/report.html"));
     }
     return outcome;
   }
 
-  [[nodiscard]] std::string FolderOf(const Cell& cell) const {
-    return options_.output + "/cells/" + cell.estimator->name + "/" + cell.sequence->name + "/" +
-           std::to_string(cell.seed);
+  /// What was not run, and why.
+  [[nodiscard]] std::vector<std::string> NotesOfAbsent() const {
+    std::vector<std::string> notes;
+    for (const auto& [name, path] : plan_.absent) {
+      notes.push_back(name + ": its data is not there, expected the folder " + path);
+    }
+    for (const PlanEstimator& estimator : plan_.estimators) {
+      if (std::none_of(cells_.begin(), cells_.end(),
+                       [&](const CompareCell& cell) { return cell.estimator == &estimator; })) {
+        notes.push_back(estimator.name + ": none of the sequences it runs on is there");
+      }
+    }
+    return notes;
   }
 
   [[nodiscard]] FrontendCache CacheOf(const PlanSequence& sequence, unsigned seed) const {
@@ -285,7 +207,7 @@ class Comparer {
   PipelineOptions pipeline_;
   CompareConfigs configs_;
   std::vector<std::unique_ptr<CompareInput>> inputs_;
-  std::vector<Cell> cells_;
+  std::vector<CompareCell> cells_;
   std::map<const CompareInput*, FrontendSummary> frontends_;
   std::mutex frontend_mutex_;
   std::atomic<size_t> next_cell_{0};

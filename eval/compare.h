@@ -5,6 +5,7 @@
 #include <string>
 
 #include "eval/comparison.h"
+#include "eval/figure_files.h"
 #include "eval/plan.h"
 
 namespace alidade {
@@ -14,7 +15,8 @@ struct CompareOptions {
   int jobs = 1;  ///< runs at a time; results do not depend on it, but their times do
   /// Keep the cells that are complete and were made from the same input and configuration.
   bool resume = false;
-  std::string command;  ///< how to repeat it, for the report
+  FigureFormats figures;  ///< for papers, into figures/
+  std::string command;    ///< how to repeat it, for the report
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& line)> progress;  ///< called by one thread at a time
 };

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "eval/frontend_summary.h"
@@ -11,8 +12,10 @@
 
 namespace alidade {
 
-/// Time series of one cell, thinned for plotting; all vectors have one entry a kept frame.
+/// Time series of one cell, thinned for plotting (eval/series_rows.h); all vectors have one entry a kept
+/// frame, or none at all.
 struct CellSeries {
+  std::vector<bool> regular;   ///< picked at even steps: these alone may enter means; empty: all of them
   std::vector<double> time_s;  ///< since the first pair
   std::vector<Eigen::Vector3d> truth_position;
   std::vector<Eigen::Vector3d> position;  ///< aligned as the plan says
@@ -21,10 +24,22 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
+  std::vector<double> tracks_in;  ///< that the frame handed to the estimator
+  std::vector<double> nis_ratio;  ///< normalised innovation squared over its rows; NaN without rows
   // Of an audited filter, else empty (eval/observability.h).
   std::vector<double> rank;
   std::vector<double> yaw_leak;       ///< [1/rad^2]
   std::vector<double> position_leak;  ///< [1/m^2]
+};
+
+/// How well the innovations of a run fit their own covariance. A smoother tells what is left of its window's
+/// residuals after the fit. NaN when not known.
+struct InnovationSummary {
+  double ratio = std::numeric_limits<double>::quiet_NaN();   ///< sum of the NIS over the sum of their rows
+  double inside = std::numeric_limits<double>::quiet_NaN();  ///< share of frames in the 95 % chi-square band
+  /// That band over its rows, of a frame with the median number of rows.
+  std::pair<double, double> band{std::numeric_limits<double>::quiet_NaN(),
+                                 std::numeric_limits<double>::quiet_NaN()};
 };
 
 /// How a GNSS satellite stood and fitted in a run (eval/sky_tracks.h).
@@ -55,6 +70,10 @@ struct CellResult {
   double nees_pose = 0, nees_ori = 0, nees_pos = 0, coverage_3sigma = 0;
   double frontend_ms = 0, backend_ms = 0, backend_ms_p95 = 0;
   double features_per_frame = 0;
+  /// Stages of backend_ms, means a frame; the rest is neither. NaN when not known.
+  double propagate_ms = std::numeric_limits<double>::quiet_NaN();
+  double update_ms = std::numeric_limits<double>::quiet_NaN();
+  InnovationSummary innovations;
   /// Of the tracks that met the chi-square gate, those it refused; NaN when none did. On data without
   /// outliers these are false rejections.
   double gated_share = std::numeric_limits<double>::quiet_NaN();
@@ -96,12 +115,11 @@ struct Comparison {
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
 };
 
-/// Writes summary.csv, aggregate.csv, pairs.csv, nees_over_time.csv, tables.md, tables.tex into `folder`
-/// (contract: "What compare writes").
+/// Writes summary.csv, aggregate.csv, pairs.csv, nees_over_time.csv, tables.md, tables.tex and report.json
+/// into `folder` (docs/plans.md).
 Status WriteTables(const Comparison& comparison, const std::string& folder);
 
-/// One self-contained offline page: table, trajectories, errors with 3-sigma bands, NEES with its chi-square
-/// band, time per frame; selectable by estimator, sequence and seed.
+/// Writes the page that people look at (docs/report.md): one self-contained offline file.
 Status WriteReport(const Comparison& comparison, const std::string& path);
 
 /// The table that a person reads on the terminal.

@@ -14,15 +14,32 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPoseFreedom = 6;
 
+/// The regular rows of a run.
+struct Curve {
+  std::vector<double> time_s;
+  std::vector<double> nees;
+};
+
+Curve RegularRows(const CellSeries& series) {
+  Curve curve;
+  for (size_t i = 0; i < series.time_s.size(); ++i) {
+    if (series.regular.empty() || series.regular[i]) {
+      curve.time_s.push_back(series.time_s[i]);
+      curve.nees.push_back(i < series.nees_pose.size() ? series.nees_pose[i] : kNan);
+    }
+  }
+  return curve;
+}
+
 /// The value nearest to `time_s` within `reach_s`; NaN when there is none.
-double ValueNear(const CellSeries& series, double time_s, double reach_s) {
-  const std::vector<double>& times = series.time_s;
+double ValueNear(const Curve& curve, double time_s, double reach_s) {
+  const std::vector<double>& times = curve.time_s;
   size_t at = static_cast<size_t>(std::lower_bound(times.begin(), times.end(), time_s) - times.begin());
   if (at > 0 && (at == times.size() || time_s - times[at - 1] < times[at] - time_s)) {
     --at;
   }
   const bool near = at < times.size() && std::abs(times[at] - time_s) <= reach_s;
-  return near && at < series.nees_pose.size() ? series.nees_pose[at] : kNan;
+  return near ? curve.nees[at] : kNan;
 }
 
 /// Bands by number of runs; each is worked out once.
@@ -40,25 +57,25 @@ class Bands {
   std::map<int, std::pair<double, double>> bands_;
 };
 
-const CellSeries* LongestOf(const std::vector<const CellSeries*>& all) {
-  const auto longest = std::max_element(all.begin(), all.end(), [](const CellSeries* a, const CellSeries* b) {
-    return a->time_s.back() < b->time_s.back();
+const Curve* LongestOf(const std::vector<Curve>& all) {
+  const auto longest = std::max_element(all.begin(), all.end(), [](const Curve& a, const Curve& b) {
+    return a.time_s.back() < b.time_s.back();
   });
-  return longest == all.end() ? nullptr : *longest;
+  return longest == all.end() ? nullptr : &*longest;
 }
 
 }  // namespace
 
 NeesOverTime AverageNees(const std::vector<const CellResult*>& cells) {
-  std::vector<const CellSeries*> all;
+  std::vector<Curve> all;
   for (const CellResult* cell : cells) {
     if (cell->status == "ok" && !cell->series.time_s.empty()) {
-      all.push_back(&cell->series);
+      all.push_back(RegularRows(cell->series));
     }
   }
   NeesOverTime result;
   result.share_inside = kNan;
-  const CellSeries* grid = LongestOf(all);
+  const Curve* grid = LongestOf(all);
   if (grid == nullptr) {
     return result;
   }
@@ -69,8 +86,8 @@ NeesOverTime AverageNees(const std::vector<const CellResult*>& cells) {
   for (const double time_s : grid->time_s) {
     double sum = 0;
     int runs = 0;
-    for (const CellSeries* series : all) {
-      const double value = ValueNear(*series, time_s, 0.5 * step_s);
+    for (const Curve& curve : all) {
+      const double value = ValueNear(curve, time_s, 0.5 * step_s);
       if (std::isfinite(value)) {
         sum += value;
         ++runs;

@@ -138,25 +138,6 @@ PairedDifference Pool(const std::vector<const PairedDifference*>& parts, Ideal i
   return pool;
 }
 
-std::vector<PairedDifference> PoolSequences(const std::vector<PairedDifference>& pairs,
-                                            const std::vector<Figure>& figures) {
-  using Key = std::tuple<size_t, std::string, std::string>;
-  std::vector<Key> order;
-  std::map<Key, std::vector<const PairedDifference*>> parts;
-  for (const PairedDifference& pair : pairs) {
-    const Key key(pair.figure, pair.first, pair.second);
-    if (parts.count(key) == 0) {
-      order.push_back(key);
-    }
-    parts[key].push_back(&pair);
-  }
-  std::vector<PairedDifference> pools;
-  for (const Key& key : order) {
-    pools.push_back(Pool(parts.at(key), figures[std::get<0>(key)].ideal));
-  }
-  return pools;
-}
-
 }  // namespace
 
 std::string ToString(PairVerdict verdict) {
@@ -219,6 +200,25 @@ std::vector<PairedDifference> ComparePairs(const Comparison& comparison, const s
     pairs.insert(pairs.end(), across.begin(), across.end());
   }
   return pairs;
+}
+
+std::vector<PairedDifference> PoolSequences(const std::vector<PairedDifference>& pairs,
+                                            const std::vector<Figure>& figures) {
+  using Key = std::tuple<size_t, std::string, std::string>;
+  std::vector<Key> order;
+  std::map<Key, std::vector<const PairedDifference*>> parts;
+  for (const PairedDifference& pair : pairs) {
+    const Key key(pair.figure, pair.first, pair.second);
+    if (parts.count(key) == 0) {
+      order.push_back(key);
+    }
+    parts[key].push_back(&pair);
+  }
+  std::vector<PairedDifference> pools;
+  for (const Key& key : order) {
+    pools.push_back(Pool(parts.at(key), figures[std::get<0>(key)].ideal));
+  }
+  return pools;
 }
 
 }  // namespace alidade

@@ -64,4 +64,9 @@ inline constexpr const char* kAllSequences = "all sequences";
 [[nodiscard]] std::vector<PairedDifference> ComparePairs(const Comparison& comparison,
                                                          const std::vector<Figure>& figures);
 
+/// The pairs of `pairs` over all sequences, one sample a sequence, as ComparePairs appends them with
+/// Comparison::pair_across.
+[[nodiscard]] std::vector<PairedDifference> PoolSequences(const std::vector<PairedDifference>& pairs,
+                                                          const std::vector<Figure>& figures);
+
 }  // namespace alidade

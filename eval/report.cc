@@ -2,35 +2,13 @@
 #include <string>
 
 #include "eval/comparison.h"
+#include "eval/escape_html.h"
 #include "eval/output_file.h"
 #include "eval/report_assets.h"
 #include "eval/report_data.h"
 
 namespace alidade {
 namespace {
-
-std::string EscapeHtml(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 /// Puts `values` into the {{NAME}} places of the template, in one pass: what is put in is never searched
 /// again.

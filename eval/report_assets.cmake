@@ -26,7 +26,9 @@ endfunction()
 set(assets ${CMAKE_CURRENT_SOURCE_DIR}/report_assets)
 alidade_embed(kReportHtml ${assets}/report.html)
 alidade_embed(kReportCss ${assets}/report.css)
-alidade_embed(kReportScript ${assets}/report_data.js ${assets}/report_frame.js ${assets}/report_plots.js
-              ${assets}/report_tables.js ${assets}/report_pairs.js
-              ${assets}/report_efficiency.js ${assets}/report_frontend.js ${assets}/report.js)
+set(scripts "")
+foreach(script data state frame rank plots bars tables pairs efficiency frontend sections runs)
+  list(APPEND scripts ${assets}/report_${script}.js)
+endforeach()
+alidade_embed(kReportScript ${scripts} ${assets}/report.js)
 alidade_embed(kReportD3 ${ALIDADE_D3})

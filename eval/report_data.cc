@@ -1,139 +1,24 @@
 #include "eval/report_data.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "eval/aggregate.h"
 #include "eval/efficiency.h"
 #include "eval/nees_over_time.h"
 #include "eval/paired.h"
+#include "eval/report_json.h"
+#include "eval/report_series.h"
 
 namespace alidade {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-/// A number that JSON can hold, rounded to significant digits; null where it is not finite.
-Json Rounded(double value, int digits) {
-  if (!std::isfinite(value)) {
-    return nullptr;
-  }
-  char buffer[64];
-  std::snprintf(buffer, sizeof(buffer), "%.*g", digits, value);
-  const double rounded = std::strtod(buffer, nullptr);
-  // An integer prints without ".0".
-  return std::abs(rounded) < 1e15 && rounded == std::floor(rounded) ? Json(static_cast<long long>(rounded))
-                                                                    : Json(rounded);
-}
-
-Json Packed(const std::vector<double>& values, double finest) {
-  const PackedColumn column = PackColumn(values, finest);
-  Json deltas = Json::array();
-  for (const auto& [finite, delta] : column.deltas) {
-    deltas.push_back(finite ? Json(delta) : Json(nullptr));
-  }
-  return {{"q", column.quantum}, {"d", deltas}};
-}
-
-/// Every k-th row and the last one, so that no more than `most` remain. Picking rows evenly keeps means and
-/// spreads.
-std::vector<size_t> KeptRows(size_t rows, int most) {
-  std::vector<size_t> kept;
-  const size_t step = std::max<size_t>(1, (rows + static_cast<size_t>(most) - 1) / static_cast<size_t>(most));
-  for (size_t i = 0; i < rows; i += step) {
-    kept.push_back(i);
-  }
-  if (rows > 0 && kept.back() + 1 != rows) {
-    kept.push_back(rows - 1);
-  }
-  return kept;
-}
-
-/// Components of the kept rows of a series of vectors, scaled; empty when the series is absent.
-template <typename Vectors>
-Json PackComponents(const Vectors& vectors, const std::vector<size_t>& kept, int first, double scale,
-                    double finest) {
-  Json components = Json::array();
-  if (kept.empty() || vectors.size() <= kept.back()) {
-    return components;
-  }
-  for (int axis = first; axis < first + 3; ++axis) {
-    std::vector<double> values;
-    for (const size_t i : kept) {
-      values.push_back(vectors[i](axis) * scale);
-    }
-    components.push_back(Packed(values, finest));
-  }
-  return components;
-}
-
-Json RoundKept(const std::vector<double>& values, const std::vector<size_t>& kept, int digits) {
-  Json list = Json::array();
-  for (const size_t i : kept) {
-    list.push_back(i < values.size() ? Rounded(values[i], digits) : Json(nullptr));
-  }
-  return list;
-}
-
-/// Five-number summary (5, 25, 50, 75, 95 %) of the finite values; empty without any.
-Json Quantiles(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
-               values.end());
-  std::sort(values.begin(), values.end());
-  Json quantiles = Json::array();
-  for (const double share : {0.05, 0.25, 0.5, 0.75, 0.95}) {
-    if (!values.empty()) {
-      const double place = share * static_cast<double>(values.size() - 1);
-      const size_t below = static_cast<size_t>(place);
-      const size_t above = std::min(below + 1, values.size() - 1);
-      const double part = place - static_cast<double>(below);
-      quantiles.push_back(Rounded(values[below] + part * (values[above] - values[below]), 4));
-    }
-  }
-  return quantiles;
-}
-
-/// Rounded leaks, empty when the run was not audited. Below the floor there is rounding alone, whose digits
-/// would only lengthen the axis.
-Json LeakData(std::vector<double> leaks, const std::vector<size_t>& kept) {
-  constexpr double kFloor = 1e-12;
-  for (double& leak : leaks) {
-    leak = std::isfinite(leak) ? std::max(leak, kFloor) : leak;
-  }
-  return leaks.empty() ? Json(Json::array()) : RoundKept(leaks, kept, 3);
-}
-
-Json SeriesData(const CellSeries& series, int most) {
-  const std::vector<size_t> kept = KeptRows(series.time_s.size(), most);
-  std::vector<double> times;
-  for (const size_t i : kept) {
-    times.push_back(series.time_s[i]);
-  }
-  return {{"t", Packed(times, 1e-3)},
-          {"truth", PackComponents(series.truth_position, kept, 0, 1.0, 1e-3)},
-          {"est", PackComponents(series.position, kept, 0, 1.0, 1e-3)},
-          {"ori", PackComponents(series.error, kept, 0, kDegrees, 1e-3)},
-          {"ori_sigma", PackComponents(series.sigma, kept, 0, kDegrees, 1e-3)},
-          {"pos", PackComponents(series.error, kept, 3, 1.0, 1e-3)},
-          {"pos_sigma", PackComponents(series.sigma, kept, 3, 1.0, 1e-3)},
-          {"nees", RoundKept(series.nees_pose, kept, 3)},
-          {"ms", RoundKept(series.backend_ms, kept, 3)},
-          {"ms_quantiles", Quantiles(series.backend_ms)},
-          {"features", RoundKept(series.features_used, kept, 4)},
-          {"rank", series.rank.empty() ? Json(Json::array()) : RoundKept(series.rank, kept, 2)},
-          {"yaw_leak", LeakData(series.yaw_leak, kept)},
-          {"position_leak", LeakData(series.position_leak, kept)}};
-}
-
 Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
   Json values = Json::array();
   for (const Figure& figure : figures) {
-    values.push_back(Rounded(figure.value(cell), 6));
+    values.push_back(RoundedJson(figure.value(cell), 6));
   }
   return values;
 }
@@ -144,36 +29,15 @@ bool IsFirstSeed(const Comparison& comparison, const CellResult& cell) {
   });
 }
 
-/// Directions as points of the disc that has the zenith in its middle: x east, y north, 90 the horizon.
-Json SkyData(const std::vector<SkyTrack>& tracks) {
-  Json list = Json::array();
-  for (const SkyTrack& track : tracks) {
-    Json t = Json::array(), x = Json::array(), y = Json::array(), r = Json::array();
-    for (size_t i = 0; i < track.time_s.size(); ++i) {
-      const double azimuth = track.azimuth_deg[i] / kDegrees;
-      const double down = 90 - track.elevation_deg[i];
-      t.push_back(Rounded(track.time_s[i], 5));
-      x.push_back(Rounded(down * std::sin(azimuth), 4));
-      y.push_back(Rounded(down * std::cos(azimuth), 4));
-      r.push_back(Rounded(track.residual_m[i], 4));
-    }
-    list.push_back({{"s", track.satellite},
-                    {"t", t},
-                    {"x", x},
-                    {"y", y},
-                    {"r", r},
-                    {"used", Rounded(track.used_share, 4)},
-                    {"rms", Rounded(track.rms_m, 4)}});
-  }
-  return list;
-}
-
-Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell,
-              int most) {
+/// What the tables and box plots need of a run.
+Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell) {
   Json rpe = Json::array();
   for (const RpeResult& result : cell.rpe) {
-    rpe.push_back({{"d", result.distance_m}, {"n", result.count}, {"q", Quantiles(result.pos_errors_m)}});
+    rpe.push_back({{"d", result.distance_m},
+                   {"n", result.count},
+                   {"q", RoundedJson(BoxQuantiles(result.pos_errors_m), 4)}});
   }
+  const InnovationSummary& innovations = cell.innovations;
   return {{"estimator", LabelOf(comparison, cell)},
           {"sequence", cell.sequence},
           {"seed", cell.seed},
@@ -181,14 +45,15 @@ Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, 
           {"message", cell.message},
           {"digest", cell.input_digest},
           {"frames", cell.frames},
-          {"duration", Rounded(cell.duration_s, 6)},
-          {"path", Rounded(cell.path_m, 6)},
+          {"duration", RoundedJson(cell.duration_s, 6)},
+          {"path", RoundedJson(cell.path_m, 6)},
           {"align", cell.align},
           {"figures", FigureValues(figures, cell)},
-          {"rpe", rpe},
-          {"series", SeriesData(cell.series, most)},
-          // Of one seed: the sky is the same for all.
-          {"sky", IsFirstSeed(comparison, cell) ? SkyData(cell.sky) : Json(Json::array())}};
+          {"stages", RoundedJson({cell.frontend_ms, cell.propagate_ms, cell.update_ms, cell.backend_ms}, 4)},
+          {"nis",
+           RoundedJson(
+               {innovations.ratio, innovations.inside, innovations.band.first, innovations.band.second}, 4)},
+          {"rpe", rpe}};
 }
 
 Json FigureData(const Figure& figure) {
@@ -204,8 +69,8 @@ Json AggregateData(const AggregateRow& row) {
   Json errors = Json::array();
   Json best = Json::array();
   for (size_t i = 0; i < row.figures.size(); ++i) {
-    means.push_back(Rounded(row.figures[i].mean, 6));
-    errors.push_back(Rounded(row.figures[i].standard_error, 3));
+    means.push_back(RoundedJson(row.figures[i].mean, 6));
+    errors.push_back(RoundedJson(row.figures[i].standard_error, 3));
     best.push_back(row.best[i] ? 1 : 0);
   }
   return {{"estimator", row.label},
@@ -217,15 +82,15 @@ Json AggregateData(const AggregateRow& row) {
           {"not_initialized", row.not_initialized},
           {"failed", row.failed},
           {"nees_verdict", row.nees_verdict},
-          {"nees_inside", Rounded(row.nees_inside_share, 4)},
+          {"nees_inside", RoundedJson(row.nees_inside_share, 4)},
           {"means", means},
           {"errors", errors},
           {"best", best}};
 }
 
 /// Of each pair: [sequence, figure, first, second (indices), pairs, lost, difference, half of its interval,
-/// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference, null too few]; sequence -1
-/// is all of them.
+/// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference; p-value]; sequence -1 is all
+/// of them. Pairs that are too few to judge are left out.
 Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
               const std::vector<AggregateRow>& rows) {
   const std::vector<std::string> sequences = ListSequences(rows);
@@ -235,7 +100,12 @@ Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
     return found == names.end() ? -1 : static_cast<int>(found - names.begin());
   };
   Json list = Json::array();
-  for (const PairedDifference& pair : ComparePairs(comparison, figures)) {
+  std::vector<PairedDifference> pairs = ComparePairs(comparison, figures);
+  if (!comparison.pair_across && sequences.size() > 1) {  // for the column of means
+    const std::vector<PairedDifference> across = PoolSequences(pairs, figures);
+    pairs.insert(pairs.end(), across.begin(), across.end());
+  }
+  for (const PairedDifference& pair : pairs) {
     const PairedT& test = pair.difference;
     if (pair.verdict == PairVerdict::kTooFew) {
       continue;
@@ -243,7 +113,8 @@ Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
     const int verdict = pair.verdict == PairVerdict::kNoDifference ? 0 : test.mean < 0 ? -1 : 1;
     list.push_back({place(sequences, pair.sequence), pair.figure, place(labels, pair.first),
                     place(labels, pair.second), test.count, pair.only_first + pair.only_second + pair.neither,
-                    Rounded(test.mean, 4), Rounded(0.5 * (test.high - test.low), 3), verdict});
+                    RoundedJson(test.mean, 4), RoundedJson(0.5 * (test.high - test.low), 3), verdict,
+                    RoundedJson(test.p_value, 2)});
   }
   return list;
 }
@@ -254,8 +125,8 @@ Json EfficiencyData(const Comparison& comparison) {
   for (const Efficiency& entry : ComputeEfficiency(comparison)) {
     Json ratios = Json::array();
     for (const Ratio& ratio : {entry.achieved, entry.smoothed, entry.filtered}) {
-      ratios.push_back(Rounded(ratio.ori, 4));
-      ratios.push_back(Rounded(ratio.pos, 4));
+      ratios.push_back(RoundedJson(ratio.ori, 4));
+      ratios.push_back(RoundedJson(ratio.pos, 4));
     }
     list.push_back({{"estimator", entry.label},
                     {"sequence", entry.sequence},
@@ -271,14 +142,14 @@ Json FrontendData(const Comparison& comparison) {
     list.push_back({{"sequence", front.sequence},
                     {"seed", front.seed},
                     {"images", front.images},
-                    {"features", Rounded(front.features_per_frame, 4)},
-                    {"mean_length", Rounded(front.mean_length, 4)},
-                    {"median_length", Rounded(front.median_length, 4)},
-                    {"lost", Rounded(100 * front.lost_share, 4)},
-                    {"rejected", Rounded(100 * front.rejected_share, 4)},
-                    {"thinned", Rounded(100 * front.thinned_share, 4)},
-                    {"mean_ms", Rounded(front.mean_ms, 4)},
-                    {"p95_ms", Rounded(front.p95_ms, 4)}});
+                    {"features", RoundedJson(front.features_per_frame, 4)},
+                    {"mean_length", RoundedJson(front.mean_length, 4)},
+                    {"median_length", RoundedJson(front.median_length, 4)},
+                    {"lost", RoundedJson(100 * front.lost_share, 4)},
+                    {"rejected", RoundedJson(100 * front.rejected_share, 4)},
+                    {"thinned", RoundedJson(100 * front.thinned_share, 4)},
+                    {"mean_ms", RoundedJson(front.mean_ms, 4)},
+                    {"p95_ms", RoundedJson(front.p95_ms, 4)}});
   }
   return list;
 }
@@ -292,15 +163,16 @@ Json NeesData(const Comparison& comparison, int most) {
     }
     std::vector<double> times;
     Json mean = Json::array();
-    for (const size_t i : KeptRows(average.mean.size(), most)) {
+    const size_t step = average.mean.size() / static_cast<size_t>(most) + 1;
+    for (size_t i = 0; i < average.mean.size(); i += step) {
       times.push_back(average.time_s[i]);
-      mean.push_back(Rounded(average.mean[i], 3));
+      mean.push_back(RoundedJson(average.mean[i], 3));
     }
     list.push_back({{"estimator", curve.label},
                     {"sequence", curve.sequence},
-                    {"t", Packed(times, 1e-3)},
+                    {"t", PackedJson(times, 1e-3)},
                     {"nees", mean},
-                    {"inside", Rounded(average.share_inside, 4)}});
+                    {"inside", RoundedJson(average.share_inside, 4)}});
   }
   return list;
 }
@@ -310,53 +182,17 @@ Json NeesBands(int most_runs) {
   Json bands = Json::array();
   for (int runs = 1; runs <= most_runs; ++runs) {
     const auto [low, high] = NeesBand(6, runs);
-    bands.push_back({Rounded(low, 5), Rounded(high, 5)});
+    bands.push_back({RoundedJson(low, 5), RoundedJson(high, 5)});
   }
   return bands;
 }
 
-}  // namespace
-
-int PointsPerSeries(size_t cells, bool audited) {
-  // A point of one cell is 22 numbers: measured at 65 to 80 characters; an audit adds up to 22.
-  const double budget = 4.3e6 / ((audited ? 102.0 : 80.0) * static_cast<double>(std::max<size_t>(1, cells)));
-  return static_cast<int>(std::clamp(budget, 60.0, 1000.0));
-}
-
-PackedColumn PackColumn(const std::vector<double>& values, double finest) {
-  double largest = 0;
-  for (const double value : values) {
-    largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : largest;
-  }
-  PackedColumn column;
-  column.quantum = finest;
-  if (largest > 0) {
-    const double fine = std::pow(10.0, std::floor(std::log10(largest / 2000)));
-    const double coarse = std::pow(10.0, std::ceil(std::log10(largest / 1e15)));
-    column.quantum = std::max(std::min(finest, fine), coarse);
-  }
-  long long last = 0;
-  for (const double value : values) {
-    if (!std::isfinite(value)) {
-      column.deltas.emplace_back(false, 0);
-      continue;
-    }
-    const long long now = std::llround(value / column.quantum);
-    column.deltas.emplace_back(true, now - last);
-    last = now;
-  }
-  return column;
-}
-
-std::string ReportData(const Comparison& comparison) {
-  const std::vector<Figure> figures = ListFigures(comparison);
-  const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
-  const bool audited = std::any_of(comparison.cells.begin(), comparison.cells.end(),
-                                   [](const CellResult& cell) { return !cell.series.rank.empty(); });
-  const int most = PointsPerSeries(comparison.cells.size(), audited);
+/// All but what the plots alone need.
+Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures,
+                const std::vector<AggregateRow>& rows) {
   Json data = {{"title", comparison.title},
                {"command", comparison.command},
-               {"points", most},
+               {"not_run", comparison.notes},
                {"sequences", ListSequences(rows)},
                {"estimators", ListLabels(rows)}};
   data["figures"] = Json::array();
@@ -364,13 +200,9 @@ std::string ReportData(const Comparison& comparison) {
     data["figures"].push_back(FigureData(figure));
   }
   data["aggregate"] = Json::array();
-  int most_runs = 1;
   for (const AggregateRow& row : rows) {
     data["aggregate"].push_back(AggregateData(row));
-    most_runs = std::max(most_runs, row.cells);
   }
-  data["nees_bands"] = NeesBands(most_runs);
-  data["nees_over_time"] = NeesData(comparison, most);
   data["pairs"] = PairData(comparison, figures, rows);
   data["efficiency"] = EfficiencyData(comparison);
   data["frontends"] = FrontendData(comparison);
@@ -383,7 +215,39 @@ std::string ReportData(const Comparison& comparison) {
   }
   data["cells"] = Json::array();
   for (const CellResult& cell : comparison.cells) {
-    data["cells"].push_back(CellData(comparison, figures, cell, most));
+    data["cells"].push_back(CellData(comparison, figures, cell));
+  }
+  return data;
+}
+
+}  // namespace
+
+std::string ReportJson(const Comparison& comparison) {
+  const std::vector<Figure> figures = ListFigures(comparison);
+  return TablesData(comparison, figures, Aggregate(comparison, figures))
+             .dump(1, ' ', false, Json::error_handler_t::replace) +
+         "\n";
+}
+
+std::string ReportData(const Comparison& comparison) {
+  const std::vector<Figure> figures = ListFigures(comparison);
+  const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
+  const bool audited = std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                                   [](const CellResult& cell) { return !cell.series.rank.empty(); });
+  const int most = PointsPerSeries(comparison.cells.size(), audited);
+  Json data = TablesData(comparison, figures, rows);
+  data["points"] = most;
+  int most_runs = 1;
+  for (const AggregateRow& row : rows) {
+    most_runs = std::max(most_runs, row.cells);
+  }
+  data["nees_bands"] = NeesBands(most_runs);
+  data["nees_over_time"] = NeesData(comparison, most);
+  for (size_t i = 0; i < comparison.cells.size(); ++i) {
+    const CellResult& cell = comparison.cells[i];
+    data["cells"][i]["series"] = SeriesJson(cell.series, most);
+    // Of one seed: the sky is the same for all.
+    data["cells"][i]["sky"] = IsFirstSeed(comparison, cell) ? SkyJson(cell.sky) : Json(Json::array());
   }
   std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   // '<' stands only inside strings, where its escape means the same.

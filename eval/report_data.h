@@ -1,28 +1,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "eval/comparison.h"
 
 namespace alidade {
 
-/// Most points of a series on the page, so that the page of `cells` cells, audited or not, stays below about
-/// 5 MB.
-[[nodiscard]] int PointsPerSeries(size_t cells, bool audited = false);
-
-/// A column of numbers as integers for the page: value = quantum * (running sum of `deltas`). Neighbouring
-/// values of a trajectory differ little, so that the differences take two or three characters each.
-struct PackedColumn {
-  double quantum = 1;
-  std::vector<std::pair<bool, long long>> deltas;  ///< {false, 0} where the value is not finite: a gap
-};
-
-/// Packs with a resolution of `finest`, or of 1/2000 of the largest magnitude where that is finer still;
-/// coarser only where a diverged run's values would not fit the 53 bits of a script's integers.
-[[nodiscard]] PackedColumn PackColumn(const std::vector<double>& values, double finest);
-
 /// The page's data: JSON without a '<', so that nothing in it can end the script element that holds it.
 [[nodiscard]] std::string ReportData(const Comparison& comparison);
+
+/// report.json: the same for programs, without the series (docs/report.md lists the members).
+[[nodiscard]] std::string ReportJson(const Comparison& comparison);
 
 }  // namespace alidade

@@ -6,6 +6,7 @@
 #include "eval/nees_over_time.h"
 #include "eval/output_file.h"
 #include "eval/pair_tables.h"
+#include "eval/report_data.h"
 #include "eval/table_layout.h"
 #include "eval/tables_text.h"
 
@@ -106,6 +107,7 @@ Status WriteTables(const Comparison& comparison, const std::string& folder) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/efficiency.csv", EfficiencyCsv(efficiency)));
   }
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/nees_over_time.csv", NeesCsv(comparison)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/report.json", ReportJson(comparison)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(folder + "/tables.md", MarkdownText(comparison, tables)));
   return WriteFileAtomically(folder + "/tables.tex", LatexText(comparison, tables));
 }

@@ -11,7 +11,7 @@ packages=(
   libopencv-features2d-dev
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev
   libgeographiclib-dev zlib1g-dev libbz2-dev liblz4-dev
-  libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3
+  libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3 librsvg2-bin
   dpkg-dev file
 )
 if [[ "${1:-}" == "--with-tests-of-report" ]]; then

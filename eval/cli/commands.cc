@@ -43,7 +43,7 @@ const std::vector<Command>& Commands() {
        RunEvaluate},
       {"compare",
        "estimators x sequences x seeds on identical inputs; tables and report.html",
-       {"plan", "output", "jobs", "resume", "overwrite", "data", "quiet"},
+       {"plan", "output", "jobs", "resume", "overwrite", "data", "figures", "quiet"},
        {"plan", "output"},
        0,
        RunCompare},

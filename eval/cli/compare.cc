@@ -13,6 +13,10 @@ int RunCompare(const std::vector<std::string>&) {
     return Report(
         Status::Usage("compare: --jobs: found " + std::to_string(FLAGS_jobs) + ", expected 1 to 1024"));
   }
+  const Result<FigureFormats> figures = ParseFigureFormats(FLAGS_figures);
+  if (!figures.ok()) {
+    return Report(Status(figures.code(), "compare: " + figures.message()));
+  }
   const Result<Plan> plan = ReadPlan(FLAGS_plan, FLAGS_data);
   if (!plan.ok()) {
     return Report(plan.status());
@@ -25,8 +29,10 @@ int RunCompare(const std::vector<std::string>&) {
   options.output = FLAGS_output;
   options.jobs = FLAGS_jobs;
   options.resume = FLAGS_resume;
+  options.figures = *figures;
   options.command = "alidade compare --plan=" + FLAGS_plan +
-                    (FLAGS_data.empty() ? "" : " --data=" + FLAGS_data) + " --output=" + FLAGS_output;
+                    (FLAGS_data.empty() ? "" : " --data=" + FLAGS_data) + " --output=" + FLAGS_output +
+                    (FLAGS_figures.empty() ? "" : " --figures=" + FLAGS_figures);
   options.stop = InstallInterruptHandler();
   options.progress = Say;
   const Result<CompareOutcome> outcome = Compare(*plan, options);

@@ -22,6 +22,7 @@ DECLARE_string(estimate);
 DECLARE_string(estimator);
 DECLARE_string(input);
 DECLARE_string(export);
+DECLARE_string(figures);
 DECLARE_bool(interpolate);
 DECLARE_int32(jobs);
 DECLARE_bool(json);

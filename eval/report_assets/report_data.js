@@ -42,7 +42,7 @@ window.addEventListener('error', function (event) {
       ['truth', 'est', 'ori', 'ori_sigma', 'pos', 'pos_sigma'].forEach(function (key) {
         unpacked[key] = packed[key].map(unpack);
       });
-      ['nees', 'ms', 'ms_quantiles', 'features', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) { unpacked[key] = packed[key]; });
+      ['nees', 'ms', 'ms_quantiles', 'features', 'tracks', 'nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) { unpacked[key] = packed[key]; });
       cell.unpacked = unpacked;
     }
     return cell.unpacked;
@@ -77,16 +77,26 @@ window.addEventListener('error', function (event) {
 
   const rootMeanSquare = function (values) { return Math.sqrt(d3.mean(values, function (v) { return v * v; })); };
 
+  // The rows at even steps: the others show extremes and would bias a mean.
+  function regularRows(series, mask) {
+    const keep = function (column) { return mask ? column.filter(function (unused, i) { return mask[i] === '1'; }) : column; };
+    const rows = {};
+    Object.keys(series).forEach(function (key) {
+      rows[key] = key === 'ms_quantiles' ? series[key] : Array.isArray(series[key][0]) ? series[key].map(keep) : keep(series[key]);
+    });
+    return rows;
+  }
+
   // Over seeds: errors and deviations as root mean squares, the rest as means.
   report.overSeeds = function (cells) {
-    const all = cells.map(report.series);
+    const all = cells.map(function (cell) { return regularRows(report.series(cell), cell.series.regular); });
     const merged = { t: all[0].t, truth: all[0].truth, est: all[0].est };
     ['ori', 'ori_sigma', 'pos', 'pos_sigma'].forEach(function (key) {
       merged[key] = all[0][key].map(function (unused, axis) {
         return combine(all, function (series) { return series[key][axis]; }, rootMeanSquare);
       });
     });
-    ['nees', 'ms', 'features', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) {
+    ['nees', 'ms', 'features', 'tracks', 'nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) {
       merged[key] = combine(all, function (series) { return series[key]; }, d3.mean);
     });
     const filled = all.filter(function (series) { return series.ms_quantiles.length; });

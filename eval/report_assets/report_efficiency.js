@@ -3,7 +3,7 @@
   const headings = ['hindsight ori.', 'hindsight pos.', 'smoothing \u03c3 ori.', 'smoothing \u03c3 pos.', 'filtering \u03c3 ori.', 'filtering \u03c3 pos.'];
 
   report.drawEfficiency = function (sequence) {
-    const entries = report.data.efficiency.filter(function (entry) { return entry.sequence === sequence; });
+    const entries = report.data.efficiency.filter(function (entry) { return entry.sequence === sequence && !report.state.off[entry.estimator]; });
     document.getElementById('efficiency').hidden = !entries.length;
     if (!entries.length) { return; }
     document.getElementById('efficiency-table').innerHTML = '<table><thead><tr><th scope="col">bound / achieved</th><th scope="col">pairs</th>' +

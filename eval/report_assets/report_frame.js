@@ -63,10 +63,10 @@
     const figure = d3.select(parent).append('figure');
     const caption = figure.append('figcaption');
     caption.append('span').text(spec.title);
-    const margin = { left: spec.left || 54, right: 12, top: 8, bottom: 38 };
+    const margin = { left: spec.left || 54, right: 12, top: 8, bottom: spec.bottom || 38 };
     const width = Math.max(240, figure.node().getBoundingClientRect().width);
     const height = spec.height;
-    const svg = figure.append('svg').attr({ class: 'plot', id: 'plot-' + spec.id, role: 'img', width: width,
+    const svg = figure.append('svg').attr({ class: 'plot', id: 'plot-' + spec.id, role: 'img', tabindex: spec.passive ? null : 0, width: width,
       height: height, viewBox: '0 0 ' + width + ' ' + height, 'font-family': FONT, 'font-size': 11.5,
       'aria-label': spec.title + ' (' + spec.x + '; ' + spec.y + ')' });
     caption.append('button').attr({ type: 'button', class: 'save' }).text('save SVG')
@@ -75,7 +75,7 @@
     const area = svg.append('g').attr('transform', 'translate(' + margin.left + ',' + margin.top + ')');
     const clip = 'clip-' + (++clips);
     area.append('clipPath').attr('id', clip).append('rect').attr({ width: inner.width, height: inner.height });
-    area.append('text').attr({ x: inner.width / 2, y: inner.height + 33, 'text-anchor': 'middle', fill: SOFT }).text(spec.x);
+    area.append('text').attr({ x: inner.width / 2, y: inner.height + margin.bottom - 5, 'text-anchor': 'middle', fill: SOFT }).text(spec.x);
     if (spec.y) {
       area.append('text').attr({ transform: 'translate(' + (11 - margin.left) + ',' + inner.height / 2 + ') rotate(-90)',
         'text-anchor': 'middle', fill: SOFT }).text(spec.y);

@@ -23,6 +23,7 @@
       values[i] = reach > 0 ? Math.max(-reach, Math.min(reach, values[i])) : values[i];
     }
     (spec.regions || []).forEach(function (region) { values.push(region.lo, region.hi); });
+    (spec.means || []).forEach(function (mean) { values.push(mean.value); });
     if (spec.zero) { values.push(0); }
     if (!values.length) { return spec.log ? [0.1, 10] : [-1, 1]; }  // nothing in the zoomed range
     const low = d3.min(values), high = d3.max(values);
@@ -46,8 +47,18 @@
     });
   }
 
-  function readout(spec, time) {
-    const rows = spec.lines.map(function (line) {
+  // Of many lines only the one whose value is nearest to `value`.
+  function readLines(spec, time, value) {
+    if (spec.lines.length <= 12 || value === null) { return spec.lines.slice(0, 12); }
+    const off = function (line) {
+      const i = report.nearest(line.t, time);
+      return i < 0 || line.v[i] === null ? Infinity : Math.abs(line.v[i] - value);
+    };
+    return [spec.lines.reduce(function (a, b) { return off(b) < off(a) ? b : a; })];
+  }
+
+  function readout(spec, time, value) {
+    const rows = readLines(spec, time, value).map(function (line) {
       const i = report.nearest(line.t, time);
       const value = i < 0 ? null : line.v[i];
       return '<tr><td>' + report.swatch(line.style) + report.escape(line.name) + '</td><td>' +
@@ -57,7 +68,7 @@
   }
 
   // Cursor, readout, drag to zoom and double click to undo.
-  function attachPointer(plot, spec, x) {
+  function attachPointer(plot, spec, x, y) {
     const cursor = plot.area.append('line').attr({ class: 'cursor', y1: 0, y2: plot.inner.height, stroke: SOFT,
       'stroke-dasharray': '3 3', visibility: 'hidden' });
     const span = plot.area.append('rect').attr({ class: 'cursor', y: 0, height: plot.inner.height, fill: '#0b5cad',
@@ -71,7 +82,7 @@
         const at = place();
         const time = x.invert(at);
         report.view.plots.forEach(function (other) { other.hover(time); });
-        showTooltip(readout(spec, time), d3.event);
+        showTooltip(readout(spec, time, y.invert(d3.mouse(overlay.node())[1])), d3.event);
         if (start !== null) {
           span.attr({ x: Math.min(start, at), width: Math.abs(at - start), visibility: 'visible' });
         }
@@ -92,11 +103,30 @@
         report.hideTooltip();
       })
       .on('dblclick', function () { report.view.onZoom(null); });
+    attachKeys(plot, spec, x);
     report.view.plots.push({ hover: function (time) {
       const inside = time !== null && time >= x.domain()[0] && time <= x.domain()[1];
       cursor.attr('visibility', inside ? 'visible' : 'hidden');
       if (inside) { cursor.attr({ x1: x(time), x2: x(time) }); }
     } });
+  }
+
+  // Arrows move the time that is read off, Home goes to the start, Escape ends it.
+  function attachKeys(plot, spec, x) {
+    const range = x.domain();
+    let time = null;
+    plot.svg.on('keydown', function () {
+      const step = { ArrowLeft: -0.01, ArrowRight: 0.01 }[d3.event.key] * (d3.event.shiftKey ? 10 : 1) * (range[1] - range[0]);
+      if (d3.event.key === 'Home') { time = range[0]; }
+      else if (d3.event.key === 'Escape') { time = null; }
+      else if (step) { time = Math.max(range[0], Math.min(range[1], (time === null ? range[0] : time) + step)); }
+      else { return; }
+      d3.event.preventDefault();
+      report.view.plots.forEach(function (other) { other.hover(time); });
+      const box = plot.svg.node().getBoundingClientRect();
+      if (time === null) { report.hideTooltip(); }
+      else { showTooltip(readout(spec, time, null), { clientX: box.left + 54 + x(time), clientY: box.top }); }
+    }).on('blur', function () { time = null; report.hideTooltip(); });
   }
 
   // A quantity over time. spec: lines [{name, style, t, v}], bands [{style, t, lo, hi}], regions [{lo, hi}], log, zero,
@@ -116,9 +146,9 @@
     spec.lines.forEach(function (line) { path(plot, zip(line.t, line.v), x, y, line.style, line.width); });
     (spec.means || []).forEach(function (mean) {
       plot.area.append('line').attr({ x1: 0, x2: plot.inner.width, y1: y(mean.value), y2: y(mean.value),
-        stroke: mean.style.colour, 'stroke-width': 1.2, 'stroke-dasharray': '8 4', 'clip-path': plot.clip });
+        stroke: mean.style.colour, 'stroke-width': 1.2, 'stroke-dasharray': mean.dash || '8 4', 'clip-path': plot.clip });
     });
-    attachPointer(plot, spec, x);
+    attachPointer(plot, spec, x, y);
   };
 
   // Top view with equal scales. spec: lines [{name, style, t, x, y}]. Only the zoomed time range is drawn.
@@ -129,7 +159,7 @@
       const keep = line.t.map(function (t, i) { return i; }).filter(function (i) {
         return line.x[i] !== null && (!domain || (line.t[i] >= domain[0] && line.t[i] <= domain[1]));
       });
-      return { name: line.name, style: line.style, width: line.width, t: keep.map(function (i) { return line.t[i]; }),
+      return { name: line.name, label: line.label, passive: line.passive, style: line.style, width: line.width, t: keep.map(function (i) { return line.t[i]; }),
         points: keep.map(function (i) { return [line.x[i], line.y[i]]; }) };
     }).filter(function (line) { return line.points.length; });
     if (!lines.length) { emptyNotice(plot); return; }
@@ -145,26 +175,37 @@
     drawAxis(plot, x, true, x.ticks(Math.max(3, plot.inner.width / 80)));
     drawAxis(plot, y, false, y.ticks(6));
     lines.forEach(function (line) { path(plot, line.points, x, y, line.style, line.width); });
-    const first = lines[0].points[0];
-    plot.area.append('circle').attr({ cx: x(first[0]), cy: y(first[1]), r: 4, fill: '#fff', stroke: INK, 'stroke-width': 1.5 });
-    plot.area.append('text').attr({ x: x(first[0]) + 7, y: y(first[1]) - 6, fill: INK, 'paint-order': 'stroke', stroke: '#fff',
-      'stroke-width': 3 }).text('start');
+    lines.filter(function (line) { return line.label; }).forEach(function (line) {
+      const last = line.points[line.points.length - 1];
+      plot.area.append('circle').attr({ cx: x(last[0]), cy: y(last[1]), r: 3, fill: line.style.colour });
+      halo(plot, x(last[0]) + 5, y(last[1]) + 4, line.label);
+    });
+    if (!spec.noStart) { markStart(plot, lines[0].points[0], x, y); }
     const dots = lines.map(function (line) {
       return plot.area.append('circle').attr({ class: 'cursor', r: 4.5, fill: line.style.colour, stroke: '#fff', visibility: 'hidden' });
     });
     const move = function (time) {
       lines.forEach(function (line, k) {
-        const i = time === null ? -1 : report.nearest(line.t, time);
+        const i = time === null || line.passive ? -1 : report.nearest(line.t, time);
         dots[k].attr('visibility', i < 0 ? 'hidden' : 'visible');
         if (i >= 0) { dots[k].attr({ cx: x(line.points[i][0]), cy: y(line.points[i][1]) }); }
       });
     };
     report.view.plots.push({ hover: move });
-    attachTopPointer(plot, lines, x, y);
+    attachTopPointer(plot, spec, lines.filter(function (line) { return !line.passive; }), x, y);
   };
 
+  function halo(plot, x, y, text) {
+    plot.area.append('text').attr({ x: x, y: y, fill: INK, 'paint-order': 'stroke', stroke: '#fff', 'stroke-width': 3 }).text(text);
+  }
+
+  function markStart(plot, first, x, y) {
+    plot.area.append('circle').attr({ cx: x(first[0]), cy: y(first[1]), r: 4, fill: '#fff', stroke: INK, 'stroke-width': 1.5 });
+    halo(plot, x(first[0]) + 7, y(first[1]) - 6, 'start');
+  }
+
   // Hovering finds the nearest drawn point and shows its time in all plots.
-  function attachTopPointer(plot, lines, x, y) {
+  function attachTopPointer(plot, spec, lines, x, y) {
     const overlay = plot.area.append('rect').attr({ class: 'overlay', width: plot.inner.width, height: plot.inner.height,
       fill: 'none', 'pointer-events': 'all' });
     overlay.on('mousemove', function () {
@@ -179,7 +220,8 @@
       const p = nearest.line.points[nearest.i];
       report.view.plots.forEach(function (other) { other.hover(nearest.line.t[nearest.i]); });
       showTooltip('<b>t = ' + nearest.line.t[nearest.i].toFixed(2) + ' s</b>' + report.swatch(nearest.line.style) +
-        report.escape(nearest.line.name) + '<br>x ' + MINUS(p[0].toFixed(3)) + ' m, y ' + MINUS(p[1].toFixed(3)) + ' m', d3.event);
+        report.escape(nearest.line.name) + '<br>' + (spec.describe ? spec.describe(nearest.line, nearest.i) :
+        'x ' + MINUS(p[0].toFixed(3)) + ' m, y ' + MINUS(p[1].toFixed(3)) + ' m'), d3.event);
     }).on('mouseleave', function () {
       report.view.plots.forEach(function (other) { other.hover(null); });
       report.hideTooltip();
@@ -208,12 +250,17 @@
     drawAxis(plot, y, false, spec.log ? logTicks(y.domain()) : y.ticks(5));
     const step = inner.width / spec.groups.length;
     spec.groups.forEach(function (group, g) {
-      const slot = Math.min(46, 0.86 * step / Math.max(1, group.boxes.length));
+      const slot = Math.min(spec.named ? 60 : 46, 0.86 * step / Math.max(1, group.boxes.length));
       const from = step * (g + 0.5) - slot * group.boxes.length / 2;
       if (group.name) {
         plot.area.append('text').attr({ x: step * (g + 0.5), y: inner.height + 15, 'text-anchor': 'middle', fill: SOFT }).text(group.name);
       }
       group.boxes.forEach(function (box, b) {
+        if (spec.named) {  // slanted: names are longer than boxes are wide
+          const label = box.name.length > 18 ? box.name.slice(0, 17) + '\u2026' : box.name;
+          plot.area.append('text').attr({ transform: 'translate(' + (from + slot * (b + 0.5) + 4) + ',' + (inner.height + 13) + ') rotate(-40)',
+            'text-anchor': 'end', fill: INK, 'font-size': 11 }).text(label);
+        }
         const middle = from + slot * (b + 0.5), half = Math.max(1.5, slot * 0.34);
         const line = function (x1, x2, v1, v2, width) {
           plot.area.append('line').attr({ x1: x1, x2: x2, y1: y(v1), y2: y(v2), stroke: box.style.colour, 'stroke-width': width });

@@ -17,14 +17,14 @@
   }
 
   // Mean, standard error below it, and how many runs are behind it when some were lost.
-  function statistic(row, i, extra) {
+  function statistic(row, i, best, extra) {
     const figure = data.figures[i];
     if (!row) { return '<td>\u2013</td>'; }
-    if (row.ok === 0) { return '<td class="bad">' + failure(row) + '</td>'; }
+    if (row.ok === 0) { return '<td class="bad">' + failure(row) + '<span class="sub bad">0 of ' + row.cells + ' ok</span></td>'; }
     let html = report.format(row.means[i], figure.decimals);
     if (row.errors[i] !== null) { html += '<span class="sub">\u00b1 ' + report.formatError(row.errors[i], row.means[i], figure.decimals) + '</span>'; }
     if (extra && row.ok < row.cells) { html += '<span class="sub bad">' + row.ok + ' of ' + row.cells + ' ok</span>'; }
-    return '<td' + (row.best[i] ? ' class="best"' : '') + '>' + html + (extra || '') + '</td>';
+    return '<td' + (best.indexOf(row.estimator) >= 0 ? ' class="best"' : '') + '>' + html + (extra || '') + '</td>';
   }
 
   function estimatorHead(estimator, backend) {
@@ -38,45 +38,51 @@
     });
   }
 
-  // Mean over sequences, only where the estimator finished every one of them.
+  // Mean over the shown sequences, only where the estimator finished every one of them.
   function acrossSequences(estimator, i) {
-    const rows = data.sequences.map(function (sequence) { return report.aggregate(estimator, sequence); });
+    const rows = report.shownSequences().map(function (sequence) { return report.aggregate(estimator, sequence); });
     const complete = rows.every(function (row) { return row && row.ok > 0 && row.means[i] !== null; });
     return complete ? d3.mean(rows, function (row) { return row.means[i]; }) : null;
   }
 
-  function lostRuns(estimator) {
-    return d3.sum(data.aggregate, function (row) { return row.estimator === estimator ? row.cells - row.ok : 0; });
+  function backendOf(estimator) {
+    return (data.aggregate.find(function (row) { return row.estimator === estimator; }) || {}).backend;
   }
 
-  // The column of means: best among the estimators that lost the fewest runs, as in the columns of the sequences.
-  function meanCells(i) {
-    const figure = data.figures[i];
-    const badness = function (value) {
-      return figure.ideal === 'low' ? value : figure.target < 1 ? Math.abs(value - figure.target) : Math.abs(Math.log(value / figure.target));
-    };
-    const values = data.estimators.map(function (estimator) { return acrossSequences(estimator, i); });
-    const fewest = d3.min(data.estimators, lostRuns);
-    const rivals = values.filter(function (value, e) {
-      return value !== null && figure.ideal !== 'none' && lostRuns(data.estimators[e]) === fewest;
-    });
-    const least = d3.min(rivals, badness);
-    return values.map(function (value, e) {
-      const best = rivals.length > 1 && value !== null && lostRuns(data.estimators[e]) === fewest && badness(value) === least;
-      return '<td' + (best ? ' class="best"' : '') + '>' + report.format(value, figure.decimals) + '</td>';
+  // The column of means as an entry an estimator for report.best.
+  function meanEntries(i) {
+    const shown = report.shownSequences();
+    return report.shownEstimators().map(function (estimator) {
+      const lost = d3.sum(data.aggregate, function (row) {
+        return row.estimator === estimator && shown.indexOf(row.sequence) >= 0 ? row.cells - row.ok : 0;
+      });
+      return { name: estimator, value: acrossSequences(estimator, i), lost: lost, backend: backendOf(estimator) };
     });
   }
 
-  function overviewCell(estimator, sequence, i, most) {
+  // The best of figure `i` on one sequence, among the estimators that are shown.
+  function bestOn(sequence, i) {
+    const rows = report.shownEstimators().map(function (name) { return report.aggregate(name, sequence); })
+      .filter(function (row) { return row; });
+    const most = d3.max(rows, function (row) { return row.ok; });
+    return report.best(rows.map(function (row) {
+      return { name: row.estimator, value: row.means[i], lost: most - row.ok, backend: row.backend };
+    }), data.figures[i]);
+  }
+
+  function rivalOf(best) { return report.state.against === report.BEST ? best[0] : report.state.against; }
+
+  function overviewCell(estimator, sequence, i, most, best) {
     const figure = data.figures[i];
     const row = report.aggregate(estimator, sequence);
-    let extra = referencesOf(estimator, sequence, figure.key).map(function (r) {
+    let extra = row && row.ok ? report.testLine(estimator, rivalOf(best), sequence, i) : '';
+    extra += referencesOf(estimator, sequence, figure.key).map(function (r) {
       return '<span class="sub"><i>' + escape(r.source) + ' ' + report.format(r.figures[figure.key], figure.decimals) + '</i></span>';
     }).join('');
     if (row && figure.ideal === 'low' && row.means[i] !== null) {
       extra += '<span class="bar" aria-hidden="true"><i style="width:' + (100 * row.means[i] / most).toFixed(1) + '%"></i></span>';
     }
-    return statistic(row, i, extra || ' ');
+    return statistic(row, i, best, extra || ' ');
   }
 
   // References to estimators that did not run here.
@@ -96,23 +102,26 @@
   }
 
   report.overviewTable = function (key) {
-    const i = figureIndex(key), figure = data.figures[i], several = data.sequences.length > 1;
-    const head = data.sequences.map(function (sequence) { return '<th scope="col">' + escape(sequence) + '</th>'; }).join('');
-    const most = data.sequences.map(function (sequence) {
-      return d3.max(data.estimators, function (estimator) {
+    const i = figureIndex(key), figure = data.figures[i], sequences = report.shownSequences(), several = sequences.length > 1;
+    const columns = sequences.map(function (sequence) {
+      const most = d3.max(report.shownEstimators(), function (estimator) {
         const row = report.aggregate(estimator, sequence);
         return row ? row.means[i] : null;
       });
+      return { sequence: sequence, most: most, best: bestOn(sequence, i) };
     });
-    const means = meanCells(i);
-    const rows = data.estimators.map(function (estimator, e) {
-      const backend = (data.aggregate.find(function (row) { return row.estimator === estimator; }) || {}).backend;
-      return '<tr>' + estimatorHead(estimator, backend) + data.sequences.map(function (sequence, s) {
-        return overviewCell(estimator, sequence, i, most[s]);
-      }).join('') + (several ? means[e] : '') + '</tr>';
+    const head = sequences.map(function (sequence) { return '<th scope="col">' + report.name(sequence) + '</th>'; }).join('');
+    const means = meanEntries(i), bestMean = report.best(means, figure);
+    const tested = sequences.length === data.sequences.length;  // the pooled test is over all of them
+    const rows = means.map(function (entry) {
+      const mean = '<td' + (bestMean.indexOf(entry.name) >= 0 ? ' class="best"' : '') + '>' + report.format(entry.value, figure.decimals) +
+        (tested && entry.value !== null ? report.testLine(entry.name, rivalOf(bestMean), null, i) : '') + '</td>';
+      return '<tr>' + estimatorHead(entry.name, entry.backend) + columns.map(function (column) {
+        return overviewCell(entry.name, column.sequence, i, column.most, column.best);
+      }).join('') + (several ? mean : '') + '</tr>';
     }).join('');
-    const foreign = foreignRows(function (r) { return r.figures[key] !== undefined; }, function (matches) {
-      return data.sequences.map(function (sequence) {
+    const foreign = foreignRows(function (r) { return r.figures[key] !== undefined && sequences.indexOf(r.sequence) >= 0; }, function (matches) {
+      return sequences.map(function (sequence) {
         const found = data.references.find(function (r) { return matches(r) && r.sequence === sequence; });
         return '<td>' + report.format(found ? found.figures[key] : null, figure.decimals) + '</td>';
       }).join('') + (several ? '<td></td>' : '');
@@ -121,14 +130,21 @@
       (several ? '<th scope="col">mean</th>' : '') + '</tr></thead><tbody>' + rows + foreign + '</tbody></table>';
   };
 
+  function testNote(i) {
+    if (!data.pairs.some(function (pair) { return pair[1] === i; })) { return ''; }
+    const against = report.state.against === report.BEST ? 'the best of the column' : report.state.against;
+    return ' Below a value, the test of its difference to ' + against + ' (paired t-test on equal inputs; the mean: one sample a sequence): ' +
+      '\u2248 not significant at 5 %, \u25bc significantly lower, \u25b2 significantly higher; not corrected for the number of tests.';
+  }
+
   report.overviewNote = function (key) {
-    const figure = data.figures[figureIndex(key)];
+    const i = figureIndex(key), figure = data.figures[i];
     const ideal = figure.ideal === 'low' ? 'Lower is better.' : figure.ideal === 'target' ?
       'Ideal is ' + Number(figure.target.toFixed(4)) + '.' : 'No value is better than another.';
     const unit = figure.unit ? ' in ' + figure.unit : '';
     return figure.label + unit + ', mean over the seeds that ended ok \u00b1 its standard error. ' + ideal +
-      (figure.ideal === 'none' ? '' : ' The best of each column is shaded, among the estimators that lost the fewest runs.') +
-      (data.references.length ? ' Published figures are in italics.' : '');
+      (figure.ideal === 'none' ? '' : ' The best of each column is shaded, among the shown estimators that lost the fewest runs.') +
+      testNote(i) + (data.references.length ? ' Published figures are in italics.' : '');
   };
 
   report.sequenceTable = function (sequence) {
@@ -147,14 +163,16 @@
         return '<td>' + report.format(found ? found.figures[figure.key] : null, figure.decimals) + '</td>';
       }).join('');
     };
-    const rows = data.estimators.map(function (estimator) {
+    const best = {};
+    used.forEach(function (i) { best[i] = bestOn(sequence, i); });
+    const rows = report.shownEstimators().map(function (estimator) {
       const row = report.aggregate(estimator, sequence);
       if (!row) { return ''; }
       const counts = '<td' + (row.ok < row.cells ? ' class="bad"' : '') + '>' + row.ok + ' of ' + row.cells +
         (row.ok < row.cells ? '<span class="sub bad">' + failure(row) + '</span>' : '') + '</td>';
       const own = data.references.filter(function (r) { return r.estimator === estimator && r.sequence === sequence; });
       return '<tr>' + estimatorHead(estimator, row.backend) + counts +
-        used.map(function (i) { return row.ok ? statistic(row, i) : '<td>\u2013</td>'; }).join('') + '</tr>' +
+        used.map(function (i) { return row.ok ? statistic(row, i, best[i]) : '<td>\u2013</td>'; }).join('') + '</tr>' +
         own.map(function (r) {
           return '<tr class="reference"><th scope="row">' + report.name(estimator) + '<span class="sub">' + escape(r.source) + '</span></th>' +
             referenceCells(function (other) { return other === r; }) + '</tr>';

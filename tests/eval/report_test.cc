@@ -7,6 +7,7 @@
 
 #include "eval/aggregate.h"
 #include "eval/report_data.h"
+#include "eval/report_series.h"
 #include "eval/table_layout.h"
 #include "tests/eval/synthetic_comparison.h"
 #include "tests/support/read_file.h"

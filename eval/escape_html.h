@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace alidade {
+
+/// The text as it may stand in an element or a quoted attribute of HTML or XML.
+[[nodiscard]] std::string EscapeHtml(const std::string& text);
+
+}  // namespace alidade
