@@ -17,7 +17,7 @@ namespace alidade {
 namespace {
 
 constexpr double kWidth = 252;
-constexpr double kLeft = 40, kRight = 6, kBelow = 26;
+constexpr double kLeft = 40, kRight = 10, kBelow = 26;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr size_t kMostEstimators = 8;
 /// The page's colours (report_assets/report_data.js): told apart with any colour vision.
@@ -106,7 +106,7 @@ std::string ErrorFigure(const std::vector<Entry>& entries, int first, double sca
       }
       const CellSeries& series = entry.ok.front()->series;
       SvgCurve curve{entry.stroke, series.time_s, {}};
-      SvgBand band{entry.stroke.colour, 0.1, {}, {}, {}};
+      SvgBand band{entry.stroke.colour, entries.size() > 3 ? 0.05 : 0.12, {}, {}, {}};
       for (size_t i = 0; i < series.error.size(); ++i) {
         curve.y.push_back(scale * series.error[i](first + axis));
       }

@@ -1,7 +1,9 @@
 #include "eval/report_data.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "eval/aggregate.h"
 #include "eval/efficiency.h"
@@ -23,10 +25,23 @@ Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
   return values;
 }
 
-bool IsFirstSeed(const Comparison& comparison, const CellResult& cell) {
-  return std::none_of(comparison.cells.begin(), comparison.cells.end(), [&](const CellResult& other) {
-    return other.sequence == cell.sequence && other.estimator == cell.estimator && other.seed < cell.seed;
-  });
+/// Cells whose sky the page holds: of each estimator's first seed, since it is the same for all; of a large
+/// comparison one a sequence, for its size.
+std::set<const CellResult*> CellsWithSky(const Comparison& comparison) {
+  constexpr size_t kMostSkies = 12;
+  std::map<std::pair<std::string, std::string>, const CellResult*> by_estimator, by_sequence;
+  for (const CellResult& cell : comparison.cells) {
+    if (!cell.sky.empty()) {
+      const CellResult*& kept = by_estimator[{cell.sequence, LabelOf(comparison, cell)}];
+      kept = kept == nullptr || cell.seed < kept->seed ? &cell : kept;
+      by_sequence.try_emplace({cell.sequence, ""}, &cell);
+    }
+  }
+  std::set<const CellResult*> cells;
+  for (const auto& [name, cell] : by_estimator.size() > kMostSkies ? by_sequence : by_estimator) {
+    cells.insert(cell);
+  }
+  return cells;
 }
 
 /// What the tables and box plots need of a run.
@@ -243,11 +258,11 @@ std::string ReportData(const Comparison& comparison) {
   }
   data["nees_bands"] = NeesBands(most_runs);
   data["nees_over_time"] = NeesData(comparison, most);
+  const std::set<const CellResult*> with_sky = CellsWithSky(comparison);
   for (size_t i = 0; i < comparison.cells.size(); ++i) {
     const CellResult& cell = comparison.cells[i];
     data["cells"][i]["series"] = SeriesJson(cell.series, most);
-    // Of one seed: the sky is the same for all.
-    data["cells"][i]["sky"] = IsFirstSeed(comparison, cell) ? SkyJson(cell.sky) : Json(Json::array());
+    data["cells"][i]["sky"] = with_sky.count(&cell) > 0 ? SkyJson(cell.sky) : Json(Json::array());
   }
   std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   // '<' stands only inside strings, where its escape means the same.

@@ -56,7 +56,7 @@ std::vector<double> SvgAxis::Ticks(int count) const {
   }
   std::vector<double> ticks;
   for (double k = std::ceil(low_ / step - 1e-9); k * step <= high_ + 1e-9 * step; ++k) {
-    ticks.push_back(k * step);
+    ticks.push_back(k == 0 ? 0 : k * step);  // no "-0"
   }
   return ticks;
 }

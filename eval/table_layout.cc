@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <set>
+#include <tuple>
 
 #include "eval/efficiency.h"
 #include "eval/pair_tables.h"
@@ -32,6 +34,38 @@ std::string FailureText(const AggregateRow& row) {
   const int most = std::max({row.diverged, row.not_initialized, row.failed});
   return most == row.diverged ? "diverged" : most == row.not_initialized ? "not initialized" : "failed";
 }
+
+/// Rows of a sequence whose difference to its best is not significant, by figure.
+class Ties {
+ public:
+  Ties(const Comparison& comparison, const std::vector<Figure>& figures,
+       const std::vector<AggregateRow>& rows) {
+    std::set<std::tuple<std::string, std::string, size_t>> best;
+    for (const AggregateRow& row : rows) {
+      for (size_t i = 0; i < figures.size(); ++i) {
+        if (row.best[i]) {
+          best.emplace(row.sequence, row.label, i);
+        }
+      }
+    }
+    for (const PairedDifference& pair : ComparePairs(comparison, figures)) {
+      if (pair.verdict == PairVerdict::kNoDifference) {
+        const bool first = best.count({pair.sequence, pair.first, pair.figure}) > 0;
+        const bool second = best.count({pair.sequence, pair.second, pair.figure}) > 0;
+        if (first != second) {
+          ties_.emplace(pair.sequence, first ? pair.second : pair.first, pair.figure);
+        }
+      }
+    }
+  }
+  /// What stands behind the value.
+  [[nodiscard]] std::string MarkOf(const AggregateRow& row, size_t figure) const {
+    return ties_.count({row.sequence, row.label, figure}) > 0 ? " \u2248" : "";
+  }
+
+ private:
+  std::set<std::tuple<std::string, std::string, size_t>> ties_;
+};
 
 std::string ReferenceName(const ReferenceFigure& reference) {
   return reference.source.empty() ? reference.estimator : reference.estimator + ", " + reference.source;
@@ -70,7 +104,7 @@ std::vector<std::string> SummaryHeadings(const Comparison& comparison) {
 }
 
 TextTable SequenceTable(const std::string& sequence, const std::vector<AggregateRow>& rows,
-                        const Comparison& comparison, const std::vector<Figure>& figures,
+                        const Comparison& comparison, const std::vector<Figure>& figures, const Ties& ties,
                         const std::string& plus_minus) {
   TextTable table{sequence, {"estimator", "runs ok"}, {}};
   for (const Figure& figure : figures) {
@@ -84,7 +118,9 @@ TextTable SequenceTable(const std::string& sequence, const std::vector<Aggregate
     }
     TextRow text{{{row.label}, {RunsText(row)}}};
     for (size_t i = 0; i < figures.size(); ++i) {
-      text.cells.push_back({FormatStatistic(row.figures[i], figures[i].decimals, plus_minus), row.best[i]});
+      text.cells.push_back(
+          {FormatStatistic(row.figures[i], figures[i].decimals, plus_minus) + ties.MarkOf(row, i),
+           row.best[i]});
     }
     if (row.ok == 0 && text.cells.size() > 2) {
       text.cells[2].text = FailureText(row);
@@ -139,7 +175,7 @@ void AppendReferenceRows(const std::vector<std::string>& sequences, const Compar
 }
 
 TextTable OverviewTable(size_t index, const std::vector<AggregateRow>& rows, const Comparison& comparison,
-                        const std::vector<Figure>& figures, const std::string& plus_minus) {
+                        const std::vector<Figure>& figures, const Ties& ties, const std::string& plus_minus) {
   const Figure& figure = figures[index];
   const std::vector<std::string> sequences = ListSequences(rows);
   TextTable table{"Overview: " + Heading(figure), {"estimator"}, {}};
@@ -155,6 +191,7 @@ TextTable OverviewTable(size_t index, const std::vector<AggregateRow>& rows, con
         if (row.label == label && row.sequence == sequence) {
           cell.text = row.ok == 0 ? FailureText(row)
                                   : FormatStatistic(row.figures[index], figure.decimals, plus_minus);
+          cell.text += ties.MarkOf(row, index);
           cell.text += row.ok > 0 && row.ok < row.cells ? " (" + RunsText(row) + ")" : "";
           cell.best = row.best[index];
           value = row.figures[index].mean;
@@ -223,14 +260,15 @@ std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::str
   const std::vector<Figure> figures = ListFigures(comparison);
   const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
   const std::vector<std::string> sequences = ListSequences(rows);
+  const Ties ties(comparison, figures, rows);
   std::vector<TextTable> tables;
   for (size_t i = 0; i < figures.size() && sequences.size() > 1; ++i) {
     if (figures[i].key == "ate_pos_m" || figures[i].key == "ate_ori_deg") {
-      tables.push_back(OverviewTable(i, rows, comparison, figures, plus_minus));
+      tables.push_back(OverviewTable(i, rows, comparison, figures, ties, plus_minus));
     }
   }
   for (const std::string& sequence : sequences) {
-    tables.push_back(SequenceTable(sequence, rows, comparison, figures, plus_minus));
+    tables.push_back(SequenceTable(sequence, rows, comparison, figures, ties, plus_minus));
   }
   if (!comparison.frontends.empty()) {
     tables.push_back(FrontendTable(comparison.frontends));

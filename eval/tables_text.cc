@@ -40,6 +40,8 @@ std::string EscapeLatex(const std::string& text) {
   ReplaceAll("\u00b1", "$\\pm$", &escaped);
   ReplaceAll("\u03c3", "$\\sigma$", &escaped);
   ReplaceAll("\u2013", "--", &escaped);
+  ReplaceAll("\u2248", "$\\approx$", &escaped);
+  ReplaceAll("\u2212", "$-$", &escaped);
   return escaped;
 }
 
@@ -89,7 +91,9 @@ std::string LatexTable(const TextTable& table) {
 const char* const kReading =
     "Means over the runs that ended ok, with the standard error of the mean where there are several. RMSE is "
     "unaligned, ATE aligned as summary.csv says. The best value of a column is bold (NEES: nearest to its "
-    "degrees of freedom, 6, 3 and 3), among the estimators with the most runs ok. Published figures are in "
+    "degrees of freedom, 6, 3 and 3), among the estimators with the most runs ok; \u2248 marks those whose "
+    "paired difference to it is not "
+    "significant. Published figures are in "
     "italics. NEES in band: share of the instants at which the NEES averaged over the runs lies in its 95 % "
     "chi-square band; the verdict is of the mean NEES against the band of that many independent runs. Pairs: "
     "differences on equal input and seed, with half of their 95 % interval (Student's t); significant when "

@@ -103,7 +103,13 @@
     fillSelect('figure-select', data.figures.map(function (f) { return [f.key, f.label + (f.unit ? ' [' + f.unit + ']' : '')]; }), state.figure);
     fillSelect('against-select', [[report.BEST, 'the best']].concat(data.estimators.map(function (name) { return [name, name]; })), state.against);
     element('against-field').hidden = !data.pairs.length;
-    fillChips('chips', data.estimators, state.off, function (name) { return report.swatch(report.style(name)) + report.escape(name); });
+    const here = function (name) { return report.aggregate(name, state.sequence) ? 0 : 1; };
+    const order = data.estimators.slice().sort(function (a, b) {  // those of the sequence first: the plots show no others
+      return here(a) - here(b) || data.estimators.indexOf(a) - data.estimators.indexOf(b);
+    });
+    fillChips('chips', order, state.off, function (name) { return report.swatch(report.style(name)) + report.escape(name); });
+    d3.selectAll('#chips .chip').filter(function () { return here(this.getAttribute('data-name')); }).classed('elsewhere', true)
+      .attr('title', 'did not run on ' + state.sequence);
     d3.select('#chips').append('span').attr('class', 'legend').html(report.swatch(report.TRUTH) + 'truth');
     element('sequence-chips').hidden = data.sequences.length < 2;
     fillChips('sequence-chips', data.sequences, state.skip, report.escape);

@@ -175,11 +175,7 @@
     drawAxis(plot, x, true, x.ticks(Math.max(3, plot.inner.width / 80)));
     drawAxis(plot, y, false, y.ticks(6));
     lines.forEach(function (line) { path(plot, line.points, x, y, line.style, line.width); });
-    lines.filter(function (line) { return line.label; }).forEach(function (line) {
-      const last = line.points[line.points.length - 1];
-      plot.area.append('circle').attr({ cx: x(last[0]), cy: y(last[1]), r: 3, fill: line.style.colour });
-      halo(plot, x(last[0]) + 5, y(last[1]) + 4, line.label);
-    });
+    drawLabels(plot, lines.filter(function (line) { return line.label; }), x, y);
     if (!spec.noStart) { markStart(plot, lines[0].points[0], x, y); }
     const dots = lines.map(function (line) {
       return plot.area.append('circle').attr({ class: 'cursor', r: 4.5, fill: line.style.colour, stroke: '#fff', visibility: 'hidden' });
@@ -194,6 +190,22 @@
     report.view.plots.push({ hover: move });
     attachTopPointer(plot, spec, lines.filter(function (line) { return !line.passive; }), x, y);
   };
+
+  // Names at the ends of lines: right of the end, or left, below or above of it where another name is in the way.
+  function drawLabels(plot, lines, x, y) {
+    const taken = [];
+    lines.forEach(function (line) {
+      const last = line.points[line.points.length - 1], at = [x(last[0]), y(last[1])], width = 7 * line.label.length;
+      plot.area.append('circle').attr({ cx: at[0], cy: at[1], r: 3, fill: line.style.colour });
+      const places = [[5, 4], [-5 - width, 4], [-width / 2, 16], [-width / 2, -7]].map(function (d) { return [at[0] + d[0], at[1] + d[1]]; });
+      const free = places.filter(function (p) {
+        return taken.every(function (q) { return Math.abs(p[0] - q[0]) > Math.max(width, q[2]) || Math.abs(p[1] - q[1]) > 11; });
+      });
+      const place = free[0] || places[0];
+      taken.push([place[0], place[1], width]);
+      halo(plot, place[0], place[1], line.label);
+    });
+  }
 
   function halo(plot, x, y, text) {
     plot.area.append('text').attr({ x: x, y: y, fill: INK, 'paint-order': 'stroke', stroke: '#fff', 'stroke-width': 3 }).text(text);

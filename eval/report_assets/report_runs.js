@@ -57,7 +57,7 @@
       return { name: entry.name, style: entry.style, q: entry.series.ms_quantiles };
     });
     report.boxPlot(grid, spec('time-box', 'Distribution of the back-end time', label, 'ms', entries,
-      { x: '', log: log, height: 270, bottom: 96, named: true, groups: [{ name: '', boxes: boxes }] }));
+      { x: '', log: log, height: 262, bottom: 84, named: true, groups: [{ name: '', boxes: boxes }] }));
     const bars = entries.map(function (entry) { return { name: entry.name, parts: stagesOf(entry) }; })
       .filter(function (bar) { return bar.parts; });
     report.barPlot(grid, spec('stages', 'Mean time per frame by stage', '', 'ms', [], { x: 'time [ms]', stages: STAGES, bars: bars,
@@ -68,27 +68,41 @@
     J: ['QZSS', '#c98500'] };
   function systemOf(satellite) { return SYSTEMS[satellite.charAt(0)] || ['other', '#6b6b14']; }
 
-  // Of runs with GNSS: the sky and each satellite's residuals, of the first such estimator's first seed.
+  // A line with a hole where the satellite was out of sight for more than twice the usual step.
+  function withHoles(track) {
+    const steps = d3.pairs(track.t).map(function (pair) { return pair[1] - pair[0]; });
+    const hole = 2.5 * d3.min(steps);
+    const line = { t: [], v: [] };
+    track.t.forEach(function (time, i) {
+      if (i > 0 && steps[i - 1] > hole) {
+        line.t.push(time - steps[i - 1] / 2);
+        line.v.push(null);
+      }
+      line.t.push(time);
+      line.v.push(track.r[i]);
+    });
+    return line;
+  }
+
+  // Of runs with GNSS: the sky and each satellite's residuals, of the first estimator that is on and has them here.
   report.drawSky = function (entries) {
-    const withSky = d3.merge(entries.map(function (entry) {
-      return entry.cells.filter(function (cell) { return cell.sky && cell.sky.length; }).map(function (cell) {
-        return { name: entry.name, cell: cell };
-      });
-    }));
+    const withSky = report.cellsOf(state.sequence).filter(function (cell) { return cell.sky.length; });
+    const drawn = withSky.filter(function (cell) { return entries.some(function (entry) { return entry.name === cell.estimator; }); });
     if (!withSky.length) { return; }
-    const first = withSky[0];
-    const tracks = first.cell.sky.map(function (track) {
+    const cell = drawn[0] || withSky[0];
+    const tracks = cell.sky.map(function (track) {
+      const holes = withHoles(track);
       return { name: track.s + ', rms ' + report.digits(track.rms) + ' m, used ' + (100 * track.used).toFixed(0) + ' %', label: track.s,
-        style: { colour: systemOf(track.s)[1], dash: null }, width: 1.6, t: track.t, x: track.x, y: track.y, v: track.r };
+        style: { colour: systemOf(track.s)[1], dash: null }, width: 1.6, t: track.t, x: track.x, y: track.y, residuals: holes };
     });
     const ring = function (radius) {
       const angles = d3.range(0, 361, 5).map(function (a) { return a * Math.PI / 180; });
       return { name: (90 - radius) + '\u00b0 of elevation', style: { colour: '#c3ccd4', dash: null }, width: 1, passive: true,
         t: angles, x: angles.map(function (a) { return radius * Math.sin(a); }), y: angles.map(function (a) { return radius * Math.cos(a); }) };
     };
-    const seen = d3.set(first.cell.sky.map(function (track) { return track.s.charAt(0); })).values();
+    const seen = d3.set(cell.sky.map(function (track) { return track.s.charAt(0); })).values();
     const legend = seen.map(function (letter) { return { name: systemOf(letter)[0], style: { colour: systemOf(letter)[1], dash: null } }; });
-    const grid = group('Satellites', first.name + ', seed ' + first.cell.seed + ': directions (zenith in the middle, north up, rings at 0, 30 ' +
+    const grid = group('Satellites', cell.estimator + ', seed ' + cell.seed + ': directions (zenith in the middle, north up, rings at 0, 30 ' +
       'and 60\u00b0 of elevation, the name where a satellite was last seen) and pseudorange residuals, predicted less measured. Colours: ' +
       seen.map(function (letter) { return systemOf(letter)[0]; }).join(', ') + '.', true);
     d3.select(grid.parentNode).insert('p', 'div').attr('class', 'legend-line').html(legend.map(function (entry) {
@@ -102,6 +116,8 @@
     report.topView(grid, spec('sky', 'Sky', 'north [\u00b0 from the zenith]', '\u00b0', [], { x: 'east [\u00b0 from the zenith]',
       height: 420, legend: legend, describe: describe, noStart: true, lines: [ring(90), ring(60), ring(30)].concat(tracks) }));
     report.timePlot(grid, spec('residuals', 'Residuals by satellite', 'residual [m]', 'm', [], { height: 420, zero: true, legend: legend,
-      lines: tracks }));
+      lines: tracks.map(function (track) {
+        return { name: track.name, style: track.style, width: 1.2, t: track.residuals.t, v: track.residuals.v };
+      }) }));
   };
 })();

@@ -20,7 +20,7 @@ ROS 1 bags, metrics and a report in one offline page stand around them.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME alidade)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "bash-completion, libalidade-dev")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "bash-completion, libalidade-dev, librsvg2-bin")
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "These are the libraries: headers, archives and the CMake package;
 find_package(alidade CONFIG) gives alidade::core, gnss, frontend, filter, smoother and eval.")

@@ -15,7 +15,8 @@ namespace alidade::test {
 namespace {
 
 // No window, no sandbox (tests run as root in containers), and nothing at work but the page: no GPU, no
-// extensions, no updates, no crash reporter, no network of the browser's own.
+// extensions, no updates, no crash reporter, no network of the browser's own. A page may look into its
+// frames.
 constexpr const char* kFlags =
     "--headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run "
     "--no-default-browser-check"
@@ -23,7 +24,7 @@ constexpr const char* kFlags =
     " --disable-sync --disable-breakpad --disable-crash-reporter --metrics-recording-only "
     "--password-store=basic"
     " --disable-features=MediaRouter,DialMediaRouteProvider,OptimizationHints,Translate"
-    " --enable-logging=stderr --v=0 --dump-dom";
+    " --hide-scrollbars --allow-file-access-from-files --enable-logging=stderr --v=0 --dump-dom";
 
 constexpr int kTimedOut = 124;  // exit code of timeout(1)
 

@@ -38,6 +38,8 @@ inline CellSeries SyntheticSeries(int frames, double sigma_m, double honesty, do
     series.nees_pose.push_back(error.cwiseQuotient(sigma).squaredNorm());
     series.backend_ms.push_back(backend_ms * std::exp(0.3 * normal(random)));
     series.features_used.push_back(std::round(40 + 8 * normal(random)));
+    series.tracks_in.push_back(std::round(150 + 3 * normal(random)));
+    series.nis_ratio.push_back(std::exp(0.2 * normal(random)));
   }
   return series;
 }
@@ -80,6 +82,9 @@ inline CellResult SyntheticCell(const std::string& estimator, const std::string&
   cell.backend_ms = backend_ms;
   cell.backend_ms_p95 = 1.7 * backend_ms;
   cell.features_per_frame = 40;
+  cell.propagate_ms = 0.1 * backend_ms;
+  cell.update_ms = 0.8 * backend_ms;
+  cell.innovations = {1.02, 0.94, {0.71, 1.34}};
   return cell;
 }
 
@@ -112,6 +117,31 @@ inline Comparison SyntheticComparison(int frames = 600) {
   comparison.references.push_back(
       {"the paper", "po_invio_multi", "figure8", {{"rmse_pos_m", 0.158}, {"ate_pos_m", 0.11}}});
   comparison.references.push_back({"published", "OpenVINS", "V1_01_easy", {{"ate_pos_m", 0.11}}});
+  return comparison;
+}
+
+/// Ten estimators on ten sequences of 200 s at 10 Hz, with GNSS.
+inline Comparison LargeComparison() {
+  Comparison comparison;
+  comparison.title = "many";
+  for (int sequence = 0; sequence < 10; ++sequence) {
+    for (int estimator = 0; estimator < 10; ++estimator) {
+      comparison.cells.push_back(SyntheticCell("estimator_" + std::to_string(estimator),
+                                               "sequence_" + std::to_string(sequence), 1,
+                                               0.02 * (1 + estimator), 1, 2, 2000));
+      for (int satellite = 1; satellite <= 30; ++satellite) {
+        SkyTrack track;
+        track.satellite = "G" + std::to_string(satellite);
+        for (int i = 0; i < 24; ++i) {
+          track.time_s.push_back(8.3 * i);
+          track.azimuth_deg.push_back(12.3 * satellite + 0.1234 * i);
+          track.elevation_deg.push_back(10 + 2.5 * satellite + 0.0567 * i);
+          track.residual_m.push_back(0.1234 * ((i * satellite) % 7 - 3));
+        }
+        comparison.cells.back().sky.push_back(track);
+      }
+    }
+  }
   return comparison;
 }
 

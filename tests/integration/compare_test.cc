@@ -57,23 +57,31 @@ class CompareCommand : public testing::Test {
 };
 
 TEST_F(CompareCommand, ResultsDoNotDependOnTheNumberOfJobs) {
-  const CommandResult one = Compare("one");
+  const CommandResult one = Compare("one", "--figures=svg");
   ASSERT_EQ(one.code, 0) << one.output;
-  ASSERT_EQ(Compare("two", "--jobs=3").code, 0);
+  ASSERT_EQ(Compare("two", "--jobs=3 --figures=svg").code, 0);
   EXPECT_EQ(ComparableFiles(folder_.File("one/cells")), ComparableFiles(folder_.File("two/cells")));
   const std::string summary = WithoutTimes(ReadFile(folder_.File("one/summary.csv")));
   EXPECT_THAT(summary, HasSubstr("alidade_filter,filter,short,2,ok,"));
   EXPECT_EQ(summary, WithoutTimes(ReadFile(folder_.File("two/summary.csv"))));
   EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("one/aggregate.csv"))),
             WithoutTimes(ReadFile(folder_.File("two/aggregate.csv"))));
-  for (const char* file : {"pairs.csv", "nees_over_time.csv"}) {
+  for (const char* file : {"pairs.csv", "nees_over_time.csv", "figures/short_trajectory.svg",
+                           "figures/short_position_error.svg", "figures/short_nees.svg"}) {
     const std::string text = ReadFile(folder_.File(std::string("one/") + file));
-    EXPECT_THAT(text, HasSubstr("short,")) << file;
+    EXPECT_THAT(text, testing::AnyOf(HasSubstr("short,"), HasSubstr("<svg"))) << file;
     EXPECT_EQ(text, ReadFile(folder_.File(std::string("two/") + file))) << file;
   }
-  for (const char* file : {"aggregate.csv", "tables.md", "tables.tex", "report.html"}) {
+  for (const char* file : {"aggregate.csv", "tables.md", "tables.tex", "report.html", "report.json"}) {
     EXPECT_FALSE(ReadFile(folder_.File(std::string("one/") + file)).empty()) << file;
   }
+}
+
+TEST_F(CompareCommand, AnUnknownFormatOfFiguresIsRefusedBeforeAnythingRuns) {
+  const CommandResult wrong = Compare("out", "--figures=png");
+  EXPECT_EQ(wrong.code, 2) << wrong.output;
+  EXPECT_THAT(wrong.output, HasSubstr("compare: --figures: found \"png\", expected svg, pdf or svg,pdf"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("out")));
 }
 
 // GIVEN a comparison with one cell gone and one torn WHEN it is resumed THEN those two run again, the others
