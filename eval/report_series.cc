@@ -50,8 +50,8 @@ std::string RegularMask(const std::vector<bool>& regular) {
 }  // namespace
 
 int PointsPerSeries(size_t cells, bool audited) {
-  // A point of one cell is 24 numbers: measured at 75 to 95 characters; an audit adds up to 22.
-  const double budget = 4.3e6 / ((audited ? 117.0 : 95.0) * static_cast<double>(std::max<size_t>(1, cells)));
+  // A point of one cell is 24 numbers: measured at 85 to 105 characters; an audit adds up to 22.
+  const double budget = 4.3e6 / ((audited ? 127.0 : 105.0) * static_cast<double>(std::max<size_t>(1, cells)));
   return static_cast<int>(std::clamp(budget, 60.0, 1000.0));
 }
 
