@@ -22,7 +22,7 @@ DEFINE_string(estimator, "",
 DEFINE_string(input, "", "cases, JSON; - reads standard input");
 DEFINE_string(export, "",
               "folder that gets both trajectories as evo and rpg_trajectory_evaluation read them");
-DEFINE_string(figures, "", "svg, pdf or svg,pdf: write figures for papers into figures/");
+DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into figures/");
 DEFINE_bool(interpolate, false, "interpolate truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(
     jobs, 1,
