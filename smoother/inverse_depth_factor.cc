@@ -40,6 +40,37 @@ NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) 
   return at.layout.intrinsics() < 0 ? view.observation : Renormalized(at.mean.camera, view).observation;
 }
 
+/// Whitened residual and, over the two cameras and the landmark, Jacobians without their whitening.
+struct DepthRows {
+  Vector2d residual;
+  InverseDepthModel::PoseJacobian base, view;
+  Vector2d rho;
+  Eigen::Matrix2d bearing;
+
+  /// False behind the view; Jacobians are then zero.
+  bool Linearize(const FrameGeometry& base_frame, const FrameGeometry& view_frame,
+                 const Eigen::Vector3d& landmark, const NormalizedObservation& observation,
+                 bool differentiate) {
+    const InverseDepthModel model{landmark.head<2>(), observation.z};
+    Vector2d r;
+    bool in_front = model.Evaluate(base_frame.T_WC, view_frame.T_WC, landmark.z(), &r,
+                                   differentiate ? &base : nullptr, differentiate ? &view : nullptr,
+                                   differentiate ? &rho : nullptr, differentiate ? &bearing : nullptr);
+    if (differentiate && in_front && (base_frame.T_WC_first || view_frame.T_WC_first)) {
+      Vector2d ignored;
+      in_front = model.Evaluate(base_frame.Linearized(), view_frame.Linearized(), landmark.z(), &ignored,
+                                &base, &view, &rho, &bearing);
+    }
+    if (!in_front) {
+      *this = DepthRows{Vector2d::Zero(), InverseDepthModel::PoseJacobian::Zero(),
+                        InverseDepthModel::PoseJacobian::Zero(), Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+      return false;
+    }
+    residual = observation.sqrt_information * r;
+    return true;
+  }
+};
+
 }  // namespace
 
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC)
@@ -51,8 +82,6 @@ InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
-  const NavState base_state = UnpackNavState(parameters[0]);
-  const NavState view_state = UnpackNavState(parameters[1]);
   WindowCalibration camera;
   NormalizedObservation observation = view_->observation;
   if (calibration_ != nullptr) {
@@ -66,54 +95,34 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
     return calibration_ == nullptr ? MakeGeometry(frame, state, *T_BC_)
                                    : MakeGeometry(frame, state, camera.mean);
   };
-  const FrameGeometry base = geometry(*base_, base_state);
-  const FrameGeometry view = geometry(*view_->frame, view_state);
+  const FrameGeometry base = geometry(*base_, UnpackNavState(parameters[0]));
+  const FrameGeometry view = geometry(*view_->frame, UnpackNavState(parameters[1]));
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
-  const InverseDepthModel model{landmark.head<2>(), observation.z};
-  const bool differentiate = tangent_jacobians != nullptr;
-  Vector2d r;
-  InverseDepthModel::PoseJacobian jacobian_base;
-  InverseDepthModel::PoseJacobian jacobian_view;
-  Vector2d jacobian_rho;
-  Eigen::Matrix2d jacobian_bearing;
-  bool in_front =
-      model.Evaluate(base.T_WC, view.T_WC, landmark.z(), &r, differentiate ? &jacobian_base : nullptr,
-                     differentiate ? &jacobian_view : nullptr, differentiate ? &jacobian_rho : nullptr,
-                     differentiate ? &jacobian_bearing : nullptr);
-  if (differentiate && in_front && (base.T_WC_first || view.T_WC_first)) {
-    Vector2d ignored;
-    in_front = model.Evaluate(base.Linearized(), view.Linearized(), landmark.z(), &ignored, &jacobian_base,
-                              &jacobian_view, &jacobian_rho, &jacobian_bearing);
-  }
-  if (!in_front) {
-    r.setZero();
-    jacobian_base.setZero();
-    jacobian_view.setZero();
-    jacobian_rho.setZero();
-    jacobian_bearing.setZero();
-  }
-  const Eigen::Matrix2d& whitening = observation.sqrt_information;
-  Eigen::Map<Vector2d>{residual} = in_front ? Vector2d(whitening * r) : Vector2d::Constant(kBehindSigma);
-  if (!differentiate) {
+  DepthRows rows;
+  const bool in_front = rows.Linearize(base, view, landmark, observation, tangent_jacobians != nullptr);
+  Eigen::Map<Vector2d>{residual} = in_front ? rows.residual : Vector2d::Constant(kBehindSigma);
+  if (tangent_jacobians == nullptr) {
     return true;
   }
-  StoreNav(whitening, jacobian_base, base, tangent_jacobians[0]);
-  StoreNav(whitening, jacobian_view, view, tangent_jacobians[1]);
+  const Eigen::Matrix2d& whitening = observation.sqrt_information;
+  StoreNav(whitening, rows.base, base, tangent_jacobians[0]);
+  StoreNav(whitening, rows.view, view, tangent_jacobians[1]);
   if (tangent_jacobians[2] != nullptr) {
     Eigen::Map<RowMatrix2x3> out(tangent_jacobians[2]);
-    out.leftCols<2>() = whitening * jacobian_bearing;
-    out.col(2) = whitening * jacobian_rho;
+    out.leftCols<2>() = whitening * rows.bearing;
+    out.col(2) = whitening * rows.rho;
   }
-  if (calibration_ != nullptr && tangent_jacobians[3] != nullptr) {
-    if (in_front) {
-      const Eigen::Matrix2Xd cameras = whitening * (jacobian_base * CalibrationChain(camera.layout, base) +
-                                                    jacobian_view * CalibrationChain(camera.layout, view));
-      StoreCalibration(camera, *calibration_, Predicted(observation, whitening * r), cameras, parameters[3],
-                       tangent_jacobians[3]);
-    } else {
-      Eigen::Map<CalibrationRow>{tangent_jacobians[3]}.setZero();
-    }
+  if (calibration_ == nullptr || tangent_jacobians[3] == nullptr) {
+    return true;
   }
+  if (!in_front) {
+    Eigen::Map<CalibrationRow>{tangent_jacobians[3]}.setZero();
+    return true;
+  }
+  const Eigen::Matrix2Xd cameras = whitening * (rows.base * CalibrationChain(camera.layout, base) +
+                                                rows.view * CalibrationChain(camera.layout, view));
+  StoreCalibration(camera, *calibration_, Predicted(observation, rows.residual), cameras, parameters[3],
+                   tangent_jacobians[3]);
   return true;
 }
 
