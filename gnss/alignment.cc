@@ -171,13 +171,18 @@ std::optional<GnssAlignment> GnssAligner::TryAlign() {
   Locate();
   const AlignmentFit fit(config_, {enu_, receiver_.p_BA}, Choose());
   std::optional<AlignmentGuess> guess = FirstGuess(fit);
-  constexpr int kIterations = 12;
+  constexpr int kIterations = 18;
   constexpr int kUngated = 6;
   constexpr double kGateScales = 3.5;
+  constexpr double kFirstGateSigma = 60;
+  constexpr double kGateShrinks = 0.65;
   AlignmentStep step;
+  double widest = INFINITY;
   for (int i = 0; guess && i < kIterations && (i == 0 || step.ok); ++i) {
-    // Huber's kernel alone is pulled by reflections, which are all late: they go, at a scale that shrinks.
-    step = fit.Step({.gate_sigma = i < kUngated ? INFINITY : kGateScales * step.scale}, &*guess);
+    // Huber's kernel alone is pulled by reflections, which are all late: they go, the latest first. A gate as
+    // narrow as it will be would at once refuse good satellites of a solution that is metres off.
+    widest = i < kUngated ? INFINITY : std::min(kFirstGateSigma, kGateShrinks * widest);
+    step = fit.Step({.gate_sigma = std::max(widest, kGateScales * step.scale)}, &*guess);
   }
   if (!step.ok) {
     report_ = "the satellites do not determine the alignment";
