@@ -5,6 +5,7 @@
 #include <map>
 
 #include "eval/bag_gnss.h"
+#include "eval/bag_sheets.h"
 #include "eval/calibration_import.h"
 #include "eval/dataset_camera.h"
 #include "eval/ros_sensor_messages.h"
@@ -29,7 +30,7 @@ std::size_t SortByStamp(std::vector<Entry>* entries) {
 class Importer {
  public:
   Importer(const std::string& path, const BagImportOptions& options)
-      : path_(path), options_(options), topics_(options.topics) {}
+      : path_(path), options_(options), topics_(options.topics), sheets_(path) {}
 
   Result<BagImport> Execute() {
     Result<RosbagReader> bag = RosbagReader::Open(path_);
@@ -80,7 +81,7 @@ class Importer {
       TakeState(message.data);
     } else if (type == "std_msgs/String" && topic.ends_with("/sensor_yaml")) {
       if (std::optional<std::string> text = DecodeText(message.data)) {
-        sheets_.try_emplace(topic, std::move(*text));
+        sheets_.Take(topic, *std::move(text));
       }
     } else if (const Status status = gnss_.Take(topics_, message); !status.ok()) {
       Damage(topic, status.message());
@@ -187,7 +188,7 @@ class Importer {
     ALIDADE_RETURN_IF_ERROR(AssembleImu());
     ALIDADE_RETURN_IF_ERROR(AssembleCamera());
     ALIDADE_RETURN_IF_ERROR(AssembleExtraCameras());
-    const std::string* sheet = Sheet("gnss0");
+    const std::string* sheet = sheets_.Text("gnss0");
     return gnss_.Assemble(path_, sheet == nullptr ? std::string() : *sheet, &dataset, &import_.remarks);
   }
 
@@ -197,22 +198,10 @@ class Importer {
     }
   }
 
-  [[nodiscard]] const std::string* Sheet(const std::string& sensor) const {
-    const auto found = sheets_.find(SheetTopic(sensor));
-    return found == sheets_.end() ? nullptr : &found->second;
-  }
-
   Status AssembleImu() {
     Dataset& dataset = import_.dataset;
-    std::optional<ImuSensor> sensor = options_.imu;
-    if (const std::string* sheet = Sheet("imu0"); !sensor && sheet != nullptr) {
-      const Result<ImuSensor> parsed = ParseImuSensor(*sheet, path_ + ": " + SheetTopic("imu0"));
-      ALIDADE_RETURN_IF_ERROR(parsed.status());
-      sensor = *parsed;
-    }
-    if (!sensor) {
-      return Status::Input(path_ + ": holds no noise of the IMU, expected --calibration=FILE with it");
-    }
+    const Result<ImuSensor> sensor = sheets_.Imu(options_.imu);
+    ALIDADE_RETURN_IF_ERROR(sensor.status());
     const double measured_hz =
         MeasuredRate(dataset.imu.front().stamp_ns, dataset.imu.back().stamp_ns, dataset.imu.size());
     const bool per_sample = options_.imu && options_.imu_is_per_sample;
@@ -231,16 +220,8 @@ class Importer {
           path_ + ": holds images, which are read from a folder: alidade convert --dataset=" + path_ +
           " --output=FOLDER");
     }
-    std::optional<CameraSensor> sensor = options_.camera;
-    if (const std::string* sheet = Sheet("cam0"); !sensor && sheet != nullptr) {
-      const Result<CameraSensor> parsed = ParseCameraSensor(*sheet, path_ + ": " + SheetTopic("cam0"));
-      ALIDADE_RETURN_IF_ERROR(parsed.status());
-      sensor = *parsed;
-    }
-    if (!sensor) {
-      return Status::Input(path_ +
-                           ": holds no calibration of the camera, expected --calibration=FILE with it");
-    }
+    const Result<CameraSensor> sensor = sheets_.Camera("cam0", options_.camera);
+    ALIDADE_RETURN_IF_ERROR(sensor.status());
     dataset.rig.camera = sensor->camera;
     dataset.rig.T_BC = sensor->T_BC;
     dataset.rig.camera_time_offset_s = sensor->time_offset_s;
@@ -255,12 +236,11 @@ class Importer {
   Status AssembleExtraCameras() {
     for (auto& [k, frames] : extra_) {
       const std::string name = "cam" + std::to_string(k);
-      const std::string* sheet = Sheet(name);
-      if (sheet == nullptr || frames.empty()) {
+      if (sheets_.Text(name) == nullptr || frames.empty()) {
         Remark("/" + name + "/tracks: no calibration beside it, passed over");
         continue;
       }
-      const Result<CameraSensor> sensor = ParseCameraSensor(*sheet, path_ + ": " + SheetTopic(name));
+      const Result<CameraSensor> sensor = sheets_.Camera(name, std::nullopt);
       ALIDADE_RETURN_IF_ERROR(sensor.status());
       SortByStamp(&frames);
       import_.dataset.extra_cameras.push_back(
@@ -273,7 +253,7 @@ class Importer {
   const BagImportOptions& options_;
   BagTopics topics_;
   std::map<std::string, std::string> found_;  ///< topic -> type
-  std::map<std::string, std::string> sheets_;
+  BagSheets sheets_;
   std::map<std::string, std::int64_t> damaged_;
   std::map<std::size_t, std::vector<TrackFrame>> extra_;
   BagGnss gnss_;

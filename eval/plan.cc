@@ -6,6 +6,7 @@
 
 #include "eval/bag_import.h"
 #include "eval/paired.h"
+#include "eval/plan_check.h"
 #include "eval/plan_reader.h"
 #include "eval/suggest.h"
 
@@ -54,9 +55,7 @@ class PlanParser {
          {"reference", [&](const YAML::Node& n) {
             return reader_.Each(n, "reference", [&](const YAML::Node& e) { return AddReference(e); });
           }}}));
-    ALIDADE_RETURN_IF_ERROR(CheckSequenceNames(root));
-    ALIDADE_RETURN_IF_ERROR(CheckBaseline(root));
-    ALIDADE_RETURN_IF_ERROR(CheckAnyThere());
+    ALIDADE_RETURN_IF_ERROR(CheckPlan(plan_, root));
     if (plan_.title.empty()) {
       plan_.title = Stem(plan_.path);
     }
@@ -270,55 +269,6 @@ class PlanParser {
       }
     }
     entries->push_back(std::move(entry));
-    return Status::Ok();
-  }
-
-  [[nodiscard]] std::vector<std::string> SequenceNames() const {
-    std::vector<std::string> names;
-    for (const PlanSequence& sequence : plan_.sequences) {
-      names.push_back(sequence.name);
-    }
-    for (const auto& [name, path] : plan_.absent) {
-      names.push_back(name);
-    }
-    return names;
-  }
-
-  Status CheckAnyThere() const {
-    return !plan_.sequences.empty()
-               ? Status::Ok()
-               : Status::Input(plan_.path + ": none of its " + std::to_string(plan_.absent.size()) +
-                               " sequences is there; the first, " + plan_.absent.front().first +
-                               ", was expected as the folder " + plan_.absent.front().second);
-  }
-
-  Status CheckBaseline(const Node& root) const {
-    const std::vector<std::string> names = SequenceNames();
-    const bool known = std::find(names.begin(), names.end(), plan_.baseline) != names.end();
-    return plan_.baseline.empty() || known
-               ? Status::Ok()
-               : Status::Config(YamlPlace(plan_.path, root["baseline"]) + ": baseline: " + plan_.baseline +
-                                ": no such sequence" + Suggestion(plan_.baseline, names));
-  }
-
-  /// A name that no sequence has would be left out silently.
-  Status CheckSequenceNames(const Node& root) const {
-    const std::vector<std::string> names = SequenceNames();
-    for (const PlanEstimator& estimator : plan_.estimators) {
-      std::vector<std::pair<std::string, std::string>> used;
-      for (const auto& [sequence, path] : estimator.trajectories) {
-        used.emplace_back("trajectories", sequence);
-      }
-      for (const std::string& sequence : estimator.sequences) {
-        used.emplace_back("sequences", sequence);
-      }
-      for (const auto& [key, sequence] : used) {
-        if (std::find(names.begin(), names.end(), sequence) == names.end()) {
-          return Status::Config(YamlPlace(plan_.path, root["estimators"]) + ": " + estimator.name + "." +
-                                key + "." + sequence + ": no such sequence" + Suggestion(sequence, names));
-        }
-      }
-    }
     return Status::Ok();
   }
 

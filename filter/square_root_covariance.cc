@@ -2,6 +2,7 @@
 
 #include <cblas.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -65,25 +66,19 @@ Status SquareRootCovariance::Reset(const Matrix15d& covariance) {
   return Status::Ok();
 }
 
-void SquareRootCovariance::Propagate(const Matrix15d& phi, const Matrix15d& q) {
-  Matrix15d noise;
-  CHECK(SemiDefiniteCholesky(q, &noise)) << "process noise is not positive semi-definite";
-  const Index core = leading_;
-  auto stacked = corner_.topLeftCorner(leading_ + kCore, 2 * kCore);
-  stacked.topLeftCorner(leading_, kCore).setZero();
-  stacked.topRightCorner(leading_, kCore) = Part(0, core, leading_, kCore);
-  stacked.bottomLeftCorner(kCore, kCore) = noise;
-  const Matrix15d before = Part(core, core, kCore, kCore).triangularView<Eigen::Upper>();
-  const Matrix15d after = phi * before;
-  stacked.bottomRightCorner(kCore, kCore) = after;
-  TriangularizeBottom(stacked, kCore, &reflection_);
-  Part(0, core, leading_ + kCore, kCore) = stacked.rightCols(kCore);
-  FoldColumns(Part(0, 0, leading_, leading_), stacked.topLeftCorner(leading_, kCore), &reflection_);
-  for (Index column = core + kCore; column < dimension_; ++column) {
-    Eigen::Map<Vector15d> cross(Data(leading_, static_cast<int>(column)));
-    const Vector15d old = cross;
-    cross.noalias() = phi * old;
-  }
+void SquareRootCovariance::Assign(int leading, const Eigen::Ref<const MatrixXd>& root) {
+  CHECK_LE(leading, max_leading_);
+  const Index n = root.rows();
+  CHECK_LE(n - leading, capacity() - max_leading_);
+  CHECK_GE(root.cols(), n);
+  // With the rows reversed, an LQ factorisation gives a lower triangle, which reversed again is an upper one.
+  const MatrixXd reversed = root.colwise().reverse().transpose();
+  const Eigen::HouseholderQR<MatrixXd> qr(reversed);
+  const MatrixXd lower = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().toDenseMatrix().transpose();
+  leading_ = leading;
+  origin_ = max_leading_ - leading;
+  dimension_ = static_cast<int>(n);
+  Part(0, 0, n, n) = lower.reverse();
 }
 
 void SquareRootCovariance::CloneCore(int first, int size) {

@@ -101,6 +101,10 @@ class SquareRootCovariance {
   }
   [[nodiscard]] const double* Data(int row, int col) const { return &factor_(origin_ + row, origin_ + col); }
   [[nodiscard]] double* Data(int row, int col) { return &factor_(origin_ + row, origin_ + col); }
+  /// The rows [first, first + kSize) <- phi times them + w, w ~ N(0, noise_root noise_root^T).
+  template <int kSize>
+  void PropagateBlock(int first, const Eigen::Matrix<double, kSize, kSize>& phi,
+                      const Eigen::Matrix<double, kSize, kSize>& noise_root);
   void RemoveLeading(int first, int size);
   void PrepareSparse(Eigen::Ref<Eigen::MatrixXd> rows_in_place);
   /// The part of A^T A that the columns from `first` on make, in the upper left of information_. Rows before

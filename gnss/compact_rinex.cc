@@ -1,99 +1,16 @@
 #include "gnss/compact_rinex.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <map>
 #include <vector>
 
 #include "core/format.h"
+#include "gnss/differenced_number.h"
 #include "gnss/satellite_id.h"
 #include "gnss/text_file.h"
 
 namespace alidade {
 namespace {
-
-constexpr int kMaxOrder = 9;
-
-/// A number told by its n-th differences in time, in units of its last decimal.
-class DifferencedNumber {
- public:
-  /// "3&value" begins an arc of order 3, "value" continues one, "" is missing and ends it. False: ill-formed.
-  bool Apply(std::string_view text) {
-    if (text.empty()) {
-      order_ = -1;
-      return true;
-    }
-    std::int64_t value = 0;
-    if (text.size() > 2 && text[1] == '&') {
-      if (text[0] < '0' || text[0] > '0' + kMaxOrder || !ParseInt64(text.substr(2), &value)) {
-        return false;
-      }
-      order_ = text[0] - '0';
-      known_ = 0;
-      differences_.fill(0);
-      differences_[0] = value;
-      return true;
-    }
-    if (order_ < 0 || !ParseInt64(text, &value)) {
-      return false;
-    }
-    known_ = std::min(known_ + 1, order_);
-    differences_[static_cast<std::size_t>(known_)] = value;
-    for (int i = known_ - 1; i >= 0; --i) {
-      auto& lower = differences_[static_cast<std::size_t>(i)];
-      if (__builtin_add_overflow(lower, differences_[static_cast<std::size_t>(i) + 1], &lower)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  [[nodiscard]] bool present() const { return order_ >= 0; }
-  /// Right-aligned in `width`, as Fortran's F format.
-  [[nodiscard]] std::string Text(int width, int decimals) const {
-    const std::int64_t value = differences_[0];
-    std::string digits = std::to_string(value < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(value)
-                                                  : static_cast<std::uint64_t>(value));
-    const auto least = static_cast<std::size_t>(decimals) + 1;
-    digits.insert(0, digits.size() < least ? least - digits.size() : 0, '0');
-    digits.insert(digits.size() - static_cast<std::size_t>(decimals), ".");
-    return Format("%*s", width, ((value < 0 ? "-" : "") + digits).c_str());
-  }
-
- private:
-  static bool ParseInt64(std::string_view text, std::int64_t* value) {
-    const std::size_t sign = text.starts_with('-') ? 1 : 0;
-    if (text.size() == sign || text.size() > 19 + sign) {
-      return false;
-    }
-    std::int64_t result = 0;
-    for (const char c : text.substr(sign)) {
-      if (c < '0' || c > '9' || __builtin_mul_overflow(result, std::int64_t{10}, &result) ||
-          __builtin_add_overflow(result, c - '0', &result)) {
-        return false;
-      }
-    }
-    *value = sign == 1 ? -result : result;
-    return true;
-  }
-
-  int order_ = -1;
-  int known_ = 0;
-  std::array<std::int64_t, kMaxOrder + 1> differences_{};
-};
-
-/// A text told by what changed: ' ' keeps a character, '&' blanks it.
-void ApplyTextDifference(std::string_view change, std::string* text) {
-  if (text->size() < change.size()) {
-    text->resize(change.size(), ' ');
-  }
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    if (change[i] != ' ') {
-      (*text)[i] = change[i] == '&' ? ' ' : change[i];
-    }
-  }
-}
 
 struct SatelliteArc {
   std::vector<DifferencedNumber> numbers;

@@ -4,6 +4,7 @@
 #include "eval/simulator.h"
 #include "filter/filter.h"
 #include "tests/support/scenario.h"
+#include "tests/support/short_figure_eight.h"
 
 namespace alidade {
 namespace {
@@ -30,9 +31,7 @@ EstimatorConfig AlidadeFilter() {
 /// One iteration is one camera frame of the figure-8 in the steady state: propagation over ten IMU samples,
 /// cloning, update, marginalisation. Arguments: window, tracks.
 void FilterFrame(benchmark::State& state, EstimatorConfig (*preset)()) {
-  SimulatorConfig sim;
-  sim.duration_s = 40;
-  sim.path_m = 52.4;
+  SimulatorConfig sim = test::ShortFigureEight();
   sim.max_features = static_cast<int>(state.range(1));
   sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
   const Dataset dataset = test::SimulateOrDie(sim, 1);

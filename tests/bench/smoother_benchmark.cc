@@ -3,6 +3,7 @@
 #include "eval/simulator.h"
 #include "smoother/smoother.h"
 #include "tests/support/scenario.h"
+#include "tests/support/short_figure_eight.h"
 
 namespace alidade {
 namespace {
@@ -11,9 +12,7 @@ namespace {
 /// frame, prediction, solve, gate, covariance. Arguments: window, tracks. At most 8 solver iterations.
 void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKernel kernel,
                    ErrorConvention error, int slam_features) {
-  SimulatorConfig sim;
-  sim.duration_s = 40;
-  sim.path_m = 52.4;
+  SimulatorConfig sim = test::ShortFigureEight();
   sim.max_features = static_cast<int>(state.range(1));
   sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
   const Dataset dataset = test::SimulateOrDie(sim, 1);

@@ -4,18 +4,13 @@
 
 #include "filter/filter.h"
 #include "tests/support/scenario.h"
+#include "tests/support/short_figure_eight.h"
 
 namespace alidade {
 namespace {
 
 using test::ScenarioResult;
-
-SimulatorConfig ShortFigureEight() {
-  SimulatorConfig config;
-  config.duration_s = 40;
-  config.path_m = 52.4;
-  return config;
-}
+using test::ShortFigureEight;
 
 EstimatorConfig FilterPreset(FilterLandmark landmark, UpdateTiming update, int min_observations) {
   EstimatorConfig config;

@@ -2,18 +2,14 @@
 
 #include "filter/filter_estimator.h"
 #include "tests/support/scenario.h"
+#include "tests/support/short_figure_eight.h"
 
 // The whole filter with landmarks in its state, on simulated data.
 
 namespace alidade {
 namespace {
 
-SimulatorConfig ShortFigureEight() {
-  SimulatorConfig config;
-  config.duration_s = 40;
-  config.path_m = 52.4;
-  return config;
-}
+using test::ShortFigureEight;
 
 EstimatorConfig SlamPreset(ErrorConvention convention, bool first_estimates, int slam_features) {
   EstimatorConfig config;
