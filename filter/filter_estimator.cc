@@ -26,7 +26,13 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       gnss_(config.gnss, rig.gnss),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
-      correction_(state_.covariance().capacity()) {}
+      correction_(state_.covariance().capacity()) {
+  constexpr size_t kUsualTracks = 256;  // updated in one frame; more make vectors grow
+  appended_.reserve(kUsualTracks);
+  accepted_.reserve(kUsualTracks);
+  block_nis_.reserve(kUsualTracks);
+  weights_.reserve(kUsualTracks);
+}
 
 Status FilterEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));

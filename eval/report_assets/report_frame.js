@@ -91,6 +91,7 @@
 
   // Grid, ticks and labels of the horizontal (`below`) or vertical axis.
   function drawAxis(plot, scale, below, ticks) {
+    const span = Math.max.apply(null, ticks.map(Math.abs));
     const inner = plot.inner;
     const group = plot.area.append('g').attr('class', 'axis');
     ticks.forEach(function (value) {
@@ -98,7 +99,7 @@
       group.append('line').attr(below ? { x1: at, x2: at, y1: 0, y2: inner.height } : { x1: 0, x2: inner.width, y1: at, y2: at })
         .attr('stroke', GRID);
       group.append('text').attr(below ? { x: at, y: inner.height + 15, 'text-anchor': 'middle' }
-        : { x: -7, y: at + 4, 'text-anchor': 'end' }).attr('fill', SOFT).text(tickText(value));
+        : { x: -7, y: at + 4, 'text-anchor': 'end' }).attr('fill', SOFT).text(tickText(Math.abs(value) < 1e-9 * span ? 0 : value));
     });
     group.append('line').attr(below ? { x1: 0, x2: inner.width, y1: inner.height, y2: inner.height }
       : { x1: 0, x2: 0, y1: 0, y2: inner.height }).attr({ stroke: AXIS, 'shape-rendering': 'crispEdges' });
