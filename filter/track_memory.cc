@@ -18,6 +18,9 @@ namespace {
 
 // A carried memory loses a little with every clone; it need not restart for that.
 constexpr double kStayFactor = 1.5;
+// Of the depth's deviation, what the state's may be: it is common to all tracks and biases the scale, where a
+// track's own averages out.
+constexpr double kStateShare = 0.5;
 
 /// (y_m, y_1, y_2) over the errors (x_m, x_1, x_2) of three clones: in the right-invariant error everything
 /// relative to the yaw and position of clone 1, so that what follows says nothing about the unobservable
@@ -48,13 +51,13 @@ TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones,
       stacked_(5, columns_),
       jacobian_(2, columns_) {}
 
-double TrackMemoryKeeper::DepthDeviation(const FilterState& state, const Vector3d& ray,
-                                         const Matrix3d& landmark_rows,
-                                         const Eigen::Ref<const MatrixXd>& clone_rows,
-                                         const std::vector<int>& clones) {
+double TrackMemoryKeeper::StateDepthDeviation(const FilterState& state, const Vector3d& ray,
+                                              const Matrix3d& landmark_rows,
+                                              const Eigen::Ref<const MatrixXd>& clone_rows,
+                                              const std::vector<int>& clones) {
   const Vector3d direction = ray.normalized();
   const Vector3d along = landmark_rows.triangularView<Eigen::Upper>().transpose().solve(direction);
-  // direction . (f~ - p~_newest), with f~ = R^-1 (t - T x - n) and t = 0.
+  // direction . (f~ - p~_newest), with f~ = R^-1 (t - T x - n) and t = 0, less the part of n.
   if (depth_row_.size() < state.covariance().capacity()) {
     depth_row_.resize(state.covariance().capacity());
     whitened_depth_row_.resize(state.covariance().capacity());
@@ -74,15 +77,15 @@ double TrackMemoryKeeper::DepthDeviation(const FilterState& state, const Vector3
       state.clones()[newest].camera_from_error.bottomRows<3>().transpose() * direction;
   auto whitened = whitened_depth_row_.head(row.size());
   whitened.noalias() = state.covariance().factor().transpose() * row;
-  return std::sqrt(along.squaredNorm() + whitened.squaredNorm());
+  return whitened.norm();
 }
 
 void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, const Matrix3d& landmark_rows,
                               const Eigen::Ref<const MatrixXd>& clone_rows, const std::vector<int>& clones,
                               TrackMemory* memory) {
   const Vector3d ray = p_W - state.clones()[static_cast<size_t>(clones.back())].T_WC.translation;
-  const double deviation = DepthDeviation(state, ray, landmark_rows, clone_rows, clones);
-  memory->active = deviation < max_depth_deviation_ * ray.norm();
+  const double deviation = StateDepthDeviation(state, ray, landmark_rows, clone_rows, clones);
+  memory->active = deviation < kStateShare * max_depth_deviation_ * ray.norm();
   if (!memory->active) {
     return;
   }

@@ -74,11 +74,12 @@ class TrackMemoryKeeper {
   [[nodiscard]] bool MayStay(const TrackMemory& memory, const Eigen::Vector3d& camera_W) const;
 
  private:
-  /// Deviation of the landmark's depth from the newest view, `ray` its vector from there, the state's own
-  /// uncertainty included; m.
-  double DepthDeviation(const FilterState& state, const Eigen::Vector3d& ray,
-                        const Eigen::Matrix3d& landmark_rows,
-                        const Eigen::Ref<const Eigen::MatrixXd>& clone_rows, const std::vector<int>& clones);
+  /// What the state's uncertainty adds to the deviation of the landmark's depth from the newest view, `ray`
+  /// its vector from there; m.
+  double StateDepthDeviation(const FilterState& state, const Eigen::Vector3d& ray,
+                             const Eigen::Matrix3d& landmark_rows,
+                             const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
+                             const std::vector<int>& clones);
 
   ErrorConvention convention_;
   double max_depth_deviation_;
