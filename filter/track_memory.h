@@ -83,6 +83,7 @@ class TrackMemoryKeeper {
 
   ErrorConvention convention_;
   double max_depth_deviation_;
+  bool outlives_window_;
   Eigen::Index calibration_;  ///< size of the calibration's error
   Eigen::Index columns_;
   TrackLinearization linearization_;
