@@ -35,7 +35,19 @@ FrameGeometry WithFirstEstimate(const WindowFrame& frame, const NavState& state,
   return geometry;
 }
 
+/// `camera`: its pose on the body, or its calibration.
+template <typename Camera>
+std::vector<FrameGeometry> OfEveryFrame(const Window& window, const Camera& camera) {
+  std::vector<FrameGeometry> geometry;
+  geometry.reserve(static_cast<size_t>(window.size()));
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera));
+  }
+  return geometry;
+}
+
 }  // namespace
+
 FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC) {
   return {state.T_WB() * T_BC, BodyToCameraJacobian(state.R_WB, T_BC), {}};
 }
@@ -45,12 +57,7 @@ FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, cons
 }
 
 std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC) {
-  std::vector<FrameGeometry> geometry;
-  geometry.reserve(static_cast<size_t>(window.size()));
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), T_BC));
-  }
-  return geometry;
+  return OfEveryFrame(window, T_BC);
 }
 
 FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
@@ -58,12 +65,7 @@ FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, cons
 }
 
 std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera) {
-  std::vector<FrameGeometry> geometry;
-  geometry.reserve(static_cast<size_t>(window.size()));
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera));
-  }
-  return geometry;
+  return OfEveryFrame(window, camera);
 }
 
 CameraFromCalibration CalibrationChain(const CalibrationLayout& layout, const FrameGeometry& frame) {

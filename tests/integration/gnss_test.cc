@@ -9,46 +9,51 @@
 namespace alidade::test {
 namespace {
 
-/// 30 s of the figure-8 of 500 m with GNSS at 10 Hz, for all tests of this file.
+CommandResult SimulateFigureEight(const std::string& settings, int seed, const std::string& output) {
+  return Alidade("simulate --quiet --config=" + Source("configs/datasets/gnss_figure8.yaml") +
+                 " --seed=" + std::to_string(seed) + " --set=" + settings + " --output=" + output);
+}
+
+CommandResult RunPreset(const std::string& sequence, const std::string& preset, const std::string& output,
+                        const std::string& more = "") {
+  return Alidade("run --quiet --dataset=" + sequence +
+                 " --config=" + Source("configs/estimators/" + preset + ".yaml") +
+                 " --set=init.method=truth,gnss.model_std_scale=0,gnss.pseudorange_std_m=0.5" + more +
+                 " --output=" + output);
+}
+
+/// Unaligned position RMSE [m].
+double Rmse(const std::string& sequence, const std::string& estimate) {
+  const CommandResult scored =
+      Alidade("evaluate --json --align=none --truth=" + sequence +
+              "/mav0/state_groundtruth_estimate0/data.csv --estimate=" + estimate + "/states.csv");
+  const nlohmann::json json = nlohmann::json::parse(scored.output, nullptr, false);
+  EXPECT_TRUE(json.is_object()) << scored.output;
+  return json.is_object() ? json["unaligned"].value("pos_rmse_m", 1e9) : 1e9;
+}
+
+/// 30 s of the figure-8 of 500 m with GNSS at 10 Hz, for all tests of this suite.
 class GnssRun : public testing::TestWithParam<std::string> {
  protected:
   static const std::string& Sequence() {
     static const TemporaryFolder folder;
     static const std::string path = [] {
-      const CommandResult made =
-          Alidade("simulate --quiet --config=" + Source("configs/datasets/gnss_figure8.yaml") +
-                  " --set=duration_s=30,path_m=125 --output=" + folder.File("seq"));
+      const CommandResult made = SimulateFigureEight("duration_s=30,path_m=125", 1, folder.File("seq"));
       EXPECT_EQ(made.code, 0) << made.output;
       return folder.File("seq");
     }();
     return path;
   }
-  static CommandResult RunPreset(const std::string& preset, const std::string& output,
-                                 const std::string& more) {
-    return Alidade("run --quiet --dataset=" + Sequence() +
-                   " --config=" + Source("configs/estimators/" + preset + ".yaml") +
-                   " --set=init.method=truth,gnss.model_std_scale=0,gnss.pseudorange_std_m=0.5" + more +
-                   " --output=" + output);
-  }
-  /// Unaligned position RMSE.
-  static double Rmse(const std::string& estimate) {
-    const CommandResult scored =
-        Alidade("evaluate --json --align=none --truth=" + Sequence() +
-                "/mav0/state_groundtruth_estimate0/data.csv --estimate=" + estimate + "/states.csv");
-    const nlohmann::json json = nlohmann::json::parse(scored.output, nullptr, false);
-    EXPECT_TRUE(json.is_object()) << scored.output;
-    return json.is_object() ? json["unaligned"].value("pos_rmse_m", 1e9) : 1e9;
-  }
 };
 
 TEST_P(GnssRun, AlignsAndStandsInEnu) {
   TemporaryFolder folder;
-  const CommandResult run = RunPreset(GetParam(), folder.File("run"), "");
+  const CommandResult run = RunPreset(Sequence(), GetParam(), folder.File("run"));
   ASSERT_EQ(run.code, 0) << run.output;
   const nlohmann::json json = nlohmann::json::parse(ReadFile(folder.File("run/run.json")));
   ASSERT_TRUE(json["gnss"]["aligned"]) << json["gnss"];
   EXPECT_GT(json["gnss"]["epochs_used"], 100);
-  EXPECT_LT(Rmse(folder.File("run")), 0.6);
+  EXPECT_LT(Rmse(Sequence(), folder.File("run")), 0.6);
   const std::string states = ReadFile(folder.File("run/states.csv"));
   EXPECT_NE(states.substr(0, states.find('\n')).find(",clock_m,drift_mps"), std::string::npos);
   EXPECT_GT(ReadFile(folder.File("run/trajectory.pos")).size(), 10000u);
@@ -57,12 +62,24 @@ TEST_P(GnssRun, AlignsAndStandsInEnu) {
 
 TEST_P(GnssRun, WithoutTheKeyThereIsNoGnss) {
   TemporaryFolder folder;
-  ASSERT_EQ(RunPreset(GetParam(), folder.File("run"), ",gnss.enabled=false").code, 0);
+  ASSERT_EQ(RunPreset(Sequence(), GetParam(), folder.File("run"), ",gnss.enabled=false").code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder.File("run/trajectory.pos")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, GnssRun, testing::Values("gvio", "gvins_class"),
                          [](const auto& test) { return test.param; });
+
+// Huber's minimum is ten metres off here: a gate that is at once as narrow as its last refuses the good
+// satellites.
+TEST(GnssReflections, LeaveTheAlignmentAlone) {
+  const TemporaryFolder folder;
+  const std::string sequence = folder.File("seq");
+  const CommandResult made = SimulateFigureEight("gnss.nlos_rate=0.2,duration_s=12,path_m=50", 125, sequence);
+  ASSERT_EQ(made.code, 0) << made.output;
+  const CommandResult run = RunPreset(sequence, "gvio", folder.File("run"));
+  ASSERT_EQ(run.code, 0) << run.output;
+  EXPECT_LT(Rmse(sequence, folder.File("run")), 3);
+}
 
 // RTKLIB's single-point program on noise-free RINEX of ours.
 TEST(GnssOracle, RtklibFindsTheTruthWithinACentimetre) {
