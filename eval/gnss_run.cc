@@ -34,7 +34,7 @@ void GnssRun::TakeEpoch() {
   } else if (result_.global) {
     ++result_.epochs_skipped;
   } else {
-    aligner_.AddEpoch(epoch, feed_.approximate_E());
+    aligner_.AddEpoch(epoch, feed_.approximate_E(), feed_.solution());
   }
   feed_.Pop();
 }

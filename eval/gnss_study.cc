@@ -100,6 +100,7 @@ GnssScenario ScenarioOf(const SimGnssConfig& config, double rest_s, double durat
   if (config.outage_start_s >= 0) {
     scenario.outage_start_s = config.outage_start_s;
     scenario.outage_end_s = std::min(config.outage_start_s + config.outage_s, duration_s);
+    scenario.outage_satellites = config.outage_satellites;
   }
   return scenario;
 }

@@ -16,6 +16,7 @@ struct GnssScenario {
   double motion_start_s = 0;
   double outage_start_s = -1;
   double outage_end_s = -1;
+  int outage_satellites = 0;  ///< seen meanwhile
   double clock_jump_s = -1;
 
   [[nodiscard]] bool HasOutage() const { return outage_start_s >= 0; }
@@ -56,13 +57,15 @@ struct GnssStudyRow {
   std::string sequence;
   std::string estimator;
   GnssScenario scenario;
-  std::vector<GnssRunFigures> runs;
-  std::vector<double> single_point_m;    ///< a seed each
+  std::vector<unsigned> seeds;
+  std::vector<GnssRunFigures> runs;  ///< a seed each, as the following
+  std::vector<double> single_point_m;
   std::vector<GnssRunFigures> odometry;  ///< over the same time, by the plan's estimator without GNSS
 };
 
-/// Markdown: what the runs came to, and a table each for outages and clock jumps where there are any.
-/// A row without runs is left out. Ratios are those of means, to the same estimator on the first sequence.
+/// Markdown: what the runs came to, and a table each for outages and clock jumps where there are any. An
+/// outage that leaves satellites is compared with one of the same time that leaves none, if there is one. A
+/// row without runs is left out. Ratios are those of means, to the same estimator on the first sequence.
 [[nodiscard]] std::string GnssStudyTables(const std::vector<GnssStudyRow>& rows);
 
 }  // namespace alidade

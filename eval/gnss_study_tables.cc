@@ -21,19 +21,58 @@ Statistic Over(const std::vector<GnssRunFigures>& runs, Member figure) {
   return ComputeStatistic(values);
 }
 
-/// Runs whose error during the outage is at most this many times that of odometry.
-int CountNoWorse(const GnssStudyRow& row) {
-  constexpr double kMargin = 1.1;
-  int count = 0;
-  for (std::size_t i = 0; i < row.runs.size(); ++i) {
-    count += row.runs[i].outage_rmse_m <= kMargin * row.odometry[i].outage_rmse_m ? 1 : 0;
-  }
-  return count;
-}
-
 /// A number, or a dash for what does not apply.
 std::string Cell(double value, int decimals) {
   return std::isnan(value) ? "–" : Format("%.*f", decimals, value);
+}
+
+/// Errors meanwhile of the runs that `others` has too, by the same seeds, beside theirs.
+struct Beside {
+  std::vector<double> mine;
+  std::vector<double> others;
+
+  void Add(const GnssRunFigures& run, const GnssRunFigures& other) {
+    mine.push_back(run.outage_rmse_m);
+    others.push_back(other.outage_rmse_m);
+  }
+  /// The others' mean and how many of mine are at most 1.1 of theirs: two cells.
+  [[nodiscard]] std::string Cells() const {
+    constexpr double kMargin = 1.1;
+    int count = 0;
+    for (std::size_t i = 0; i < mine.size(); ++i) {
+      count += mine[i] <= kMargin * others[i] ? 1 : 0;
+    }
+    return mine.empty() ? "– | –"
+                        : Cell(ComputeStatistic(others).mean, 3) + Format(" | %d of %zu", count, mine.size());
+  }
+};
+
+Beside Odometry(const GnssStudyRow& row) {
+  Beside beside;
+  for (std::size_t i = 0; i < row.runs.size(); ++i) {
+    beside.Add(row.runs[i], row.odometry[i]);
+  }
+  return beside;
+}
+
+/// The same estimator in the same outage, with no satellite left.
+Beside NoneLeft(const std::vector<GnssStudyRow>& rows, const GnssStudyRow& row) {
+  Beside beside;
+  for (const GnssStudyRow& other : rows) {
+    if (other.estimator != row.estimator || other.scenario.outage_satellites > 0 ||
+        row.scenario.outage_satellites == 0 || other.scenario.outage_start_s != row.scenario.outage_start_s ||
+        other.scenario.outage_end_s != row.scenario.outage_end_s) {
+      continue;
+    }
+    for (std::size_t i = 0; i < row.runs.size(); ++i) {
+      const auto seed = std::find(other.seeds.begin(), other.seeds.end(), row.seeds[i]);
+      if (seed != other.seeds.end()) {
+        beside.Add(row.runs[i], other.runs[static_cast<std::size_t>(seed - other.seeds.begin())]);
+      }
+    }
+    return beside;
+  }
+  return beside;
 }
 
 double RatioToFirst(const std::vector<GnssStudyRow>& rows, const GnssStudyRow& row) {
@@ -81,19 +120,19 @@ std::string Outages(const std::vector<GnssStudyRow>& rows) {
     const auto mean = [](const std::vector<GnssRunFigures>& runs, Member figure) {
       return Cell(Over(runs, figure).mean, 3);
     };
-    table +=
-        Format("| %s | `%s` | %s | %s | %d of %zu | %s | %s | %.0f of %d | %s | %s |\n", row.sequence.c_str(),
-               row.estimator.c_str(), mean(row.runs, &GnssRunFigures::outage_rmse_m).c_str(),
-               mean(row.odometry, &GnssRunFigures::outage_rmse_m).c_str(), CountNoWorse(row), row.runs.size(),
-               mean(row.runs, &GnssRunFigures::return_error_m).c_str(),
-               mean(row.odometry, &GnssRunFigures::return_error_m).c_str(), covered.mean * covered.count,
-               covered.count, Cell(later.mean, 3).c_str(), Cell(later.largest, 3).c_str());
+    table += Format("| %s | `%s` | %s | %s | %s | %s | %s | %.0f of %d | %s | %s |\n", row.sequence.c_str(),
+                    row.estimator.c_str(), mean(row.runs, &GnssRunFigures::outage_rmse_m).c_str(),
+                    Odometry(row).Cells().c_str(), NoneLeft(rows, row).Cells().c_str(),
+                    mean(row.runs, &GnssRunFigures::return_error_m).c_str(),
+                    mean(row.odometry, &GnssRunFigures::return_error_m).c_str(), covered.mean * covered.count,
+                    covered.count, Cell(later.mean, 3).c_str(), Cell(later.largest, 3).c_str());
   }
   return table.empty()
              ? table
-             : "\n| sequence | estimator | RMSE meanwhile [m] | VIO alone [m] | at most 1.1 of it | error "
-               "at its end [m] | VIO alone [m] | within 3 sigma | 2 s later [m] | worst [m] |\n"
-               "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n" +
+             : "\n| sequence | estimator | RMSE meanwhile [m] | VIO alone [m] | at most 1.1 of it | no "
+               "satellite [m] | at most 1.1 of it | error at its end [m] | VIO alone [m] | within 3 sigma | "
+               "2 s later [m] | worst [m] |\n"
+               "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n" +
                    table;
 }
 

@@ -21,6 +21,13 @@ Eigen::Matrix3d RotationZ(double yaw_rad) {
   return Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
 }
 
+bool Refused(const SinglePointSolution& solution, SatelliteId satellite) {
+  const auto found =
+      std::find_if(solution.satellites.begin(), solution.satellites.end(),
+                   [&](const SatelliteResidual& residual) { return residual.satellite == satellite; });
+  return found != solution.satellites.end() && !found->used;
+}
+
 }  // namespace
 
 Eigen::Matrix3d GnssAlignment::R_NW() const {
@@ -64,11 +71,17 @@ void GnssAligner::AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& 
   MatchEpochs();
 }
 
-void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>& approximate_E) {
+void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>& approximate_E,
+                           const std::optional<SinglePointSolution>& solution) {
   approximate_E_ = approximate_E ? approximate_E : approximate_E_;
   builder_ = epoch.builder;
-  if (static_cast<int>(epoch.measurements.satellites.size()) >= config_.align_min_satellites) {
-    pending_.push_back(epoch);
+  GnssEpoch taken = epoch;
+  if (solution) {
+    std::erase_if(taken.measurements.satellites,
+                  [&](const SatelliteMeasurement& m) { return Refused(*solution, m.satellite); });
+  }
+  if (static_cast<int>(taken.measurements.satellites.size()) >= config_.align_min_satellites) {
+    pending_.push_back(std::move(taken));
   }
   MatchEpochs();
 }

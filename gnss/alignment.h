@@ -46,7 +46,9 @@ class GnssAligner {
   void AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias, const Eigen::Vector3d& gyro_radps,
                 const Eigen::Matrix3d& velocity_covariance_W);
   /// `approximate_E`: an antenna position (kilometres are enough) or nothing; the last one given counts.
-  void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E);
+  /// `solution`: the epoch's own, if it has one: satellites that it refused take no part.
+  void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E,
+                const std::optional<SinglePointSolution>& solution = std::nullopt);
 
   /// The alignment once it is good enough; report() says what is missing.
   std::optional<GnssAlignment> TryAlign();

@@ -7,6 +7,7 @@
 #include "gnss/constants.h"
 #include "gnss/measurement_model.h"
 #include "gnss/robust_fit.h"
+#include "gnss/single_point_state.h"
 #include "gnss/velocity_fit.h"
 
 namespace alidade {
@@ -15,10 +16,6 @@ namespace {
 constexpr double kUnknownBiasM = 1e6;   // more than any receiver shows between systems
 constexpr double kKnownBiasFloorM = 1;  // multipath is correlated in time: a carried bias is no better
 constexpr double kRelocateM = 1;        // the troposphere changes by 0.3 mm a metre of height
-
-std::size_t Index(GnssSystem system) {
-  return static_cast<std::size_t>(system);
-}
 
 }  // namespace
 
@@ -37,21 +34,6 @@ void SinglePointOptions::Describe(ConfigVisitor& visitor) {
                &max_position_std_m, 1, 1e6);
   visitor.Integer({"max_iterations", "-", "of the robust least squares"}, &max_iterations, 2, 1000);
 }
-
-/// Where an epoch's iteration stands.
-struct SinglePointSolver::State {
-  Eigen::Vector3d position_E = Eigen::Vector3d::Zero();
-  double clock_m = 0;
-  std::array<double, kGnssSystems> bias_m{};
-  std::array<int, kGnssSystems> column{};  ///< of a bias; -1 where the system is absent or the datum
-  GnssSystem datum = GnssSystem::kGps;
-  int unknowns = 4;
-  bool located = false;            ///< direction and variances of the measurements are known
-  std::vector<bool> active;        ///< by measurement
-  std::vector<double> residual_m;  ///< by measurement, at the solution
-  Eigen::MatrixXd covariance;
-  double scale = 1;
-};
 
 SinglePointSolver::SinglePointSolver(MeasurementBuilder builder, SinglePointOptions options,
                                      std::optional<Eigen::Vector3d> initial_E)
@@ -124,6 +106,7 @@ Status SinglePointSolver::SolveFrom(const Eigen::Vector3d& start_E, EpochMeasure
       break;
     }
   }
+  Agree(*epoch, state);
   if (Gate(*epoch, state)) {
     ALIDADE_RETURN_IF_ERROR(Iterate(*epoch, state));
   }
@@ -196,7 +179,9 @@ WhitenedRows SinglePointSolver::PositionRows(const EpochMeasurements& epoch, Sta
   }
   for (std::size_t i = 0; i < state->column.size(); ++i) {
     if (state->column[i] >= 0) {
-      const double deviation = std::sqrt(BiasVariance(static_cast<GnssSystem>(i), epoch.tag_ns));
+      const double deviation = state->biases_anew
+                                   ? kUnknownBiasM
+                                   : std::sqrt(BiasVariance(static_cast<GnssSystem>(i), epoch.tag_ns));
       rows.jacobian(row, state->column[i]) = 1 / deviation;
       rows.residual[row++] = (state->bias_m[i] - biases_[i].mean_m) / deviation;
     }
@@ -230,29 +215,6 @@ Status SinglePointSolver::Iterate(const EpochMeasurements& epoch, State* state) 
   std::vector<double> whitened(rows.residual.data(), rows.residual.data() + rows.measurements);
   state->scale = RobustScale(whitened, state->unknowns);
   return Status::Ok();
-}
-
-/// Takes out satellites beyond the gate, the worst first as long as the rest has one to spare; true if any.
-bool SinglePointSolver::Gate(const EpochMeasurements& epoch, State* state) const {
-  std::vector<std::pair<double, std::size_t>> refused;
-  for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
-    const double squared = state->residual_m[k] * state->residual_m[k] /
-                           (epoch.satellites[k].pseudorange_variance * state->scale * state->scale);
-    if (state->active[k] && !gate_.Accepts(squared, 1)) {
-      refused.emplace_back(-squared, k);
-    }
-  }
-  std::sort(refused.begin(), refused.end());
-  auto left = std::count(state->active.begin(), state->active.end(), true);
-  bool any = false;
-  for (const auto& [squared, k] : refused) {
-    if (left > state->unknowns + 1) {
-      state->active[k] = false;
-      --left;
-      any = true;
-    }
-  }
-  return any;
 }
 
 void SinglePointSolver::CarryBiases(const State& state, TimeNs stamp_ns) {

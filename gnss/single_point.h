@@ -53,7 +53,8 @@ struct SinglePointSolution {
 };
 
 /// Solves epochs one by one. The unknowns are position, one receiver clock and a bias for each further
-/// system; the biases alone are carried on. Robust: Huber weights, then a chi-square gate on each satellite.
+/// system; the biases alone are carried on. Robust: Huber weights, what most satellites agree on where those
+/// fail, then a chi-square gate on each satellite.
 class SinglePointSolver {
  public:
   /// `initial_E`: where to start, such as the approximate position of a file; not trusted.
@@ -77,6 +78,7 @@ class SinglePointSolver {
   [[nodiscard]] Status Arrange(const EpochMeasurements& epoch, State* state) const;
   [[nodiscard]] WhitenedRows PositionRows(const EpochMeasurements& epoch, State* state) const;
   [[nodiscard]] Status Iterate(const EpochMeasurements& epoch, State* state) const;
+  void Agree(const EpochMeasurements& epoch, State* state) const;
   [[nodiscard]] bool Gate(const EpochMeasurements& epoch, State* state) const;
   [[nodiscard]] double ElevationMask() const;
   [[nodiscard]] double BiasVariance(GnssSystem system, TimeNs stamp_ns) const;

@@ -139,6 +139,7 @@ TEST(GnssStudyTest, TablesSayHowManyRunsMadeIt) {
   good.jump_step_m = 0.0625;
   GnssRunFigures odometry;
   odometry.outage_rmse_m = 0.5;
+  row.seeds = {1, 2};
   row.runs = {good, GnssRunFigures()};
   row.odometry = {odometry, odometry};
   row.single_point_m = {0.75, 1.25};
@@ -147,8 +148,39 @@ TEST(GnssStudyTest, TablesSayHowManyRunsMadeIt) {
   EXPECT_NE(tables.find("| 1.00 | 1.00 |"), std::string::npos)
       << "ratio to itself, single points: " << tables;
   EXPECT_NE(tables.find("| 0.250 | 0.500 | 1 of 2 |"), std::string::npos) << tables;
+  EXPECT_NE(tables.find("| – | – |"), std::string::npos) << "no satellite is left: " << tables;
   EXPECT_NE(tables.find("1 of 1"), std::string::npos) << "covered: " << tables;
   EXPECT_NE(tables.find("| outage | `gvio` | 0.062 | 0.062 |"), std::string::npos) << tables;
+}
+
+TEST(GnssStudyTest, AFewSatellitesAreComparedWithNoneByTheSameSeeds) {
+  GnssStudyRow none;
+  none.sequence = "no_satellite";
+  none.estimator = "gvio";
+  none.scenario = Scenario();
+  GnssRunFigures figures;
+  figures.outage_rmse_m = 0.5;
+  none.seeds = {2, 3};
+  none.runs = {figures, figures};
+  none.odometry = none.runs;
+  none.single_point_m = {1, 1};
+  GnssStudyRow one = none;
+  one.sequence = "one_satellite";
+  one.scenario.outage_satellites = 1;
+  one.seeds = {1, 2, 3};
+  one.runs = {figures, figures, figures};
+  one.runs[0].outage_rmse_m = 0.01;
+  one.runs[1].outage_rmse_m = 0.54;
+  one.runs[2].outage_rmse_m = 0.56;
+  one.odometry = one.runs;
+  one.single_point_m = {1, 1, 1};
+  const std::string tables = GnssStudyTables({none, one});
+  EXPECT_NE(tables.find("| one_satellite | `gvio` | 0.370 | 0.370 | 3 of 3 | 0.500 | 1 of 2 |"),
+            std::string::npos)
+      << tables;
+  GnssStudyRow later = one;
+  later.scenario.outage_end_s += 1;
+  EXPECT_NE(GnssStudyTables({none, later}).find("| 3 of 3 | – | – |"), std::string::npos);
 }
 
 }  // namespace

@@ -87,6 +87,23 @@ TEST(SinglePointTest, ReflectedSignalsAreRefusedAndNamed) {
   }
 }
 
+// A third of them is late by 30 to 80 m: Huber's minimum alone is metres off.
+TEST(SinglePointTest, ManyReflectionsAreOutvoted) {
+  const test::SyntheticReceiver receiver = Receiver();
+  const NavigationData sky = test::SyntheticSky(kStamp);
+  for (int turn = 0; turn < 3; ++turn) {
+    ObservationEpoch epoch = test::Observe(sky, receiver);
+    for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
+      const bool late = k % 3 == static_cast<std::size_t>(turn);
+      *epoch.satellites[k].signals[0].pseudorange_m += late ? 30 + 10.0 * static_cast<double>(k % 6) : 0;
+    }
+    SinglePointSolver solver = MakeSolver(sky);
+    const Result<SinglePointSolution> solution = solver.Solve(epoch);
+    ASSERT_TRUE(solution.ok()) << solution.message();
+    EXPECT_LT((solution->position_E - receiver.position_E).norm(), 0.1) << turn;
+  }
+}
+
 /// Keeps so many satellites of GPS and Galileo above 15 deg, spread in azimuth.
 ObservationEpoch Thin(const NavigationData& sky, const test::SyntheticReceiver& receiver, std::size_t gps,
                       std::size_t galileo) {

@@ -69,16 +69,19 @@ TEST_P(GnssRun, WithoutTheKeyThereIsNoGnss) {
 INSTANTIATE_TEST_SUITE_P(Presets, GnssRun, testing::Values("gvio", "gvins_class"),
                          [](const auto& test) { return test.param; });
 
-// Huber's minimum is ten metres off here: a gate that is at once as narrow as its last refuses the good
-// satellites.
+// Huber's minimum is ten to eighty metres off in these: what most satellites agree on counts.
 TEST(GnssReflections, LeaveTheAlignmentAlone) {
   const TemporaryFolder folder;
-  const std::string sequence = folder.File("seq");
-  const CommandResult made = SimulateFigureEight("gnss.nlos_rate=0.2,duration_s=12,path_m=50", 125, sequence);
-  ASSERT_EQ(made.code, 0) << made.output;
-  const CommandResult run = RunPreset(sequence, "gvio", folder.File("run"));
-  ASSERT_EQ(run.code, 0) << run.output;
-  EXPECT_LT(Rmse(sequence, folder.File("run")), 3);
+  for (const int seed : {7, 8, 125}) {
+    const std::string sequence = folder.File("seq" + std::to_string(seed));
+    const CommandResult made =
+        SimulateFigureEight("gnss.nlos_rate=0.2,duration_s=12,path_m=50", seed, sequence);
+    ASSERT_EQ(made.code, 0) << made.output;
+    const std::string estimate = folder.File("run" + std::to_string(seed));
+    const CommandResult run = RunPreset(sequence, "gvio", estimate);
+    ASSERT_EQ(run.code, 0) << run.output;
+    EXPECT_LT(Rmse(sequence, estimate), 3) << seed;
+  }
 }
 
 // RTKLIB's single-point program on noise-free RINEX of ours.
