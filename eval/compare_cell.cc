@@ -26,7 +26,7 @@ bool RunExternal(const Plan& plan, const CompareOptions& options, const CompareI
     Fail(outcome.message(), cell);
     return false;
   }
-  ScoreTrajectory(truth, outcome->trajectory, plan.metrics, &cell->result);
+  ScoreTrajectory(truth, outcome->trajectory, plan.MetricsOf(*cell->estimator), &cell->result);
   if (!outcome->run) {
     return false;
   }
@@ -68,7 +68,7 @@ bool RunOwn(const Plan& plan, const CompareOptions& options, const CompareInput:
   // Scored from what was written: fresh and resumed comparisons give the same figures to the last digit.
   const Result<RunResult> written = ReadRun(cell->folder);
   if (written.ok()) {
-    ScoreRun(data.truth ? &*data.truth : nullptr, *written, plan.metrics, &cell->result);
+    ScoreRun(data.truth ? &*data.truth : nullptr, *written, plan.MetricsOf(*cell->estimator), &cell->result);
   } else {
     Fail(written.message(), cell);
   }

@@ -1,5 +1,7 @@
 #include "eval/evaluate.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -14,6 +16,12 @@ std::vector<StatePair> WithoutOrientation(std::vector<StatePair> pairs) {
     pair.estimate.nav.R_WB.setIdentity();
   }
   return pairs;
+}
+
+/// At least one.
+std::vector<StatePair> FirstShare(const std::vector<StatePair>& pairs, double share) {
+  const double count = std::ceil(share * static_cast<double>(pairs.size()));
+  return {pairs.begin(), pairs.begin() + std::max(std::ptrdiff_t{1}, static_cast<std::ptrdiff_t>(count))};
 }
 
 void ForgetOrientation(Evaluation* evaluation) {
@@ -48,7 +56,7 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
       SecondsBetween(evaluation.pairs.front().estimate.stamp_ns, evaluation.pairs.back().estimate.stamp_ns);
   evaluation.path_m = PathLength(evaluation.pairs);
 
-  evaluation.transform = Align(evaluation.pairs, options.alignment);
+  evaluation.transform = Align(FirstShare(evaluation.pairs, options.align_share), options.alignment);
   const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
   evaluation.unaligned = ComputeAte(evaluation.pairs);
   evaluation.ate = ComputeAte(aligned);

@@ -143,6 +143,7 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
   object["duration_s"] = Number(evaluation.duration_s);
   object["path_m"] = Number(evaluation.path_m);
   object["anchor_at_first"] = evaluation.options.anchor_at_first;
+  object["align_share"] = Number(evaluation.options.align_share);
   object["alignment"] = AlignmentJson(evaluation);
   object["unaligned"] = AteJson(evaluation.unaligned);
   object["ate"] = AteJson(evaluation.ate);

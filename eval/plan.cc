@@ -7,13 +7,13 @@
 #include "eval/bag_import.h"
 #include "eval/paired.h"
 #include "eval/plan_check.h"
+#include "eval/plan_metrics.h"
 #include "eval/plan_reader.h"
 #include "eval/suggest.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kMaxDistance = 1e6;
 constexpr double kMaxSeconds = 1e6;
 constexpr double kMaxFigure = 1e12;
 
@@ -48,7 +48,7 @@ class PlanParser {
             return reader_.Each(n, "sequences", [&](const YAML::Node& e) { return AddSequence(e); });
           },
           true},
-         {"metrics", [&](const YAML::Node& n) { return ReadMetrics(n); }},
+         {"metrics", [&](const YAML::Node& n) { return ReadMetrics(reader_, n, &plan_.metrics); }},
          {"pairs", [&](const YAML::Node& n) { return ReadPairs(n); }},
          {"baseline", [&](const YAML::Node& n) { return reader_.Text(n, "baseline", &plan_.baseline); }},
          {"audit", [&](const YAML::Node& n) { return reader_.Boolean(n, "audit", &plan_.audit); }},
@@ -84,7 +84,11 @@ class PlanParser {
               return reader_.Real(n, "timeout", 1, kMaxSeconds, &estimator.command.timeout_s);
             }},
            {"frame", [&](const Node& n) { return ReadFrame(n, &estimator.camera_frame); }},
-           {"sequences", [&](const Node& n) { return ReadNames(n, &estimator.sequences); }}}));
+           {"sequences", [&](const Node& n) { return ReadNames(n, &estimator.sequences); }},
+           {"align",
+            [&](const Node& n) { return ReadAlignment(reader_, n, &estimator.alignment.emplace()); }},
+           {"align_share",
+            [&](const Node& n) { return ReadAlignShare(reader_, n, &estimator.align_share.emplace()); }}}));
     }
     const int sources = (estimator.config.empty() ? 0 : 1) + (estimator.trajectories.empty() ? 0 : 1) +
                         (estimator.command.text.empty() ? 0 : 1);
@@ -167,34 +171,6 @@ class PlanParser {
     return Add(node, "sequences", std::move(sequence), &plan_.sequences);
   }
 
-  Status ReadMetrics(const Node& node) {
-    EvaluationOptions& metrics = plan_.metrics;
-    return reader_.Map(
-        node, "metrics",
-        {{"align", [&](const Node& n) { return ReadAlignment(n); }},
-         {"rpe",
-          [&](const Node& n) {
-            metrics.rpe_distances_m.clear();
-            return reader_.Each(n, "rpe", [&](const Node& entry) {
-              double distance = 0;
-              ALIDADE_RETURN_IF_ERROR(reader_.Real(entry, "rpe", 1e-3, kMaxDistance, &distance));
-              metrics.rpe_distances_m.push_back(distance);
-              return Status::Ok();
-            });
-          }},
-         {"max_dt",
-          [&](const Node& n) {
-            return reader_.Real(n, "max_dt", 0, kMaxSeconds, &metrics.association.max_dt_s);
-          }},
-         {"anchor_at_first",
-          [&](const Node& n) { return reader_.Boolean(n, "anchor_at_first", &metrics.anchor_at_first); }},
-         {"interpolate",
-          [&](const Node& n) { return reader_.Boolean(n, "interpolate", &metrics.association.interpolate); }},
-         {"max_gap", [&](const Node& n) {
-            return reader_.Real(n, "max_gap", 0, kMaxSeconds, &metrics.association.max_gap_s);
-          }}});
-  }
-
   Status ReadPairs(const Node& node) {
     return reader_.Map(
         node, "pairs",
@@ -221,17 +197,6 @@ class PlanParser {
                            "a column of summary.csv that is not a time" + Suggestion(key, known));
     }
     plan_.pair_figures.push_back(key);
-    return Status::Ok();
-  }
-
-  Status ReadAlignment(const Node& node) {
-    std::string name;
-    ALIDADE_RETURN_IF_ERROR(reader_.Text(node, "align", &name));
-    const std::optional<Alignment> alignment = ParseAlignment(name);
-    if (!alignment) {
-      return reader_.Fault(node, "align", "none, pos, posyaw, se3 or sim3");
-    }
-    plan_.metrics.alignment = *alignment;
     return Status::Ok();
   }
 
@@ -282,6 +247,13 @@ bool PlanEstimator::RunsOn(const std::string& sequence) const {
   return trajectories.empty()
              ? sequences.empty() || std::find(sequences.begin(), sequences.end(), sequence) != sequences.end()
              : trajectories.count(sequence) > 0;
+}
+
+EvaluationOptions Plan::MetricsOf(const PlanEstimator& estimator) const {
+  EvaluationOptions own = metrics;
+  own.alignment = estimator.alignment.value_or(metrics.alignment);
+  own.align_share = estimator.align_share.value_or(metrics.align_share);
+  return own;
 }
 
 Result<Plan> ReadPlan(const std::string& path, const std::string& data_root) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ struct PlanEstimator {
   ExternalCommand command;                          ///< empty text: none; external only
   bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
   std::vector<std::string> sequences;               ///< runs on these alone; empty: on all
+  std::optional<Alignment> alignment;               ///< its own instead of the plan's
+  std::optional<double> align_share;
 
   [[nodiscard]] bool external() const { return config.empty(); }
   [[nodiscard]] bool RunsOn(const std::string& sequence) const;
@@ -54,6 +57,8 @@ struct Plan {
   /// skip_missing: a sequence whose folder is not there is left out and named in `absent` (name, path).
   bool skip_missing = false;
   std::vector<std::pair<std::string, std::string>> absent;
+
+  [[nodiscard]] EvaluationOptions MetricsOf(const PlanEstimator& estimator) const;
 };
 
 /// Reads a plan. `${data}` in a path or in a setting becomes `data_root`; relative paths are relative to the

@@ -37,7 +37,7 @@ const std::vector<Command>& Commands() {
        RunRun},
       {"evaluate",
        "errors and consistency of a trajectory against truth",
-       {"truth", "estimate", "align", "anchor_at_first", "max_dt", "interpolate", "rpe", "export", "json"},
+       {"truth", "estimate", "align", "align_share", "anchor_at_first", "max_dt", "interpolate", "rpe", "export", "json"},
        {"truth", "estimate"},
        0,
        RunEvaluate},

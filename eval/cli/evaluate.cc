@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "core/format.h"
 #include "eval/cli/command.h"
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
@@ -21,6 +22,11 @@ Result<EvaluationOptions> OptionsFromFlags() {
                          "', expected none, pos, posyaw, se3 or sim3");
   }
   options.alignment = *alignment;
+  if (!(FLAGS_align_share > 0 && FLAGS_align_share <= 1)) {
+    return Status::Usage(
+        Format("evaluate: --align_share: found %g, expected above 0 and at most 1", FLAGS_align_share));
+  }
+  options.align_share = FLAGS_align_share;
   options.anchor_at_first = FLAGS_anchor_at_first;
   options.association.max_dt_s = FLAGS_max_dt;
   options.association.interpolate = FLAGS_interpolate;

@@ -4,6 +4,7 @@ DEFINE_bool(
     anchor_at_first, false,
     "put the first estimate where the truth is, in yaw and position: for an estimate in a world of its own");
 DEFINE_string(align, "posyaw", "none | pos | posyaw | se3 | sim3: what is taken out before the ATE");
+DEFINE_double(align_share, 1, "the alignment is fitted to this first share of the pairs, 0 to 1");
 DEFINE_bool(audit, false, "write observability.csv: what the filter claims to observe");
 DEFINE_string(backend, "", "filter | smoother | batch: replaces the key `backend` of the configuration");
 DEFINE_string(calibration, "", "files of Kalibr, OpenVINS or VINS, separated by commas");

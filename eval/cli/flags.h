@@ -6,6 +6,7 @@
 // gflags.
 DECLARE_string(align);
 DECLARE_bool(anchor_at_first);
+DECLARE_double(align_share);
 DECLARE_bool(audit);
 DECLARE_string(backend);
 DECLARE_string(calibration);

@@ -85,6 +85,26 @@ TEST(Evaluate, PassesTheAssociationErrorOn) {
   EXPECT_EQ(evaluation.code(), StatusCode::kInput);
 }
 
+// GIVEN an estimate that drifts and is turned, THEN an alignment of its first twentieth leaves the drift.
+TEST(Evaluate, AlignsByTheFirstShare) {
+  Trajectory truth, estimate;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.1 * i;
+    TrajectoryPoint point;
+    point.stamp_ns = i * 100'000'000LL;
+    point.nav.p_WB = Eigen::Vector3d(10 * std::sin(t), 10 * std::cos(t), 0);
+    truth.points.push_back(point);
+    point.nav.p_WB = turn * (point.nav.p_WB + Eigen::Vector3d(5 + (i < 50 ? 0 : 1), 6, 7));
+    estimate.points.push_back(point);
+  }
+  EvaluationOptions options;
+  options.align_share = 0.05;
+  EXPECT_NEAR(Evaluate(truth, estimate, options)->ate.pos_m, std::sqrt(0.95), 1e-6);
+  options.align_share = 1;
+  EXPECT_NEAR(Evaluate(truth, estimate, options)->ate.pos_m, std::sqrt(0.05 * 0.95), 1e-2);
+}
+
 TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
   const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
   const std::string text = FormatEvaluationJson(evaluation);
@@ -94,8 +114,8 @@ TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
     keys.push_back(key);
   }
   EXPECT_EQ(keys, (std::vector<std::string>{"pairs", "truth_rows", "estimate_rows", "association",
-                                            "duration_s", "path_m", "anchor_at_first", "alignment",
-                                            "unaligned", "ate", "rpe", "nees"}));
+                                            "duration_s", "path_m", "anchor_at_first", "align_share",
+                                            "alignment", "unaligned", "ate", "rpe", "nees"}));
   EXPECT_EQ(json["pairs"], 300);
   EXPECT_EQ(json["alignment"]["name"], "sim3");
   EXPECT_EQ(json["alignment"]["scale"].get<double>(), 0.99009901);

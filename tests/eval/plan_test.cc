@@ -36,14 +36,14 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "  - estimators/a.yaml\n"
       "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}, "
       "sequences: [loud]}\n"
-      "  - {name: other, trajectories: {seq: other.tum}}\n"
+      "  - {name: other, trajectories: {seq: other.tum}, align: pos, align_share: 0.05}\n"
       "sequences:\n"
       "  - {path: '${data}/seq', seeds: [4, 2]}\n"
       "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
       "'${data}/seq'}}\n"
       "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}}\n"
       "audit: true\n"
-      "metrics: {align: se3, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
+      "metrics: {align: se3, align_share: 0.5, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
       "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
       "baseline: loud\n"
       "reference:\n"
@@ -76,6 +76,10 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
   EXPECT_TRUE(plan->audit);
   EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0]).alignment, Alignment::kSe3);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0]).align_share, 0.5);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2]).alignment, Alignment::kPos);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2]).align_share, 0.05);
   EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
   EXPECT_EQ(plan->metrics.association.max_dt_s, 0.02);
   EXPECT_TRUE(plan->metrics.association.interpolate);
