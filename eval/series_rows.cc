@@ -126,19 +126,16 @@ CellSeries TakeRows(const CellSeries& series, const SeriesRows& rows) {
   const std::vector<size_t>& kept = rows.kept;
   CellSeries taken;
   taken.regular = rows.regular;
-  taken.time_s = Take(series.time_s, kept);
   taken.truth_position = Take(series.truth_position, kept);
   taken.position = Take(series.position, kept);
   taken.error = Take(series.error, kept);
   taken.sigma = Take(series.sigma, kept);
-  taken.nees_pose = Take(series.nees_pose, kept);
-  taken.backend_ms = Take(series.backend_ms, kept);
-  taken.features_used = Take(series.features_used, kept);
-  taken.tracks_in = Take(series.tracks_in, kept);
-  taken.nis_ratio = Take(series.nis_ratio, kept);
-  taken.rank = Take(series.rank, kept);
-  taken.yaw_leak = Take(series.yaw_leak, kept);
-  taken.position_leak = Take(series.position_leak, kept);
+  for (std::vector<double> CellSeries::*column :
+       {&CellSeries::time_s, &CellSeries::nees_pose, &CellSeries::backend_ms, &CellSeries::features_used,
+        &CellSeries::tracks_in, &CellSeries::nis_ratio, &CellSeries::rank, &CellSeries::yaw_leak,
+        &CellSeries::position_leak}) {
+    taken.*column = Take(series.*column, kept);
+  }
   return taken;
 }
 

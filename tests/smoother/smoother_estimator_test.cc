@@ -76,6 +76,38 @@ TEST(SmootherEstimatorTest, BothLandmarksAgreeOnExactData) {
   EXPECT_LT((explicit_depth.last.nav.p_WB - pose_only.last.nav.p_WB).norm(), 1e-6);
 }
 
+EstimatorConfig WithFirstEstimates(bool first_estimates) {
+  EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly, ErrorConvention::kSo3xRn);
+  config.smoother.frames = FramePolicy::kEveryFrame;
+  config.smoother.first_estimates = first_estimates;
+  return config;
+}
+
+/// Of the heading, as the last frame claims it.
+double YawDeviation(const NavEstimate& estimate) {
+  const Eigen::Vector3d up_B = estimate.nav.R_WB.transpose() * Eigen::Vector3d::UnitZ();
+  return std::sqrt(up_B.dot(estimate.covariance.topLeftCorner<3, 3>() * up_B));
+}
+
+TEST(SmootherEstimatorTest, FirstEstimatesLeaveExactDataExact) {
+  const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
+  const test::ScenarioResult run = RunSmoother(dataset, WithFirstEstimates(true), false);
+  EXPECT_LT(run.max_position_m, 1e-3);
+  const NavState& truth = test::TruthAt(dataset, run.last.stamp_ns).nav;
+  EXPECT_LT((run.last.nav.p_WB - truth.p_WB).norm(), 1e-4);
+}
+
+// Nothing measures the heading: it is never better known than at the start, and as well as by the error whose
+// unobservable directions depend on no state.
+TEST(SmootherEstimatorTest, FirstEstimatesLearnNoHeading) {
+  const Dataset dataset = MakeSequence({.duration_s = 10});
+  EstimatorConfig invariant = WithFirstEstimates(false);
+  invariant.smoother.error = ErrorConvention::kRightInvariant;
+  const double claimed = YawDeviation(RunSmoother(dataset, WithFirstEstimates(true), true).last);
+  EXPECT_GT(claimed, YawDeviation(test::DrawInitialState(dataset, 1)));
+  EXPECT_NEAR(claimed / YawDeviation(RunSmoother(dataset, invariant, true).last), 1, 0.005);
+}
+
 EstimatorConfig WithSlamFeatures(int count) {
   EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly);
   config.smoother.frames = FramePolicy::kEveryFrame;
