@@ -50,7 +50,7 @@ struct GnssConfig {
   int align_min_epochs = 6;
   int align_min_satellites = 1;
   double align_window_s = 30;
-  double align_max_yaw_std_rad = 0.1;
+  double align_max_yaw_std_rad = 0.05;
   double align_inflation = 2;
   bool estimate_time_offset = false;
   double max_time_offset_s = 0.2;

@@ -72,6 +72,13 @@ AlignmentFit::AlignmentFit(const GnssConfig& config, const AntennaMount& mount,
                            std::vector<const AlignmentSample*> samples)
     : config_(config), mount_(mount), samples_(std::move(samples)) {}
 
+double AlignmentFit::EpochsOfOneError() const {
+  constexpr double kCorrelationS = 2;  // a young estimate's, until vision has told bias and tilt
+  const double window_s = SecondsBetween(samples_.front()->state.stamp_ns, samples_.back()->state.stamp_ns);
+  return std::max(1.0,
+                  kCorrelationS * static_cast<double>(samples_.size()) / std::max(window_s, kCorrelationS));
+}
+
 AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* guess) const {
   const AlignmentState& state = samples_[index]->state;
   const Eigen::Matrix3d R_NW = Eigen::AngleAxisd(guess->yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
@@ -99,8 +106,11 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
       row.residual += row.is_rate ? 0 : common;
     }
   }
-  // The velocity's error changes over the window too: a part of it is each epoch's own.
-  const Eigen::Matrix3d variance_N = R_NW * state.velocity_covariance_W * R_NW.transpose();
+  // The velocity's error changes over the window too: what changes is the row's own. But it is one error of
+  // three axes for all satellites of an epoch and for the epochs of a while, not one for each row.
+  const double rows_of_one_error = 0.5 * static_cast<double>(epoch.rows.size()) / 3 * EpochsOfOneError();
+  const Eigen::Matrix3d variance_N =
+      std::max(1.0, rows_of_one_error) * R_NW * state.velocity_covariance_W * R_NW.transpose();
   for (GnssRow& row : epoch.rows) {
     const Eigen::RowVector3d e = row.jacobian.segment<3>(6) + since_newest_s * row.jacobian.segment<3>(3);
     row.deviation = std::sqrt(row.deviation * row.deviation + e.dot(e * variance_N));

@@ -72,6 +72,8 @@ class AlignmentFit {
   class NormalEquations;
   struct Epoch;
 
+  /// Epochs in the time over which the estimate's velocity error stays the same.
+  [[nodiscard]] double EpochsOfOneError() const;
   [[nodiscard]] Epoch Linearize(std::size_t index, AlignmentGuess* guess) const;
   void AddEpoch(std::size_t index, const Options& options, AlignmentGuess* guess, NormalEquations* system,
                 AlignmentStep* step, std::vector<double>* whitened) const;
