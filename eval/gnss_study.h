@@ -52,15 +52,19 @@ struct GnssRunFigures {
 [[nodiscard]] double SinglePointRmse(const GnssConfig& config, const MeasurementLog& log,
                                      const Trajectory& truth);
 
-/// The runs of one estimator on one sequence, a seed each.
+/// One seed of an estimator on a sequence.
+struct GnssStudyRun {
+  unsigned seed = 0;
+  GnssRunFigures figures;
+  GnssRunFigures odometry;  ///< over the same time, by the plan's estimator without GNSS
+  double single_point_m = GnssRunFigures::kNone;
+};
+
 struct GnssStudyRow {
   std::string sequence;
   std::string estimator;
   GnssScenario scenario;
-  std::vector<unsigned> seeds;
-  std::vector<GnssRunFigures> runs;  ///< a seed each, as the following
-  std::vector<double> single_point_m;
-  std::vector<GnssRunFigures> odometry;  ///< over the same time, by the plan's estimator without GNSS
+  std::vector<GnssStudyRun> runs;
 };
 
 /// Markdown: what the runs came to, and a table each for outages and clock jumps where there are any. An

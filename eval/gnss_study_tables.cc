@@ -13,12 +13,21 @@ namespace {
 
 using Member = double GnssRunFigures::*;
 
-Statistic Over(const std::vector<GnssRunFigures>& runs, Member figure) {
+Statistic Over(const GnssStudyRow& row, Member figure,
+               GnssRunFigures GnssStudyRun::*whose = &GnssStudyRun::figures) {
   std::vector<double> values;
-  for (const GnssRunFigures& run : runs) {
-    values.push_back(run.*figure);
+  for (const GnssStudyRun& run : row.runs) {
+    values.push_back((run.*whose).*figure);
   }
   return ComputeStatistic(values);
+}
+
+double MeanSinglePoint(const GnssStudyRow& row) {
+  std::vector<double> values;
+  for (const GnssStudyRun& run : row.runs) {
+    values.push_back(run.single_point_m);
+  }
+  return ComputeStatistic(values).mean;
 }
 
 /// A number, or a dash for what does not apply.
@@ -49,8 +58,8 @@ struct Beside {
 
 Beside Odometry(const GnssStudyRow& row) {
   Beside beside;
-  for (std::size_t i = 0; i < row.runs.size(); ++i) {
-    beside.Add(row.runs[i], row.odometry[i]);
+  for (const GnssStudyRun& run : row.runs) {
+    beside.Add(run.figures, run.odometry);
   }
   return beside;
 }
@@ -64,10 +73,11 @@ Beside NoneLeft(const std::vector<GnssStudyRow>& rows, const GnssStudyRow& row) 
         other.scenario.outage_end_s != row.scenario.outage_end_s) {
       continue;
     }
-    for (std::size_t i = 0; i < row.runs.size(); ++i) {
-      const auto seed = std::find(other.seeds.begin(), other.seeds.end(), row.seeds[i]);
-      if (seed != other.seeds.end()) {
-        beside.Add(row.runs[i], other.runs[static_cast<std::size_t>(seed - other.seeds.begin())]);
+    for (const GnssStudyRun& run : row.runs) {
+      const auto same = std::find_if(other.runs.begin(), other.runs.end(),
+                                     [&](const GnssStudyRun& r) { return r.seed == run.seed; });
+      if (same != other.runs.end()) {
+        beside.Add(run.figures, same->figures);
       }
     }
     return beside;
@@ -78,7 +88,7 @@ Beside NoneLeft(const std::vector<GnssStudyRow>& rows, const GnssStudyRow& row) 
 double RatioToFirst(const std::vector<GnssStudyRow>& rows, const GnssStudyRow& row) {
   for (const GnssStudyRow& first : rows) {
     if (first.sequence == rows.front().sequence && first.estimator == row.estimator) {
-      return Over(row.runs, &GnssRunFigures::rmse_m).mean / Over(first.runs, &GnssRunFigures::rmse_m).mean;
+      return Over(row, &GnssRunFigures::rmse_m).mean / Over(first, &GnssRunFigures::rmse_m).mean;
     }
   }
   return GnssRunFigures::kNone;
@@ -93,18 +103,17 @@ std::string Overview(const std::vector<GnssStudyRow>& rows) {
     if (row.runs.empty()) {
       continue;
     }
-    const Statistic after = Over(row.runs, &GnssRunFigures::aligned_after_s);
-    const Statistic rmse = Over(row.runs, &GnssRunFigures::rmse_m);
+    const Statistic after = Over(row, &GnssRunFigures::aligned_after_s);
+    const Statistic rmse = Over(row, &GnssRunFigures::rmse_m);
     const auto [low, high] = NeesBand(3, rmse.count);
     table += Format(
         "| %s | `%s` | %d of %zu | %s, %s | %s ± %s | %s | %s | %s | %s | %s | %.2f to %.2f |\n",
         row.sequence.c_str(), row.estimator.c_str(), after.count, row.runs.size(),
         Cell(after.mean, 1).c_str(), Cell(after.largest, 1).c_str(), Cell(rmse.mean, 3).c_str(),
         Cell(rmse.standard_error, 3).c_str(), Cell(rmse.largest, 3).c_str(),
-        Cell(RatioToFirst(rows, row), 2).c_str(), Cell(ComputeStatistic(row.single_point_m).mean, 2).c_str(),
-        Cell(Over(row.runs, &GnssRunFigures::late_m).mean / Over(row.runs, &GnssRunFigures::early_m).mean, 2)
-            .c_str(),
-        Cell(Over(row.runs, &GnssRunFigures::nees_pos).mean, 2).c_str(), low, high);
+        Cell(RatioToFirst(rows, row), 2).c_str(), Cell(MeanSinglePoint(row), 2).c_str(),
+        Cell(Over(row, &GnssRunFigures::late_m).mean / Over(row, &GnssRunFigures::early_m).mean, 2).c_str(),
+        Cell(Over(row, &GnssRunFigures::nees_pos).mean, 2).c_str(), low, high);
   }
   return table;
 }
@@ -115,16 +124,18 @@ std::string Outages(const std::vector<GnssStudyRow>& rows) {
     if (row.runs.empty() || !row.scenario.HasOutage()) {
       continue;
     }
-    const Statistic covered = Over(row.runs, &GnssRunFigures::return_covered);
-    const Statistic later = Over(row.runs, &GnssRunFigures::after_2_s_m);
-    const auto mean = [](const std::vector<GnssRunFigures>& runs, Member figure) {
-      return Cell(Over(runs, figure).mean, 3);
+    const Statistic covered = Over(row, &GnssRunFigures::return_covered);
+    const Statistic later = Over(row, &GnssRunFigures::after_2_s_m);
+    const auto mean = [&](Member figure, GnssRunFigures GnssStudyRun::*whose) {
+      return Cell(Over(row, figure, whose).mean, 3);
     };
+    const auto ours = &GnssStudyRun::figures;
+    const auto alone = &GnssStudyRun::odometry;
     table += Format("| %s | `%s` | %s | %s | %s | %s | %s | %.0f of %d | %s | %s |\n", row.sequence.c_str(),
-                    row.estimator.c_str(), mean(row.runs, &GnssRunFigures::outage_rmse_m).c_str(),
+                    row.estimator.c_str(), mean(&GnssRunFigures::outage_rmse_m, ours).c_str(),
                     Odometry(row).Cells().c_str(), NoneLeft(rows, row).Cells().c_str(),
-                    mean(row.runs, &GnssRunFigures::return_error_m).c_str(),
-                    mean(row.odometry, &GnssRunFigures::return_error_m).c_str(), covered.mean * covered.count,
+                    mean(&GnssRunFigures::return_error_m, ours).c_str(),
+                    mean(&GnssRunFigures::return_error_m, alone).c_str(), covered.mean * covered.count,
                     covered.count, Cell(later.mean, 3).c_str(), Cell(later.largest, 3).c_str());
   }
   return table.empty()
@@ -140,7 +151,7 @@ std::string Jumps(const std::vector<GnssStudyRow>& rows) {
   std::string table;
   for (const GnssStudyRow& row : rows) {
     if (row.scenario.clock_jump_s >= 0) {
-      const Statistic step = Over(row.runs, &GnssRunFigures::jump_step_m);
+      const Statistic step = Over(row, &GnssRunFigures::jump_step_m);
       table += Format("| %s | `%s` | %s | %s |\n", row.sequence.c_str(), row.estimator.c_str(),
                       Cell(step.mean, 3).c_str(), Cell(step.largest, 3).c_str());
     }

@@ -50,10 +50,13 @@ std::optional<Consensus> SeekConsensus(const WhitenedRows& rows, const std::vect
     const Eigen::VectorXd right = residual(sample);
     const Eigen::VectorXd step = square.partialPivLu().solve(-right);
     const Eigen::VectorXd left = residual + jacobian * step;
+    if (!left.allFinite()) {  // a sample without a solution
+      continue;
+    }
     std::nth_element(others, middle, order.end(),
                      [&](Eigen::Index a, Eigen::Index b) { return std::abs(left[a]) < std::abs(left[b]); });
     const double spread = 1.4826 * std::abs(left[*middle]);
-    if (left.allFinite() && (!best || spread < best->spread)) {
+    if (!best || spread < best->spread) {
       best = {step, spread, left};
     }
   }

@@ -3,16 +3,13 @@
 #include <algorithm>
 
 #include "core/format.h"
+#include "gnss/system_index.h"
 
 namespace alidade {
 namespace {
 
 constexpr std::size_t kLabelColumn = 60;
 constexpr std::size_t kMaxTypes = 999;  // the format's I3
-
-std::size_t Index(GnssSystem system) {
-  return static_cast<std::size_t>(system);
-}
 
 /// The signal a RINEX 2 code or phase of `band` belongs to; kind 'P' is the P(Y) code, 'C' the civil one.
 SignalCode SignalOfRinex2(GnssSystem system, char kind, char band) {

@@ -5,6 +5,7 @@
 #include "core/format.h"
 #include "gnss/compact_rinex.h"
 #include "gnss/rinex_header.h"
+#include "gnss/system_index.h"
 
 namespace alidade {
 namespace {
@@ -149,7 +150,7 @@ class EpochReader {
         continue;
       }
       SatelliteObservation satellite{*id, {}};
-      const auto& types = layout_.types[static_cast<std::size_t>(id->system)];
+      const auto& types = layout_.types[Index(id->system)];
       for (std::size_t k = 0; k < types.size() && 3 + k * kFieldWidth < lines_.line().size(); ++k) {
         ReadField(types[k], 3 + k * kFieldWidth, &satellite);
       }
@@ -173,7 +174,7 @@ class EpochReader {
     for (const std::string& name : names) {
       const std::optional<SatelliteId> id = ParseSatellite(name);
       SatelliteObservation satellite{id.value_or(SatelliteId{}), {}};
-      const auto& types = layout_.types[static_cast<std::size_t>(satellite.satellite.system)];
+      const auto& types = layout_.types[Index(satellite.satellite.system)];
       for (std::size_t k = 0; k < fields; ++k) {
         if (k % kFieldsALine2 == 0 && !lines_.Next()) {
           return Torn();

@@ -4,12 +4,9 @@
 #include <vector>
 
 #include "gnss/single_point.h"
+#include "gnss/system_index.h"
 
 namespace alidade {
-
-[[nodiscard]] inline std::size_t Index(GnssSystem system) {
-  return static_cast<std::size_t>(system);
-}
 
 /// Where an epoch's iteration stands.
 struct SinglePointSolver::State {

@@ -96,10 +96,7 @@ class Study {
     const double single_point_m = SinglePointRmse(single_point_, data->log, truth);
     for (const auto& [row, run] : runs) {
       row->scenario = scenario;
-      row->seeds.push_back(seed);
-      row->runs.push_back(JudgeGlobalRun(run, truth, start_ns, scenario));
-      row->odometry.push_back(*odometry);
-      row->single_point_m.push_back(single_point_m);
+      row->runs.push_back({seed, JudgeGlobalRun(run, truth, start_ns, scenario), *odometry, single_point_m});
     }
     return Status::Ok();
   }
