@@ -146,8 +146,9 @@ TEST(GnssAlignerTest, GIVEN_rest_THEN_it_waits_for_motion) {
 TEST(GnssAlignerTest, GIVEN_an_estimate_that_sways_at_rest_THEN_it_waits_for_motion) {
   Walk walk;
   walk.speed_mps = 0;
-  walk.sway_mps = 0.2;
-  walk.velocity_std_mps = 0.15;
+  walk.sway_mps = 0.4;
+  walk.velocity_std_mps = 0.28;
+  walk.config.align_max_yaw_std_rad = 0.2;
   GnssAligner aligner(walk.config, AtAnchor(walk));
   EXPECT_FALSE(Follow(walk, 30, 40, &aligner)) << aligner.report();
 }
