@@ -1,6 +1,7 @@
 #include "frontend/alignment_problem.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -141,23 +142,29 @@ void AlignmentProblem::AddTrack(size_t t) {
   if (!LinearizeTrack(Cameras(current_, track), weighted, current_.landmarks[t], &rows)) {
     return;
   }
+  // J^T (I - Q Q^T) J with J block diagonal and Q a base of the landmark's columns: a landmark eliminated at
+  // a cost quadratic in its views.
   const Eigen::Index views = static_cast<Eigen::Index>(track.frames.size());
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(2 * views, 6 * views);
+  const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> factor(rows.point_jacobian);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> base =
+      Eigen::Matrix<double, Eigen::Dynamic, 3>::Identity(2 * views, 3);
+  base.applyOnTheLeft(factor.householderQ());
+  const Eigen::VectorXd residual = rows.residual - base * (base.transpose() * rows.residual);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> of_landmark(3, 6 * views);
   for (Eigen::Index k = 0; k < views; ++k) {
+    const Eigen::Index at = 15 * track.frames[static_cast<size_t>(k)];
     const NavState& state = current_.states[static_cast<size_t>(track.frames[static_cast<size_t>(k)])];
-    jacobian.block<2, 6>(2 * k, 6 * k) =
+    const Eigen::Matrix<double, 2, 6> jacobian =
         rows.pose_jacobians.middleRows<2>(2 * k) * BodyToCameraJacobian(state.R_WB, settings_.T_BC);
+    gradient_.segment<6>(at) += jacobian.transpose() * residual.segment<2>(2 * k);
+    information_.block<6, 6>(at, at) += jacobian.transpose() * jacobian;
+    of_landmark.middleCols<6>(6 * k) = base.middleRows<2>(2 * k).transpose() * jacobian;
   }
-  EliminateLandmark(rows.point_jacobian, jacobian, rows.residual);
-  const Eigen::Index left = 2 * views - 3;
-  const Eigen::MatrixXd block = jacobian.bottomRows(left).transpose() * jacobian.bottomRows(left);
-  const Eigen::VectorXd slope = jacobian.bottomRows(left).transpose() * rows.residual.tail(left);
   for (Eigen::Index i = 0; i < views; ++i) {
     const Eigen::Index row = 15 * track.frames[static_cast<size_t>(i)];
-    gradient_.segment<6>(row) += slope.segment<6>(6 * i);
-    for (Eigen::Index j = 0; j < views; ++j) {
-      information_.block<6, 6>(row, 15 * track.frames[static_cast<size_t>(j)]) +=
-          block.block<6, 6>(6 * i, 6 * j);
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      information_.block<6, 6>(row, 15 * track.frames[static_cast<size_t>(j)]).noalias() -=
+          of_landmark.middleCols<6>(6 * i).transpose().lazyProduct(of_landmark.middleCols<6>(6 * j));
     }
   }
 }

@@ -61,7 +61,7 @@ class AlignmentProblem {
   std::vector<Matrix15d> sqrt_information_;  // of each preintegration
   std::vector<bool> active_;
   Variables current_, trial_;
-  Eigen::MatrixXd information_;  // without the gauge prior
+  Eigen::MatrixXd information_;  // without the gauge prior; its lower triangle
   Eigen::MatrixXd gauge_;        // 15 x 15 on the newest state
   Eigen::VectorXd gradient_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/format.h"
 #include "core/imu_propagation.h"
 #include "frontend/alignment_problem.h"
 
@@ -12,20 +13,19 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kMaxIterations = 12;
+constexpr int kMaxIterations = 30;
 constexpr int kMinTracks = 8;
 // Squared residual of an observation (2 rows) that a good one exceeds once in 1800 times.
 constexpr double kMaxSquaredResidual = 15.0;
 
-/// Levenberg-Marquardt until the cost stands still to a fiftieth of a squared deviation. Returns the
-/// iterations taken.
-int Minimize(AlignmentProblem* problem, int max_iterations) {
+/// Levenberg-Marquardt until the cost stands still to a fiftieth of a squared deviation; false when it does
+/// not within kMaxIterations. Adds to the iterations taken.
+bool Minimize(AlignmentProblem* problem, int* iterations) {
   double damping = 1e-4;
   double cost = problem->Linearize();
-  int iteration = 0;
   int failures = 0;
-  while (iteration < max_iterations && failures < 5) {
-    ++iteration;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    ++*iterations;
     const double candidate_cost = problem->TryStep(damping);
     if (candidate_cost < cost) {
       const bool converged = cost - candidate_cost < 0.02;
@@ -34,14 +34,16 @@ int Minimize(AlignmentProblem* problem, int max_iterations) {
       failures = 0;
       cost = problem->Linearize();
       if (converged) {
-        break;
+        return true;
       }
     } else {
       damping = std::min(damping * 20, 1e6);
-      ++failures;
+      if (++failures == 5) {  // no step lowers it
+        return true;
+      }
     }
   }
-  return iteration;
+  return false;
 }
 
 /// Moves world and covariance so that the newest state has yaw 0 and position 0.
@@ -72,18 +74,17 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
                                          const RefinementSettings& settings) {
   AlignmentProblem problem(window, inlier, preintegrations, states, bias, settings);
   RefinedAlignment refined;
-  refined.iterations = Minimize(&problem, kMaxIterations);
-  for (int round = 0; round < 2; ++round) {
-    if (problem.DropAbove(kMaxSquaredResidual) == 0) {
-      break;
-    }
-    refined.iterations += Minimize(&problem, kMaxIterations / 2);
+  bool settled = Minimize(&problem, &refined.iterations);
+  for (int round = 0; settled && round < 2 && problem.DropAbove(kMaxSquaredResidual) > 0; ++round) {
+    settled = Minimize(&problem, &refined.iterations);
+  }
+  if (!settled) {
+    return Status::Diverged(Format("moving: no solution after %d iterations", refined.iterations));
   }
   refined.tracks = problem.active_tracks();
   refined.rejected_tracks = static_cast<int>(window.tracks.size()) - refined.tracks;
   if (refined.tracks < kMinTracks) {
-    return Status::Diverged("moving: only " + std::to_string(refined.tracks) + " tracks fit, need " +
-                            std::to_string(kMinTracks));
+    return Status::Diverged(Format("moving: only %d tracks fit, need %d", refined.tracks, kMinTracks));
   }
   problem.Linearize();
   refined.reprojection_chi2 = problem.ReprojectionChi2();

@@ -36,8 +36,8 @@ struct RefinementSettings {
 /// landmark is re-optimised after each step: variable projection), Cauchy weights on observations, priors on
 /// the first biases, and on the gauge. Observations whose fit stays bad are dropped (tracks that lose half of
 /// theirs, too) and the rest refined again. The covariance is the newest state's marginal of the information
-/// matrix at the end, times the reprojection chi-square where that exceeds 1. Error (kDiverged): fewer than
-/// eight tracks survive, or the information is singular.
+/// matrix at the end, times the reprojection chi-square where that exceeds 1. Error (kDiverged): no
+/// minimum within thirty iterations, fewer than eight tracks survive, or the information is singular.
 Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std::vector<bool>& inlier,
                                          const std::vector<Preintegration>& preintegrations,
                                          const std::vector<NavState>& states, const ImuBias& bias,

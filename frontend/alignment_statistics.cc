@@ -15,11 +15,10 @@ bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covar
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) {
     return false;
   }
-  const Eigen::MatrixXd coupling = information_.topRightCorner(rest, 15);
+  const Eigen::MatrixXd coupling = information_.bottomLeftCorner(15, rest).transpose();
   Matrix15d marginal =
       information_.bottomRightCorner<15, 15>() - coupling.transpose() * factor.solve(coupling);
   marginal = marginal / variance_factor + gauge_;
-  marginal = (0.5 * (marginal + marginal.transpose())).eval();
   const Eigen::LDLT<Matrix15d> newest(marginal);
   if (newest.info() != Eigen::Success || !(newest.vectorD().minCoeff() > 0)) {
     return false;

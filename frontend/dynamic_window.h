@@ -29,9 +29,9 @@ struct DynamicWindow {
 /// Takes frames over init.dynamic_window_s up to the newest one, at least init.dynamic_min_frames of them
 /// (sparse frames stretch the window), at most kMaxWindowFrames, evenly thinned. Stamps of `frames` are in
 /// IMU time. Errors (kDiverged): too few frames, or inertial samples that do not cover them.
-inline constexpr int kMaxWindowFrames = 15;
+inline constexpr int kMaxWindowFrames = 30;
 inline constexpr double kWindowGrowth = 2.5;
-inline constexpr int kMaxWindowTracks = 80;
+inline constexpr int kMaxWindowTracks = 150;
 Status BuildDynamicWindow(const EstimatorConfig& config, const CameraModel& camera,
                           const std::deque<TrackFrame>& frames, ImuBuffer* imu, DynamicWindow* window);
 

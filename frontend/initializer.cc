@@ -16,7 +16,7 @@
 namespace alidade {
 namespace {
 
-// An attempt in motion costs some ten milliseconds: not on every frame.
+// An attempt in motion costs a tenth of a second: not on every frame.
 constexpr double kAttemptEveryS = 0.25;
 // A sharp scale is worth a short wait; later a rough one has to do. Length of the search in windows
 // (init.dynamic_window_s), relative deviation of the scale, share of init.dynamic_min_parallax_px: slow
