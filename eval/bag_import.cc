@@ -72,9 +72,9 @@ class Importer {
     if (type == "sensor_msgs/Imu" && topic == topics_.imu) {
       Keep(DecodeImu(message.data), topic, &import_.dataset.imu);
     } else if (type == "sensor_msgs/Image" && topic == topics_.camera) {
-      return TakeImage(message.data);
+      return TakeImage(message);
     } else if (type == "sensor_msgs/CompressedImage" && topic == topics_.camera) {
-      return TakeCompressed(message.data);
+      return TakeCompressed(message);
     } else if (type == "alidade/Tracks") {
       TakeTracks(topic, message.data);
     } else if (type == "alidade/State" && topic == topics_.truth) {
@@ -104,12 +104,17 @@ class Importer {
     }
   }
 
-  Status TakeImage(std::string_view data) {
-    has_images_ = true;
-    if (!options_.take_image) {
-      return Status::Ok();
+  Status KeepImage(TimeNs stamp_ns, const BagMessage& message, bool compressed) {
+    import_.dataset.images.push_back({stamp_ns, path_, ImageEntry::InBag{message.place, compressed}});
+    return Status::Ok();
+  }
+
+  Status TakeImage(const BagMessage& message) {
+    const std::optional<RawImage> image = DecodeImage(message.data);
+    if (image && !options_.take_image) {
+      return KeepImage(image->stamp_ns, message, false);
     }
-    const std::optional<RawImage> image = DecodeImage(data);
+    has_images_ = true;
     std::optional<GreyImage> grey = image ? GreyOf(*image) : std::nullopt;
     if (!grey) {
       Damage(topics_.camera, image ? "encoding '" + image->encoding + "', expected mono, rgb or bgr"
@@ -119,16 +124,18 @@ class Importer {
     return options_.take_image({image->stamp_ns, *std::move(grey), {}, ""});
   }
 
-  Status TakeCompressed(std::string_view data) {
-    has_images_ = true;
-    const std::optional<CompressedImage> image = DecodeCompressedImage(data);
+  Status TakeCompressed(const BagMessage& message) {
+    const std::optional<CompressedImage> image = DecodeCompressedImage(message.data);
     if (!image) {
       Damage(topics_.camera, "does not decode");
       return Status::Ok();
     }
+    if (!options_.take_image) {
+      return KeepImage(image->stamp_ns, message, true);
+    }
+    has_images_ = true;
     const bool png = image->file.starts_with("\x89PNG");
-    return options_.take_image ? options_.take_image({image->stamp_ns, {}, image->file, png ? "png" : "jpg"})
-                               : Status::Ok();
+    return options_.take_image({image->stamp_ns, {}, image->file, png ? "png" : "jpg"});
   }
 
   void TakeTracks(const std::string& topic, std::string_view data) {
@@ -181,6 +188,7 @@ class Importer {
       return Status::Input(path_ + ": " + topics_.imu + ": " + std::to_string(dataset.imu.size()) +
                            " samples, expected at least two");
     }
+    DescribeDropped(topics_.camera, SortByStamp(&dataset.images));
     DescribeDropped(topics_.tracks, SortByStamp(&dataset.tracks));
     if (dataset.truth) {
       DescribeDropped(topics_.truth, SortByStamp(&dataset.truth->points));
@@ -212,13 +220,8 @@ class Importer {
 
   Status AssembleCamera() {
     Dataset& dataset = import_.dataset;
-    if (!has_images_ && dataset.tracks.empty()) {
+    if (!has_images_ && dataset.images.empty() && dataset.tracks.empty()) {
       return Status::Ok();
-    }
-    if (dataset.tracks.empty() && !options_.take_image) {
-      return Status::Input(
-          path_ + ": holds images, which are read from a folder: alidade convert --dataset=" + path_ +
-          " --output=FOLDER");
     }
     const Result<CameraSensor> sensor = sheets_.Camera("cam0", options_.camera);
     ALIDADE_RETURN_IF_ERROR(sensor.status());
@@ -227,8 +230,11 @@ class Importer {
     dataset.rig.camera_time_offset_s = sensor->time_offset_s;
     dataset.camera_rate_hz = sensor->rate_hz.value_or(0);
     const std::vector<TrackFrame>& tracks = dataset.tracks;
+    const std::vector<ImageEntry>& images = dataset.images;
     if (!sensor->rate_hz && !tracks.empty()) {
       dataset.camera_rate_hz = MeasuredRate(tracks.front().stamp_ns, tracks.back().stamp_ns, tracks.size());
+    } else if (!sensor->rate_hz && !images.empty()) {
+      dataset.camera_rate_hz = MeasuredRate(images.front().stamp_ns, images.back().stamp_ns, images.size());
     }
     return Status::Ok();
   }
@@ -257,7 +263,7 @@ class Importer {
   std::map<std::string, std::int64_t> damaged_;
   std::map<std::size_t, std::vector<TrackFrame>> extra_;
   BagGnss gnss_;
-  bool has_images_ = false;
+  bool has_images_ = false;  ///< that were handed over
   std::int64_t done_ = 0;
   std::int64_t total_ = 0;
   BagImport import_;

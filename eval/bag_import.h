@@ -29,7 +29,7 @@ struct BagImportOptions {
   std::optional<ImuSensor> imu;
   bool imu_is_per_sample = false;  ///< its noise becomes densities at the rate of the bag's samples
   std::optional<CameraSensor> camera;
-  /// Takes an image of the camera. Without it a bag whose camera has images alone is an error.
+  /// Takes an image of the camera. Without it the dataset's entries say where in the bag the images lie.
   std::function<Status(const BagImage&)> take_image;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(std::int64_t done, std::int64_t messages)> progress;
@@ -37,7 +37,7 @@ struct BagImportOptions {
 
 /// A sequence from a bag.
 struct BagImport {
-  Dataset dataset;  ///< without image entries: those are the business of whoever takes the images
+  Dataset dataset;  ///< without image entries where `take_image` took them
   BagScan scan;
   std::vector<std::string> remarks;  ///< what was guessed, passed over or is missing, for a person
 };
@@ -50,7 +50,7 @@ struct BagImport {
 /// stopped.
 Result<BagImport> ReadBag(const std::string& path, const BagImportOptions& options);
 
-/// ReadBag as a dataset: a bag in place of a sequence's folder. Its images cannot be read from here.
+/// ReadBag as a dataset: a bag in place of a sequence's folder.
 Result<Dataset> ReadBagDataset(const std::string& path);
 
 /// Whether a path names a bag: a file, by its extension.

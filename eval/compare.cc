@@ -46,11 +46,11 @@ class Comparer {
  private:
   Status MakeCells() {
     for (const PlanSequence& sequence : plan_.sequences) {
-      if (sequence.dataset.empty()) {
+      if (sequence.dataset.path.empty()) {
         ALIDADE_RETURN_IF_ERROR(AddSimulation(sequence));
       } else {
         FrontendConfig frontend;
-        if (!std::filesystem::exists(sequence.dataset + "/mav0/cam0/tracks.csv")) {
+        if (!std::filesystem::exists(sequence.dataset.path + "/mav0/cam0/tracks.csv")) {
           ALIDADE_RETURN_IF_ERROR(configs_.CommonFrontend(sequence, &frontend));
         }
         inputs_.push_back(std::make_unique<CompareInput>(sequence, frontend, CacheOf(sequence, 0)));

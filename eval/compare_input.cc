@@ -26,11 +26,11 @@ Result<CompareInput::Data> CompareInput::Load(const PipelineOptions& options) co
 }
 
 Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& options) const {
-  Result<Dataset> dataset = ReadDataset(sequence_.dataset);
+  Result<Dataset> dataset = ReadDataset(sequence_.dataset, nullptr);
   if (!dataset.ok()) {
     return dataset.status();
   }
-  Result<std::string> dataset_digest = DigestOfFolder(sequence_.dataset);
+  Result<std::string> dataset_digest = DigestOf(sequence_.dataset);
   if (!dataset_digest.ok()) {
     return dataset_digest.status();
   }

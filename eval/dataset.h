@@ -6,13 +6,20 @@
 #include <vector>
 
 #include "core/measurement_log.h"
+#include "eval/rosbag_record.h"
 #include "eval/trajectory.h"
 
 namespace alidade {
 
 struct ImageEntry {
+  /// In a bag, `path` names the bag.
+  struct InBag {
+    BagPlace place;
+    bool compressed = false;  ///< a sensor_msgs/CompressedImage
+  };
   TimeNs stamp_ns = 0;
   std::string path;
+  std::optional<InBag> in_bag = std::nullopt;
 };
 
 /// A sequence in the extended ASL layout (contract: <seq>/mav0/{imu0,cam0,state_groundtruth_estimate0}).
@@ -27,7 +34,7 @@ struct Dataset {
   std::vector<ImuSample> imu;
   std::vector<TrackFrame> tracks;          ///< cam0/tracks.csv, grouped by stamp; empty when there is none
   std::vector<ExtraCamera> extra_cameras;  ///< cam1, cam2, ... that have tracks
-  std::vector<ImageEntry> images;          ///< cam0/data.csv; empty when there is none
+  std::vector<ImageEntry> images;          ///< cam0/data.csv, or of a bag; empty when there is none
   std::vector<TimeNs> camera_stamps;       ///< cam0/timestamps.csv; empty when there is none
   std::shared_ptr<const GnssLog> gnss;     ///< gnss0: observations and navigation data; null without it
   std::optional<Trajectory>

@@ -44,9 +44,9 @@ Dataset DatasetOf(const ExternalCell& cell) {
 /// The input as a folder, and as a bag when the command asks for one.
 Status PrepareInput(const ExternalCell& cell, const fs::path& output,
                     std::map<std::string, std::string>* values) {
-  const bool simulated = cell.sequence.dataset.empty();
+  const bool simulated = cell.sequence.dataset.path.empty();
   const std::string dataset =
-      simulated ? (output / "dataset").string() : fs::absolute(cell.sequence.dataset).string();
+      simulated ? (output / "dataset").string() : fs::absolute(cell.sequence.dataset.path).string();
   if (simulated) {
     ALIDADE_RETURN_IF_ERROR(WriteDataset(DatasetOf(cell), dataset));
   }

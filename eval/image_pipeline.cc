@@ -1,6 +1,7 @@
 #include "eval/image_pipeline.h"
 
 #include "core/stopwatch.h"
+#include "eval/dataset_images.h"
 #include "frontend/klt_tracker.h"
 #include "gnss/gnss_epoch.h"
 
@@ -46,10 +47,11 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
   for (const ImageEntry& image : dataset.images) {
     stamps.push_back(image.stamp_ns);
   }
+  DatasetImages images;
   std::vector<double> decode_ms;
   const auto image_of = [&](size_t i) -> Result<GreyImage> {
     const Stopwatch stopwatch;
-    Result<GreyImage> grey = ReadGreyImage(dataset.images[i].path);
+    Result<GreyImage> grey = images.Read(dataset.images[i]);
     decode_ms.push_back(stopwatch.ElapsedMs());
     return grey;
   };

@@ -128,6 +128,13 @@ class PlanParser {
                               : reader_.ExistingPath(node, "path", true, path);
   }
 
+  Status ReadCalibration(const Node& node, std::vector<std::string>* files) {
+    return reader_.Each(node, "calibration", [&](const Node& entry) {
+      files->emplace_back();
+      return reader_.Path(entry, "calibration", &files->back());
+    });
+  }
+
   Status ReadNames(const Node& node, std::vector<std::string>* names) {
     return reader_.Each(node, "sequences", [&](const Node& entry) {
       names->emplace_back();
@@ -140,7 +147,10 @@ class PlanParser {
     ALIDADE_RETURN_IF_ERROR(reader_.Map(
         node, "sequences",
         {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &sequence.name); }},
-         {"path", [&](const Node& n) { return ReadDatasetPath(n, &sequence.dataset); }},
+         {"path", [&](const Node& n) { return ReadDatasetPath(n, &sequence.dataset.path); }},
+         {"topics", [&](const Node& n) { return reader_.Text(n, "topics", &sequence.dataset.topics); }},
+         {"calibration", [&](const Node& n) { return ReadCalibration(n, &sequence.dataset.calibration); }},
+         {"camera", [&](const Node& n) { return reader_.Text(n, "camera", &sequence.dataset.camera); }},
          {"truth", [&](const Node& n) { return reader_.ExistingPath(n, "truth", false, &sequence.truth); }},
          {"config",
           [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
@@ -149,23 +159,28 @@ class PlanParser {
          {"estimator_set", [&](const Node& n) {
             return reader_.Settings(n, "estimator_set", &sequence.estimator_settings);
           }}}));
-    if (sequence.dataset.empty() == sequence.config.empty()) {
+    if (sequence.dataset.path.empty() == sequence.config.empty()) {
       return reader_.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
     }
-    if (!sequence.dataset.empty() && !sequence.settings.empty()) {
+    if (!sequence.dataset.path.empty() && !sequence.settings.empty()) {
       return reader_.Fault(node, "sequences", "`set` beside `config` only: a dataset has no settings");
     }
-    if (sequence.dataset.empty() && !sequence.truth.empty()) {
+    if (sequence.dataset.path.empty() && !sequence.truth.empty()) {
       return reader_.Fault(node, "sequences", "`truth` beside `path` only: a simulation has its own");
     }
+    const bool of_bag = !sequence.dataset.topics.empty() || !sequence.dataset.calibration.empty();
+    if (of_bag && !sequence.dataset.path.ends_with(".bag")) {
+      return reader_.Fault(node, "sequences", "`topics` and `calibration` beside the `path` of a bag only");
+    }
     if (sequence.name.empty()) {
-      const std::filesystem::path source = sequence.dataset.empty() ? sequence.config : sequence.dataset;
-      sequence.name = sequence.dataset.empty() || IsBag(sequence.dataset)
+      const std::filesystem::path source =
+          sequence.dataset.path.empty() ? sequence.config : sequence.dataset.path;
+      sequence.name = sequence.dataset.path.empty() || sequence.dataset.path.ends_with(".bag")
                           ? source.stem().string()
                           : (source.has_filename() ? source : source.parent_path()).filename().string();
     }
-    if (!sequence.dataset.empty() && !PlanReader::IsDataset(sequence.dataset)) {
-      plan_.absent.emplace_back(sequence.name, sequence.dataset);
+    if (!sequence.dataset.path.empty() && !PlanReader::IsDataset(sequence.dataset.path)) {
+      plan_.absent.emplace_back(sequence.name, sequence.dataset.path);
       return Status::Ok();
     }
     return Add(node, "sequences", std::move(sequence), &plan_.sequences);

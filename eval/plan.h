@@ -8,6 +8,7 @@
 
 #include "core/status.h"
 #include "eval/comparison.h"
+#include "eval/dataset_source.h"
 #include "eval/evaluate.h"
 #include "eval/external_run.h"
 
@@ -33,9 +34,9 @@ struct PlanEstimator {
 /// One input of a comparison: a dataset (a folder or a bag) or a simulation, once a seed.
 struct PlanSequence {
   std::string name;
-  std::string dataset;  ///< folder in the extended ASL layout or bag; empty for a simulation
-  std::string truth;    ///< trajectory file to score against instead of the dataset's own; may be empty
-  std::string config;   ///< simulation config; empty for a dataset
+  DatasetSource dataset;  ///< `path` is empty for a simulation
+  std::string truth;      ///< trajectory file to score against instead of the dataset's own; may be empty
+  std::string config;     ///< simulation config; empty for a dataset
   std::vector<std::string> settings;            ///< over the simulation config
   std::vector<std::string> estimator_settings;  ///< over every estimator's own, on this sequence alone
   std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws

@@ -6,6 +6,18 @@
 #include "eval/rosbag_chunk.h"
 
 namespace alidade {
+namespace {
+
+Result<std::string> Unpack(const BagFields& fields, std::string_view data) {
+  const std::optional<BagCompression> compression = ParseBagCompression(fields.Text("compression"));
+  const std::optional<std::uint32_t> size = fields.U32("size");
+  if (!compression || !size) {
+    return Status::Input("a chunk of unknown compression or size");
+  }
+  return UnpackChunk(*compression, data, *size);
+}
+
+}  // namespace
 
 Result<RosbagReader> RosbagReader::Open(const std::string& path) {
   std::error_code error;
@@ -69,13 +81,7 @@ void RosbagReader::AddConnection(const BagFields& fields, std::string_view data)
 Status RosbagReader::TakeChunk(const BagFields& fields, std::string_view data,
                                const std::function<Status(const BagMessage&)>& take) {
   ++scan_.chunks;
-  const std::optional<BagCompression> compression = ParseBagCompression(fields.Text("compression"));
-  const std::optional<std::uint32_t> size = fields.U32("size");
-  if (!compression || !size) {
-    Damage("a chunk of unknown compression or size");
-    return Status::Ok();
-  }
-  const Result<std::string> bytes = UnpackChunk(*compression, data, *size);
+  const Result<std::string> bytes = Unpack(fields, data);
   if (!bytes.ok()) {
     Damage(bytes.message());
     return Status::Ok();
@@ -93,12 +99,13 @@ Status RosbagReader::TakeChunk(const BagFields& fields, std::string_view data,
       Damage("a chunk in a chunk");
       continue;
     }
-    ALIDADE_RETURN_IF_ERROR(TakeRecord(*inner_fields, inner, take));
+    const auto offset = static_cast<std::size_t>(inner.data() - bytes->data());
+    ALIDADE_RETURN_IF_ERROR(TakeRecord(*inner_fields, inner, offset, take));
   }
   return Status::Ok();
 }
 
-Status RosbagReader::TakeRecord(const BagFields& fields, std::string_view data,
+Status RosbagReader::TakeRecord(const BagFields& fields, std::string_view data, std::size_t offset,
                                 const std::function<Status(const BagMessage&)>& take) {
   const std::optional<BagOp> op = fields.op();
   if (op == BagOp::kConnection) {
@@ -114,7 +121,7 @@ Status RosbagReader::TakeRecord(const BagFields& fields, std::string_view data,
       return Status::Ok();
     }
     ++scan_.messages;
-    return take({&connection->second, *time, data});
+    return take({&connection->second, *time, data, {record_begin_, offset, data.size()}});
   } else if (op == BagOp::kBagHeader) {
     ByteReader position(fields.Text("index_pos"));
     scan_.indexed = position.Read<std::uint64_t>() != 0;
@@ -128,16 +135,44 @@ Result<BagScan> RosbagReader::Scan(const std::function<Status(const BagMessage&)
   file_.seekg(static_cast<std::streamoff>(kBagMagic.size()));
   Record record;
   Next next = Next::kEnd;
-  while ((next = ReadRecord(&record)) == Next::kRecord) {
+  while (record_begin_ = static_cast<std::uint64_t>(file_.tellg()),
+         (next = ReadRecord(&record)) == Next::kRecord) {
     const std::optional<BagFields> fields = BagFields::Parse(record.header);
     if (!fields) {
       Damage("a record's header that is no list of fields");
       continue;
     }
-    ALIDADE_RETURN_IF_ERROR(TakeRecord(*fields, record.data, take));
+    ALIDADE_RETURN_IF_ERROR(TakeRecord(*fields, record.data, 0, take));
   }
   scan_.truncated = next == Next::kTorn;
   return scan_;
+}
+
+Result<std::string_view> RosbagReader::ReadAgain(const BagPlace& place) {
+  if (kept_begin_ != place.record) {
+    kept_begin_.reset();
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(place.record));
+    Record record;
+    const std::optional<BagFields> fields =
+        ReadRecord(&record) == Next::kRecord ? BagFields::Parse(record.header) : std::nullopt;
+    if (!fields) {
+      return Status::Input(path_ + ": no record at byte " + std::to_string(place.record) + " any more");
+    }
+    if (fields->op() == BagOp::kChunk) {
+      Result<std::string> bytes = Unpack(*fields, record.data);
+      ALIDADE_RETURN_IF_ERROR(bytes.status());
+      kept_ = std::move(*bytes);
+    } else {
+      kept_ = std::move(record.data);
+    }
+    kept_begin_ = place.record;
+  }
+  if (place.offset > kept_.size() || place.length > kept_.size() - place.offset) {
+    return Status::Input(path_ + ": the record at byte " + std::to_string(place.record) +
+                         " has become shorter");
+  }
+  return std::string_view(kept_).substr(place.offset, place.length);
 }
 
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,7 @@ struct BagMessage {
   const BagConnection* connection = nullptr;
   TimeNs received_ns = 0;  ///< when it was recorded
   std::string_view data;
+  BagPlace place;
 };
 
 /// What a scan met.
@@ -50,6 +52,10 @@ class RosbagReader {
   /// returned.
   Result<BagScan> Scan(const std::function<Status(const BagMessage&)>& take);
 
+  /// The message that a scan found at `place`; it lives until the next call. One record is kept, so that
+  /// neighbours come cheaply. kInput: no such record any more.
+  Result<std::string_view> ReadAgain(const BagPlace& place);
+
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
@@ -64,7 +70,8 @@ class RosbagReader {
 
   Next ReadRecord(Record* record);
   [[nodiscard]] bool ReadBlock(std::uint64_t limit, std::string* block);
-  Status TakeRecord(const BagFields& fields, std::string_view data,
+  /// `offset` is that of `data` in the bytes of the file's record.
+  Status TakeRecord(const BagFields& fields, std::string_view data, std::size_t offset,
                     const std::function<Status(const BagMessage&)>& take);
   Status TakeChunk(const BagFields& fields, std::string_view data,
                    const std::function<Status(const BagMessage&)>& take);
@@ -76,6 +83,9 @@ class RosbagReader {
   std::uint64_t size_ = 0;
   std::map<std::uint32_t, BagConnection> connections_;
   BagScan scan_;
+  std::uint64_t record_begin_ = 0;  // of the one the scan is in
+  std::optional<std::uint64_t> kept_begin_;
+  std::string kept_;  // its bytes, unpacked
 };
 
 }  // namespace alidade

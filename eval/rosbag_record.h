@@ -27,6 +27,13 @@ enum class BagOp : std::uint8_t {
   kConnection = 7,
 };
 
+/// Where a message lies in its file, to read it again.
+struct BagPlace {
+  std::uint64_t record = 0;  ///< byte at which its record, or that of its chunk, begins
+  std::size_t offset = 0;    ///< in the bytes of the record, those of a chunk unpacked
+  std::size_t length = 0;
+};
+
 /// Fields of a record's header; the values are views into the header's bytes.
 class BagFields {
  public:

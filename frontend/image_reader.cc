@@ -27,21 +27,24 @@ Result<std::vector<unsigned char>> ReadBytes(const std::string& path) {
 
 Result<GreyImage> ReadGreyImage(const std::string& path) {
   const Result<std::vector<unsigned char>> bytes = ReadBytes(path);
-  if (!bytes.ok()) {
-    return bytes.status();
-  }
+  ALIDADE_RETURN_IF_ERROR(bytes.status());
+  return DecodeGreyImage(*bytes, path);
+}
+
+Result<GreyImage> DecodeGreyImage(std::span<const unsigned char> bytes, const std::string& name) {
   cv::Mat decoded;
   try {
     // The orientation tag is ignored: the calibration belongs to the pixels as stored.
-    decoded = bytes->empty() ? cv::Mat()
-                             : cv::imdecode(*bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH |
-                                                        cv::IMREAD_IGNORE_ORIENTATION);
+    if (!bytes.empty()) {
+      const cv::Mat file(1, static_cast<int>(bytes.size()), CV_8U, const_cast<unsigned char*>(bytes.data()));
+      decoded =
+          cv::imdecode(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+    }
   } catch (const cv::Exception& exception) {
-    return Status::Input(path + ": does not decode as an image: " + exception.what());
+    return Status::Input(name + ": does not decode as an image: " + exception.what());
   }
   if (decoded.empty()) {
-    return Status::Input(path + ": does not decode as an image (" + std::to_string(bytes->size()) +
-                         " bytes)");
+    return Status::Input(name + ": does not decode as an image (" + std::to_string(bytes.size()) + " bytes)");
   }
   if (decoded.depth() == CV_16U) {
     cv::Mat narrowed;
@@ -49,7 +52,7 @@ Result<GreyImage> ReadGreyImage(const std::string& path) {
     decoded = narrowed;
   }
   if (decoded.depth() != CV_8U) {
-    return Status::Input(path + ": expected 8 or 16 bit a sample, found OpenCV depth " +
+    return Status::Input(name + ": expected 8 or 16 bit a sample, found OpenCV depth " +
                          std::to_string(decoded.depth()));
   }
   GreyImage image{.width_px = decoded.cols, .height_px = decoded.rows, .pixels = {}};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,5 +51,7 @@ struct GreyImage {
   std::vector<unsigned char> pixels;
 };
 Result<GreyImage> ReadGreyImage(const std::string& path);
+/// The same of the bytes of such a file; `name` stands in messages.
+Result<GreyImage> DecodeGreyImage(std::span<const unsigned char> bytes, const std::string& name);
 
 }  // namespace alidade

@@ -23,7 +23,7 @@ const char* Word(DatasetFinding::Severity severity) {
 }  // namespace
 
 int RunCheck(const std::vector<std::string>&) {
-  const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  const Result<Dataset> dataset = ReadDatasetFromFlags();
   if (!dataset.ok()) {
     return Report(dataset.status());
   }

@@ -33,7 +33,7 @@ class Study {
 
  private:
   Status AddSequence(const PlanSequence& sequence) {
-    if (!sequence.dataset.empty()) {
+    if (!sequence.dataset.path.empty()) {
       return Status::Usage("gnss_study: sequence " + sequence.name + " is a dataset, expected a simulation");
     }
     const Result<SimulatorConfig> simulation = LoadSimulatorConfig(sequence.config, sequence.settings);

@@ -64,11 +64,11 @@ int RunRun(const std::vector<std::string>&) {
   if (!config.ok()) {
     return Report(config.status());
   }
-  const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  const Result<Dataset> dataset = ReadDatasetFromFlags();
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
-  const Result<std::string> dataset_digest = DigestOfFolder(FLAGS_dataset);
+  const Result<std::string> dataset_digest = DigestOf(SourceFromFlags());
   if (!dataset_digest.ok()) {
     return Report(dataset_digest.status());
   }

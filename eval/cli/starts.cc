@@ -25,7 +25,7 @@ Result<std::vector<StartOutcome>> StudySequence(const Plan& plan, const PlanSequ
   }
   const unsigned seed = sequence.seeds.front();
   std::unique_ptr<CompareInput> input;
-  if (sequence.dataset.empty()) {
+  if (sequence.dataset.path.empty()) {
     const Result<SimulatorConfig> simulation = LoadSimulatorConfig(sequence.config, sequence.settings);
     if (!simulation.ok()) {
       return simulation.status();

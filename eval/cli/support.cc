@@ -7,7 +7,9 @@
 #include <filesystem>
 
 #include "eval/cli/command.h"
+#include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
+#include "eval/dataset.h"
 
 namespace alidade::cli {
 namespace {
@@ -25,6 +27,19 @@ void OnSignal(int signal) {
 }
 
 }  // namespace
+
+DatasetSource SourceFromFlags() {
+  return {FLAGS_dataset, FLAGS_topics, SplitWords(FLAGS_calibration), FLAGS_camera};
+}
+
+Result<Dataset> ReadDatasetFromFlags() {
+  std::vector<std::string> remarks;
+  Result<Dataset> dataset = ReadDataset(SourceFromFlags(), &remarks);
+  for (const std::string& remark : remarks) {
+    Say(remark);
+  }
+  return dataset;
+}
 
 int Report(const Status& status) {
   if (status.ok()) {

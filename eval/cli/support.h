@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/status.h"
+#include "eval/dataset_source.h"
 
 namespace alidade::cli {
 
@@ -34,6 +35,12 @@ class ProgressLine {
   bool open_ = false;
   size_t shown_ = 0;
 };
+
+/// The sequence that --dataset, --topics, --calibration and --camera name.
+[[nodiscard]] DatasetSource SourceFromFlags();
+
+/// Reads it; what was guessed or passed over goes to standard error.
+Result<Dataset> ReadDatasetFromFlags();
 
 /// Set by SIGINT and SIGTERM once the handler is installed. A second signal ends the program at once.
 [[nodiscard]] const std::atomic<bool>* InstallInterruptHandler();

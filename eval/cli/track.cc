@@ -5,6 +5,7 @@
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/config_yaml.h"
+#include "eval/dataset_images.h"
 #include "eval/frontend_summary.h"
 #include "eval/image_pipeline.h"
 #include "eval/output_file.h"
@@ -26,8 +27,9 @@ Result<EstimatorConfig> FrontendSettings() {
 /// Pictures of every FLAGS_overlay-th image with its tracks.
 Status DrawOverlays(const Dataset& dataset, const std::vector<TrackFrame>& frames) {
   const auto step = static_cast<size_t>(FLAGS_overlay);
+  DatasetImages images;
   for (size_t i = 0; step > 0 && i < frames.size(); i += step) {
-    const Result<GreyImage> image = ReadGreyImage(dataset.images[i].path);
+    const Result<GreyImage> image = images.Read(dataset.images[i]);
     ALIDADE_RETURN_IF_ERROR(image.status());
     ALIDADE_RETURN_IF_ERROR(WriteTrackOverlay(
         *image, frames, i, FLAGS_output + "/overlay/" + std::to_string(frames[i].stamp_ns) + ".png"));
@@ -50,7 +52,7 @@ int RunTrack(const std::vector<std::string>&) {
   if (!config.ok()) {
     return Report(config.status());
   }
-  Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  Result<Dataset> dataset = ReadDatasetFromFlags();
   if (!dataset.ok()) {
     return Report(dataset.status());
   }

@@ -3,12 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "eval/bag_folder.h"
+#include "eval/byte_io.h"
+#include "eval/dataset_images.h"
+#include "eval/dataset_source.h"
 #include "eval/gnss_messages.h"
+#include "eval/output_file.h"
+#include "eval/png_image.h"
+#include "eval/ros_header.h"
 #include "eval/ros_sensor_messages.h"
 #include "eval/rosbag_writer.h"
 #include "frontend/klt_tracker.h"
 #include "gnss/gnss_epoch.h"
+#include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -152,6 +161,87 @@ TEST_F(ForeignBag, BecomesAFolderThatReads) {
   EXPECT_NEAR(dataset->rig.gnss.time_offset_s, 1e-9 * static_cast<double>(kOffsetNs), 1e-9);
 }
 
+TEST_F(ForeignBag, ItsImagesAreReadWhereTheyLie) {
+  BagImportOptions options;
+  options.imu = Noise();
+  options.camera = Camera();
+  const Result<BagImport> import = ReadBag(path_, options);
+  ASSERT_TRUE(import.ok()) << import.message();
+  const std::vector<ImageEntry>& entries = import->dataset.images;
+  ASSERT_EQ(entries.size(), 6u);
+  EXPECT_NEAR(import->dataset.camera_rate_hz, 1, 1e-12);
+  DatasetImages images;
+  for (const size_t i : {3, 0, 5}) {
+    EXPECT_EQ(entries[i].stamp_ns, kGpst + static_cast<TimeNs>(i) * kSecondNs + kOffsetNs);
+    const Result<GreyImage> image = images.Read(entries[i]);
+    ASSERT_TRUE(image.ok()) << image.message();
+    EXPECT_EQ(image->pixels, std::vector<unsigned char>(32, static_cast<unsigned char>('a' + i)));
+  }
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 4);
+  EXPECT_THAT(DatasetImages().Read(entries[5]).message(), HasSubstr("any more"));
+}
+
+TEST_F(ForeignBag, ACompressedImageIsReadWhereItLies) {
+  const GreyImage pattern{.width_px = 8, .height_px = 4, .pixels = std::vector<unsigned char>(32, 'q')};
+  ASSERT_TRUE(WritePng(pattern, folder_.File("q.png")).ok());
+  ByteWriter message;
+  PutRosHeader(kGpst, &message);
+  message.Block("png");
+  message.Block(test::ReadFile(folder_.File("q.png")));
+  Result<RosbagWriter> bag = RosbagWriter::Create(folder_.File("png.bag"), BagCompression::kBz2);
+  ASSERT_TRUE(bag.ok());
+  const std::uint32_t imu = bag->AddTopic("/imu0", "sensor_msgs/Imu");
+  for (const TimeNs stamp_ns : {kGpst, kGpst + kSecondNs}) {
+    ImuSample sample;
+    sample.stamp_ns = stamp_ns;
+    ASSERT_TRUE(bag->Write(imu, stamp_ns, EncodeImu(sample)).ok());
+  }
+  ASSERT_TRUE(
+      bag->Write(bag->AddTopic("/cam0/image_raw", "sensor_msgs/CompressedImage"), kGpst, message.bytes())
+          .ok());
+  ASSERT_TRUE(bag->Close().ok());
+  BagImportOptions options;
+  options.imu = Noise();
+  options.camera = Camera();
+  const Result<BagImport> import = ReadBag(folder_.File("png.bag"), options);
+  ASSERT_TRUE(import.ok()) << import.message();
+  ASSERT_EQ(import->dataset.images.size(), 1u);
+  const Result<GreyImage> image = DatasetImages().Read(import->dataset.images[0]);
+  ASSERT_TRUE(image.ok()) << image.message();
+  EXPECT_EQ(image->pixels, pattern.pixels);
+}
+
+TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
+  DatasetSource source{
+      path_, "pvt=/ublox_driver/receiver_pvt", {folder_.File("imu.yaml"), folder_.File("camera.yaml")}};
+  ASSERT_TRUE(
+      WriteFileAtomically(source.calibration[0], "acc_n: 0.08\ngyr_n: 0.004\nacc_w: 0.00004\ngyr_w: 2.0e-6\n")
+          .ok());
+  ASSERT_TRUE(WriteFileAtomically(source.calibration[1],
+                                  "model_type: PINHOLE\nimage_width: 8\nimage_height: 4\n"
+                                  "distortion_parameters: {k1: 0, k2: 0, p1: 0, p2: 0}\n"
+                                  "projection_parameters: {fx: 300, fy: 300, cx: 3.5, cy: 1.5}\n"
+                                  "body_T_cam0: {rows: 4, cols: 4, dt: d,\n"
+                                  "  data: [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n")
+                  .ok());
+  std::vector<std::string> remarks;
+  const Result<Dataset> dataset = ReadDataset(source, &remarks);
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_EQ(dataset->images.size(), 6u);
+  EXPECT_NEAR(dataset->rig.T_BC.translation.x(), 0.1, 1e-12);
+  EXPECT_THAT(remarks, Contains(HasSubstr("lever arm")));
+  const std::string digest = DigestOf(source).value();
+  ASSERT_TRUE(
+      WriteFileAtomically(source.calibration[0], "acc_n: 0.09\ngyr_n: 0.004\nacc_w: 0.00004\ngyr_w: 2.0e-6\n")
+          .ok());
+  EXPECT_NE(DigestOf(source).value(), digest)
+      << "the front end's tracks would be taken for those of another rig";
+  source.topics = "cam0=/none";
+  EXPECT_THAT(ReadDataset(source, nullptr).message(), HasSubstr("no topic /none"));
+  source.path = folder_.path();
+  EXPECT_THAT(ReadDataset(source, nullptr).message(), HasSubstr("is no bag"));
+}
+
 TEST_F(ForeignBag, ObservationsWithoutEphemerisAreLeftOut) {
   with_ephemeris_ = false;
   Record();
@@ -166,8 +256,6 @@ TEST_F(ForeignBag, NamesWhatIsMissing) {
   BagImportOptions options;
   EXPECT_THAT(ReadBag(path_, options).message(), HasSubstr("noise of the IMU"));
   options.imu = Noise();
-  EXPECT_THAT(ReadBag(path_, options).message(), HasSubstr("alidade convert"));
-  options.take_image = [](const BagImage&) { return Status::Ok(); };
   EXPECT_THAT(ReadBag(path_, options).message(), HasSubstr("calibration of the camera"));
   ASSERT_TRUE(options.topics.Set("imu=/imu/data").ok());
   EXPECT_THAT(ReadBag(path_, options).message(),

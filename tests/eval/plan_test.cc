@@ -166,6 +166,26 @@ TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
   }
 }
 
+TEST_F(PlanTest, ABagMayBringItsTopicsAndCalibration) {
+  const std::string head =
+      "estimators: [estimators/a.yaml]\nskip_missing: true\nsequences:\n  - config: sim.yaml\n";
+  const std::string keys = "topics: imu=/imu/data, calibration: ['${data}/a.yaml', b.yaml], camera: cam1";
+  folder_.Write("data/walk.bag", "");
+  const Result<Plan> plan =
+      Read(head + "  - {path: '${data}/walk.bag', " + keys + "}\n", folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  const PlanSequence& sequence = plan->sequences.at(1);
+  EXPECT_EQ(sequence.name, "walk");
+  EXPECT_EQ(sequence.dataset.topics, "imu=/imu/data");
+  EXPECT_EQ(sequence.dataset.camera, "cam1");
+  EXPECT_EQ(sequence.dataset.calibration,
+            (std::vector<std::string>{folder_.File("data/a.yaml"), folder_.File("b.yaml")}));
+  const Result<Plan> of_folder =
+      Read(head + "  - {path: '${data}/seq', " + keys + "}\n", folder_.File("data"));
+  EXPECT_EQ(of_folder.code(), StatusCode::kConfig);
+  EXPECT_THAT(of_folder.message(), HasSubstr("`path` of a bag"));
+}
+
 TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
   const std::string rest =
       "estimators: [estimators/a.yaml]\nsequences:\n  - path: ${data}/seq\n  - {path: '${data}/gone', name: "

@@ -80,6 +80,28 @@ TEST_P(Rosbag, GivesBackWhatWasWritten) {
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
 }
 
+TEST_P(Rosbag, ReadsAMessageAgainByItsPlace) {
+  Result<RosbagReader> bag = RosbagReader::Open(WriteSamples(folder_, GetParam()));
+  ASSERT_TRUE(bag.ok());
+  std::vector<BagPlace> places;
+  const auto keep = [&](const BagMessage& message) {
+    places.push_back(message.place);
+    return Status::Ok();
+  };
+  ASSERT_TRUE(bag->Scan(keep).ok());
+  ASSERT_EQ(places.size(), kSamples + 1u);
+  for (const int i : {kSamples - 1, 0, 1, kSamples / 2}) {
+    const Result<std::string_view> again = bag->ReadAgain(places[static_cast<size_t>(i) + 1]);
+    ASSERT_TRUE(again.ok()) << again.message();
+    EXPECT_EQ(*again, EncodeImu(SampleAt(i))) << i;
+  }
+  BagPlace beyond = places.back();
+  beyond.length = std::string::npos;
+  EXPECT_FALSE(bag->ReadAgain(beyond).ok());
+  beyond.record = std::uint64_t{1} << 62;
+  EXPECT_FALSE(bag->ReadAgain(beyond).ok());
+}
+
 TEST_P(Rosbag, CutOffGivesTheChunksThatAreWhole) {
   const std::string whole = test::ReadFile(WriteSamples(folder_, GetParam()));
   int before = 0;

@@ -60,6 +60,17 @@ TEST(Images, ARenderedSequenceIsTracked) {
   EXPECT_TRUE(std::filesystem::exists(folder.File("tracked/frontend.csv")));
   const auto overlays = std::filesystem::directory_iterator(folder.File("tracked/overlay"));
   EXPECT_EQ(std::distance(begin(overlays), end(overlays)), 4);
+  ASSERT_EQ(Alidade("convert --quiet --compression=lz4 --dataset=" + seq + " --output=" + seq + ".bag").code,
+            0);
+  const CommandResult bag =
+      Alidade("track --quiet --overlay=30 --dataset=" + seq + ".bag --output=" + folder.File("of_bag"));
+  EXPECT_EQ(DigestIn(bag.output), DigestIn(tracked.output)) << bag.output;
+  const std::string last =
+      "/overlay/" +
+      std::filesystem::path(*begin(std::filesystem::directory_iterator(folder.File("of_bag/overlay"))))
+          .filename()
+          .string();
+  EXPECT_EQ(ReadFile(folder.File("of_bag") + last), ReadFile(folder.File("tracked") + last));
 }
 
 // GIVEN a plan with a rendered simulation WHEN it runs, and again with --resume after its cells are gone THEN
