@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/error_convention.h"
+#include "core/format.h"
 #include "eval/metrics.h"
 #include "eval/series_rows.h"
 #include "eval/sky_tracks.h"
@@ -145,7 +146,8 @@ void FillPredicted(const RunResult& run, CellResult* cell) {
 
 void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult* run,
            const EvaluationOptions& options, CellResult* cell) {
-  cell->align = std::string(ToString(options.alignment));
+  cell->align = std::string(ToString(options.alignment)) +
+                (options.align_share < 1 ? Format(" of the first %g %%", 100 * options.align_share) : "");
   cell->frames = static_cast<int>(estimate.points.size());
   if (estimate.points.empty()) {
     return;

@@ -178,7 +178,7 @@ class Comparer {
   [[nodiscard]] std::vector<std::string> NotesOfAbsent() const {
     std::vector<std::string> notes;
     for (const auto& [name, path] : plan_.absent) {
-      notes.push_back(name + ": its data is not there, expected the folder " + path);
+      notes.push_back(name + ": its data is not there, expected " + path);
     }
     for (const PlanEstimator& estimator : plan_.estimators) {
       if (std::none_of(cells_.begin(), cells_.end(),

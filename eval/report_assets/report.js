@@ -56,9 +56,10 @@
   function drawSequence() {
     const cells = report.cellsOf(state.sequence);
     const ran = cells.find(function (cell) { return cell.duration > 0; });
+    const align = report.alignment(cells);
     element('sequence-title').textContent = state.sequence || '';
     element('sequence-note').textContent = (ran ? report.digits(ran.duration) + ' s, ' + report.digits(ran.path) + ' m, ' +
-      ran.frames + ' frames. ' : '') + 'RMSE is of the raw estimate' + (ran && ran.align ? '; ATE after alignment \u201c' + ran.align + '\u201d' : '') + '.';
+      ran.frames + ' frames. ' : '') + 'RMSE is of the raw estimate' + (align ? '; ATE after alignment \u201c' + align + '\u201d' : '') + '.';
     element('sequence-table').innerHTML = report.sequenceTable(state.sequence);
     report.drawEfficiency(state.sequence);
     report.drawFrontend(state.sequence);

@@ -49,7 +49,7 @@
   };
 
   function alignText(entries) {
-    const aligned = entries.length ? entries[0].cells[0].align : '';
+    const aligned = report.alignment(d3.merge(entries.map(function (entry) { return entry.cells; })));
     return aligned && aligned !== 'none' ? ', aligned to the truth (' + aligned + ')' : '';
   }
 

@@ -11,6 +11,16 @@
 
   report.shownEstimators = function () { return data.estimators.filter(function (name) { return !state.off[name]; }); };
   report.shownSequences = function () { return data.sequences.filter(function (name) { return !state.skip[name]; }); };
+  // What the cells' ATE and trajectories are aligned by: one word, or each with its estimators.
+  report.alignment = function (cells) {
+    const groups = new Map();
+    cells.filter(function (cell) { return cell.align; }).forEach(function (cell) {
+      groups.set(cell.align, (groups.get(cell.align) || new Set()).add(cell.estimator));
+    });
+    return groups.size < 2 ? Array.from(groups.keys()).join('') : Array.from(groups, function (group) {
+      return group[0] + ': ' + Array.from(group[1]).join(', ');
+    }).join('; ');
+  };
   report.cellsOf = function (sequence) { return data.cells.filter(function (cell) { return cell.sequence === sequence; }); };
   report.seedsOf = function (sequence) {
     return d3.set(report.cellsOf(sequence).map(function (cell) { return cell.seed; })).values();

@@ -271,6 +271,20 @@ TEST_F(ReportInBrowser, GivenRunsThatWereLostOrNotStartedThenTheOverviewNamesThe
   EXPECT_THAT(visit.dom, HasSubstr("vins_mono_class on V1_01_easy, seed 2: failed</span>"));
 }
 
+TEST_F(ReportInBrowser, GivenDifferentAlignmentsThenItSaysWhose) {
+  Comparison comparison;
+  comparison.title = "mixed";
+  for (const char* name : {"gvio", "gvins_class", "pockf"}) {
+    comparison.cells.push_back(test::SyntheticCell(name, "field", 1, 0.1, 1, 2, 60));
+    comparison.cells.back().align = "none";
+  }
+  comparison.cells.back().align = "posyaw of the first 5 %";
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("mixed.html")).ok());
+  const PageVisit visit = Open(ReadFile(folder_.File("mixed.html")));
+  ExpectWhole(visit);
+  EXPECT_THAT(visit.dom, HasSubstr("none: gvio, gvins_class; posyaw of the first 5 %: pockf"));
+}
+
 TEST_F(ReportInBrowser, GivenNamesOfMarkupThenTheyAreTextEverywhere) {
   const std::string evil = "<img src=x>&amp;\"'`${x}";
   Comparison comparison;
