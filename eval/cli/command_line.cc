@@ -178,10 +178,14 @@ std::string GeneralHelp() {
 
 std::string CommandHelp(const Command& command) {
   std::string text = "alidade " + command.name + ": " + command.summary + "\n\nFlags:\n";
+  size_t widest = 0;
+  for (const std::string& name : command.flags) {
+    widest = std::max(widest, name.size());
+  }
   for (const std::string& name : command.flags) {
     const FlagDescription flag = DescribeFlag(command, name);
     const std::string fallback = flag.type == "string" ? "\"" + flag.fallback + "\"" : flag.fallback;
-    text += "  --" + Padded(flag.name, 13) + flag.text + " (" + flag.type + ", " +
+    text += "  --" + Padded(flag.name, widest + 2) + flag.text + " (" + flag.type + ", " +
             (flag.required ? std::string("required") : "default " + fallback) + ")\n";
   }
   return text;
