@@ -72,14 +72,25 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
   return series;
 }
 
-double NisRatio(const FrameStatistics& statistics) {
-  return statistics.nis_dof > 0 ? statistics.nis / statistics.nis_dof : kUnknown;
-}
+/// A sensor's innovations in a frame's statistics.
+struct Innovations {
+  double FrameStatistics::*nis;
+  int FrameStatistics::*dof;
+
+  [[nodiscard]] double Ratio(const FrameStatistics& frame) const {
+    return frame.*dof > 0 ? frame.*nis / frame.*dof : kUnknown;
+  }
+};
+constexpr Innovations kVision = {&FrameStatistics::nis, &FrameStatistics::nis_dof};
+constexpr Innovations kGnss = {&FrameStatistics::gnss_nis, &FrameStatistics::gnss_nis_dof};
 
 /// What the frames of the pairs did to the estimator, and what an audit recorded.
 void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
   const bool audited = std::any_of(run.records.begin(), run.records.end(),
                                    [](const RunRecord& record) { return record.observability.has_value(); });
+  const bool with_gnss = std::any_of(run.records.begin(), run.records.end(), [](const RunRecord& record) {
+    return record.statistics.gnss_nis_dof > 0;
+  });
   std::unordered_map<TimeNs, const RunRecord*> by_stamp;
   for (const RunRecord& record : run.records) {
     by_stamp[record.estimate.stamp_ns] = &record;
@@ -90,7 +101,10 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
     series->backend_ms.push_back(found ? record->second->backend_ms : kUnknown);
     series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
     series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kUnknown);
-    series->nis_ratio.push_back(found ? NisRatio(record->second->statistics) : kUnknown);
+    series->nis_ratio.push_back(found ? kVision.Ratio(record->second->statistics) : kUnknown);
+    if (with_gnss) {
+      series->gnss_nis_ratio.push_back(found ? kGnss.Ratio(record->second->statistics) : kUnknown);
+    }
     if (audited) {
       const bool has = found && record->second->observability.has_value();
       series->rank.push_back(has ? record->second->observability->rank : kUnknown);
@@ -100,19 +114,21 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
   }
 }
 
-InnovationSummary SummarizeInnovations(const std::vector<RunRecord>& records) {
+InnovationSummary Summarize(const std::vector<RunRecord>& records, const Innovations& of) {
   std::map<int, std::pair<double, double>> bands;  // of a sum of squares, by its number
   std::vector<double> rows;
   double nis = 0, dof = 0, inside = 0;
   for (const RunRecord& record : records) {
     const FrameStatistics& frame = record.statistics;
-    if (frame.nis_dof > 0) {
-      const auto [band, added] = bands.try_emplace(frame.nis_dof);
-      band->second = added ? NeesBand(frame.nis_dof, 1) : band->second;
-      inside += frame.nis >= band->second.first && frame.nis <= band->second.second ? 1 : 0;
-      nis += frame.nis;
-      dof += frame.nis_dof;
-      rows.push_back(frame.nis_dof);
+    const int count = frame.*of.dof;
+    const double squared = frame.*of.nis;
+    if (count > 0) {
+      const auto [band, added] = bands.try_emplace(count);
+      band->second = added ? NeesBand(count, 1) : band->second;
+      inside += squared >= band->second.first && squared <= band->second.second ? 1 : 0;
+      nis += squared;
+      dof += count;
+      rows.push_back(count);
     }
   }
   InnovationSummary summary;
@@ -208,7 +224,8 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   cell->backend_ms = Mean(backend_ms);
   cell->propagate_ms = Mean(propagate_ms);
   cell->update_ms = Mean(update_ms);
-  cell->innovations = SummarizeInnovations(run.records);
+  cell->innovations = Summarize(run.records, kVision);
+  cell->gnss_innovations = Summarize(run.records, kGnss);
   cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
   cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;

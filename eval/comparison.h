@@ -24,8 +24,9 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
-  std::vector<double> tracks_in;  ///< that the frame handed to the estimator
-  std::vector<double> nis_ratio;  ///< normalised innovation squared over its rows; NaN without rows
+  std::vector<double> tracks_in;       ///< that the frame handed to the estimator
+  std::vector<double> nis_ratio;       ///< normalised innovation squared over its rows; NaN without rows
+  std::vector<double> gnss_nis_ratio;  ///< the same of GNSS; empty without it
   // Of an audited filter, else empty (eval/observability.h).
   std::vector<double> rank;
   std::vector<double> yaw_leak;       ///< [1/rad^2]
@@ -74,6 +75,7 @@ struct CellResult {
   double propagate_ms = std::numeric_limits<double>::quiet_NaN();
   double update_ms = std::numeric_limits<double>::quiet_NaN();
   InnovationSummary innovations;
+  InnovationSummary gnss_innovations;
   /// Of the tracks that met the chi-square gate, those it refused; NaN when none did. On data without
   /// outliers these are false rejections.
   double gated_share = std::numeric_limits<double>::quiet_NaN();

@@ -106,7 +106,8 @@ std::string StatusText(const RunResult& result) {
   std::string text =
       "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
       "dof,"
-      "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason\n";
+      "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_nis_"
+      "dof\n";
   for (const RunRecord& record : result.records) {
     const FrameStatistics& s = record.statistics;
     text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
@@ -122,7 +123,7 @@ std::string StatusText(const RunResult& result) {
     std::string reason = record.reason;
     std::replace_if(
         reason.begin(), reason.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
-    text += "," + reason + '\n';
+    text += "," + reason + "," + ShortestDouble(s.gnss_nis) + "," + std::to_string(s.gnss_nis_dof) + '\n';
   }
   return text;
 }

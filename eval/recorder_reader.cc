@@ -127,7 +127,8 @@ Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
                                                        {9, &s.observations_invalid},
                                                        {10, &s.features_waiting},
                                                        {11, &s.features_degenerate},
-                                                       {12, &s.iterations}};
+                                                       {12, &s.iterations},
+                                                       {16, &s.gnss_nis_dof}};
   for (const auto& [column, count] : counts) {
     std::int64_t value = 0;
     ALIDADE_RETURN_IF_ERROR(row.ReadInt64(column, "count", &value));
@@ -136,7 +137,8 @@ Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
   std::int64_t at_rest = 0;
   ALIDADE_RETURN_IF_ERROR(row.ReadInt64(13, "at_rest", &at_rest));
   s.at_rest = at_rest != 0;
-  return row.ReadReal(7, "nis", &s.nis);
+  ALIDADE_RETURN_IF_ERROR(row.ReadReal(7, "nis", &s.nis));
+  return row.ReadReal(15, "gnss_nis", &s.gnss_nis);
 }
 
 Status ReadObservabilityRow(const CsvReader& row, RunRecord* record) {
@@ -241,7 +243,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
-  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 15, &result, ReadStatusRow));
+  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 17, &result, ReadStatusRow));
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
   }

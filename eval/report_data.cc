@@ -44,6 +44,10 @@ std::set<const CellResult*> CellsWithSky(const Comparison& comparison) {
   return cells;
 }
 
+Json InnovationJson(const InnovationSummary& of) {
+  return RoundedJson({of.ratio, of.inside, of.band.first, of.band.second}, 4);
+}
+
 /// What the tables and box plots need of a run.
 Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell) {
   Json rpe = Json::array();
@@ -52,7 +56,6 @@ Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, 
                    {"n", result.count},
                    {"q", RoundedJson(BoxQuantiles(result.pos_errors_m), 4)}});
   }
-  const InnovationSummary& innovations = cell.innovations;
   return {{"estimator", LabelOf(comparison, cell)},
           {"sequence", cell.sequence},
           {"seed", cell.seed},
@@ -65,9 +68,8 @@ Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, 
           {"align", cell.align},
           {"figures", FigureValues(figures, cell)},
           {"stages", RoundedJson({cell.frontend_ms, cell.propagate_ms, cell.update_ms, cell.backend_ms}, 4)},
-          {"nis",
-           RoundedJson(
-               {innovations.ratio, innovations.inside, innovations.band.first, innovations.band.second}, 4)},
+          {"nis", InnovationJson(cell.innovations)},
+          {"gnss_nis", InnovationJson(cell.gnss_innovations)},
           {"rpe", rpe}};
 }
 

@@ -108,6 +108,7 @@ Json SeriesJson(const CellSeries& whole, int most) {
           {"features", RoundedJson(series.features_used, 4)},
           {"tracks", RoundedJson(series.tracks_in, 4)},
           {"nis", RoundedJson(series.nis_ratio, 3)},
+          {"gnss_nis", RoundedJson(series.gnss_nis_ratio, 3)},
           {"rank", RoundedJson(series.rank, 2)},
           {"yaw_leak", LeakJson(series.yaw_leak)},
           {"position_leak", LeakJson(series.position_leak)}};

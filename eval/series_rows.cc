@@ -40,7 +40,8 @@ std::vector<Column> ListColumns(const CellSeries& series) {
     }
     columns.push_back(MakeColumn(std::move(values)));
   }
-  for (const std::vector<double>* values : {&series.nees_pose, &series.backend_ms, &series.nis_ratio}) {
+  for (const std::vector<double>* values :
+       {&series.nees_pose, &series.backend_ms, &series.nis_ratio, &series.gnss_nis_ratio}) {
     columns.push_back(MakeColumn(*values));
   }
   columns.erase(
@@ -132,8 +133,8 @@ CellSeries TakeRows(const CellSeries& series, const SeriesRows& rows) {
   taken.sigma = Take(series.sigma, kept);
   for (std::vector<double> CellSeries::*column :
        {&CellSeries::time_s, &CellSeries::nees_pose, &CellSeries::backend_ms, &CellSeries::features_used,
-        &CellSeries::tracks_in, &CellSeries::nis_ratio, &CellSeries::rank, &CellSeries::yaw_leak,
-        &CellSeries::position_leak}) {
+        &CellSeries::tracks_in, &CellSeries::nis_ratio, &CellSeries::gnss_nis_ratio, &CellSeries::rank,
+        &CellSeries::yaw_leak, &CellSeries::position_leak}) {
     taken.*column = Take(series.*column, kept);
   }
   return taken;

@@ -141,6 +141,9 @@ void GnssWindow::Gate(Window* window, FrameStatistics* statistics) {
       }
       epoch.counted = true;
       statistics->gnss_nis_dof += weights.used;
+      for (std::size_t k = 0; k < nis.size(); ++k) {
+        statistics->gnss_nis += weights.weights[k] * nis[k];
+      }
       // Pseudoranges come first, one a satellite; then the rates of those that have one.
       std::size_t row = 0;
       for (SatelliteResidual& told : residuals.satellites) {

@@ -42,7 +42,7 @@ window.addEventListener('error', function (event) {
       ['truth', 'est', 'ori', 'ori_sigma', 'pos', 'pos_sigma'].forEach(function (key) {
         unpacked[key] = packed[key].map(unpack);
       });
-      ['nees', 'ms', 'ms_quantiles', 'features', 'tracks', 'nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) { unpacked[key] = packed[key]; });
+      ['nees', 'ms', 'ms_quantiles', 'features', 'tracks', 'nis', 'gnss_nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) { unpacked[key] = packed[key]; });
       cell.unpacked = unpacked;
     }
     return cell.unpacked;
@@ -96,7 +96,7 @@ window.addEventListener('error', function (event) {
         return combine(all, function (series) { return series[key][axis]; }, rootMeanSquare);
       });
     });
-    ['nees', 'ms', 'features', 'tracks', 'nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) {
+    ['nees', 'ms', 'features', 'tracks', 'nis', 'gnss_nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) {
       merged[key] = combine(all, function (series) { return series[key]; }, d3.mean);
     });
     const filled = all.filter(function (series) { return series.ms_quantiles.length; });

@@ -6,26 +6,47 @@
   function percent(share) { return (100 * share).toFixed(1) + ' %'; }
 
   // Of frames, over the runs of an entry: mean ratio and share inside the band.
-  function innovationText(entries) {
+  function innovationText(entries, key) {
     return entries.map(function (entry) {
-      const known = entry.cells.filter(function (cell) { return cell.nis[0] !== null; });
-      return known.length ? entry.name + ' ' + d3.mean(known, function (cell) { return cell.nis[0]; }).toFixed(2) + ', ' +
-        percent(d3.mean(known, function (cell) { return cell.nis[1]; })) : '';
+      const known = entry.cells.filter(function (cell) { return cell[key][0] !== null; });
+      return known.length ? entry.name + ' ' + d3.mean(known, function (cell) { return cell[key][0]; }).toFixed(2) + ', ' +
+        percent(d3.mean(known, function (cell) { return cell[key][1]; })) : '';
     }).filter(function (text) { return text; }).join('; ');
   }
 
+  // A line through the frames that have a value: GNSS is slower than the camera. Longer silence stays a gap.
+  const SILENCE_S = 2;
+  function throughKnown(line) {
+    let last = -Infinity;
+    const kept = d3.range(line.t.length).filter(function (i) {
+      const known = line.v[i] !== null && line.v[i] !== undefined;
+      if (known) { last = line.t[i]; }
+      return known || line.t[i] - last > SILENCE_S;
+    });
+    return { name: line.name, style: line.style, width: line.width, t: kept.map(function (i) { return line.t[i]; }),
+      v: kept.map(function (i) { return line.v[i]; }) };
+  }
+
+  function drawNis(grid, entries, key, title) {
+    const bounds = [];
+    entries.forEach(function (entry) {
+      const known = entry.cells.filter(function (cell) { return cell[key][0] !== null; });
+      (known.length ? known[0][key].slice(2) : []).forEach(function (value) { if (value > 0) { bounds.push({ style: entry.style, dash: '2 4', value: value }); } });
+    });
+    report.timePlot(grid, spec(key, title, 'NIS / rows [\u2013], log scale', '', entries,
+      { log: true, means: bounds, lines: lines(entries, function (series) { return series[key]; }).map(throughKnown) }));
+  }
+
   report.drawInnovations = function (entries) {
+    const withGnss = entries.filter(function (entry) {
+      return entry.cells.some(function (cell) { return cell.gnss_nis[0] !== null; });
+    });
     const grid = group('Innovations and features', 'Normalised innovation squared of a frame over the number of its rows: 1 on average where the ' +
       'noise is as assumed. Dotted: where 95 % of frames should lie, of a frame with the median number of rows. Gated measurements are left ' +
       'out; a smoother tells what remains of its window after the fit. Mean and share of frames inside their own band: ' +
-      (innovationText(entries) || 'not known') + '.');
-    const bounds = [];
-    entries.forEach(function (entry) {
-      const band = entry.cells[0].nis.slice(2);
-      band.forEach(function (value) { if (value > 0) { bounds.push({ style: entry.style, dash: '2 4', value: value }); } });
-    });
-    report.timePlot(grid, spec('nis', 'Innovations', 'NIS / rows [\u2013], log scale', '', entries,
-      { log: true, means: bounds, lines: lines(entries, function (series) { return series.nis; }) }));
+      (innovationText(entries, 'nis') || 'not known') + (withGnss.length ? '; of GNSS: ' + innovationText(withGnss, 'gnss_nis') : '') + '.');
+    drawNis(grid, entries, 'nis', 'Innovations');
+    if (withGnss.length) { drawNis(grid, withGnss, 'gnss_nis', 'Innovations of GNSS'); }
     report.timePlot(grid, spec('tracks', 'Tracks per frame', 'tracks [1/frame]', '', entries,
       { zero: true, lines: lines(entries, function (series) { return series.tracks; }) }));
     report.timePlot(grid, spec('features', 'Features used per frame', 'features [1/frame]', '', entries,

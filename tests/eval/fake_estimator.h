@@ -41,6 +41,8 @@ class FakeEstimator final : public Estimator {
     statistics_ = {};
     statistics_.tracks_in = static_cast<int>(frame.observations.size());
     statistics_.nis = 0.1 * static_cast<double>(imu_before_frame.size());
+    statistics_.gnss_nis = 0.3 * static_cast<double>(imu_before_frame.size());
+    statistics_.gnss_nis_dof = 3;
     return Status::Ok();
   }
   NavEstimate Latest() const override { return latest_; }

@@ -95,6 +95,8 @@ TEST_F(RecorderTest, ReadsBackWhatItWrote) {
     EXPECT_EQ(a.statistics.iterations, b.statistics.iterations);
     EXPECT_EQ(a.statistics.at_rest, b.statistics.at_rest);
     EXPECT_EQ(a.statistics.nis, b.statistics.nis);
+    EXPECT_EQ(a.statistics.gnss_nis, b.statistics.gnss_nis);
+    EXPECT_EQ(a.statistics.gnss_nis_dof, b.statistics.gnss_nis_dof);
     EXPECT_EQ(a.frontend_ms, b.frontend_ms);
     EXPECT_EQ(a.backend_ms, b.backend_ms);
     EXPECT_EQ(a.status, b.status);

@@ -278,6 +278,8 @@ TEST(CellScore, GivenInnovationsThenTheirMeanAndShareInsideAreThoseOfAHandCalcul
     run.records[i].statistics.nis = frames[i].first;
     run.records[i].statistics.nis_dof = frames[i].second;
     run.records[i].statistics.propagate_ms = static_cast<double>(i);
+    run.records[i].statistics.gnss_nis = 2 * frames[i].first;
+    run.records[i].statistics.gnss_nis_dof = i == 2 ? 0 : frames[i].second;
   }
   CellResult cell = UnscoredCell();
   ScoreRun(nullptr, run, EvaluationOptions(), &cell);
@@ -286,6 +288,8 @@ TEST(CellScore, GivenInnovationsThenTheirMeanAndShareInsideAreThoseOfAHandCalcul
   EXPECT_DOUBLE_EQ(cell.innovations.inside, 0.5);
   EXPECT_NEAR(cell.innovations.band.first, 0.4844 / 4, 1e-4);
   EXPECT_NEAR(cell.innovations.band.second, 11.1433 / 4, 1e-4);
+  EXPECT_DOUBLE_EQ(cell.gnss_innovations.ratio, 2 * 31.4 / 24);
+  EXPECT_DOUBLE_EQ(cell.gnss_innovations.inside, 2.0 / 3) << "20, 42 and 0.8 of 10, 10 and 4";
   EXPECT_DOUBLE_EQ(cell.propagate_ms, 2);
   EXPECT_TRUE(std::isnan(UnscoredCell().innovations.ratio));
 }
