@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -117,7 +118,7 @@ class Comparer {
   void Work() {
     for (size_t i = next_cell_++; i < cells_.size() && !Stopped(); i = next_cell_++) {
       CompareCell& cell = cells_[i];
-      const auto note = [this, &cell](const FrontendSummary& front) { NoteFrontend(cell, front); };
+      const auto note = [this, &cell](const CompareInput::Data& data) { NoteInput(cell, data); };
       cells_reused_ += RunCompareCell(plan_, options_, pipeline_, note, &cell) ? 1 : 0;
       cell.input->Release();
       Say("[" + std::to_string(++cells_done_) + "/" + std::to_string(cells_.size()) + "] " +
@@ -125,15 +126,26 @@ class Comparer {
     }
   }
 
-  /// Says once an input what its front end did, and keeps it for the tables.
-  void NoteFrontend(const CompareCell& cell, FrontendSummary summary) {
+  /// Says once an input what was odd about it and what its front end did, and keeps the latter for the
+  /// tables.
+  void NoteInput(const CompareCell& cell, const CompareInput::Data& data) {
+    FrontendSummary summary = data.frontend.value_or(FrontendSummary());
     summary.sequence = cell.sequence->name;
     summary.seed = cell.seed;
     {
-      const std::lock_guard<std::mutex> lock(frontend_mutex_);
-      if (!frontends_.emplace(cell.input, summary).second) {
+      const std::lock_guard<std::mutex> lock(noted_mutex_);
+      if (!noted_.insert(cell.input).second) {
         return;
       }
+      if (data.frontend) {
+        frontends_.emplace(cell.input, summary);
+      }
+    }
+    for (const std::string& remark : data.remarks) {
+      Say(remark);
+    }
+    if (!data.frontend) {
+      return;
     }
     Say("front end of " + summary.sequence + ": " +
         Format("%d images, %.2f ms each, %.0f features, tracks of %.0f frames, %.2f %% rejected",
@@ -209,7 +221,8 @@ class Comparer {
   std::vector<std::unique_ptr<CompareInput>> inputs_;
   std::vector<CompareCell> cells_;
   std::map<const CompareInput*, FrontendSummary> frontends_;
-  std::mutex frontend_mutex_;
+  std::set<const CompareInput*> noted_;
+  std::mutex noted_mutex_;
   std::atomic<size_t> next_cell_{0};
   std::atomic<size_t> cells_done_{0};
   std::atomic<int> cells_reused_{0};

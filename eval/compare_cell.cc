@@ -76,15 +76,13 @@ bool RunOwn(const Plan& plan, const CompareOptions& options, const CompareInput:
 }
 
 bool Run(const Plan& plan, const CompareOptions& options, const PipelineOptions& pipeline,
-         const std::function<void(const FrontendSummary&)>& on_frontend, CompareCell* cell) {
+         const std::function<void(const CompareInput::Data&)>& on_input, CompareCell* cell) {
   const Result<CompareInput::Data>& data = cell->input->Acquire(pipeline);
   if (!data.ok()) {
     Fail(data.message(), cell);
     return false;
   }
-  if (data->frontend.has_value()) {
-    on_frontend(*data->frontend);
-  }
+  on_input(*data);
   cell->result.input_digest = DigestOf(data->log);
   if (cell->result.input_digest != data->input_digest) {
     Fail("the measurement log changed between two estimators", cell);
@@ -97,9 +95,9 @@ bool Run(const Plan& plan, const CompareOptions& options, const PipelineOptions&
 }  // namespace
 
 bool RunCompareCell(const Plan& plan, const CompareOptions& options, const PipelineOptions& pipeline,
-                    const std::function<void(const FrontendSummary&)>& on_frontend, CompareCell* cell) {
+                    const std::function<void(const CompareInput::Data&)>& on_input, CompareCell* cell) {
   try {
-    return Run(plan, options, pipeline, on_frontend, cell);
+    return Run(plan, options, pipeline, on_input, cell);
   } catch (const std::exception& error) {
     Fail(error.what(), cell);
     return false;

@@ -20,9 +20,9 @@ struct CompareCell {
 };
 
 /// Gets the input, runs (or, to resume, keeps) the estimator, writes its folder and fills `cell->result`,
-/// whose status tells what went wrong; an exception of a library is a failed cell. `on_frontend` is told what
-/// the front end made of the cell's images, if it ran. True: what was there already was kept.
+/// whose status tells what went wrong; an exception of a library is a failed cell. `on_input` gets what the
+/// cell reads. True: what was there already was kept.
 bool RunCompareCell(const Plan& plan, const CompareOptions& options, const PipelineOptions& pipeline,
-                    const std::function<void(const FrontendSummary&)>& on_frontend, CompareCell* cell);
+                    const std::function<void(const CompareInput::Data&)>& on_input, CompareCell* cell);
 
 }  // namespace alidade

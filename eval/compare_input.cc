@@ -26,7 +26,8 @@ Result<CompareInput::Data> CompareInput::Load(const PipelineOptions& options) co
 }
 
 Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& options) const {
-  Result<Dataset> dataset = ReadDataset(sequence_.dataset, nullptr);
+  std::vector<std::string> remarks;
+  Result<Dataset> dataset = ReadDataset(sequence_.dataset, &remarks);
   if (!dataset.ok()) {
     return dataset.status();
   }
@@ -56,8 +57,9 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     return log.status();
   }
   std::string input_digest = DigestOf(*log);
-  return Data{std::move(*log), std::move(dataset->truth), std::move(*dataset_digest), std::move(input_digest),
-              std::move(frontend)};
+  return Data{std::move(*log),         std::move(dataset->truth), std::move(*dataset_digest),
+              std::move(input_digest), std::move(frontend),       std::nullopt,
+              std::move(remarks)};
 }
 
 Result<FrontendRun> CompareInput::RunFrontend(

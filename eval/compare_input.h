@@ -31,6 +31,7 @@ class CompareInput {
     std::optional<FrontendSummary>
         frontend;  ///< where the front end ran here, now or in an earlier comparison
     std::optional<RigCalibration> true_rig = {};  ///< Dataset::true_rig
+    std::vector<std::string> remarks = {};        ///< of the reader, for a person
   };
 
   /// A dataset folder. `frontend` is used when it has images but no tracks.

@@ -26,9 +26,7 @@ Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string
   }
   Result<BagImport> import = ReadBag(source.path, options);
   ALIDADE_RETURN_IF_ERROR(import.status());
-  if (remarks != nullptr) {
-    *remarks = std::move(import->remarks);
-  }
+  *remarks = std::move(import->remarks);
   return std::move(import->dataset);
 }
 

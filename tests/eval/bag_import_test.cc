@@ -237,9 +237,9 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
   EXPECT_NE(DigestOf(source).value(), digest)
       << "the front end's tracks would be taken for those of another rig";
   source.topics = "cam0=/none";
-  EXPECT_THAT(ReadDataset(source, nullptr).message(), HasSubstr("no topic /none"));
+  EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("no topic /none"));
   source.path = folder_.path();
-  EXPECT_THAT(ReadDataset(source, nullptr).message(), HasSubstr("is no bag"));
+  EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("is no bag"));
 }
 
 TEST_F(ForeignBag, ObservationsWithoutEphemerisAreLeftOut) {
