@@ -141,8 +141,8 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   EXPECT_LT((scale.asDiagonal() * difference * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-// The baseline is as uncertain as the velocity is: rows linearised at it would bias the scale. Where the whole
-// window stands does not matter.
+// The baseline is as uncertain as the velocity is: rows linearised at it would bias the scale. Where the
+// whole window stands does not matter.
 TEST_P(TrackMemoryTest, GivenADepthThatOnlyTheStateLeavesOpenThenNoMemoryStarts) {
   const auto remembers = [&](double velocity_std, double position_std) {
     NavEstimate initial = test::DrawInitialState(dataset_, 1);
