@@ -4,6 +4,7 @@
 
 #include "core/format.h"
 #include "gnss/compact_rinex.h"
+#include "gnss/rinex_epoch_line.h"
 #include "gnss/rinex_header.h"
 #include "gnss/system_index.h"
 
@@ -14,13 +15,6 @@ constexpr std::size_t kFieldWidth = 16;  // F14.3, loss of lock, strength
 constexpr std::size_t kNumberWidth = 14;
 constexpr std::size_t kFieldsALine2 = 5;
 constexpr std::size_t kSatellitesALine2 = 12;
-
-/// An epoch line of any version.
-struct EpochLine {
-  std::optional<TimeNs> stamp_ns;
-  int flag = 0;
-  int count = 0;  ///< satellites, or lines of an event
-};
 
 class EpochReader {
  public:
@@ -33,7 +27,7 @@ class EpochReader {
       if (lines_.trimmed().empty()) {
         continue;
       }
-      const Result<EpochLine> epoch = ParseEpochLine();
+      const Result<EpochLine> epoch = ParseEpochLine(lines_, modern_, layout_.scale);
       if (!epoch.ok()) {
         Warn(epoch.status());
         SkipToEpoch();
@@ -56,39 +50,6 @@ class EpochReader {
         return;
       }
     }
-  }
-
-  Result<EpochLine> ParseEpochLine() const {
-    const std::string_view line = lines_.line();
-    if (modern_ && !line.starts_with('>')) {
-      return lines_.Fault("found " + Excerpt(line) + ", expected an epoch that begins with '>'");
-    }
-    const std::size_t date_start = modern_ ? 1 : 0;
-    const std::size_t date_end = modern_ ? 29 : 26;
-    EpochLine epoch;
-    const std::optional<int> flag = ParseInteger(Field(line, modern_ ? 29 : 26, 3));
-    const std::string_view count_field = Field(line, modern_ ? 32 : 29, 3);
-    const std::optional<int> count =
-        count_field.empty() && flag.value_or(0) > 1 ? 0 : ParseInteger(count_field);
-    if (!flag || *flag < 0 || *flag > 6 || !count || *count < 0) {
-      return lines_.Fault("found " + Excerpt(line) + ", expected an epoch with a flag of 0 to 6 and a count");
-    }
-    epoch.flag = *flag;
-    epoch.count = *count;
-    const std::string_view date = Field(line, date_start, date_end - date_start);
-    if (date.empty() && epoch.flag > 1) {
-      return epoch;  // an event may have no time
-    }
-    const Result<CalendarTime> label = ParseCalendar(date);
-    if (!label.ok()) {
-      return lines_.Fault("epoch: " + label.message());
-    }
-    const Result<TimeNs> stamp = GpsTimeFromCalendar(layout_.scale, *label);
-    if (!stamp.ok()) {
-      return lines_.Fault("epoch: " + stamp.message());
-    }
-    epoch.stamp_ns = *stamp;
-    return epoch;
   }
 
   void ReadEvent(const EpochLine& event) {
