@@ -8,8 +8,6 @@
 #include "core/imu_buffer.h"
 #include "core/visual_observation.h"
 #include "filter/feature_update.h"
-#include "filter/filter.h"
-#include "filter/filter_estimator.h"
 #include "tests/support/scenario.h"
 
 namespace alidade {
@@ -295,64 +293,6 @@ TEST_P(TrackMemoryTest, GivenACorrectionThenTheLandmarkMovesWhereItsRowsPutIt) {
   const Vector3d before = memory.p_W;
   keeper.Correct(state, correction, &memory);
   EXPECT_LT((memory.p_W - before - shift).norm(), 1e-8);
-}
-
-TEST(TrackMemoryFilterTest, MemoryBeyondTheWindowBeatsTheWindowAlone) {
-  SimulatorConfig sim;
-  sim.duration_s = 60;
-  sim.path_m = 78.6;
-  EstimatorConfig config;
-  config.filter.window = 11;
-  config.filter.min_observations = 5;
-  config.filter.clone_policy = ClonePolicy::kOldest;
-  config.filter.memory_depth_deviation = 0.05;
-  double sum[2] = {0, 0};
-  double nees = 0;
-  for (const unsigned seed : {1U, 2U, 3U}) {
-    const Dataset dataset = test::SimulateOrDie(sim, seed);
-    for (const TrackMemoryPolicy policy : {TrackMemoryPolicy::kWindow, TrackMemoryPolicy::kCarry}) {
-      config.filter.track_memory = policy;
-      const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig);
-      const test::ScenarioResult result =
-          test::RunScenario(dataset, test::DrawInitialState(dataset, seed), filter.get());
-      ASSERT_TRUE(result.status.ok()) << result.status.message();
-      sum[policy == TrackMemoryPolicy::kCarry ? 1 : 0] += result.rmse_orientation_rad;
-      nees += policy == TrackMemoryPolicy::kCarry ? result.nees_pose / 3 : 0;
-    }
-  }
-  EXPECT_LT(sum[1], 0.8 * sum[0]);
-  EXPECT_LT(nees, 10);
-}
-
-// GIVEN a start as uncertain as a sensor sheet leaves it, landmarks within a metre WHEN the window fills THEN
-// tracks with a memory have corrected the state long before, where a delayed update comes too late to be
-// linear.
-TEST(TrackMemoryFilterTest, AnUncertainStartDoesNotWaitForTheWindowToFill) {
-  const Result<SimulatorConfig> sim =
-      LoadSimulatorConfig(ALIDADE_SOURCE_DIR "/configs/datasets/wander.yaml", {"duration_s=20", "path_m=26"});
-  ASSERT_TRUE(sim.ok()) << sim.message();
-  const Dataset dataset = test::SimulateOrDie(*sim, 1);
-  EstimatorConfig config;
-  config.filter.update = UpdateTiming::kDelayedAll;
-  config.filter.clone_policy = ClonePolicy::kOldest;
-  config.filter.memory_depth_deviation = 0.05;
-  const auto nees = [&](TrackMemoryPolicy policy) {
-    config.filter.track_memory = policy;
-    FilterEstimator filter(config, dataset.rig);
-    NavEstimate initial = test::DrawInitialState(dataset, 1);
-    initial.covariance.diagonal().segment<3>(6).setConstant(0.05 * 0.05);
-    initial.covariance.diagonal().segment<3>(9).setConstant(5e-3 * 5e-3);
-    initial.covariance.diagonal().segment<3>(12).setConstant(0.1 * 0.1);
-    initial.nav.v_WB += Vector3d(0.05, -0.05, 0.05);
-    initial.bias.gyro += Vector3d(5e-3, 5e-3, -5e-3);
-    initial.bias.accel += Vector3d(0.1, -0.1, 0.1);
-    const test::ScenarioResult result = test::RunScenario(dataset, initial, &filter);
-    EXPECT_TRUE(result.status.ok()) << result.status.message();
-    return result.nees_pose;
-  };
-  const double with_memory = nees(TrackMemoryPolicy::kCarry);
-  EXPECT_LT(with_memory, 12);
-  EXPECT_GT(nees(TrackMemoryPolicy::kNone), 2 * with_memory);
 }
 
 }  // namespace
