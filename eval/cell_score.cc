@@ -17,6 +17,8 @@ namespace alidade {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Longer without GNSS is an outage.
+constexpr double kGnssSilenceS = 2;
 /// Regular points of a curve beyond these are not seen on a screen.
 constexpr size_t kMaxSeriesPoints = 600;
 
@@ -88,9 +90,6 @@ constexpr Innovations kGnss = {&FrameStatistics::gnss_nis, &FrameStatistics::gns
 void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
   const bool audited = std::any_of(run.records.begin(), run.records.end(),
                                    [](const RunRecord& record) { return record.observability.has_value(); });
-  const bool with_gnss = std::any_of(run.records.begin(), run.records.end(), [](const RunRecord& record) {
-    return record.statistics.gnss_nis_dof > 0;
-  });
   std::unordered_map<TimeNs, const RunRecord*> by_stamp;
   for (const RunRecord& record : run.records) {
     by_stamp[record.estimate.stamp_ns] = &record;
@@ -102,15 +101,34 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
     series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
     series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kUnknown);
     series->nis_ratio.push_back(found ? kVision.Ratio(record->second->statistics) : kUnknown);
-    if (with_gnss) {
-      series->gnss_nis_ratio.push_back(found ? kGnss.Ratio(record->second->statistics) : kUnknown);
-    }
     if (audited) {
       const bool has = found && record->second->observability.has_value();
       series->rank.push_back(has ? record->second->observability->rank : kUnknown);
       series->yaw_leak.push_back(has ? record->second->observability->yaw_leak : kUnknown);
       series->position_leak.push_back(has ? record->second->observability->position_leak : kUnknown);
     }
+  }
+}
+
+/// The newest GNSS innovations of each pair: GNSS is slower than the camera, and what is thinned would miss
+/// them.
+void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+  double newest = kUnknown;
+  TimeNs newest_ns = 0;
+  auto record = run.records.begin();
+  for (const StatePair& pair : evaluation.pairs) {
+    const TimeNs stamp_ns = pair.estimate.stamp_ns;
+    for (; record != run.records.end() && record->estimate.stamp_ns <= stamp_ns; ++record) {
+      if (record->statistics.gnss_nis_dof > 0) {
+        newest = kGnss.Ratio(record->statistics);
+        newest_ns = record->estimate.stamp_ns;
+      }
+    }
+    series->gnss_nis_ratio.push_back(SecondsBetween(newest_ns, stamp_ns) <= kGnssSilenceS ? newest
+                                                                                          : kUnknown);
+  }
+  if (std::isnan(newest)) {
+    series->gnss_nis_ratio.clear();
   }
 }
 
@@ -182,6 +200,7 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
   CellSeries series = MakeSeries(*evaluation);
   if (run != nullptr) {
     FillRunSeries(*evaluation, *run, &series);
+    FillGnssInnovations(*evaluation, *run, &series);
   }
   cell->series = TakeRows(series, PickRows(series, kMaxSeriesPoints));
 }

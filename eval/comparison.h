@@ -26,7 +26,7 @@ struct CellSeries {
   std::vector<double> features_used;
   std::vector<double> tracks_in;       ///< that the frame handed to the estimator
   std::vector<double> nis_ratio;       ///< normalised innovation squared over its rows; NaN without rows
-  std::vector<double> gnss_nis_ratio;  ///< the same of GNSS; empty without it
+  std::vector<double> gnss_nis_ratio;  ///< of the newest epoch; NaN in outages, empty without GNSS
   // Of an audited filter, else empty (eval/observability.h).
   std::vector<double> rank;
   std::vector<double> yaw_leak;       ///< [1/rad^2]

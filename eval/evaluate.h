@@ -11,8 +11,8 @@ namespace alidade {
 
 struct EvaluationOptions {
   Alignment alignment = Alignment::kPosYaw;
-  double align_share =
-      1;  ///< of the pairs, the first, that the alignment is fitted to; the rest shows the drift
+  /// The alignment is fitted to this first share of the pairs; the rest shows the drift.
+  double align_share = 1;
   AssociationOptions association;
   /// The estimate's world is its own: it is first moved to the truth's by AnchorAtFirst. Without it
   /// "unaligned" errors and NEES of such an estimate mean nothing.

@@ -168,14 +168,15 @@ class PlanParser {
     if (sequence.dataset.path.empty() && !sequence.truth.empty()) {
       return reader_.Fault(node, "sequences", "`truth` beside `path` only: a simulation has its own");
     }
-    const bool of_bag = !sequence.dataset.topics.empty() || !sequence.dataset.calibration.empty();
-    if (of_bag && !sequence.dataset.path.ends_with(".bag")) {
-      return reader_.Fault(node, "sequences", "`topics` and `calibration` beside the `path` of a bag only");
+    const bool is_bag = sequence.dataset.path.ends_with(".bag");  // it may be absent
+    if (!is_bag && (node["topics"] || node["calibration"] || node["camera"])) {
+      return reader_.Fault(node, "sequences",
+                           "`topics`, `calibration` and `camera` beside the `path` of a bag only");
     }
     if (sequence.name.empty()) {
       const std::filesystem::path source =
           sequence.dataset.path.empty() ? sequence.config : sequence.dataset.path;
-      sequence.name = sequence.dataset.path.empty() || sequence.dataset.path.ends_with(".bag")
+      sequence.name = sequence.dataset.path.empty() || is_bag
                           ? source.stem().string()
                           : (source.has_filename() ? source : source.parent_path()).filename().string();
     }

@@ -150,6 +150,28 @@ std::string ObservabilityText(const RunResult& result) {
   return text;
 }
 
+/// How the run stood with GNSS.
+Json GnssJson(const RunIdentity& identity, const RunResult& result) {
+  Json json = Json::object();
+  if (identity.config.gnss.enabled) {
+    json = {{"aligned", HasGnss(result)},
+            {"report", result.align_report},
+            {"epochs_used", result.epochs_used},
+            {"epochs_skipped", result.epochs_skipped}};
+  }
+  if (HasGnss(result)) {
+    const GlobalFrame& global = *result.global;
+    const Eigen::Vector3d& anchor = global.enu.origin_E;
+    json["aligned_ns"] = global.stamp_ns;
+    json["anchor_E"] = {anchor.x(), anchor.y(), anchor.z()};
+    json["lever_arm_m"] = {global.p_BA.x(), global.p_BA.y(), global.p_BA.z()};
+    json["time_offset_s"] = global.time_offset_s;
+    json["yaw_rad"] = global.yaw_rad;
+    json["yaw_std_rad"] = global.yaw_std_rad;
+  }
+  return json;
+}
+
 Json RunJson(const RunIdentity& identity, const RunResult& result) {
   EstimatorConfig config = identity.config;
   Json json;
@@ -189,21 +211,8 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
                                  {"time_offset_s", error.time_offset_s},
                                  {"focal_px", error.focal_px}};
   }
-  if (identity.config.gnss.enabled) {
-    json["gnss"] = {{"aligned", HasGnss(result)},
-                    {"report", result.align_report},
-                    {"epochs_used", result.epochs_used},
-                    {"epochs_skipped", result.epochs_skipped}};
-  }
-  if (HasGnss(result)) {
-    const GlobalFrame& global = *result.global;
-    const Eigen::Vector3d& anchor = global.enu.origin_E;
-    json["gnss"]["aligned_ns"] = global.stamp_ns;
-    json["gnss"]["anchor_E"] = {anchor.x(), anchor.y(), anchor.z()};
-    json["gnss"]["lever_arm_m"] = {global.p_BA.x(), global.p_BA.y(), global.p_BA.z()};
-    json["gnss"]["time_offset_s"] = global.time_offset_s;
-    json["gnss"]["yaw_rad"] = global.yaw_rad;
-    json["gnss"]["yaw_std_rad"] = global.yaw_std_rad;
+  if (identity.config.gnss.enabled || HasGnss(result)) {
+    json["gnss"] = GnssJson(identity, result);
   }
   json["config"] = ConfigToJson([&config](ConfigVisitor& visitor) { config.Describe(visitor); });
   json["times"] = {{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}};

@@ -14,19 +14,6 @@
     }).filter(function (text) { return text; }).join('; ');
   }
 
-  // A line through the frames that have a value: GNSS is slower than the camera. Longer silence stays a gap.
-  const SILENCE_S = 2;
-  function throughKnown(line) {
-    let last = -Infinity;
-    const kept = d3.range(line.t.length).filter(function (i) {
-      const known = line.v[i] !== null && line.v[i] !== undefined;
-      if (known) { last = line.t[i]; }
-      return known || line.t[i] - last > SILENCE_S;
-    });
-    return { name: line.name, style: line.style, width: line.width, t: kept.map(function (i) { return line.t[i]; }),
-      v: kept.map(function (i) { return line.v[i]; }) };
-  }
-
   function drawNis(grid, entries, key, title) {
     const bounds = [];
     entries.forEach(function (entry) {
@@ -34,7 +21,7 @@
       (known.length ? known[0][key].slice(2) : []).forEach(function (value) { if (value > 0) { bounds.push({ style: entry.style, dash: '2 4', value: value }); } });
     });
     report.timePlot(grid, spec(key, title, 'NIS / rows [\u2013], log scale', '', entries,
-      { log: true, means: bounds, lines: lines(entries, function (series) { return series[key]; }).map(throughKnown) }));
+      { log: true, means: bounds, lines: lines(entries, function (series) { return series[key]; }) }));
   }
 
   report.drawInnovations = function (entries) {

@@ -8,11 +8,9 @@
 #include <sstream>
 
 #include "eval/aggregate.h"
-#include "eval/cell_score.h"
 #include "eval/nees_over_time.h"
 #include "eval/report_data.h"
 #include "eval/report_series.h"
-#include "eval/series_rows.h"
 #include "eval/table_layout.h"
 #include "tests/eval/synthetic_comparison.h"
 #include "tests/support/read_file.h"
@@ -231,67 +229,12 @@ TEST(ReportData, GivenAColumnThenItUnpacksToItsResolutionAndKeepsGaps) {
   EXPECT_GE(PackColumn({1e14}, 1e-3).quantum * 1e15, 1e14) << "a diverged run fits a script's integers";
 }
 
-TEST(SeriesRows, GivenASpikeBetweenTheRegularRowsThenItIsKeptAndMarked) {
-  CellSeries series = test::SyntheticSeries(2000, 0.1, 1, 2, 5);
-  series.backend_ms[1003] = 250;
-  series.error[777](4) = -30;
-  series.nis_ratio[1501] = kNan;
-  const SeriesRows rows = PickRows(series, 100);
-  EXPECT_LE(rows.kept.size(), 220U);
-  EXPECT_TRUE(std::is_sorted(rows.kept.begin(), rows.kept.end()));
-  EXPECT_THAT(rows.kept, ::testing::IsSupersetOf({0, 777, 1003, 1999}));
-  for (size_t k = 0; k < rows.kept.size(); ++k) {
-    EXPECT_EQ(rows.regular[k], rows.kept[k] % 20 == 0) << rows.kept[k];
-  }
-  const CellSeries taken = TakeRows(series, rows);
-  ASSERT_EQ(taken.time_s.size(), rows.kept.size());
-  EXPECT_EQ(*std::max_element(taken.backend_ms.begin(), taken.backend_ms.end()), 250);
-  EXPECT_TRUE(taken.rank.empty());
-  // What is thinned again keeps it, and never makes a regular row of it.
-  const SeriesRows again = PickRows(taken, 50);
-  for (size_t k = 0; k < again.kept.size(); ++k) {
-    EXPECT_EQ(again.regular[k], rows.kept[again.kept[k]] % 40 == 0);
-  }
-  EXPECT_THAT(TakeRows(taken, again).backend_ms, ::testing::Contains(250));
-}
-
-TEST(SeriesRows, GivenFewerRowsThanAllowedThenAllAreRegular) {
-  const SeriesRows rows = PickRows(test::SyntheticSeries(50, 0.1, 1, 2, 5), 100);
-  EXPECT_EQ(rows.kept.size(), 50U);
-  EXPECT_THAT(rows.regular, ::testing::Each(true));
-  EXPECT_TRUE(PickRows(CellSeries(), 100).kept.empty());
-}
-
 TEST(NeesOverTime, GivenRowsThatShowExtremesThenTheyAreInNoMean) {
   CellResult cell = Cell("a", 1, 0.1, 6);
   cell.series.time_s = {0, 1, 1.4, 2};
   cell.series.nees_pose = {6, 6, 900, 6};
   cell.series.regular = {true, true, false, true};
   EXPECT_THAT(AverageNees({&cell}).mean, ::testing::ElementsAre(6, 6, 6));
-}
-
-TEST(CellScore, GivenInnovationsThenTheirMeanAndShareInsideAreThoseOfAHandCalculation) {
-  RunResult run;
-  run.records.resize(5);
-  const std::vector<std::pair<double, int>> frames = {{10, 10}, {21, 10}, {6, 4}, {0.4, 4}, {0, 0}};
-  for (size_t i = 0; i < frames.size(); ++i) {
-    run.records[i].statistics.nis = frames[i].first;
-    run.records[i].statistics.nis_dof = frames[i].second;
-    run.records[i].statistics.propagate_ms = static_cast<double>(i);
-    run.records[i].statistics.gnss_nis = 2 * frames[i].first;
-    run.records[i].statistics.gnss_nis_dof = i == 2 ? 0 : frames[i].second;
-  }
-  CellResult cell = UnscoredCell();
-  ScoreRun(nullptr, run, EvaluationOptions(), &cell);
-  EXPECT_DOUBLE_EQ(cell.innovations.ratio, 37.4 / 28);
-  // 95 % of chi-square: 3.2470 to 20.4832 with 10 degrees of freedom, 0.4844 to 11.1433 with 4.
-  EXPECT_DOUBLE_EQ(cell.innovations.inside, 0.5);
-  EXPECT_NEAR(cell.innovations.band.first, 0.4844 / 4, 1e-4);
-  EXPECT_NEAR(cell.innovations.band.second, 11.1433 / 4, 1e-4);
-  EXPECT_DOUBLE_EQ(cell.gnss_innovations.ratio, 2 * 31.4 / 24);
-  EXPECT_DOUBLE_EQ(cell.gnss_innovations.inside, 2.0 / 3) << "20, 42 and 0.8 of 10, 10 and 4";
-  EXPECT_DOUBLE_EQ(cell.propagate_ms, 2);
-  EXPECT_TRUE(std::isnan(UnscoredCell().innovations.ratio));
 }
 
 TEST(ReportJson, GivenAComparisonThenProgramsFindItsTables) {
