@@ -15,9 +15,9 @@
 
 namespace alidade {
 
-struct GnssAlignment;  // gnss/alignment.h
-struct GnssEpoch;      // gnss/gnss_epoch.h
-struct GnssResiduals;  // gnss/gnss_epoch.h
+struct GnssAlignment;  // gnss/alignment/alignment.h
+struct GnssEpoch;      // gnss/model/gnss_epoch.h
+struct GnssResiduals;  // gnss/model/gnss_epoch.h
 
 /// What one frame did to an estimator: what was used, refused and why, and how well the innovations fit.
 struct FrameStatistics {

@@ -40,13 +40,13 @@ struct GnssConfig {
   double max_gated_share = 0.5;
   RobustKernel robust_kernel = RobustKernel::kHuber;
   double robust_scale_sigma = 2.0;
-  // Receiver clock (gnss/receiver_clock.h).
+  // Receiver clock (gnss/model/receiver_clock.h).
   double clock_walk_m_sqrts = 0.1;
   double drift_walk_mps_sqrts = 0.1;
   double inter_system_walk_m_sqrts = 0.01;
   double inter_system_std_m = 30;
   double clock_jump_m = 300;
-  // Alignment (gnss/alignment.h).
+  // Alignment (gnss/alignment/alignment.h).
   int align_min_epochs = 6;
   int align_min_satellites = 1;
   double align_window_s = 30;

@@ -36,7 +36,7 @@ struct GnssReceiver {
   std::optional<Eigen::Vector3d> anchor_E;
 };
 
-struct GnssLog;  // gnss/gnss_epoch.h
+struct GnssLog;  // gnss/model/gnss_epoch.h
 
 /// What is known about the rig before a run; constant unless an estimator calibrates online.
 struct RigCalibration {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "gnss/receiver_clock.h"
+#include "gnss/model/receiver_clock.h"
 
 namespace alidade {
 namespace {

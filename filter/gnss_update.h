@@ -6,8 +6,8 @@
 #include "core/estimator.h"
 #include "core/robust.h"
 #include "filter/filter_state.h"
-#include "gnss/alignment.h"
-#include "gnss/epoch_rows.h"
+#include "gnss/alignment/alignment.h"
+#include "gnss/model/epoch_rows.h"
 
 namespace alidade {
 

@@ -6,8 +6,8 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config_yaml.h"
-#include "eval/reuse_study.h"
+#include "eval/config/config_yaml.h"
+#include "eval/study/reuse_study.h"
 
 namespace alidade::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include "eval/cli/command.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/dataset.h"
+#include "eval/dataset/dataset.h"
 
 namespace alidade::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "eval/cli/flag_description.h"
 #include "eval/cli/flags.h"
-#include "eval/suggest.h"
+#include "eval/files/suggest.h"
 
 namespace alidade::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/compare.h"
+#include "eval/compare/compare.h"
 
 #include <cstdio>
 

@@ -5,10 +5,10 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config_json.h"
-#include "eval/config_yaml.h"
-#include "eval/plan.h"
-#include "eval/simulator.h"
+#include "eval/compare/plan.h"
+#include "eval/config/config_json.h"
+#include "eval/config/config_yaml.h"
+#include "eval/simulation/simulator.h"
 
 namespace alidade::cli {
 namespace {

@@ -1,14 +1,14 @@
 #include <filesystem>
 
 #include "core/format.h"
-#include "eval/bag_export.h"
-#include "eval/bag_folder.h"
-#include "eval/calibration_import.h"
+#include "eval/bag/bag_export.h"
+#include "eval/bag/bag_folder.h"
 #include "eval/cli/command.h"
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/output_file.h"
+#include "eval/dataset/calibration_import.h"
+#include "eval/files/output_file.h"
 
 namespace alidade::cli {
 namespace {

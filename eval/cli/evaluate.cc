@@ -1,4 +1,4 @@
-#include "eval/evaluate.h"
+#include "eval/metrics/evaluate.h"
 
 #include <charconv>
 #include <cstdio>
@@ -8,8 +8,8 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/external_trajectory.h"
-#include "eval/trajectory_export.h"
+#include "eval/metrics/evaluation_export.h"
+#include "eval/trajectory/external_trajectory.h"
 
 namespace alidade::cli {
 namespace {

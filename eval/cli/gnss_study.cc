@@ -1,4 +1,4 @@
-#include "eval/gnss_study.h"
+#include "eval/study/gnss_study.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,9 +7,9 @@
 #include "eval/cli/command.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/compare_input.h"
-#include "eval/config_yaml.h"
-#include "eval/recorder.h"
+#include "eval/compare/compare_input.h"
+#include "eval/config/config_yaml.h"
+#include "eval/run/recorder.h"
 
 namespace alidade::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/probe.h"
+#include "eval/probe/probe.h"
 
 #include <cstdio>
 #include <iostream>
@@ -7,8 +7,8 @@
 #include "eval/cli/command.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/input_file.h"
-#include "eval/suggest.h"
+#include "eval/files/input_file.h"
+#include "eval/files/suggest.h"
 
 namespace alidade::cli {
 

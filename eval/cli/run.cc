@@ -5,10 +5,10 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config_yaml.h"
-#include "eval/image_pipeline.h"
-#include "eval/recorder.h"
-#include "eval/sha256.h"
+#include "eval/config/config_yaml.h"
+#include "eval/files/sha256.h"
+#include "eval/frontend_run/image_pipeline.h"
+#include "eval/run/recorder.h"
 
 namespace alidade::cli {
 namespace {

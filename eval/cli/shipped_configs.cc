@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "eval/suggest.h"
+#include "eval/files/suggest.h"
 
 namespace alidade::cli {
 namespace {

@@ -2,10 +2,10 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config_yaml.h"
-#include "eval/image_pipeline.h"
-#include "eval/rendered_sequence.h"
-#include "eval/simulator.h"
+#include "eval/config/config_yaml.h"
+#include "eval/frontend_run/image_pipeline.h"
+#include "eval/render/rendered_sequence.h"
+#include "eval/simulation/simulator.h"
 
 namespace alidade::cli {
 namespace {

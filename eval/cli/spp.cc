@@ -6,12 +6,12 @@
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config_yaml.h"
-#include "eval/output_file.h"
-#include "gnss/gnss_files.h"
-#include "gnss/position_file.h"
-#include "gnss/rinex_observation.h"
-#include "gnss/single_point.h"
+#include "eval/config/config_yaml.h"
+#include "eval/files/output_file.h"
+#include "gnss/formats/rinex_observation.h"
+#include "gnss/orbits/gnss_files.h"
+#include "gnss/positioning/position_file.h"
+#include "gnss/positioning/single_point.h"
 
 namespace alidade::cli {
 namespace {

@@ -4,10 +4,10 @@
 #include "eval/cli/command.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/compare_input.h"
-#include "eval/config_yaml.h"
-#include "eval/output_file.h"
-#include "eval/start_study.h"
+#include "eval/compare/compare_input.h"
+#include "eval/config/config_yaml.h"
+#include "eval/files/output_file.h"
+#include "eval/study/start_study.h"
 
 namespace alidade::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "eval/cli/command.h"
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
-#include "eval/dataset.h"
+#include "eval/dataset/dataset.h"
 
 namespace alidade::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/status.h"
-#include "eval/dataset_source.h"
+#include "eval/bag/dataset_source.h"
 
 namespace alidade::cli {
 

@@ -1,15 +1,15 @@
 #include <cstdio>
 
+#include "eval/bag/dataset_images.h"
 #include "eval/cli/command.h"
 #include "eval/cli/command_line.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config_yaml.h"
-#include "eval/dataset_images.h"
-#include "eval/frontend_summary.h"
-#include "eval/image_pipeline.h"
-#include "eval/output_file.h"
-#include "eval/track_overlay.h"
+#include "eval/config/config_yaml.h"
+#include "eval/files/output_file.h"
+#include "eval/frontend_run/frontend_summary.h"
+#include "eval/frontend_run/image_pipeline.h"
+#include "eval/frontend_run/track_overlay.h"
 
 namespace alidade::cli {
 namespace {

@@ -1,11 +1,41 @@
-# alidade_install_library(core [INTERNAL header ...]) exports target alidade_core as alidade::core and installs its archive and
-# the headers of the folder. They go to include/alidade/<folder>/, and include/alidade is the path of consumers: the lines
+# alidade_add_room(<folder> <room> SOURCES ... [PUBLIC target ...] [PRIVATE target ...] [INTERNAL header ...]): the library of one
+# room, target alidade_<folder>_<room>, exported as alidade::<folder>_<room>. What a room may include: scripts/layers.txt.
+function(alidade_add_room folder room)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;INTERNAL" ${ARGN})
+  set(target alidade_${folder}_${room})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(alidade::${folder}_${room} ALIAS ${target})
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:alidade_options> ${ARG_PRIVATE})
+  alidade_precompile(${target})
+  alidade_install_library(${target} ${folder}_${room} INTERNAL ${ARG_INTERNAL})
+endfunction()
+
+# alidade_precompile(<target>): the target's sources start from the precompiled headers of core.
+function(alidade_precompile target)
+  target_precompile_headers(${target} REUSE_FROM alidade_core)
+endfunction()
+
+# alidade_add_rooms(<folder> room ...): the rooms, lowest first, and alidade::<folder>, which is all of them.
+function(alidade_add_rooms folder)
+  set(targets "")
+  foreach(room ${ARGN})
+    add_subdirectory(${room})
+    list(APPEND targets alidade_${folder}_${room})
+  endforeach()
+  add_library(alidade_${folder} INTERFACE)
+  add_library(alidade::${folder} ALIAS alidade_${folder})
+  target_link_libraries(alidade_${folder} INTERFACE ${targets})
+  set_target_properties(alidade_${folder} PROPERTIES EXPORT_NAME ${folder})
+  install(TARGETS alidade_${folder} EXPORT alidade_targets)
+endfunction()
+
+# alidade_install_library(<target> <export name> [INTERNAL header ...]) exports the target, and installs its archive and the
+# headers of the folder. They go to include/alidade/<folder>/, and include/alidade is the path of consumers: the lines
 # `#include "core/lie.h"` of the installed headers find their own kind there and clash with nobody's.
 # INTERNAL: headers that include packages of which a consumer is to know nothing.
-function(alidade_install_library folder)
+function(alidade_install_library target name)
   cmake_parse_arguments(ARG "" "" "INTERNAL" ${ARGN})
-  set(target alidade_${folder})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/alidade>)
   install(TARGETS ${target} EXPORT alidade_targets
@@ -13,5 +43,6 @@ function(alidade_install_library folder)
 
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h)
   list(REMOVE_ITEM headers ${ARG_INTERNAL})
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alidade/${folder} COMPONENT development)
 endfunction()

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "filter/gnss_update.h"
-#include "tests/gnss/synthetic_sky.h"
+#include "tests/gnss/model/synthetic_sky.h"
 
 namespace alidade {
 namespace {

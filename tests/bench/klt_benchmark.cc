@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "frontend/klt_tracker.h"
-#include "tests/frontend/synthetic_scene.h"
+#include "frontend/tracking/klt_tracker.h"
+#include "tests/frontend/tracking/synthetic_scene.h"
 
 namespace alidade {
 namespace {

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "eval/simulator.h"
+#include "eval/simulation/simulator.h"
 
 namespace alidade {
 namespace {

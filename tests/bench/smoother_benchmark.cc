@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "eval/simulator.h"
-#include "smoother/smoother.h"
+#include "eval/simulation/simulator.h"
+#include "smoother/sliding/smoother.h"
 #include "tests/support/scenario.h"
 #include "tests/support/short_figure_eight.h"
 

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "eval/config_yaml.h"
+#include "eval/config/config_yaml.h"
 #include "filter/filter_estimator.h"
 #include "tests/support/scenario.h"
 

@@ -10,8 +10,8 @@
 #include "core/error_convention.h"
 #include "core/estimator.h"
 #include "core/random.h"
-#include "eval/simulator.h"
-#include "eval/trajectory_interpolation.h"
+#include "eval/simulation/simulator.h"
+#include "eval/trajectory/trajectory_interpolation.h"
 
 namespace alidade::test {
 

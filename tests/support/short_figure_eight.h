@@ -1,6 +1,6 @@
 #pragma once
 
-#include "eval/simulator.h"
+#include "eval/simulation/simulator.h"
 
 namespace alidade::test {
 

@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <string>
 
-#include "eval/config_yaml.h"
-#include "eval/evaluate.h"
-#include "eval/runner.h"
-#include "eval/simulator.h"
+#include "eval/config/config_yaml.h"
+#include "eval/metrics/evaluate.h"
+#include "eval/run/runner.h"
+#include "eval/simulation/simulator.h"
 #include "filter/filter_estimator.h"
 
 // Runs the filter of one shipped preset on a short simulated flight and prints its error.

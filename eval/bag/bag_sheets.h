@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/status.h"
+#include "eval/dataset/sensor_yaml.h"
+
+namespace alidade {
+
+/// The sensor sheets of a bag, each the text of a sensor.yaml under SheetTopic.
+class BagSheets {
+ public:
+  /// `path`: of the bag, for messages.
+  explicit BagSheets(std::string path) : path_(std::move(path)) {}
+
+  /// The first text of a topic counts.
+  void Take(const std::string& topic, std::string text) { sheets_.try_emplace(topic, std::move(text)); }
+
+  /// The sheet of "imu0", "cam0", ...; null when there is none.
+  [[nodiscard]] const std::string* Text(const std::string& sensor) const;
+  /// What is `given`, or else what the sheet says. Errors (kInput): neither is there, or the sheet is wrong.
+  [[nodiscard]] Result<ImuSensor> Imu(const std::optional<ImuSensor>& given) const;
+  [[nodiscard]] Result<CameraSensor> Camera(const std::string& sensor,
+                                            const std::optional<CameraSensor>& given) const;
+
+ private:
+  std::string path_;
+  std::map<std::string, std::string> sheets_;  ///< topic -> text
+};
+
+}  // namespace alidade

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "eval/dataset/dataset.h"
+#include "eval/rosbag/rosbag_reader.h"
+#include "frontend/tracking/klt_tracker.h"
+
+namespace alidade {
+
+/// Reads the images of a sequence, from files or from its bag.
+class DatasetImages {
+ public:
+  /// Cheapest in the order of the stamps. kInput: missing, does not decode, or of another encoding than mono,
+  /// rgb or bgr.
+  Result<GreyImage> Read(const ImageEntry& image);
+
+ private:
+  std::optional<RosbagReader> bag_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,48 @@
+#include "eval/bag/dataset_source.h"
+
+#include "eval/bag/bag_import.h"
+#include "eval/dataset/calibration_import.h"
+#include "eval/dataset/dataset.h"
+#include "eval/files/sha256.h"
+
+namespace alidade {
+
+Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string>* remarks) {
+  if (!IsBag(source.path)) {
+    return source.topics.empty() && source.calibration.empty()
+               ? ReadDataset(source.path)
+               : Status::Usage(source.path +
+                               ": is no bag; topics and calibration are those of a bag, a "
+                               "folder has its sensor.yaml");
+  }
+  BagImportOptions options;
+  ALIDADE_RETURN_IF_ERROR(options.topics.Set(source.topics));
+  if (!source.calibration.empty()) {
+    Result<ImportedCalibration> calibration = ImportCalibration(source.calibration, source.camera);
+    ALIDADE_RETURN_IF_ERROR(calibration.status());
+    options.imu = calibration->imu;
+    options.imu_is_per_sample = calibration->imu_is_per_sample;
+    options.camera = std::move(calibration->camera);
+  }
+  Result<BagImport> import = ReadBag(source.path, options);
+  ALIDADE_RETURN_IF_ERROR(import.status());
+  *remarks = std::move(import->remarks);
+  return std::move(import->dataset);
+}
+
+Result<std::string> DigestOf(const DatasetSource& source) {
+  Result<std::string> digest = DigestOfFolder(source.path);
+  if (!digest.ok() || (source.topics.empty() && source.calibration.empty())) {
+    return digest;
+  }
+  Sha256 hash;
+  hash.Add(*digest + source.topics + "\n" + source.camera + "\n");
+  for (const std::string& file : source.calibration) {
+    const Result<std::string> of_file = DigestOfFolder(file);
+    ALIDADE_RETURN_IF_ERROR(of_file.status());
+    hash.Add(*of_file);
+  }
+  return hash.Hex();
+}
+
+}  // namespace alidade

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "eval/compare/compare.h"
+#include "eval/compare/compare_input.h"
+
+namespace alidade {
+
+/// One estimator on one sequence with one seed.
+struct CompareCell {
+  const PlanEstimator* estimator = nullptr;
+  const EstimatorConfig* config = nullptr;  ///< null when external
+  const PlanSequence* sequence = nullptr;
+  CompareInput* input = nullptr;
+  unsigned seed = 0;
+  std::string folder;  ///< of its outputs
+  CellResult result;
+};
+
+/// Gets the input, runs (or, to resume, keeps) the estimator, writes its folder and fills `cell->result`,
+/// whose status tells what went wrong; an exception of a library is a failed cell. `on_input` gets what the
+/// cell reads. True: what was there already was kept.
+bool RunCompareCell(const Plan& plan, const CompareOptions& options, const PipelineOptions& pipeline,
+                    const std::function<void(const CompareInput::Data&)>& on_input, CompareCell* cell);
+
+}  // namespace alidade

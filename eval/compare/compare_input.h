@@ -1,0 +1,75 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/estimator_config.h"
+#include "eval/compare/plan.h"
+#include "eval/frontend_run/frontend_summary.h"
+#include "eval/frontend_run/image_pipeline.h"
+#include "eval/frontend_run/log_cache.h"
+#include "eval/simulation/simulator.h"
+
+namespace alidade {
+
+/// Where the runs of the front end are kept, and whether those found there are used.
+struct FrontendCache {
+  std::string folder = {};  ///< empty: not kept
+  bool reuse = false;
+};
+
+/// What all estimators of one sequence and seed read. Loaded when the first cell asks, dropped after the
+/// last.
+class CompareInput {
+ public:
+  struct Data {
+    MeasurementLog log;
+    std::optional<Trajectory> truth;
+    std::string dataset_digest;
+    std::string input_digest;
+    std::optional<FrontendSummary>
+        frontend;  ///< where the front end ran here, now or in an earlier comparison
+    std::optional<RigCalibration> true_rig = {};  ///< Dataset::true_rig
+    std::vector<std::string> remarks = {};        ///< of the reader, for a person
+  };
+
+  /// A dataset folder. `frontend` is used when it has images but no tracks.
+  CompareInput(const PlanSequence& sequence, FrontendConfig frontend, FrontendCache cache = {})
+      : sequence_(sequence), frontend_(frontend), cache_(std::move(cache)) {}
+  /// A simulation with this seed. `frontend` is used when it has images.
+  CompareInput(const PlanSequence& sequence, SimulatorConfig simulation, unsigned seed,
+               FrontendConfig frontend, FrontendCache cache = {})
+      : sequence_(sequence),
+        frontend_(frontend),
+        cache_(std::move(cache)),
+        simulation_(std::move(simulation)),
+        seed_(seed) {}
+
+  /// One more cell will ask for the data.
+  void AddUser() { ++users_; }
+  /// The data, or why there is none; valid until Release. The first caller loads, others wait.
+  const Result<Data>& Acquire(const PipelineOptions& options);
+  /// Called once by every user.
+  void Release();
+
+ private:
+  Result<Data> Load(const PipelineOptions& options) const;
+  Result<Data> LoadDataset(const PipelineOptions& options) const;
+  Result<Data> RunSimulation(const PipelineOptions& options) const;
+  /// The tracks of `make`, or those kept from an earlier comparison on the same `source`.
+  Result<FrontendRun> RunFrontend(
+      const std::string& source, const PipelineOptions& options,
+      const std::function<Result<std::vector<TrackFrame>>(const PipelineOptions&)>& make) const;
+
+  const PlanSequence& sequence_;
+  FrontendConfig frontend_;
+  FrontendCache cache_;
+  std::optional<SimulatorConfig> simulation_;
+  unsigned seed_ = 0;
+  std::mutex mutex_;
+  std::optional<Result<Data>> data_;
+  int users_ = 0;
+};
+
+}  // namespace alidade

@@ -1,0 +1,131 @@
+#include "eval/compare/external_cell.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "eval/bag/bag_export.h"
+#include "eval/bag/bag_import.h"
+#include "eval/files/input_file.h"
+#include "eval/files/output_file.h"
+#include "eval/trajectory/external_trajectory.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+ExternalContext ContextOf(const ExternalCell& cell) {
+  ExternalContext context;
+  const GnssReceiver& receiver = cell.log.rig.gnss;
+  context.anchor_E = receiver.anchor_E;
+  context.gnss_time_offset_s = receiver.time_offset_s;
+  for (const TrackFrame& frame : cell.log.frames) {
+    context.camera_stamps.push_back(frame.stamp_ns);
+  }
+  if (cell.estimator.camera_frame) {
+    context.T_BC = cell.log.rig.T_BC;
+  }
+  return context;
+}
+
+Dataset DatasetOf(const ExternalCell& cell) {
+  Dataset dataset;
+  dataset.rig = cell.log.rig;
+  dataset.imu = cell.log.imu;
+  dataset.tracks = cell.log.frames;
+  dataset.extra_cameras = cell.log.extra_cameras;
+  dataset.gnss = cell.log.gnss;
+  if (cell.truth != nullptr) {
+    dataset.truth = *cell.truth;
+  }
+  return dataset;
+}
+
+/// The input as a folder, and as a bag when the command asks for one.
+Status PrepareInput(const ExternalCell& cell, const fs::path& output,
+                    std::map<std::string, std::string>* values) {
+  const bool simulated = cell.sequence.dataset.path.empty();
+  const std::string dataset =
+      simulated ? (output / "dataset").string() : fs::absolute(cell.sequence.dataset.path).string();
+  if (simulated) {
+    ALIDADE_RETURN_IF_ERROR(WriteDataset(DatasetOf(cell), dataset));
+  }
+  (*values)["dataset"] = dataset;
+  (*values)["bag"] = (output / "dataset.bag").string();
+  if (IsBag(dataset)) {
+    (*values)["bag"] = dataset;
+  } else if (cell.estimator.command.text.find("{bag}") != std::string::npos) {
+    const Result<Dataset> read = ReadDataset(dataset);
+    ALIDADE_RETURN_IF_ERROR(read.status());
+    ALIDADE_RETURN_IF_ERROR(WriteBag(*read, {}, (*values)["bag"]));
+  }
+  return Status::Ok();
+}
+
+/// The times of an earlier run of this command on this input that left its result.
+std::optional<ExternalRun> EarlierRun(const ExternalCell& cell, const fs::path& output) {
+  const Result<std::string> text = ReadWholeFile((output / "external.json").string());
+  const nlohmann::json json = text.ok() ? nlohmann::json::parse(*text, nullptr, false)
+                                        : nlohmann::json(nlohmann::json::value_t::discarded);
+  if (!json.is_object() || json.value("command", "") != cell.estimator.command.text ||
+      json.value("dataset_digest", "") != cell.dataset_digest ||
+      !fs::exists(output / cell.estimator.command.result)) {
+    return std::nullopt;
+  }
+  return ExternalRun{json.value("wall_s", 0.0), json.value("cpu_s", 0.0)};
+}
+
+Result<ExternalRun> RunCommand(const ExternalCell& cell, const fs::path& output,
+                               const std::atomic<bool>* stop) {
+  std::error_code ignored;
+  fs::create_directories(output, ignored);
+  fs::remove(output / cell.estimator.command.result, ignored);
+  std::map<std::string, std::string> values = {{"output", output.string()},
+                                               {"sequence", cell.sequence.name},
+                                               {"seed", std::to_string(cell.seed)},
+                                               {"dataset", ""},
+                                               {"bag", ""}};
+  // Words are checked before anything is written.
+  ALIDADE_RETURN_IF_ERROR(FillCommand(cell.estimator.command.text, values).status());
+  ALIDADE_RETURN_IF_ERROR(PrepareInput(cell, output, &values));
+  const Result<std::string> command = FillCommand(cell.estimator.command.text, values);
+  ALIDADE_RETURN_IF_ERROR(command.status());
+  Result<ExternalRun> run =
+      RunExternal(*command, (output / "command.log").string(), cell.estimator.command.timeout_s, stop);
+  ALIDADE_RETURN_IF_ERROR(run.status());
+  const nlohmann::ordered_json json = {{"command", cell.estimator.command.text},
+                                       {"filled", *command},
+                                       {"dataset_digest", cell.dataset_digest},
+                                       {"wall_s", run->wall_s},
+                                       {"cpu_s", run->cpu_s}};
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((output / "external.json").string(), json.dump(2) + "\n"));
+  return run;
+}
+
+}  // namespace
+
+Result<ExternalOutcome> TrajectoryOfExternal(const ExternalCell& cell, bool resume,
+                                             const std::atomic<bool>* stop) {
+  ExternalOutcome outcome;
+  std::string path;
+  if (cell.estimator.command.text.empty()) {
+    path = cell.estimator.trajectories.at(cell.sequence.name);
+  } else {
+    const fs::path output = fs::absolute(cell.folder);
+    path = (output / cell.estimator.command.result).string();
+    outcome.run = resume ? EarlierRun(cell, output) : std::nullopt;
+    outcome.reused = outcome.run.has_value();
+    if (!outcome.reused) {
+      const Result<ExternalRun> run = RunCommand(cell, output, stop);
+      ALIDADE_RETURN_IF_ERROR(run.status());
+      outcome.run = *run;
+    }
+  }
+  ExternalContext context = ContextOf(cell);
+  Result<Trajectory> trajectory = ReadExternalTrajectory(path, &context);
+  ALIDADE_RETURN_IF_ERROR(trajectory.status());
+  outcome.trajectory = std::move(*trajectory);
+  return outcome;
+}
+
+}  // namespace alidade

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/status.h"
+#include "eval/bag/dataset_source.h"
+#include "eval/compare/external_run.h"
+#include "eval/comparison/comparison.h"
+#include "eval/metrics/evaluate.h"
+
+namespace alidade {
+
+/// One row of a comparison: a configured estimator, trajectories that another program wrote, or a command
+/// that runs one.
+struct PlanEstimator {
+  std::string name;
+  std::string config;                               ///< path; empty for an external one
+  std::vector<std::string> settings;                ///< "a.b=value" over the file
+  std::map<std::string, std::string> trajectories;  ///< sequence name -> path; external only
+  ExternalCommand command;                          ///< empty text: none; external only
+  bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
+  std::vector<std::string> sequences;               ///< runs on these alone; empty: on all
+  std::optional<Alignment> alignment;               ///< its own instead of the plan's
+  std::optional<double> align_share;
+
+  [[nodiscard]] bool external() const { return config.empty(); }
+  [[nodiscard]] bool RunsOn(const std::string& sequence) const;
+};
+
+/// One input of a comparison: a dataset (a folder or a bag) or a simulation, once a seed.
+struct PlanSequence {
+  std::string name;
+  DatasetSource dataset;  ///< `path` is empty for a simulation
+  std::string truth;      ///< trajectory file to score against instead of the dataset's own; may be empty
+  std::string config;     ///< simulation config; empty for a dataset
+  std::vector<std::string> settings;            ///< over the simulation config
+  std::vector<std::string> estimator_settings;  ///< over every estimator's own, on this sequence alone
+  std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws
+};
+
+/// What to compare, as a person wrote it (docs/plans.md lists the keys).
+struct Plan {
+  std::string path;
+  std::string title;
+  std::vector<std::string> settings;  ///< over every estimator's file, before the estimator's own
+  std::vector<PlanEstimator> estimators;
+  std::vector<PlanSequence> sequences;
+  EvaluationOptions metrics;
+  std::vector<std::string> pair_figures = Comparison().pair_figures;
+  bool pair_across = false;
+  std::string baseline;  ///< name of the sequence that RMSEs are also given relative to; may be empty
+  bool audit = false;    ///< every filter records what it claims to observe
+  std::vector<ReferenceFigure> references;
+  /// skip_missing: a sequence whose folder is not there is left out and named in `absent` (name, path).
+  bool skip_missing = false;
+  std::vector<std::pair<std::string, std::string>> absent;
+
+  [[nodiscard]] EvaluationOptions MetricsOf(const PlanEstimator& estimator) const;
+};
+
+/// Reads a plan. `${data}` in a path or in a setting becomes `data_root`; relative paths are relative to the
+/// plan's folder. Strict: an unknown, duplicate or ill-typed key, two estimators or sequences of one name, a
+/// name that is no folder name, or a file that does not exist is kConfig with file:line:column. kInput: with
+/// skip_missing, no sequence is there.
+Result<Plan> ReadPlan(const std::string& path, const std::string& data_root);
+
+}  // namespace alidade

@@ -1,0 +1,67 @@
+#include "eval/compare/plan_check.h"
+
+#include <algorithm>
+
+#include "eval/files/suggest.h"
+
+namespace alidade {
+namespace {
+
+std::vector<std::string> SequenceNames(const Plan& plan) {
+  std::vector<std::string> names;
+  for (const PlanSequence& sequence : plan.sequences) {
+    names.push_back(sequence.name);
+  }
+  for (const auto& [name, path] : plan.absent) {
+    names.push_back(name);
+  }
+  return names;
+}
+
+Status CheckAnyThere(const Plan& plan) {
+  return !plan.sequences.empty()
+             ? Status::Ok()
+             : Status::Input(plan.path + ": none of its " + std::to_string(plan.absent.size()) +
+                             " sequences is there; the first, " + plan.absent.front().first +
+                             ", was expected as the folder " + plan.absent.front().second);
+}
+
+Status CheckBaseline(const Plan& plan, const YAML::Node& root) {
+  const std::vector<std::string> names = SequenceNames(plan);
+  const bool known = std::find(names.begin(), names.end(), plan.baseline) != names.end();
+  return plan.baseline.empty() || known
+             ? Status::Ok()
+             : Status::Config(YamlPlace(plan.path, root["baseline"]) + ": baseline: " + plan.baseline +
+                              ": no such sequence" + Suggestion(plan.baseline, names));
+}
+
+/// A name that no sequence has would be left out silently.
+Status CheckSequenceNames(const Plan& plan, const YAML::Node& root) {
+  const std::vector<std::string> names = SequenceNames(plan);
+  for (const PlanEstimator& estimator : plan.estimators) {
+    std::vector<std::pair<std::string, std::string>> used;
+    for (const auto& [sequence, path] : estimator.trajectories) {
+      used.emplace_back("trajectories", sequence);
+    }
+    for (const std::string& sequence : estimator.sequences) {
+      used.emplace_back("sequences", sequence);
+    }
+    for (const auto& [key, sequence] : used) {
+      if (std::find(names.begin(), names.end(), sequence) == names.end()) {
+        return Status::Config(YamlPlace(plan.path, root["estimators"]) + ": " + estimator.name + "." + key +
+                              "." + sequence + ": no such sequence" + Suggestion(sequence, names));
+      }
+    }
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Status CheckPlan(const Plan& plan, const YAML::Node& root) {
+  ALIDADE_RETURN_IF_ERROR(CheckSequenceNames(plan, root));
+  ALIDADE_RETURN_IF_ERROR(CheckBaseline(plan, root));
+  return CheckAnyThere(plan);
+}
+
+}  // namespace alidade

@@ -1,0 +1,56 @@
+#include "eval/compare/plan_metrics.h"
+
+#include <optional>
+#include <string>
+
+namespace alidade {
+namespace {
+
+using YAML::Node;
+
+constexpr double kMaxDistance = 1e6;
+constexpr double kMaxSeconds = 1e6;
+
+Status ReadDistances(const PlanReader& reader, const Node& node, std::vector<double>* distances) {
+  distances->clear();
+  return reader.Each(node, "rpe", [&](const Node& entry) {
+    return reader.Real(entry, "rpe", 1e-3, kMaxDistance, &distances->emplace_back());
+  });
+}
+
+}  // namespace
+
+Status ReadAlignment(const PlanReader& reader, const Node& node, Alignment* alignment) {
+  std::string name;
+  ALIDADE_RETURN_IF_ERROR(reader.Text(node, "align", &name));
+  const std::optional<Alignment> known = ParseAlignment(name);
+  if (!known) {
+    return reader.Fault(node, "align", "none, pos, posyaw, se3 or sim3");
+  }
+  *alignment = *known;
+  return Status::Ok();
+}
+
+Status ReadAlignShare(const PlanReader& reader, const Node& node, double* share) {
+  constexpr double kLeast = 1e-3;
+  return reader.Real(node, "align_share", kLeast, 1, share);
+}
+
+Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions* metrics) {
+  AssociationOptions& association = metrics->association;
+  return reader.Map(
+      node, "metrics",
+      {{"align", [&](const Node& n) { return ReadAlignment(reader, n, &metrics->alignment); }},
+       {"align_share", [&](const Node& n) { return ReadAlignShare(reader, n, &metrics->align_share); }},
+       {"rpe", [&](const Node& n) { return ReadDistances(reader, n, &metrics->rpe_distances_m); }},
+       {"max_dt",
+        [&](const Node& n) { return reader.Real(n, "max_dt", 0, kMaxSeconds, &association.max_dt_s); }},
+       {"anchor_at_first",
+        [&](const Node& n) { return reader.Boolean(n, "anchor_at_first", &metrics->anchor_at_first); }},
+       {"interpolate",
+        [&](const Node& n) { return reader.Boolean(n, "interpolate", &association.interpolate); }},
+       {"max_gap",
+        [&](const Node& n) { return reader.Real(n, "max_gap", 0, kMaxSeconds, &association.max_gap_s); }}});
+}
+
+}  // namespace alidade

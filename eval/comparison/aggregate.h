@@ -1,0 +1,98 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eval/comparison/comparison.h"
+
+namespace alidade {
+
+/// Which value of a figure is the better one.
+enum class Ideal {
+  kNone,    ///< no value is better than another (features used, the shared front end's time)
+  kLow,     ///< errors, times
+  kTarget,  ///< nearest to Figure::target: NEES to its degrees of freedom, coverage to the Gaussian share
+};
+
+/// A column of summary.csv that is a number and is averaged over seeds.
+struct Figure {
+  std::string key;    ///< name of the column
+  std::string label;  ///< name for a person, without the unit
+  std::string unit;   ///< "m", "deg", "ms", "" when dimensionless
+  Ideal ideal = Ideal::kNone;
+  double target = 0;  ///< with Ideal::kTarget
+  int decimals = 3;   ///< that a person wants to read
+  /// NaN where the cell has no such value: a failed run, or an external trajectory without covariance or
+  /// times.
+  std::function<double(const CellResult&)> value;
+};
+
+/// The figures of a comparison: the fixed ones, and position and orientation RPE of every distance that
+/// occurs.
+[[nodiscard]] std::vector<Figure> ListFigures(const Comparison& comparison);
+
+/// Mean over the seeds that have the value; NaN when none has.
+struct Statistic {
+  int count = 0;
+  double mean = 0;
+  double standard_error = 0;  ///< of the mean, from the sample deviation; NaN with fewer than two values
+  double largest = std::numeric_limits<double>::quiet_NaN();
+};
+[[nodiscard]] Statistic ComputeStatistic(const std::vector<double>& values);
+
+/// One estimator on one sequence, over its seeds. Only cells with status ok enter the means: an estimator is
+/// not rewarded for a run it lost, so that `ok` of `cells` must be read beside every mean.
+struct AggregateRow {
+  std::string estimator;
+  std::string backend;
+  std::string label;  ///< the estimator's name, with its back end where two back ends share the name
+  std::string sequence;
+  int cells = 0, ok = 0, diverged = 0, not_initialized = 0, failed = 0;
+  std::vector<Statistic> figures;  ///< parallel to ListFigures
+  std::vector<bool> best;          ///< parallel to ListFigures: best of this sequence
+  /// 95 % bands of the mean NEES over `ok` runs, a run counted as ONE sample: errors of neighbouring frames
+  /// are strongly correlated, so this band is the widest that the chi-square assumption allows. NaN when ok
+  /// is 0.
+  std::pair<double, double> nees_pose_band, nees_ori_band, nees_pos_band;
+  /// Share of the instants at which the pose NEES averaged over the runs lies in its own 95 % band
+  /// (eval/comparison/nees_over_time.h): the sharper test. NaN without covariance.
+  double nees_inside_share = std::numeric_limits<double>::quiet_NaN();
+  std::string nees_verdict;  ///< of the mean pose NEES against its band; empty without covariance
+  /// Mean RMSE over that of the same estimator on Comparison::baseline; NaN without a baseline or a value.
+  double rmse_pos_ratio = std::numeric_limits<double>::quiet_NaN();
+  double rmse_ori_ratio = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Rows by sequence, then estimator, both in order of first appearance. `best` is marked among the rows of a
+/// sequence with the most runs that are ok, and only where at least two of them have the value; equal values
+/// are all marked. The batch estimate is a bound and is never marked.
+[[nodiscard]] std::vector<AggregateRow> Aggregate(const Comparison& comparison,
+                                                  const std::vector<Figure>& figures);
+
+/// Sequences and row labels in order of first appearance.
+[[nodiscard]] std::vector<std::string> ListSequences(const std::vector<AggregateRow>& rows);
+[[nodiscard]] std::vector<std::string> ListLabels(const std::vector<AggregateRow>& rows);
+
+/// Place of the figure `key` in the list; none when it is not there.
+[[nodiscard]] std::optional<size_t> FindFigure(const std::vector<Figure>& figures, const std::string& key);
+
+/// The cells of one aggregate row.
+struct CellGroup {
+  std::string label;
+  std::string sequence;
+  std::vector<const CellResult*> cells;
+};
+/// By sequence, then label, both in order of first appearance; they point into `comparison`.
+[[nodiscard]] std::vector<CellGroup> GroupCells(const Comparison& comparison);
+
+/// The label of a cell's aggregate row.
+[[nodiscard]] std::string LabelOf(const Comparison& comparison, const CellResult& cell);
+
+/// How far a value is from ideal; smaller is better, NaN without an ideal or a value.
+[[nodiscard]] double Badness(const Figure& figure, double value);
+
+}  // namespace alidade

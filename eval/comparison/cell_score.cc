@@ -1,0 +1,263 @@
+#include "eval/comparison/cell_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <unordered_map>
+
+#include "core/error_convention.h"
+#include "core/format.h"
+#include "eval/comparison/series_rows.h"
+#include "eval/comparison/sky_tracks.h"
+#include "eval/metrics/metrics.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Longer without GNSS is an outage.
+constexpr double kGnssSilenceS = 2;
+/// Regular points of a curve beyond these are not seen on a screen.
+constexpr size_t kMaxSeriesPoints = 600;
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) {
+    sum += value;
+  }
+  return values.empty() ? kUnknown : sum / static_cast<double>(values.size());
+}
+
+/// Nearest-rank percentile.
+double Percentile(std::vector<double> values, double share) {
+  if (values.empty()) {
+    return kUnknown;
+  }
+  const size_t rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const size_t index = std::min(values.size() - 1, rank == 0 ? 0 : rank - 1);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
+  return values[index];
+}
+
+void FillFigures(const Evaluation& evaluation, CellResult* cell) {
+  cell->duration_s = evaluation.duration_s;
+  cell->path_m = evaluation.path_m;
+  cell->rmse_pos_m = evaluation.unaligned.pos_m;
+  cell->rmse_ori_deg = evaluation.unaligned.ori_deg;
+  cell->ate_pos_m = evaluation.ate.pos_m;
+  cell->ate_ori_deg = evaluation.ate.ori_deg;
+  cell->rpe = evaluation.rpe;
+  if (evaluation.nees) {
+    cell->nees_pose = evaluation.nees->mean_pose;
+    cell->nees_ori = evaluation.nees->mean_orientation;
+    cell->nees_pos = evaluation.nees->mean_position;
+    cell->coverage_3sigma = evaluation.nees->coverage_3sigma;
+  }
+}
+
+/// One row a pair.
+CellSeries MakeSeries(const Evaluation& evaluation) {
+  CellSeries series;
+  const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
+  for (size_t i = 0; i < evaluation.pairs.size(); ++i) {
+    const StatePair& pair = evaluation.pairs[i];
+    series.time_s.push_back(
+        SecondsBetween(evaluation.pairs.front().estimate.stamp_ns, pair.estimate.stamp_ns));
+    series.truth_position.push_back(pair.truth.nav.p_WB);
+    series.position.push_back(aligned[i].estimate.nav.p_WB);
+    series.error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
+    series.sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
+    series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kUnknown);
+  }
+  return series;
+}
+
+/// A sensor's innovations in a frame's statistics.
+struct Innovations {
+  double FrameStatistics::*nis;
+  int FrameStatistics::*dof;
+
+  [[nodiscard]] double Ratio(const FrameStatistics& frame) const {
+    return frame.*dof > 0 ? frame.*nis / frame.*dof : kUnknown;
+  }
+};
+constexpr Innovations kVision = {&FrameStatistics::nis, &FrameStatistics::nis_dof};
+constexpr Innovations kGnss = {&FrameStatistics::gnss_nis, &FrameStatistics::gnss_nis_dof};
+
+/// What the frames of the pairs did to the estimator, and what an audit recorded.
+void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+  const bool audited = std::any_of(run.records.begin(), run.records.end(),
+                                   [](const RunRecord& record) { return record.observability.has_value(); });
+  std::unordered_map<TimeNs, const RunRecord*> by_stamp;
+  for (const RunRecord& record : run.records) {
+    by_stamp[record.estimate.stamp_ns] = &record;
+  }
+  for (const StatePair& pair : evaluation.pairs) {
+    const auto record = by_stamp.find(pair.estimate.stamp_ns);
+    const bool found = record != by_stamp.end();
+    series->backend_ms.push_back(found ? record->second->backend_ms : kUnknown);
+    series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
+    series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kUnknown);
+    series->nis_ratio.push_back(found ? kVision.Ratio(record->second->statistics) : kUnknown);
+    if (audited) {
+      const bool has = found && record->second->observability.has_value();
+      series->rank.push_back(has ? record->second->observability->rank : kUnknown);
+      series->yaw_leak.push_back(has ? record->second->observability->yaw_leak : kUnknown);
+      series->position_leak.push_back(has ? record->second->observability->position_leak : kUnknown);
+    }
+  }
+}
+
+/// The newest GNSS innovations of each pair: GNSS is slower than the camera, and what is thinned would miss
+/// them.
+void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+  double newest = kUnknown;
+  TimeNs newest_ns = 0;
+  auto record = run.records.begin();
+  for (const StatePair& pair : evaluation.pairs) {
+    const TimeNs stamp_ns = pair.estimate.stamp_ns;
+    for (; record != run.records.end() && record->estimate.stamp_ns <= stamp_ns; ++record) {
+      if (record->statistics.gnss_nis_dof > 0) {
+        newest = kGnss.Ratio(record->statistics);
+        newest_ns = record->estimate.stamp_ns;
+      }
+    }
+    series->gnss_nis_ratio.push_back(SecondsBetween(newest_ns, stamp_ns) <= kGnssSilenceS ? newest
+                                                                                          : kUnknown);
+  }
+  if (std::isnan(newest)) {
+    series->gnss_nis_ratio.clear();
+  }
+}
+
+InnovationSummary Summarize(const std::vector<RunRecord>& records, const Innovations& of) {
+  std::map<int, std::pair<double, double>> bands;  // of a sum of squares, by its number
+  std::vector<double> rows;
+  double nis = 0, dof = 0, inside = 0;
+  for (const RunRecord& record : records) {
+    const FrameStatistics& frame = record.statistics;
+    const int count = frame.*of.dof;
+    const double squared = frame.*of.nis;
+    if (count > 0) {
+      const auto [band, added] = bands.try_emplace(count);
+      band->second = added ? NeesBand(count, 1) : band->second;
+      inside += squared >= band->second.first && squared <= band->second.second ? 1 : 0;
+      nis += squared;
+      dof += count;
+      rows.push_back(count);
+    }
+  }
+  InnovationSummary summary;
+  if (!rows.empty()) {
+    summary.ratio = nis / dof;
+    summary.inside = inside / static_cast<double>(rows.size());
+    const double median = Percentile(rows, 0.5);
+    const std::pair<double, double> band = bands.at(static_cast<int>(median));
+    summary.band = {band.first / median, band.second / median};
+  }
+  return summary;
+}
+
+/// Root mean squares of predicted deviations.
+void FillPredicted(const RunResult& run, CellResult* cell) {
+  double ori = 0, pos = 0, filtering_ori = 0, filtering_pos = 0;
+  for (const RunRecord& record : run.records) {
+    ori += record.estimate.covariance.diagonal().head<3>().sum();
+    pos += record.estimate.covariance.diagonal().segment<3>(3).sum();
+    const Matrix6d filtering = record.filtering_covariance.value_or(Matrix6d::Constant(kUnknown));
+    filtering_ori += filtering.diagonal().head<3>().sum();
+    filtering_pos += filtering.diagonal().tail<3>().sum();
+  }
+  const double count = static_cast<double>(run.records.size());
+  const double degrees = 180 / std::numbers::pi;
+  cell->sigma_ori_deg = degrees * std::sqrt(ori / count);
+  cell->sigma_pos_m = std::sqrt(pos / count);
+  cell->filtering_sigma_ori_deg = degrees * std::sqrt(filtering_ori / count);
+  cell->filtering_sigma_pos_m = std::sqrt(filtering_pos / count);
+}
+
+void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult* run,
+           const EvaluationOptions& options, CellResult* cell) {
+  cell->align = std::string(ToString(options.alignment)) +
+                (options.align_share < 1 ? Format(" of the first %g %%", 100 * options.align_share) : "");
+  cell->frames = static_cast<int>(estimate.points.size());
+  if (estimate.points.empty()) {
+    return;
+  }
+  if (truth == nullptr) {
+    cell->message += (cell->message.empty() ? "" : "; ") + std::string("no ground truth to score against");
+    return;
+  }
+  const Result<Evaluation> evaluation = Evaluate(*truth, estimate, options);
+  if (!evaluation.ok()) {
+    cell->message += (cell->message.empty() ? "" : "; ") + evaluation.message();
+    cell->status = cell->status == "ok" ? "failed" : cell->status;
+    return;
+  }
+  FillFigures(*evaluation, cell);
+  CellSeries series = MakeSeries(*evaluation);
+  if (run != nullptr) {
+    FillRunSeries(*evaluation, *run, &series);
+    FillGnssInnovations(*evaluation, *run, &series);
+  }
+  cell->series = TakeRows(series, PickRows(series, kMaxSeriesPoints));
+}
+
+}  // namespace
+
+CellResult UnscoredCell() {
+  CellResult cell;
+  for (double* figure :
+       {&cell.duration_s, &cell.path_m, &cell.rmse_pos_m, &cell.rmse_ori_deg, &cell.ate_pos_m,
+        &cell.ate_ori_deg, &cell.nees_pose, &cell.nees_ori, &cell.nees_pos, &cell.coverage_3sigma,
+        &cell.frontend_ms, &cell.backend_ms, &cell.backend_ms_p95, &cell.features_per_frame}) {
+    *figure = kUnknown;
+  }
+  return cell;
+}
+
+void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,
+                     CellResult* cell) {
+  cell->status = "ok";
+  Score(truth, estimate, nullptr, options, cell);
+}
+
+void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOptions& options,
+              CellResult* cell) {
+  cell->status = StatusWord(run);
+  cell->message = run.status.message();
+  std::vector<double> frontend_ms, backend_ms, propagate_ms, update_ms, features;
+  double used = 0, gated = 0;
+  for (const RunRecord& record : run.records) {
+    frontend_ms.push_back(record.frontend_ms);
+    backend_ms.push_back(record.backend_ms);
+    propagate_ms.push_back(record.statistics.propagate_ms);
+    update_ms.push_back(record.statistics.update_ms);
+    features.push_back(record.statistics.features_used);
+    used += record.statistics.features_used;
+    gated += record.statistics.features_gated;
+  }
+  cell->frontend_ms = Mean(frontend_ms);
+  cell->backend_ms = Mean(backend_ms);
+  cell->propagate_ms = Mean(propagate_ms);
+  cell->update_ms = Mean(update_ms);
+  cell->innovations = Summarize(run.records, kVision);
+  cell->gnss_innovations = Summarize(run.records, kGnss);
+  cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
+  cell->features_per_frame = Mean(features);
+  cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;
+  cell->restarts = static_cast<int>(run.restarts.size());
+  if (run.calibration_error) {
+    cell->calibration_rotation_deg = run.calibration_error->rotation_rad * 180 / std::numbers::pi;
+    cell->calibration_translation_m = run.calibration_error->translation_m;
+    cell->calibration_time_ms = 1e3 * run.calibration_error->time_offset_s;
+  }
+  FillPredicted(run, cell);
+  constexpr size_t kSkyPoints = 24;
+  cell->sky = MakeSkyTracks(run.gnss_residuals, kSkyPoints);
+  Score(truth, TrajectoryOf(run), &run, options, cell);
+}
+
+}  // namespace alidade

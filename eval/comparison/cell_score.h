@@ -1,0 +1,20 @@
+#pragma once
+
+#include "eval/comparison/comparison.h"
+#include "eval/metrics/evaluate.h"
+
+namespace alidade {
+
+/// A cell whose figures are all unknown (NaN), so that a table shows nothing instead of a zero.
+[[nodiscard]] CellResult UnscoredCell();
+
+/// Fills the figures and the series of `cell` from an estimate and the truth. `truth` null: figures stay
+/// unknown and the message says so. Too few common stamps: status "failed" with the reason.
+void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,
+                     CellResult* cell);
+
+/// ScoreTrajectory, and status, frames, times and features of the run.
+void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOptions& options,
+              CellResult* cell);
+
+}  // namespace alidade

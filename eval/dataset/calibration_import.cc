@@ -1,0 +1,290 @@
+#include "eval/dataset/calibration_import.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "eval/files/strict_yaml.h"
+#include "eval/files/suggest.h"
+
+namespace alidade {
+namespace {
+
+using Node = YAML::Node;
+
+/// A scalar or nested list as it stands; of an OpenCV matrix its data.
+std::string Flow(const Node& node) {
+  if (!node.IsDefined()) {
+    return "''";
+  }
+  if (node.IsMap()) {
+    return Flow(node["data"]);
+  }
+  if (!node.IsSequence()) {
+    return node.IsScalar() ? node.Scalar() : "''";
+  }
+  std::string text;
+  for (const Node& entry : node) {
+    text += (text.empty() ? "" : ", ") + Flow(entry);
+  }
+  return "[" + text + "]";
+}
+
+/// yaml-cpp throws on questions to a node that is not there.
+bool IsMap(const Node& node) {
+  return node.IsDefined() && node.IsMap();
+}
+
+std::string Line(const std::string& key, const std::string& value) {
+  return key + ": " + value + "\n";
+}
+
+/// The values of these keys of a map as a list; the first one that is missing is named.
+Result<std::string> ListOf(const std::string& path, const Node& map, const std::vector<const char*>& keys) {
+  std::string text;
+  for (const char* key : keys) {
+    if (!IsMap(map) || !map[key].IsDefined()) {
+      return Status::Input(path + ": " + key + ": is missing");
+    }
+    text += (text.empty() ? "" : ", ") + Flow(map[key]);
+  }
+  return "[" + text + "]";
+}
+
+/// One collection of files on its way to a calibration. Values are written as a sensor.yaml, whose reader
+/// holds them against what a sensor may be.
+class Importer {
+ public:
+  explicit Importer(std::string camera) : camera_(std::move(camera)) {}
+
+  Status Add(const std::string& path, int depth = 0) {
+    constexpr int kMaxDepth = 3;  // a configuration names files; files that name each other end here
+    if (depth > kMaxDepth) {
+      return Status::Input(path + ": named by a file that it names itself");
+    }
+    const Result<Node> parsed = ParseYamlFile(path, StatusCode::kInput);
+    ALIDADE_RETURN_IF_ERROR(parsed.status());
+    const Node& root = *parsed;
+    if (!root.IsMap()) {
+      return Unknown(path);
+    }
+    bool known = false;
+    for (const char* key : {"relative_config_imu", "relative_config_imucam", "cam0_calib"}) {
+      if (root[key].IsDefined()) {
+        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+        ALIDADE_RETURN_IF_ERROR(Add((folder / Flow(root[key])).string(), depth + 1));
+        known = true;
+      }
+    }
+    if (IsMap(root[camera_])) {
+      ALIDADE_RETURN_IF_ERROR(AddChainCamera(path, root[camera_]));
+      known = true;
+    }
+    const Node imu = IsMap(root["imu0"]) ? root["imu0"] : root;
+    if (imu["gyroscope_noise_density"].IsDefined()) {
+      ALIDADE_RETURN_IF_ERROR(AddKalibrImu(path, imu));
+      known = true;
+    }
+    if (root["acc_n"].IsDefined()) {
+      ALIDADE_RETURN_IF_ERROR(AddVinsImu(path, root));
+      known = true;
+    }
+    if (root["model_type"].IsDefined()) {
+      ALIDADE_RETURN_IF_ERROR(AddVinsCamera(path, root));
+      known = true;
+    }
+    known = AddVinsExtrinsics(root) || known;
+    return known ? Status::Ok() : Unknown(path);
+  }
+
+  Result<ImportedCalibration> Finish(const std::string& path) {
+    if (!imu_text_.empty()) {
+      const Result<ImuSensor> imu = ParseImuSensor(imu_text_, imu_place_ + " as sensor.yaml");
+      ALIDADE_RETURN_IF_ERROR(imu.status());
+      calibration_.imu = *imu;
+    }
+    if (!camera_text_.empty()) {
+      if (extrinsics_.empty()) {
+        return Status::Input(camera_place_ +
+                             ": holds no extrinsics, expected T_cam_imu, T_imu_cam, body_T_cam0 or "
+                             "extrinsicRotation and extrinsicTranslation by that name");
+      }
+      const Result<CameraSensor> camera =
+          ParseCameraSensor(camera_text_ + extrinsics_ + offset_, camera_place_ + " as sensor.yaml");
+      ALIDADE_RETURN_IF_ERROR(camera.status());
+      calibration_.camera = *camera;
+    }
+    if (!calibration_.imu && !calibration_.camera) {
+      return Status::Input(path + ": holds neither the noise of an IMU nor a camera");
+    }
+    return calibration_;
+  }
+
+ private:
+  static Status Unknown(const std::string& path) {
+    return Status::Input(
+        path + ": found none of the keys of a calibration, expected one of Kalibr, OpenVINS or VINS");
+  }
+
+  Status AddChainCamera(const std::string& path, const Node& camera) {
+    if (!camera_text_.empty()) {
+      return Status::Ok();
+    }
+    camera_place_ = path + ": " + camera_;
+    const std::string lens = Flow(camera["distortion_model"]);
+    const std::string model = Flow(camera["camera_model"]);
+    const bool omni = model == "omni";
+    const std::string name = omni               ? "mei"
+                             : lens == "radtan" ? "radial-tangential"
+                             : lens == "equi"   ? "equidistant"
+                                                : lens;
+    if (model != "pinhole" && !(omni && lens == "radtan")) {
+      return Status::Input(camera_place_ + ": camera_model: found '" + model + "' with '" + lens +
+                           "', expected pinhole, or omni with radtan");
+    }
+    std::string intrinsics = Flow(camera["intrinsics"]);
+    std::string coefficients = Flow(camera["distortion_coeffs"]);
+    if (omni) {  // Kalibr: [xi, fu, fv, cu, cv]; xi is a coefficient here
+      const std::size_t comma = intrinsics.find(", ");
+      if (comma == std::string::npos || coefficients.size() < 2) {
+        return Status::Input(camera_place_ + ": intrinsics: found " + intrinsics +
+                             ", expected xi, fu, fv, cu, cv");
+      }
+      coefficients = intrinsics.substr(0, comma) + ", " + coefficients.substr(1);
+      intrinsics = "[" + intrinsics.substr(comma + 2);
+    }
+    camera_text_ = Line("resolution", Flow(camera["resolution"])) + Line("intrinsics", intrinsics) +
+                   Line("distortion_model", name) + Line("distortion_coefficients", coefficients);
+    for (const char* key : {"T_cam_imu", "T_imu_cam"}) {
+      if (camera[key].IsDefined()) {
+        extrinsics_ += Line(key, Flow(camera[key]));
+      }
+    }
+    if (camera["timeshift_cam_imu"].IsDefined()) {
+      offset_ = Line("time_offset_s", Flow(camera["timeshift_cam_imu"]));
+    }
+    return Status::Ok();
+  }
+
+  Status AddKalibrImu(const std::string& path, const Node& imu) {
+    if (!imu_text_.empty()) {
+      return Status::Ok();
+    }
+    imu_place_ = path;
+    for (const char* key : {"gyroscope_noise_density", "gyroscope_random_walk", "accelerometer_noise_density",
+                            "accelerometer_random_walk"}) {
+      imu_text_ += Line(key, Flow(imu[key]));
+    }
+    if (imu["update_rate"].IsDefined()) {
+      imu_text_ += Line("rate_hz", Flow(imu["update_rate"]));
+    }
+    return Status::Ok();
+  }
+
+  Status AddVinsImu(const std::string& path, const Node& root) {
+    if (!imu_text_.empty()) {
+      return Status::Ok();
+    }
+    imu_place_ = path;
+    calibration_.imu_is_per_sample = true;
+    imu_text_ = Line("gyroscope_noise_density", Flow(root["gyr_n"])) +
+                Line("gyroscope_random_walk", Flow(root["gyr_w"])) +
+                Line("accelerometer_noise_density", Flow(root["acc_n"])) +
+                Line("accelerometer_random_walk", Flow(root["acc_w"]));
+    return Status::Ok();
+  }
+
+  Status AddVinsCamera(const std::string& path, const Node& root) {
+    if (!camera_text_.empty()) {
+      return Status::Ok();
+    }
+    camera_place_ = path;
+    const std::string type = Flow(root["model_type"]);
+    const Node projection = root["projection_parameters"];
+    const Node distortion = root["distortion_parameters"];
+    Result<std::string> intrinsics = Status::Input("");
+    Result<std::string> coefficients = Status::Input("");
+    std::string model;
+    if (type == "PINHOLE") {
+      model = "radial-tangential";
+      intrinsics = ListOf(path, projection, {"fx", "fy", "cx", "cy"});
+      coefficients = ListOf(path, distortion, {"k1", "k2", "p1", "p2"});
+    } else if (type == "MEI") {
+      model = "mei";
+      intrinsics = ListOf(path, projection, {"gamma1", "gamma2", "u0", "v0"});
+      const Result<std::string> mirror = ListOf(path, root["mirror_parameters"], {"xi"});
+      const Result<std::string> lens = ListOf(path, distortion, {"k1", "k2", "p1", "p2"});
+      ALIDADE_RETURN_IF_ERROR(mirror.status());
+      ALIDADE_RETURN_IF_ERROR(lens.status());
+      coefficients = mirror->substr(0, mirror->size() - 1) + ", " + lens->substr(1);
+    } else if (type == "KANNALA_BRANDT") {
+      model = "equidistant";
+      intrinsics = ListOf(path, projection, {"mu", "mv", "u0", "v0"});
+      coefficients = ListOf(path, projection, {"k2", "k3", "k4", "k5"});
+    } else {
+      return Status::Input(path + ": model_type: found '" + type +
+                           "', expected PINHOLE, MEI or KANNALA_BRANDT");
+    }
+    ALIDADE_RETURN_IF_ERROR(intrinsics.status());
+    ALIDADE_RETURN_IF_ERROR(coefficients.status());
+    const Result<std::string> resolution = ListOf(path, root, {"image_width", "image_height"});
+    ALIDADE_RETURN_IF_ERROR(resolution.status());
+    camera_text_ = Line("resolution", *resolution) + Line("intrinsics", *intrinsics) +
+                   Line("distortion_model", model) + Line("distortion_coefficients", *coefficients);
+    return Status::Ok();
+  }
+
+  /// True when the file holds any; VINS keeps them apart from the camera's own file.
+  bool AddVinsExtrinsics(const Node& root) {
+    const std::string body_key = "body_T_" + camera_;
+    const Node rotation = root["extrinsicRotation"];
+    const Node translation = root["extrinsicTranslation"];
+    std::string text;
+    if (root[body_key].IsDefined()) {
+      text = Line("body_T_cam0", Flow(root[body_key]));
+    } else if (IsMap(rotation) && IsMap(translation) && rotation["data"].IsDefined() &&
+               translation["data"].IsDefined() && rotation["data"].size() == 9 &&
+               translation["data"].size() == 3) {
+      std::string rows;
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) {
+          rows += Flow(rotation["data"][3 * row + column]) + ", ";
+        }
+        rows += Flow(translation["data"][row]) + ", ";
+      }
+      text = Line("body_T_cam0", "[" + rows + "0, 0, 0, 1]");
+    }
+    if (!text.empty() && extrinsics_.empty()) {
+      extrinsics_ = text;
+      if (root["td"].IsDefined()) {
+        offset_ = Line("time_offset_s", Flow(root["td"]));
+      }
+    }
+    return !text.empty();
+  }
+
+  std::string camera_;
+  std::string imu_text_, imu_place_;
+  std::string camera_text_, camera_place_;
+  std::string extrinsics_, offset_;
+  ImportedCalibration calibration_;
+};
+
+}  // namespace
+
+Result<ImportedCalibration> ImportCalibration(const std::vector<std::string>& paths,
+                                              const std::string& camera) {
+  Importer importer(camera);
+  for (const std::string& path : paths) {
+    ALIDADE_RETURN_IF_ERROR(importer.Add(path));
+  }
+  return importer.Finish(paths.empty() ? std::string("--calibration") : paths.front());
+}
+
+ImuNoise DensitiesOf(const ImuNoise& per_sample, double rate_hz) {
+  const double root = std::sqrt(rate_hz);
+  return {per_sample.gyro_noise_density_radps_sqrthz / root,
+          per_sample.accel_noise_density_mps2_sqrthz / root, per_sample.gyro_random_walk_radps2_sqrthz / root,
+          per_sample.accel_random_walk_mps3_sqrthz / root};
+}
+
+}  // namespace alidade

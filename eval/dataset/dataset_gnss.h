@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "eval/dataset/dataset.h"
+
+namespace alidade {
+
+/// Reads gnss0: sensor.yaml and the RINEX files it names (default obs.rnx and nav.rnx) into the GNSS part of
+/// `dataset`. Keys of sensor.yaml:
+///
+///   p_BA            antenna in the body frame [m], three numbers; `unknown` counts as zero
+///   time_offset_s   t_imu = t_GPST + offset, default 0
+///   anchor_E        optional: ECEF origin [m] of the ENU frame that the truth stands in
+///   approximate_position_E  optional: ECEF [m], where positioning starts; default: the observations' header
+///   observations    file; navigation, orbits (SP3), clocks (CLK): file or list of files, in the folder
+///
+/// Other keys are remarks. Errors (kInput): a key's value, a file that cannot be read.
+Status ReadGnssFolder(const std::string& folder, Dataset* dataset);
+
+/// Writes sensor.yaml, obs.rnx and nav.rnx. The navigation file holds broadcast ephemerides alone.
+Status WriteGnssFolder(const Dataset& dataset, const std::string& folder);
+
+/// The text of sensor.yaml with the names of RINEX files that WriteGnssFolder gives them.
+[[nodiscard]] std::string GnssSensorYaml(const GnssReceiver& receiver,
+                                         const std::optional<Eigen::Vector3d>& approximate_position_E);
+
+/// What a sensor.yaml says about the receiver; the files it names do not matter.
+struct GnssSheet {
+  GnssReceiver receiver;
+  std::optional<Eigen::Vector3d> approximate_position_E;
+};
+/// kInput as ReadGnssFolder; `where` stands for the file in messages.
+Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& where);
+
+}  // namespace alidade

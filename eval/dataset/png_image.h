@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "core/status.h"
+#include "frontend/tracking/klt_tracker.h"
+
+namespace alidade {
+
+/// Writes an 8-bit grey PNG, atomically. Fast rather than small: noise does not compress. kOutput: cannot be
+/// written.
+Status WritePng(const GreyImage& image, const std::string& path);
+
+}  // namespace alidade

@@ -1,0 +1,172 @@
+#include "eval/files/csv.h"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "eval/files/input_file.h"
+
+namespace alidade {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view Trim(std::string_view text) {
+  const size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) {
+    return {};
+  }
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::string WithoutBlanks(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (kBlanks.find(c) == std::string_view::npos) {
+      result.push_back(c);
+    }
+  }
+  return result;
+}
+
+std::string HeaderText(const CsvColumn& column) {
+  std::string text(column.name);
+  if (!column.unit.empty()) {
+    text += " [" + std::string(column.unit) + "]";
+  }
+  return text;
+}
+
+bool HeaderMatches(std::string_view field, const CsvColumn& column) {
+  std::string found = WithoutBlanks(field.starts_with('#') ? field.substr(1) : field);
+  if (found.ends_with("[]")) {  // EuRoC's way to say that a quaternion has no unit
+    found.resize(found.size() - 2);
+  }
+  return found == WithoutBlanks(HeaderText(column)) || (!column.unit_required && found == column.name);
+}
+
+}  // namespace
+
+std::string Quoted(std::string_view text) {
+  constexpr size_t kLongest = 60;
+  return text.size() <= kLongest ? "'" + std::string(text) + "'"
+                                 : "'" + std::string(text.substr(0, kLongest)) + "...'";
+}
+
+CsvReader::CsvReader(std::string path, std::string content, char separator)
+    : path_(std::move(path)), content_(std::move(content)), separator_(separator) {
+  if (content_.starts_with("\xEF\xBB\xBF")) {
+    position_ = 3;
+  }
+}
+
+Result<CsvReader> CsvReader::Open(const std::string& path, char separator) {
+  Result<std::string> content = ReadWholeFile(path);
+  if (!content.ok()) {
+    return content.status();
+  }
+  if (content->find_first_not_of(" \t\r\n") == std::string::npos) {
+    return Status::Input(path + ": is empty");
+  }
+  return CsvReader(path, std::move(content).value(), separator);
+}
+
+bool CsvReader::NextRow() {
+  const std::string_view content(content_);
+  while (position_ < content.size()) {
+    const size_t end = std::min(content.find('\n', position_), content.size());
+    const std::string_view line = Trim(content.substr(position_, end - position_));
+    position_ = end + 1;
+    ++line_;
+    if (!line.empty()) {
+      Split(line);
+      return true;
+    }
+  }
+  return false;
+}
+
+void CsvReader::Split(std::string_view line) {
+  fields_.clear();
+  while (true) {
+    const size_t end = separator_ == ' ' ? line.find_first_of(" \t") : line.find(separator_);
+    fields_.push_back(Trim(line.substr(0, end)));
+    if (end == std::string_view::npos) {
+      return;
+    }
+    line.remove_prefix(end + 1);
+    if (separator_ == ' ') {
+      line = Trim(line);
+    }
+  }
+}
+
+std::string CsvReader::Place() const {
+  return path_ + ":" + std::to_string(line_);
+}
+
+Status CsvReader::Fault(size_t column, std::string_view name, const std::string& expected) const {
+  const std::string_view found = column < fields_.size() ? fields_[column] : std::string_view();
+  return Status::Input(Place() + ": column " + std::to_string(column + 1) + " (" + std::string(name) +
+                       "): found " + Quoted(found) + ", expected " + expected);
+}
+
+Status CsvReader::ExpectHeader(const std::vector<CsvColumn>& columns, bool allow_more) const {
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const std::string expected = HeaderText(columns[i]);
+    if (i >= fields_.size()) {
+      return Status::Input(Place() + ": header ends after column " + std::to_string(i) + ", expected '" +
+                           expected + "' next");
+    }
+    if (!HeaderMatches(fields_[i], columns[i])) {
+      return Status::Input(Place() + ": header column " + std::to_string(i + 1) + ": found " +
+                           Quoted(fields_[i]) + ", expected '" + (i == 0 ? "#" : "") + expected + "'");
+    }
+  }
+  if (!allow_more && fields_.size() > columns.size()) {
+    return Status::Input(Place() + ": header column " + std::to_string(columns.size() + 1) + ": found " +
+                         Quoted(fields_[columns.size()]) + ", expected the header to end after " +
+                         std::to_string(columns.size()) + " columns");
+  }
+  return Status::Ok();
+}
+
+Status CsvReader::ExpectColumns(size_t count) const {
+  if (fields_.size() == count) {
+    return Status::Ok();
+  }
+  const std::string found = std::to_string(fields_.size()) + " columns";
+  if (fields_.size() < count) {
+    return Status::Input(Place() + ": torn row: found " + found + ", expected " + std::to_string(count));
+  }
+  return Status::Input(Place() + ": row too long: found " + found + " (the first extra is " +
+                       Quoted(fields_[count]) + "), expected " + std::to_string(count));
+}
+
+Status CsvReader::ReadInt64(size_t column, std::string_view name, std::int64_t* value) const {
+  const std::string_view text = fields_[column];
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    return Fault(column, name, "an integer of at most 64 bits");
+  }
+  return Status::Ok();
+}
+
+Status CsvReader::ReadReal(size_t column, std::string_view name, double* value) const {
+  const std::string_view text = fields_[column];
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(*value)) {
+    return Fault(column, name, "a finite number");
+  }
+  return Status::Ok();
+}
+
+Status CsvReader::ReadStamp(bool first, TimeNs previous, TimeNs* stamp) const {
+  ALIDADE_RETURN_IF_ERROR(ReadInt64(0, "timestamp", stamp));
+  if (!first && *stamp <= previous) {
+    return Fault(0, "timestamp", "a stamp later than " + std::to_string(previous) + " of the row before");
+  }
+  return Status::Ok();
+}
+
+}  // namespace alidade

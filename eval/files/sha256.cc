@@ -1,0 +1,93 @@
+#include "eval/files/sha256.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "core/check.h"
+#include "eval/files/input_file.h"
+
+namespace alidade {
+
+struct Sha256::Context {
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> handle{EVP_MD_CTX_new(), &EVP_MD_CTX_free};
+};
+
+Sha256::Sha256() : context_(std::make_unique<Context>()) {
+  CHECK(context_->handle != nullptr && EVP_DigestInit_ex(context_->handle.get(), EVP_sha256(), nullptr) == 1);
+}
+
+Sha256::~Sha256() = default;
+
+void Sha256::Add(std::string_view bytes) {
+  CHECK_EQ(EVP_DigestUpdate(context_->handle.get(), bytes.data(), bytes.size()), 1);
+}
+
+std::string Sha256::Hex() {
+  unsigned char digest[EVP_MAX_MD_SIZE];
+  unsigned int size = 0;
+  CHECK_EQ(EVP_DigestFinal_ex(context_->handle.get(), digest, &size), 1);
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (unsigned int i = 0; i < size; ++i) {
+    text.push_back(kDigits[digest[i] >> 4]);
+    text.push_back(kDigits[digest[i] & 15]);
+  }
+  return text;
+}
+
+std::string Sha256Hex(std::string_view bytes) {
+  Sha256 hash;
+  hash.Add(bytes);
+  return hash.Hex();
+}
+
+namespace {
+
+/// Piece by piece: a bag may be larger than memory.
+Result<std::string> DigestOfFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> piece(std::size_t{1} << 20);
+  Sha256 hash;
+  while (file) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    hash.Add({piece.data(), static_cast<std::size_t>(file.gcount())});
+  }
+  return file.eof() ? Result<std::string>(hash.Hex()) : Status::Input(path + ": cannot be read");
+}
+
+}  // namespace
+
+Result<std::string> DigestOfFolder(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names;
+  std::error_code error;
+  if (fs::is_regular_file(folder, error)) {
+    return DigestOfFile(folder);
+  }
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->is_regular_file(error)) {
+      names.push_back(fs::path(it->path()).lexically_relative(folder).generic_string());
+    }
+  }
+  if (error) {
+    return Status::Input(folder + ": " + error.message() + ", expected a folder that can be read");
+  }
+  std::sort(names.begin(), names.end());
+  Sha256 hash;
+  for (const std::string& name : names) {
+    const Result<std::string> content = ReadWholeFile((fs::path(folder) / name).string());
+    if (!content.ok()) {
+      return content.status();
+    }
+    // Lengths keep a name from running into a content.
+    hash.Add(std::to_string(name.size()) + ":" + name + std::to_string(content->size()) + ":");
+    hash.Add(*content);
+  }
+  return hash.Hex();
+}
+
+}  // namespace alidade

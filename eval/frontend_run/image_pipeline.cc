@@ -1,0 +1,95 @@
+#include "eval/frontend_run/image_pipeline.h"
+
+#include "core/stopwatch.h"
+#include "eval/bag/dataset_images.h"
+#include "frontend/tracking/klt_tracker.h"
+#include "gnss/model/gnss_epoch.h"
+
+namespace alidade {
+
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::vector<TimeNs>& stamps,
+                                            const ImageSource& image_of, const FrontendConfig& config,
+                                            const PipelineOptions& options) {
+  KltTracker tracker(config, dataset.rig);
+  std::vector<TrackFrame> frames;
+  frames.reserve(stamps.size());
+  size_t next_imu = 0;
+  for (const TimeNs stamp_ns : stamps) {
+    if (options.stop != nullptr && options.stop->load()) {
+      return Status::Diverged("interrupted");
+    }
+    const TimeNs imu_stamp = stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s);
+    while (next_imu < dataset.imu.size() &&
+           (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
+      tracker.AddImu(dataset.imu[next_imu++]);
+    }
+    const Result<GreyImage> grey = image_of(frames.size());
+    ALIDADE_RETURN_IF_ERROR(grey.status());
+    Result<TrackFrame> frame = tracker.Track(stamp_ns, grey->pixels.data(), grey->width_px, grey->height_px);
+    ALIDADE_RETURN_IF_ERROR(frame.status());
+    frames.push_back(std::move(*frame));
+    if (options.statistics != nullptr) {
+      options.statistics->push_back(tracker.statistics());
+    }
+    if (options.progress) {
+      options.progress(frames.size(), stamps.size());
+    }
+  }
+  return frames;
+}
+
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
+                                            const PipelineOptions& options) {
+  if (dataset.images.empty()) {
+    return Status::Input(dataset.path + ": found no images, expected mav0/cam0/data.csv and its image files");
+  }
+  std::vector<TimeNs> stamps;
+  for (const ImageEntry& image : dataset.images) {
+    stamps.push_back(image.stamp_ns);
+  }
+  DatasetImages images;
+  std::vector<double> decode_ms;
+  const auto image_of = [&](size_t i) -> Result<GreyImage> {
+    const Stopwatch stopwatch;
+    Result<GreyImage> grey = images.Read(dataset.images[i]);
+    decode_ms.push_back(stopwatch.ElapsedMs());
+    return grey;
+  };
+  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, stamps, image_of, config, options);
+  for (size_t i = 0; frames.ok() && i < frames->size(); ++i) {
+    (*frames)[i].frontend_ms += decode_ms[i];
+  }
+  return frames;
+}
+
+Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
+                               const PipelineOptions& options) {
+  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras, dataset.gnss};
+  const bool no_camera = dataset.images.empty() && dataset.camera_stamps.empty();
+  if (!log.frames.empty() || (log.gnss != nullptr && no_camera)) {
+    return log;
+  }
+  if (dataset.images.empty()) {
+    return Status::Input(dataset.path + ": found neither tracks nor images" +
+                         (dataset.camera_stamps.empty() ? "" : " (camera stamps alone)") +
+                         ", expected mav0/cam0/tracks.csv or mav0/cam0/data.csv");
+  }
+  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, config, options);
+  if (!frames.ok()) {
+    return frames.status();
+  }
+  log.frames = std::move(*frames);
+  return log;
+}
+
+std::string DescribeLog(const MeasurementLog& log, const std::string& digest) {
+  size_t observations = 0;
+  for (const TrackFrame& frame : log.frames) {
+    observations += frame.observations.size();
+  }
+  return "measurement log " + digest + ": " + std::to_string(log.imu.size()) + " IMU samples, " +
+         std::to_string(log.frames.size()) + " frames, " + std::to_string(observations) + " observations" +
+         (log.gnss == nullptr ? "" : ", " + std::to_string(log.gnss->epochs.size()) + " GNSS epochs");
+}
+
+}  // namespace alidade

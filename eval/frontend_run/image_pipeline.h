@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "eval/dataset/dataset.h"
+#include "frontend/tracking/klt_tracker.h"
+
+namespace alidade {
+
+struct PipelineOptions {
+  const std::atomic<bool>* stop = nullptr;                               ///< polled once an image
+  std::function<void(size_t images_done, size_t images)> progress = {};  ///< by one thread at a time
+  int jobs = 1;  ///< threads that draw images, where they are drawn; they change no byte
+  std::vector<TrackerStatistics>* statistics = nullptr;  ///< one an image, where asked for
+};
+
+/// The image of a frame; called in order, once a frame.
+using ImageSource = std::function<Result<GreyImage>(size_t frame)>;
+
+/// Runs the front end over images, wherever they come from, with the gyroscope of `dataset` up to each. The
+/// tracks carry the wall time of tracking. Errors: those of the source; an image of the wrong size (kInput);
+/// kDiverged: stopped.
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::vector<TimeNs>& stamps,
+                                            const ImageSource& image_of, const FrontendConfig& config,
+                                            const PipelineOptions& options);
+
+/// Runs the front end over the images of a sequence, with the gyroscope up to each image. The tracks carry
+/// the wall time of decoding and tracking. Errors (kInput): no images; an image that cannot be read or has
+/// the wrong size; kDiverged: stopped.
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
+                                            const PipelineOptions& options);
+
+/// The measurement log of a sequence: its tracks as they are or, when it has images alone, those of the front
+/// end. kInput: it has neither.
+Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
+                               const PipelineOptions& options);
+
+/// "measurement log 3f2a...: 12000 IMU samples, 600 frames, 78421 observations".
+[[nodiscard]] std::string DescribeLog(const MeasurementLog& log, const std::string& digest);
+
+}  // namespace alidade

@@ -1,0 +1,128 @@
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "eval/metrics/metrics.h"
+
+namespace alidade {
+namespace {
+
+/// 3xN positions of one side of the pairs.
+Eigen::Matrix3Xd Positions(const std::vector<StatePair>& pairs, TrajectoryPoint StatePair::*side) {
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(pairs.size()));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    positions.col(static_cast<Eigen::Index>(i)) = (pairs[i].*side).nav.p_WB;
+  }
+  return positions;
+}
+
+/// Yaw about z that minimises sum |truth_c - R_z(yaw) estimate_c|^2 of centred positions: the cost is
+/// constant - 2 (cos(yaw) a + sin(yaw) b). Identity when all horizontal positions coincide.
+Eigen::Matrix3d BestYaw(const Eigen::Matrix3Xd& truth_centred, const Eigen::Matrix3Xd& estimate_centred) {
+  const Eigen::Matrix3d moment = truth_centred * estimate_centred.transpose();
+  const double a = moment(0, 0) + moment(1, 1);
+  const double b = moment(1, 0) - moment(0, 1);
+  return Eigen::AngleAxisd(std::atan2(b, a), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+/// Umeyama, "Least-squares estimation of transformation parameters between two point patterns", 1991.
+AlignmentTransform AlignUmeyama(const Eigen::Matrix3Xd& truth, const Eigen::Matrix3Xd& estimate,
+                                bool with_scale) {
+  const Eigen::Vector3d truth_mean = truth.rowwise().mean();
+  const Eigen::Vector3d estimate_mean = estimate.rowwise().mean();
+  // A cloud that is one point has no scale; dividing by its variance would give NaN.
+  const bool has_extent = (estimate.colwise() - estimate_mean).squaredNorm() > 0;
+  const Eigen::Matrix4d similarity = Eigen::umeyama(estimate, truth, with_scale && has_extent);
+
+  AlignmentTransform transform;
+  const double scale = similarity.topLeftCorner<3, 1>().norm();
+  if (with_scale && has_extent) {
+    transform.scale = scale;
+  }
+  // Scale 0 (the truth stands still) leaves no rotation to extract.
+  if (scale > 0) {
+    transform.rotation = similarity.topLeftCorner<3, 3>() / scale;
+  }
+  transform.translation = truth_mean - transform.scale * (transform.rotation * estimate_mean);
+  return transform;
+}
+
+}  // namespace
+
+AlignmentTransform AnchorAtFirst(const std::vector<StatePair>& pairs) {
+  const NavState& truth = pairs.front().truth.nav;
+  const NavState& estimate = pairs.front().estimate.nav;
+  const Eigen::Matrix3d turn = truth.R_WB * estimate.R_WB.transpose();
+  AlignmentTransform transform;
+  transform.rotation = Eigen::AngleAxisd(std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1)),
+                                         Eigen::Vector3d::UnitZ())
+                           .toRotationMatrix();
+  transform.translation = truth.p_WB - transform.rotation * estimate.p_WB;
+  return transform;
+}
+
+std::optional<Alignment> ParseAlignment(std::string_view name) {
+  for (const Alignment alignment :
+       {Alignment::kNone, Alignment::kPos, Alignment::kPosYaw, Alignment::kSe3, Alignment::kSim3}) {
+    if (name == ToString(alignment)) {
+      return alignment;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string_view ToString(Alignment alignment) {
+  switch (alignment) {
+    case Alignment::kNone:
+      return "none";
+    case Alignment::kPos:
+      return "pos";
+    case Alignment::kPosYaw:
+      return "posyaw";
+    case Alignment::kSe3:
+      return "se3";
+    case Alignment::kSim3:
+      return "sim3";
+  }
+  return "none";
+}
+
+AlignmentTransform Align(const std::vector<StatePair>& pairs, Alignment alignment) {
+  AlignmentTransform transform;
+  if (pairs.empty() || alignment == Alignment::kNone) {
+    return transform;
+  }
+  const Eigen::Matrix3Xd truth = Positions(pairs, &StatePair::truth);
+  const Eigen::Matrix3Xd estimate = Positions(pairs, &StatePair::estimate);
+  if (alignment == Alignment::kSe3 || alignment == Alignment::kSim3) {
+    return AlignUmeyama(truth, estimate, alignment == Alignment::kSim3);
+  }
+  const Eigen::Vector3d truth_mean = truth.rowwise().mean();
+  const Eigen::Vector3d estimate_mean = estimate.rowwise().mean();
+  if (alignment == Alignment::kPosYaw) {
+    transform.rotation = BestYaw(truth.colwise() - truth_mean, estimate.colwise() - estimate_mean);
+  }
+  transform.translation = truth_mean - transform.rotation * estimate_mean;
+  return transform;
+}
+
+std::vector<StatePair> ApplyAlignment(const std::vector<StatePair>& pairs,
+                                      const AlignmentTransform& transform) {
+  // phi is a perturbation in the body frame and stays; dp lives in the world and turns with it.
+  Matrix6d chart_change = Matrix6d::Identity();
+  chart_change.bottomRightCorner<3, 3>() = transform.scale * transform.rotation;
+
+  std::vector<StatePair> aligned = pairs;
+  for (StatePair& pair : aligned) {
+    NavState& nav = pair.estimate.nav;
+    const Eigen::Matrix3d rotation = transform.rotation * nav.R_WB;
+    const Eigen::Vector3d position =
+        transform.scale * (transform.rotation * nav.p_WB) + transform.translation;
+    const Eigen::Vector3d velocity = transform.scale * (transform.rotation * nav.v_WB);
+    const Matrix6d covariance = chart_change * pair.estimate.covariance * chart_change.transpose();
+    nav = {rotation, position, velocity};
+    pair.estimate.covariance = covariance;
+  }
+  return aligned;
+}
+
+}  // namespace alidade

@@ -1,0 +1,72 @@
+#include "eval/metrics/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace alidade {
+namespace {
+
+/// The pairs with all rotations the identity: their relative errors are then those of displacements in the
+/// world.
+std::vector<StatePair> WithoutOrientation(std::vector<StatePair> pairs) {
+  for (StatePair& pair : pairs) {
+    pair.truth.nav.R_WB.setIdentity();
+    pair.estimate.nav.R_WB.setIdentity();
+  }
+  return pairs;
+}
+
+/// At least one.
+std::vector<StatePair> FirstShare(const std::vector<StatePair>& pairs, double share) {
+  const double count = std::ceil(share * static_cast<double>(pairs.size()));
+  return {pairs.begin(), pairs.begin() + std::max(std::ptrdiff_t{1}, static_cast<std::ptrdiff_t>(count))};
+}
+
+void ForgetOrientation(Evaluation* evaluation) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  evaluation->unaligned.ori_deg = evaluation->ate.ori_deg = kUnknown;
+  for (RpeResult& rpe : evaluation->rpe) {
+    rpe.ori_rmse_deg = kUnknown;
+  }
+}
+
+}  // namespace
+
+Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
+                            const EvaluationOptions& options) {
+  Result<std::vector<StatePair>> pairs = Associate(truth, estimate, options.association);
+  if (!pairs.ok()) {
+    return pairs.status();
+  }
+  const bool oriented = truth.has_orientation && estimate.has_orientation;
+  if (options.anchor_at_first && !oriented) {
+    return Status::Usage("anchor_at_first: needs attitudes, and one of the trajectories has none");
+  }
+  Evaluation evaluation;
+  evaluation.options = options;
+  evaluation.truth_rows = truth.points.size();
+  evaluation.estimate_rows = estimate.points.size();
+  evaluation.pairs = std::move(pairs).value();
+  if (options.anchor_at_first) {
+    evaluation.pairs = ApplyAlignment(evaluation.pairs, AnchorAtFirst(evaluation.pairs));
+  }
+  evaluation.duration_s =
+      SecondsBetween(evaluation.pairs.front().estimate.stamp_ns, evaluation.pairs.back().estimate.stamp_ns);
+  evaluation.path_m = PathLength(evaluation.pairs);
+
+  evaluation.transform = Align(FirstShare(evaluation.pairs, options.align_share), options.alignment);
+  const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
+  evaluation.unaligned = ComputeAte(evaluation.pairs);
+  evaluation.ate = ComputeAte(aligned);
+  evaluation.rpe = ComputeRpe(oriented ? aligned : WithoutOrientation(aligned), options.rpe_distances_m);
+  if (!oriented) {
+    ForgetOrientation(&evaluation);
+  } else if (estimate.has_covariance) {
+    evaluation.nees = ComputeNees(evaluation.pairs);
+  }
+  return evaluation;
+}
+
+}  // namespace alidade

@@ -1,0 +1,87 @@
+#include <Eigen/Cholesky>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+
+#include "eval/metrics/metrics.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Smallest pivot of a correlation matrix taken as regular; below it the inverse is rounding noise.
+constexpr double kMinimumPivot = 1e-12;
+
+/// error^T covariance^-1 error, NaN when the covariance is not positive definite. Solved for the correlation
+/// matrix, so that radians and metres of very different size do not look singular.
+template <int N>
+double NormalizedSquare(const Eigen::Matrix<double, N, 1>& error,
+                        const Eigen::Matrix<double, N, N>& covariance) {
+  if (!covariance.allFinite() || !error.allFinite() || covariance.diagonal().minCoeff() <= 0) {
+    return kNaN;
+  }
+  const Eigen::Matrix<double, N, 1> sigma = covariance.diagonal().cwiseSqrt();
+  const Eigen::Matrix<double, N, N> correlation =
+      sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  const Eigen::LDLT<Eigen::Matrix<double, N, N>> factor(correlation);
+  if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < kMinimumPivot) {
+    return kNaN;
+  }
+  const Eigen::Matrix<double, N, 1> whitened = error.cwiseQuotient(sigma);
+  return whitened.dot(factor.solve(whitened));
+}
+
+/// Mean of the values that are not NaN; NaN when there is none.
+double MeanOfFinite(const std::vector<double>& values) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (std::isfinite(value)) {
+      sum += value;
+      ++count;
+    }
+  }
+  return count == 0 ? kNaN : sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+NeesResult ComputeNees(const std::vector<StatePair>& pairs) {
+  NeesResult result;
+  std::size_t inside = 0, components = 0;
+  for (const StatePair& pair : pairs) {
+    const NavState& estimate = pair.estimate.nav;
+    const Matrix6d& covariance = pair.estimate.covariance;
+    Vector6d error;
+    error << so3::Log(estimate.R_WB.transpose() * pair.truth.nav.R_WB), pair.truth.nav.p_WB - estimate.p_WB;
+
+    result.pose.push_back(NormalizedSquare<6>(error, covariance));
+    result.orientation.push_back(NormalizedSquare<3>(error.head<3>(), covariance.topLeftCorner<3, 3>()));
+    result.position.push_back(NormalizedSquare<3>(error.tail<3>(), covariance.bottomRightCorner<3, 3>()));
+    if (std::isfinite(result.pose.back())) {
+      const Vector6d sigma = covariance.diagonal().cwiseSqrt();
+      inside += static_cast<std::size_t>((error.array().abs() <= 3 * sigma.array()).count());
+      components += 6;
+    }
+  }
+  result.mean_pose = MeanOfFinite(result.pose);
+  result.mean_orientation = MeanOfFinite(result.orientation);
+  result.mean_position = MeanOfFinite(result.position);
+  result.coverage_3sigma =
+      components == 0 ? kNaN : static_cast<double>(inside) / static_cast<double>(components);
+  return result;
+}
+
+std::pair<double, double> NeesBand(int dof, double samples, double probability) {
+  const double total_dof = dof * samples;
+  if (!(total_dof > 0) || !std::isfinite(total_dof) || !(probability > 0 && probability < 1)) {
+    return {kNaN, kNaN};
+  }
+  // The sum of the samples is chi-square with samples * dof degrees of freedom; the mean divides it.
+  const boost::math::chi_squared sum(total_dof);
+  const double tail = (1 - probability) / 2;
+  return {boost::math::quantile(sum, tail) / samples,
+          boost::math::quantile(boost::math::complement(sum, tail)) / samples};
+}
+
+}  // namespace alidade

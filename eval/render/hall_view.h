@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/navigation_state.h"
+#include "eval/render/render_hall.h"
+
+namespace alidade {
+
+/// A rectangle of pixels and a cone around all of its rays.
+struct ViewTile {
+  static constexpr int kSidePx = 16;
+
+  int x = 0, y = 0;                                 ///< upper left pixel
+  Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();  ///< of the cone, camera frame
+  float cosine = 1, sine = 0;                       ///< of the cone's half angle
+
+  /// The tile at (x, y); the cone holds the unit vectors `rays` (zero: no ray).
+  static ViewTile Around(int x, int y, const std::vector<Eigen::Vector3f>& rays);
+};
+
+/// What a ray met.
+struct HallHit {
+  const Surface* surface = nullptr;
+  float distance = 0;      ///< [m] along the ray
+  float cosine = 1;        ///< of the angle between ray and normal
+  float x_m = 0, y_m = 0;  ///< place on the surface
+};
+
+/// The hall as seen from one place: everything relative to the camera, what lies behind it left out.
+class HallView {
+ public:
+  /// A box that rays of a tile may meet.
+  struct Candidate {
+    float nearest = 0;  ///< no point of it is nearer [m]
+    int box = 0;
+  };
+
+  /// field: a cone around all rays of the camera.
+  HallView(const Hall& hall, const Pose& T_WC, const ViewTile& field);
+
+  /// The boxes in the tile's cone, nearest first.
+  void ListCandidates(const ViewTile& tile, std::vector<Candidate>* candidates) const;
+  /// What the ray along the unit vector `ray_C` (camera frame) meets first: room, candidate or column.
+  [[nodiscard]] HallHit Cast(const Eigen::Vector3f& ray_C, const std::vector<Candidate>& candidates) const;
+
+ private:
+  struct Box {
+    Eigen::Vector3f low, high;  ///< from the camera, axes of W
+    Eigen::Vector3f centre;     ///< of the sphere around it
+    float distance = 0, radius = 0;
+    const HallBox* box = nullptr;
+  };
+  struct Column {
+    float x = 0, y = 0;  ///< axis, from the camera
+    float excess = 0;    ///< squared distance less squared radius
+    const HallColumn* column = nullptr;
+  };
+
+  /// Enters a plane of `box`: place and angle.
+  [[nodiscard]] HallHit OnFace(const HallBox& box, int axis, bool high, float distance,
+                               const Eigen::Vector3f& direction) const;
+
+  const Hall& hall_;
+  Eigen::Matrix3f R_WC_;
+  Eigen::Vector3f origin_;  ///< of the camera in the hall
+  Eigen::Vector3f room_low_, room_high_;
+  std::vector<Box> boxes_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace alidade

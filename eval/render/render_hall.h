@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/status.h"
+#include "eval/simulation/continuous_trajectory.h"
+#include "eval/simulation/simulator.h"
+
+namespace alidade {
+
+/// How one face looks.
+struct Surface {
+  int texture = 0;                                     ///< a TextureKind
+  Eigen::Vector2f offset_m = Eigen::Vector2f::Zero();  ///< so that no two faces show the same piece
+  float shade = 1;                                     ///< light that falls on it
+};
+
+/// An axis-aligned box. Faces: x low, x high, y low, y high, z low, z high.
+struct HallBox {
+  Eigen::Vector3f low = Eigen::Vector3f::Zero();
+  Eigen::Vector3f high = Eigen::Vector3f::Zero();
+  std::array<Surface, 6> faces;
+};
+
+/// A round column from floor to ceiling.
+struct HallColumn {
+  Eigen::Vector2f centre = Eigen::Vector2f::Zero();
+  float radius = 0;
+  Surface surface;
+};
+
+/// A closed hall: walls, floor and ceiling seen from inside (`room`), boxes and columns in it. Coordinates
+/// are metres from `origin_W` along the axes of W, so that single precision suffices wherever the hall
+/// stands.
+struct Hall {
+  Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();
+  HallBox room;
+  std::vector<HallBox> boxes;
+  std::vector<HallColumn> columns;
+
+  /// Distance [m] along the unit vector `direction_W` from `p_W`, inside the hall, to the first surface. In
+  /// double precision and without the renderer's short cuts: what its images are tested against.
+  [[nodiscard]] double Distance(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W) const;
+};
+
+/// A hall around the path of the body: its bounding box extended by room_margin_m. Boxes on the floor, panels
+/// on the walls, beams under the ceiling and columns are thrown at the densities of config.render; what would
+/// be nearer to the path than landmark_min_distance_m is thrown again, a few times. Errors (kConfig): the
+/// margin is smaller than that distance; more objects than 2e4.
+Result<Hall> MakeHall(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,
+                      std::uint64_t seed);
+
+}  // namespace alidade

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/frontend_run/image_pipeline.h"
+#include "eval/render/hall_renderer.h"
+#include "eval/simulation/simulator.h"
+
+namespace alidade {
+
+/// What the camera of a simulated sequence sees: one image a camera stamp, of the hall around its path. The
+/// exposure's middle is the stamp plus the camera's time offset.
+class RenderedSequence {
+ public:
+  /// Errors: those of MakeHall.
+  static Result<RenderedSequence> Create(const SimulatorConfig& config, const Simulation& simulation,
+                                         unsigned seed);
+
+  [[nodiscard]] const std::vector<TimeNs>& stamps() const { return stamps_; }
+  [[nodiscard]] const Hall& hall() const { return renderer_.hall(); }
+  /// Text that differs whenever the images or the gyroscope beside them may: keys, seed, lens, motion, IMU.
+  [[nodiscard]] const std::string& Fingerprint() const { return fingerprint_; }
+  /// Any frame, from any thread.
+  [[nodiscard]] GreyImage Frame(std::size_t index) const;
+
+ private:
+  RenderedSequence(const SimulatorConfig& config, const Simulation& simulation, Hall hall, unsigned seed);
+
+  RenderConfig config_;
+  std::string fingerprint_;
+  std::shared_ptr<const ContinuousTrajectory> motion_;
+  TimeNs motion_start_ns_;
+  RigCalibration rig_;
+  std::vector<TimeNs> stamps_;
+  HallRenderer renderer_;
+};
+
+/// Writes the images as mav0/cam0/data/<stamp>.png below `path`, and the list mav0/cam0/data.csv last.
+/// Errors: kOutput; kDiverged: stopped.
+Status WriteRenderedImages(const RenderedSequence& sequence, const std::string& path,
+                           const PipelineOptions& options);
+
+/// Runs the front end over the images without writing them. frontend_ms is the tracker's time alone.
+Result<std::vector<TrackFrame>> TrackRenderedImages(const RenderedSequence& sequence, const Dataset& dataset,
+                                                    const FrontendConfig& config,
+                                                    const PipelineOptions& options);
+
+}  // namespace alidade

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "eval/comparison/comparison.h"
+
+namespace alidade {
+
+/// In which formats `compare` writes figures for papers.
+struct FigureFormats {
+  bool svg = false;
+  bool pdf = false;  ///< made of the SVG by rsvg-convert
+};
+
+/// "svg", "pdf" or both, separated by a comma; empty: none. kUsage: another word, or pdf where the program
+/// rsvg-convert (Debian package librsvg2-bin) is not found: said before anything runs.
+Result<FigureFormats> ParseFigureFormats(const std::string& text);
+
+/// Writes the figures of eval/report/paper_figures.h into `folder`/figures. Equal comparisons give equal
+/// bytes. kOutput: a file could not be written, or rsvg-convert failed.
+Status WriteFigureFiles(const Comparison& comparison, const FigureFormats& formats,
+                        const std::string& folder);
+
+}  // namespace alidade

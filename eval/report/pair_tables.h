@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/comparison/paired.h"
+#include "eval/report/table_layout.h"
+
+namespace alidade {
+
+/// What the titles of these tables start with.
+inline constexpr const char* kPairTitle = "Pairs: ";
+
+/// One matrix a sequence and figure of Comparison::pair_figures: estimators down and across, row minus column
+/// with half of the 95 % interval and the verdict on the row. With Comparison::pair_across one matrix a
+/// figure, over the sequences. A sequence whose pairs are too few to judge gets none.
+[[nodiscard]] std::vector<TextTable> LayOutPairTables(const Comparison& comparison,
+                                                      const std::vector<Figure>& figures,
+                                                      const std::string& plus_minus);
+
+/// pairs.csv: every pair of every figure (docs/plans.md lists the columns).
+[[nodiscard]] std::string PairsCsv(const Comparison& comparison, const std::vector<Figure>& figures);
+
+}  // namespace alidade

@@ -1,0 +1,277 @@
+#include "eval/report/report_data.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "eval/comparison/aggregate.h"
+#include "eval/comparison/efficiency.h"
+#include "eval/comparison/nees_over_time.h"
+#include "eval/comparison/paired.h"
+#include "eval/report/report_json.h"
+#include "eval/report/report_series.h"
+
+namespace alidade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
+  Json values = Json::array();
+  for (const Figure& figure : figures) {
+    values.push_back(RoundedJson(figure.value(cell), 6));
+  }
+  return values;
+}
+
+/// Cells whose sky the page holds: of each estimator's first seed, since it is the same for all; of a large
+/// comparison one a sequence, for its size.
+std::set<const CellResult*> CellsWithSky(const Comparison& comparison) {
+  constexpr size_t kMostSkies = 12;
+  std::map<std::pair<std::string, std::string>, const CellResult*> by_estimator, by_sequence;
+  for (const CellResult& cell : comparison.cells) {
+    if (!cell.sky.empty()) {
+      const CellResult*& kept = by_estimator[{cell.sequence, LabelOf(comparison, cell)}];
+      kept = kept == nullptr || cell.seed < kept->seed ? &cell : kept;
+      by_sequence.try_emplace({cell.sequence, ""}, &cell);
+    }
+  }
+  std::set<const CellResult*> cells;
+  for (const auto& [name, cell] : by_estimator.size() > kMostSkies ? by_sequence : by_estimator) {
+    cells.insert(cell);
+  }
+  return cells;
+}
+
+Json InnovationJson(const InnovationSummary& of) {
+  return RoundedJson({of.ratio, of.inside, of.band.first, of.band.second}, 4);
+}
+
+/// What the tables and box plots need of a run.
+Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell) {
+  Json rpe = Json::array();
+  for (const RpeResult& result : cell.rpe) {
+    rpe.push_back({{"d", result.distance_m},
+                   {"n", result.count},
+                   {"q", RoundedJson(BoxQuantiles(result.pos_errors_m), 4)}});
+  }
+  return {{"estimator", LabelOf(comparison, cell)},
+          {"sequence", cell.sequence},
+          {"seed", cell.seed},
+          {"status", cell.status},
+          {"message", cell.message},
+          {"digest", cell.input_digest},
+          {"frames", cell.frames},
+          {"duration", RoundedJson(cell.duration_s, 6)},
+          {"path", RoundedJson(cell.path_m, 6)},
+          {"align", cell.align},
+          {"figures", FigureValues(figures, cell)},
+          {"stages", RoundedJson({cell.frontend_ms, cell.propagate_ms, cell.update_ms, cell.backend_ms}, 4)},
+          {"nis", InnovationJson(cell.innovations)},
+          {"gnss_nis", InnovationJson(cell.gnss_innovations)},
+          {"rpe", rpe}};
+}
+
+Json FigureData(const Figure& figure) {
+  const char* ideal = figure.ideal == Ideal::kLow      ? "low"
+                      : figure.ideal == Ideal::kTarget ? "target"
+                                                       : "none";
+  return {{"key", figure.key}, {"label", figure.label},   {"unit", figure.unit},
+          {"ideal", ideal},    {"target", figure.target}, {"decimals", figure.decimals}};
+}
+
+Json AggregateData(const AggregateRow& row) {
+  Json means = Json::array();
+  Json errors = Json::array();
+  Json best = Json::array();
+  for (size_t i = 0; i < row.figures.size(); ++i) {
+    means.push_back(RoundedJson(row.figures[i].mean, 6));
+    errors.push_back(RoundedJson(row.figures[i].standard_error, 3));
+    best.push_back(row.best[i] ? 1 : 0);
+  }
+  return {{"estimator", row.label},
+          {"backend", row.backend},
+          {"sequence", row.sequence},
+          {"cells", row.cells},
+          {"ok", row.ok},
+          {"diverged", row.diverged},
+          {"not_initialized", row.not_initialized},
+          {"failed", row.failed},
+          {"nees_verdict", row.nees_verdict},
+          {"nees_inside", RoundedJson(row.nees_inside_share, 4)},
+          {"means", means},
+          {"errors", errors},
+          {"best", best}};
+}
+
+/// Of each pair: [sequence, figure, first, second (indices), pairs, lost, difference, half of its interval,
+/// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference; p-value]; sequence -1 is all
+/// of them. Pairs that are too few to judge are left out.
+Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
+              const std::vector<AggregateRow>& rows) {
+  const std::vector<std::string> sequences = ListSequences(rows);
+  const std::vector<std::string> labels = ListLabels(rows);
+  const auto place = [](const std::vector<std::string>& names, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  };
+  Json list = Json::array();
+  std::vector<PairedDifference> pairs = ComparePairs(comparison, figures);
+  if (!comparison.pair_across && sequences.size() > 1) {  // for the column of means
+    const std::vector<PairedDifference> across = PoolSequences(pairs, figures);
+    pairs.insert(pairs.end(), across.begin(), across.end());
+  }
+  for (const PairedDifference& pair : pairs) {
+    const PairedT& test = pair.difference;
+    if (pair.verdict == PairVerdict::kTooFew) {
+      continue;
+    }
+    const int verdict = pair.verdict == PairVerdict::kNoDifference ? 0 : test.mean < 0 ? -1 : 1;
+    list.push_back({place(sequences, pair.sequence), pair.figure, place(labels, pair.first),
+                    place(labels, pair.second), test.count, pair.only_first + pair.only_second + pair.neither,
+                    RoundedJson(test.mean, 4), RoundedJson(0.5 * (test.high - test.low), 3), verdict,
+                    RoundedJson(test.p_value, 2)});
+  }
+  return list;
+}
+
+/// `ratios`: bound over achieved, orientation and position each, as the page's headings.
+Json EfficiencyData(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const Efficiency& entry : ComputeEfficiency(comparison)) {
+    Json ratios = Json::array();
+    for (const Ratio& ratio : {entry.achieved, entry.smoothed, entry.filtered}) {
+      ratios.push_back(RoundedJson(ratio.ori, 4));
+      ratios.push_back(RoundedJson(ratio.pos, 4));
+    }
+    list.push_back({{"estimator", entry.label},
+                    {"sequence", entry.sequence},
+                    {"pairs", entry.pairs},
+                    {"ratios", ratios}});
+  }
+  return list;
+}
+
+Json FrontendData(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const FrontendSummary& front : comparison.frontends) {
+    list.push_back({{"sequence", front.sequence},
+                    {"seed", front.seed},
+                    {"images", front.images},
+                    {"features", RoundedJson(front.features_per_frame, 4)},
+                    {"mean_length", RoundedJson(front.mean_length, 4)},
+                    {"median_length", RoundedJson(front.median_length, 4)},
+                    {"lost", RoundedJson(100 * front.lost_share, 4)},
+                    {"rejected", RoundedJson(100 * front.rejected_share, 4)},
+                    {"thinned", RoundedJson(100 * front.thinned_share, 4)},
+                    {"mean_ms", RoundedJson(front.mean_ms, 4)},
+                    {"p95_ms", RoundedJson(front.p95_ms, 4)}});
+  }
+  return list;
+}
+
+Json NeesData(const Comparison& comparison, int most) {
+  Json list = Json::array();
+  for (const NeesCurve& curve : AverageNees(comparison)) {
+    const NeesOverTime& average = curve.average;
+    if (average.runs.empty() || *std::max_element(average.runs.begin(), average.runs.end()) < 2) {
+      continue;  // the run's own series says it
+    }
+    std::vector<double> times;
+    Json mean = Json::array();
+    const size_t step = average.mean.size() / static_cast<size_t>(most) + 1;
+    for (size_t i = 0; i < average.mean.size(); i += step) {
+      times.push_back(average.time_s[i]);
+      mean.push_back(RoundedJson(average.mean[i], 3));
+    }
+    list.push_back({{"estimator", curve.label},
+                    {"sequence", curve.sequence},
+                    {"t", PackedJson(times, 1e-3)},
+                    {"nees", mean},
+                    {"inside", RoundedJson(average.share_inside, 4)}});
+  }
+  return list;
+}
+
+/// 95 % bands of the mean pose NEES of 1, 2, ... runs.
+Json NeesBands(int most_runs) {
+  Json bands = Json::array();
+  for (int runs = 1; runs <= most_runs; ++runs) {
+    const auto [low, high] = NeesBand(6, runs);
+    bands.push_back({RoundedJson(low, 5), RoundedJson(high, 5)});
+  }
+  return bands;
+}
+
+/// All but what the plots alone need.
+Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures,
+                const std::vector<AggregateRow>& rows) {
+  Json data = {{"title", comparison.title},
+               {"command", comparison.command},
+               {"not_run", comparison.notes},
+               {"sequences", ListSequences(rows)},
+               {"estimators", ListLabels(rows)}};
+  data["figures"] = Json::array();
+  for (const Figure& figure : figures) {
+    data["figures"].push_back(FigureData(figure));
+  }
+  data["aggregate"] = Json::array();
+  for (const AggregateRow& row : rows) {
+    data["aggregate"].push_back(AggregateData(row));
+  }
+  data["pairs"] = PairData(comparison, figures, rows);
+  data["efficiency"] = EfficiencyData(comparison);
+  data["frontends"] = FrontendData(comparison);
+  data["references"] = Json::array();
+  for (const ReferenceFigure& reference : comparison.references) {
+    data["references"].push_back({{"source", reference.source},
+                                  {"estimator", reference.estimator},
+                                  {"sequence", reference.sequence},
+                                  {"figures", reference.figures}});
+  }
+  data["cells"] = Json::array();
+  for (const CellResult& cell : comparison.cells) {
+    data["cells"].push_back(CellData(comparison, figures, cell));
+  }
+  return data;
+}
+
+}  // namespace
+
+std::string ReportJson(const Comparison& comparison) {
+  const std::vector<Figure> figures = ListFigures(comparison);
+  return TablesData(comparison, figures, Aggregate(comparison, figures))
+             .dump(1, ' ', false, Json::error_handler_t::replace) +
+         "\n";
+}
+
+std::string ReportData(const Comparison& comparison) {
+  const std::vector<Figure> figures = ListFigures(comparison);
+  const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
+  const bool audited = std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                                   [](const CellResult& cell) { return !cell.series.rank.empty(); });
+  const int most = PointsPerSeries(comparison.cells.size(), audited);
+  Json data = TablesData(comparison, figures, rows);
+  data["points"] = most;
+  int most_runs = 1;
+  for (const AggregateRow& row : rows) {
+    most_runs = std::max(most_runs, row.cells);
+  }
+  data["nees_bands"] = NeesBands(most_runs);
+  data["nees_over_time"] = NeesData(comparison, most);
+  const std::set<const CellResult*> with_sky = CellsWithSky(comparison);
+  for (size_t i = 0; i < comparison.cells.size(); ++i) {
+    const CellResult& cell = comparison.cells[i];
+    data["cells"][i]["series"] = SeriesJson(cell.series, most);
+    data["cells"][i]["sky"] = with_sky.count(&cell) > 0 ? SkyJson(cell.sky) : Json(Json::array());
+  }
+  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // '<' stands only inside strings, where its escape means the same.
+  for (size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+}  // namespace alidade

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/comparison/aggregate.h"
+#include "eval/comparison/comparison.h"
+
+namespace alidade {
+
+/// A cell of a table for people; how it is marked is up to the renderer.
+struct TextCell {
+  std::string text;
+  bool best = false;
+};
+
+struct TextRow {
+  std::vector<TextCell> cells;
+  bool reference = false;  ///< a published figure, not one of ours
+};
+
+/// First column left-aligned, the others right-aligned. All rows are as long as the header.
+struct TextTable {
+  std::string title;
+  std::vector<std::string> header;
+  std::vector<TextRow> rows;
+};
+
+/// Rounds to `decimals`; small values keep two significant digits, huge ones turn to exponents; NaN gives a
+/// dash.
+[[nodiscard]] std::string FormatValue(double value, int decimals);
+
+/// "mean +- standard error"; the error only when there is one.
+[[nodiscard]] std::string FormatStatistic(const Statistic& statistic, int decimals,
+                                          const std::string& plus_minus);
+
+/// One overview each for position and orientation ATE (estimators down, sequences across; only with several
+/// sequences), then one table a sequence with its figures across, then efficiencies
+/// (eval/report/efficiency_tables.h) and paired differences (eval/report/pair_tables.h). Reference figures
+/// follow the estimators.
+[[nodiscard]] std::vector<TextTable> LayOutTables(const Comparison& comparison,
+                                                  const std::string& plus_minus);
+
+}  // namespace alidade

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/comparison/comparison.h"
+#include "eval/report/table_layout.h"
+
+namespace alidade {
+
+/// A line for every run that did not end ok, with the reason, so that no mean hides one.
+[[nodiscard]] std::vector<std::string> LostRuns(const Comparison& comparison);
+
+/// tables.md: GitHub tables; the best of a column in bold, published figures in italics. Names are escaped.
+[[nodiscard]] std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables);
+
+/// tables.tex: the same as booktabs tables, to be input into a paper.
+[[nodiscard]] std::string LatexText(const Comparison& comparison, const std::vector<TextTable>& tables);
+
+}  // namespace alidade

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/time.h"
+#include "eval/files/byte_io.h"
+
+namespace alidade {
+
+/// A ROS time of a message: seconds, then nanoseconds, 32 bits each.
+inline void PutRosTime(TimeNs stamp_ns, ByteWriter* out) {
+  out->Write(static_cast<std::uint32_t>(stamp_ns / 1'000'000'000));
+  out->Write(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000));
+}
+
+[[nodiscard]] inline TimeNs TakeRosTime(ByteReader* in) {
+  const TimeNs seconds = in->Read<std::uint32_t>();
+  return seconds * 1'000'000'000 + in->Read<std::uint32_t>();
+}
+
+/// std_msgs/Header; its sequence number and frame mean nothing here.
+inline void PutRosHeader(TimeNs stamp_ns, ByteWriter* out) {
+  out->Write(std::uint32_t{0});
+  PutRosTime(stamp_ns, out);
+  out->Block("");
+}
+
+[[nodiscard]] inline TimeNs TakeRosHeader(ByteReader* in) {
+  static_cast<void>(in->Read<std::uint32_t>());
+  const TimeNs stamp_ns = TakeRosTime(in);
+  static_cast<void>(in->Block());
+  return stamp_ns;
+}
+
+}  // namespace alidade

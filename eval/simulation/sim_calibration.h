@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+#include "eval/simulation/simulator.h"
+
+namespace alidade {
+
+/// A calibration that is wrong by as much as the configuration's calibration_*_error keys say: axis,
+/// direction and signs are drawn with the seed, each from its own fixed place. Intrinsics that no camera has:
+/// kConfig.
+Result<RigCalibration> MiscalibratedRig(const SimulatorConfig& config, const RigCalibration& rig,
+                                        std::uint64_t seed);
+
+}  // namespace alidade

@@ -1,0 +1,142 @@
+#include "eval/simulation/sim_fault.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <set>
+
+namespace alidade {
+namespace {
+
+constexpr std::array<SimOutlierKind, 5> kKinds = {SimOutlierKind::kJump, SimOutlierKind::kUniform,
+                                                  SimOutlierKind::kSwap, SimOutlierKind::kDrift,
+                                                  SimOutlierKind::kMoving};
+constexpr std::uint64_t kOnsets = 4;                 // 1 to this many frames after the first
+constexpr std::int64_t kSecondLife = 1'000'000'000;  // added to the id of a track that comes back
+constexpr double kGarbageRate_radps = 3;
+constexpr double kGarbageForce_mps2 = 30;
+
+void BlackOut(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
+  std::set<std::int64_t> before;
+  bool over = false;
+  for (TrackFrame& frame : *frames) {
+    if (fails(frame.stamp_ns)) {
+      frame.observations.clear();
+      over = true;
+    }
+    for (TrackObservation& observation : frame.observations) {
+      if (!over) {
+        before.insert(observation.track_id);
+      } else if (before.count(observation.track_id) > 0) {
+        observation.track_id += kSecondLife;
+      }
+    }
+    std::sort(frame.observations.begin(), frame.observations.end(),
+              [](const TrackObservation& a, const TrackObservation& b) { return a.track_id < b.track_id; });
+  }
+}
+
+void ShuffleIds(const std::function<bool(TimeNs)>& fails, std::uint64_t seed,
+                std::vector<TrackFrame>* frames) {
+  RandomStream random(seed, "fault/tracks");
+  for (TrackFrame& frame : *frames) {
+    if (!fails(frame.stamp_ns)) {
+      continue;
+    }
+    std::vector<Eigen::Vector2d> pixels;
+    for (const TrackObservation& observation : frame.observations) {
+      pixels.push_back(observation.pixel);
+    }
+    random.Shuffle(&pixels);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      frame.observations[i].pixel = pixels[i];
+    }
+  }
+}
+
+void Garble(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, std::vector<ImuSample>* imu) {
+  RandomStream random(seed, "fault/imu");
+  for (ImuSample& sample : *imu) {
+    if (fails(sample.stamp_ns)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        sample.gyro[axis] = random.Uniform(-kGarbageRate_radps, kGarbageRate_radps);
+        sample.accel[axis] = random.Uniform(-kGarbageForce_mps2, kGarbageForce_mps2);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+RandomStream FaultSource::Stream(const char* purpose, int landmark, int frame) const {
+  return {seed_, camera_ + "." + purpose + "/" + std::to_string(landmark) + "/" + std::to_string(frame)};
+}
+
+Eigen::Vector2d FaultSource::DrawVector(RandomStream* stream) const {
+  const double angle = stream->Uniform(0, 2 * std::numbers::pi);
+  const double size = config_.outlier_px * stream->Uniform(0.5, 1.5);
+  return {size * std::cos(angle), size * std::sin(angle)};
+}
+
+TrackFault FaultSource::OfTrack(int landmark, int frame) const {
+  TrackFault fault;
+  if (config_.outlier_rate <= 0 || !config_.OutliersAreTracks()) {
+    return fault;
+  }
+  RandomStream stream = Stream("track_outliers", landmark, frame);
+  fault.wrong = stream.Chance(config_.outlier_rate);
+  if (!fault.wrong) {
+    return fault;
+  }
+  const bool mixed = config_.outlier_kind == SimOutlierKind::kMixed;
+  fault.kind = mixed ? kKinds[static_cast<std::size_t>(stream.Below(kKinds.size()))] : config_.outlier_kind;
+  const bool later = fault.kind == SimOutlierKind::kJump || fault.kind == SimOutlierKind::kSwap;
+  const int onset = 1 + static_cast<int>(stream.Below(kOnsets));
+  fault.onset = later ? onset : 0;
+  fault.jump_px = DrawVector(&stream);
+  fault.drift_px_per_s = DrawVector(&stream);
+  const double heading = stream.Uniform(0, 2 * std::numbers::pi);
+  const double speed = config_.outlier_speed_mps * stream.Uniform(0.5, 1.5);
+  fault.velocity_W_mps << speed * std::cos(heading), speed * std::sin(heading), 0;
+  return fault;
+}
+
+bool FaultSource::OfObservation(int landmark, int frame) const {
+  return config_.outlier_rate > 0 && !config_.OutliersAreTracks() &&
+         Stream("outliers", landmark, frame).Chance(config_.outlier_rate);
+}
+
+Eigen::Vector2d FaultSource::Jump(int landmark, int frame) const {
+  RandomStream stream = Stream("outlier_jump", landmark, frame);
+  return DrawVector(&stream);
+}
+
+Eigen::Vector2d FaultSource::AnyPixel(int landmark, int frame, int width_px, int height_px) const {
+  RandomStream stream = Stream("outlier_pixel", landmark, frame);
+  const double u = stream.Uniform(0, width_px - 1.0);
+  const double v = stream.Uniform(0, height_px - 1.0);
+  return {u, v};
+}
+
+void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
+  const TimeNs begin_ns = start_ns + SecondsToNs(config.fault_start_s);
+  const TimeNs end_ns = begin_ns + SecondsToNs(config.fault_duration_s);
+  const auto fails = [=](TimeNs stamp_ns) { return stamp_ns >= begin_ns && stamp_ns < end_ns; };
+  const bool both = config.fault == SimFaultKind::kBlackoutAndImu;
+  if (both || config.fault == SimFaultKind::kBlackout) {
+    BlackOut(fails, &dataset->tracks);
+    for (ExtraCamera& extra : dataset->extra_cameras) {
+      BlackOut(fails, &extra.frames);
+    }
+  }
+  if (both || config.fault == SimFaultKind::kImu) {
+    Garble(fails, seed, &dataset->imu);
+  }
+  if (config.fault == SimFaultKind::kTracks) {
+    ShuffleIds(fails, seed, &dataset->tracks);
+  }
+}
+
+}  // namespace alidade

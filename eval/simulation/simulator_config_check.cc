@@ -1,0 +1,80 @@
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "eval/simulation/simulator.h"
+
+namespace alidade {
+namespace {
+
+std::string Print(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+Status Expect(bool holds, const char* key, double value, const std::string& expected) {
+  return holds ? Status::Ok()
+               : Status::Config(std::string(key) + ": " + Print(value) + "; expected " + expected);
+}
+
+Status ValidateRecording(const SimulatorConfig& config) {
+  if (config.hybrid_dataset == kRequiredPath || config.trajectory_file == kRequiredPath) {
+    const std::string key = config.hybrid_dataset == kRequiredPath ? "hybrid_dataset" : "trajectory_file";
+    return Status::Config(key + ": required; expected a path, as in the setting " + key + "=FOLDER");
+  }
+  const bool reads_file = config.trajectory == SimTrajectory::kFile && !config.IsHybrid();
+  if (reads_file && config.trajectory_file == kNoPath) {
+    return Status::Config("trajectory_file: none; trajectory: file expected a path");
+  }
+  if (config.camera_view == SimCameraView::kDataset && !config.IsHybrid() &&
+      !(reads_file && std::filesystem::is_directory(config.trajectory_file))) {
+    return Status::Config(
+        "camera_view: dataset; expected trajectory: file and a dataset folder in trajectory_file");
+  }
+  ALIDADE_RETURN_IF_ERROR(Expect(std::isfinite(config.knot_spacing_s) && config.knot_spacing_s > 0,
+                                 "knot_spacing_s", config.knot_spacing_s, "a positive number"));
+  return Expect(config.max_gap_s > 0, "max_gap_s", config.max_gap_s, "a positive number");
+}
+
+}  // namespace
+
+Status SimulatorConfig::Validate() const {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(duration_s), "duration_s", duration_s, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(imu_rate_hz), "imu_rate_hz", imu_rate_hz, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(positive(camera_rate_hz), "camera_rate_hz", camera_rate_hz, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(length_m), "length_m", length_m, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(width_m), "width_m", width_m, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(Expect(positive(path_m), "path_m", path_m, "a positive number"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(duration_s * imu_rate_hz < 1e8, "duration_s", duration_s, "less than 1e8 IMU samples"));
+  ALIDADE_RETURN_IF_ERROR(Expect(rest_s == 0 || rest_s + rest_ramp_s < duration_s, "rest_s", rest_s,
+                                 "rest_s + rest_ramp_s less than duration_s " + Print(duration_s)));
+  // An open path is walked from end to end: this bounds the work.
+  ALIDADE_RETURN_IF_ERROR(Expect(trajectory != SimTrajectory::kWander || path_m < 1e4 * (length_m + width_m),
+                                 "path_m", path_m, "less than 1e4 times length_m + width_m"));
+  ALIDADE_RETURN_IF_ERROR(ValidateRecording(*this));
+  ALIDADE_RETURN_IF_ERROR(gnss.Validate());
+  // GPST began in 1980; readers know the years to 2099.
+  ALIDADE_RETURN_IF_ERROR(Expect(
+      gnss.rate_hz == 0 || trajectory == SimTrajectory::kFile || IsHybrid() || start_time_s >= 400000000,
+      "start_time_s", start_time_s, "at least 4e8 with gnss.rate_hz: stamps are then GPST"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(landmark_layout == SimLandmarkLayout::kRoom || landmark_min_distance_m < landmark_max_distance_m,
+             "landmark_min_distance_m", landmark_min_distance_m,
+             "less than landmark_max_distance_m " + Print(landmark_max_distance_m)));
+  ALIDADE_RETURN_IF_ERROR(Expect(camera_lever_arm_m.norm() < landmark_min_distance_m, "camera_lever_arm_m",
+                                 camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(!render.enabled || camera_count == 1, "camera_count", camera_count, "1 with render.enabled"));
+  for (int i = CoefficientCount(distortion); i < 4; ++i) {
+    ALIDADE_RETURN_IF_ERROR(
+        Expect(distortion_coefficients[i] == 0, "distortion coefficient", distortion_coefficients[i],
+               "0 at position " + std::to_string(i + 1) + " of model " + std::string(ToString(distortion))));
+  }
+  return Status::Ok();
+}
+
+}  // namespace alidade

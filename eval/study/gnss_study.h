@@ -1,0 +1,75 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/gnss_config.h"
+#include "core/measurement_log.h"
+#include "eval/run/run_result.h"
+#include "eval/simulation/sim_gnss_config.h"
+
+namespace alidade {
+
+/// What happens to the receiver of a sequence; seconds from its first IMU sample, negative: never.
+struct GnssScenario {
+  double motion_start_s = 0;
+  double outage_start_s = -1;
+  double outage_end_s = -1;
+  int outage_satellites = 0;  ///< seen meanwhile
+  double clock_jump_s = -1;
+
+  [[nodiscard]] bool HasOutage() const { return outage_start_s >= 0; }
+};
+/// That of a simulated receiver, cut to the sequence's `duration_s`.
+[[nodiscard]] GnssScenario ScenarioOf(const SimGnssConfig& config, double rest_s, double duration_s);
+
+/// What one run made of it. NaN: does not apply.
+struct GnssRunFigures {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  double aligned_after_s = kNone;  ///< from the start of motion; never below zero
+  double rmse_m = kNone;           ///< position, from the alignment on
+  double early_m = kNone;          ///< the same over the first and the last third of that time: a drift shows
+  double late_m = kNone;
+  double nees_pos = kNone;       ///< mean, ideal 3
+  double outage_rmse_m = kNone;  ///< position, while satellites are missing
+  double return_error_m = kNone;
+  double return_covered = kNone;  ///< 1: every axis of that error is within three deviations, 0: not
+  double after_2_s_m = kNone;     ///< position error 2 s after the return
+  double jump_step_m = kNone;     ///< largest change of the error between two frames, within 1 s of the jump
+};
+
+/// A run that hears GNSS: errors are global, as they stand. Without an alignment all figures are NaN.
+[[nodiscard]] GnssRunFigures JudgeGlobalRun(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
+                                            const GnssScenario& scenario);
+/// A run that does not: the figures of the outage, as if yaw and position had been given at its start.
+[[nodiscard]] GnssRunFigures JudgeOdometry(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
+                                           const GnssScenario& scenario);
+
+/// Position RMSE of the single-point solutions of the log's epochs [m], against truth in the ENU frame at the
+/// rig's anchor; NaN without an anchor or a solution.
+[[nodiscard]] double SinglePointRmse(const GnssConfig& config, const MeasurementLog& log,
+                                     const Trajectory& truth);
+
+/// One seed of an estimator on a sequence.
+struct GnssStudyRun {
+  unsigned seed = 0;
+  GnssRunFigures figures;
+  GnssRunFigures odometry;  ///< over the same time, by the plan's estimator without GNSS
+  double single_point_m = GnssRunFigures::kNone;
+};
+
+struct GnssStudyRow {
+  std::string sequence;
+  std::string estimator;
+  GnssScenario scenario;
+  std::vector<GnssStudyRun> runs;
+};
+
+/// Markdown: what the runs came to, and a table each for outages and clock jumps where there are any. An
+/// outage that leaves satellites is compared with one of the same time that leaves none, if there is one. A
+/// row without runs is left out. Ratios are those of means, to the same estimator on the first sequence.
+[[nodiscard]] std::string GnssStudyTables(const std::vector<GnssStudyRow>& rows);
+
+}  // namespace alidade

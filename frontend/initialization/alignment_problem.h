@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "frontend/initialization/alignment_refinement.h"
+
+namespace alidade {
+
+/// The nonlinear least-squares problem of RefineAlignment: cost, normal equations over 15 M columns and trial
+/// steps.
+class AlignmentProblem {
+ public:
+  AlignmentProblem(const DynamicWindow& window, const std::vector<bool>& inlier,
+                   const std::vector<Preintegration>& preintegrations, const std::vector<NavState>& states,
+                   const ImuBias& bias, const RefinementSettings& settings);
+
+  /// Builds the normal equations at the current states and landmarks; returns the robust cost.
+  double Linearize();
+  /// Solves with Marquardt damping into a trial state with its landmarks; returns its robust cost (infinite:
+  /// singular).
+  double TryStep(double damping);
+  void AcceptStep();
+  /// Drops observations whose squared whitened residual exceeds the limit, and tracks that lose half of
+  /// theirs or lie behind a view; returns how many observations went.
+  int DropAbove(double squared_residual);
+
+  /// Marginal of the newest state, gauge prior included; the data's part is scaled by `variance_factor`.
+  /// False when singular. After Linearize.
+  bool NewestCovariance(double variance_factor, Matrix15d* covariance) const;
+  /// Deviation of s in p_i - p_newest -> (1 + s) (p_i - p_newest). After Linearize.
+  bool RelativeScaleStd(double* deviation) const;
+  [[nodiscard]] double ReprojectionChi2() const;
+  [[nodiscard]] double InertialChi2() const;
+
+  [[nodiscard]] int active_tracks() const;
+  [[nodiscard]] const std::vector<NavState>& states() const { return current_.states; }
+  [[nodiscard]] const std::vector<ImuBias>& biases() const { return current_.biases; }
+
+ private:
+  struct Variables {
+    std::vector<NavState> states;
+    std::vector<ImuBias> biases;
+    std::vector<Eigen::Vector3d> landmarks;
+  };
+  void InitializeLandmarks();
+  [[nodiscard]] std::vector<Pose> Cameras(const Variables& variables, const SharedTrack& track) const;
+  /// Squared whitened residual of each observation; false when the landmark is behind a view.
+  bool TrackResiduals(const Variables& variables, size_t track, std::vector<double>* squared) const;
+  [[nodiscard]] double TrackCost(const Variables& variables, size_t track) const;
+  [[nodiscard]] double InertialCost(const Variables& variables) const;
+  [[nodiscard]] double PriorCost(const Variables& variables) const;
+  void AddTrack(size_t track);
+  void AddInertial();
+  void AddPriors();
+
+  std::vector<SharedTrack> tracks_;
+  const std::vector<Preintegration>& preintegrations_;
+  RefinementSettings settings_;
+  Eigen::Vector3d gravity_W_;
+  std::vector<Matrix15d> sqrt_information_;  // of each preintegration
+  std::vector<bool> active_;
+  Variables current_, trial_;
+  Eigen::MatrixXd information_;  // without the gauge prior; its lower triangle
+  Eigen::MatrixXd gauge_;        // 15 x 15 on the newest state
+  Eigen::VectorXd gradient_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,108 @@
+#include "frontend/initialization/alignment_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+#include "core/imu_propagation.h"
+#include "frontend/initialization/alignment_problem.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kMaxIterations = 30;
+constexpr int kMinTracks = 8;
+// Squared residual of an observation (2 rows) that a good one exceeds once in 1800 times.
+constexpr double kMaxSquaredResidual = 15.0;
+
+/// Levenberg-Marquardt until the cost stands still to a fiftieth of a squared deviation; false when it does
+/// not within kMaxIterations. Adds to the iterations taken.
+bool Minimize(AlignmentProblem* problem, int* iterations) {
+  double damping = 1e-4;
+  double cost = problem->Linearize();
+  int failures = 0;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    ++*iterations;
+    const double candidate_cost = problem->TryStep(damping);
+    if (candidate_cost < cost) {
+      const bool converged = cost - candidate_cost < 0.02;
+      problem->AcceptStep();
+      damping = std::max(damping * 0.1, 1e-9);
+      failures = 0;
+      cost = problem->Linearize();
+      if (converged) {
+        return true;
+      }
+    } else {
+      damping = std::min(damping * 20, 1e6);
+      if (++failures == 5) {  // no step lowers it
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Moves world and covariance so that the newest state has yaw 0 and position 0.
+void ApplyGauge(RefinedAlignment* refined) {
+  const Matrix3d& R = refined->newest.nav.R_WB;
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  const Matrix3d turn = so3::Exp(Vector3d(0, 0, -yaw));
+  const Vector3d origin = refined->newest.nav.p_WB;
+  const auto move = [&](const NavState& state) {
+    return NavState{so3::Normalize(turn * state.R_WB), turn * (state.p_WB - origin), turn * state.v_WB};
+  };
+  for (NavState& state : refined->states) {
+    state = move(state);
+  }
+  refined->newest.nav = move(refined->newest.nav);
+  Matrix15d chart = Matrix15d::Identity();
+  chart.block<3, 3>(3, 3) = turn;
+  chart.block<3, 3>(6, 6) = turn;
+  const Matrix15d covariance = chart * refined->newest.covariance * chart.transpose();
+  refined->newest.covariance = 0.5 * (covariance + covariance.transpose());
+}
+
+}  // namespace
+
+Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std::vector<bool>& inlier,
+                                         const std::vector<Preintegration>& preintegrations,
+                                         const std::vector<NavState>& states, const ImuBias& bias,
+                                         const RefinementSettings& settings) {
+  AlignmentProblem problem(window, inlier, preintegrations, states, bias, settings);
+  RefinedAlignment refined;
+  bool settled = Minimize(&problem, &refined.iterations);
+  for (int round = 0; settled && round < 2 && problem.DropAbove(kMaxSquaredResidual) > 0; ++round) {
+    settled = Minimize(&problem, &refined.iterations);
+  }
+  if (!settled) {
+    return Status::Diverged(Format("moving: no solution after %d iterations", refined.iterations));
+  }
+  refined.tracks = problem.active_tracks();
+  refined.rejected_tracks = static_cast<int>(window.tracks.size()) - refined.tracks;
+  if (refined.tracks < kMinTracks) {
+    return Status::Diverged(Format("moving: only %d tracks fit, need %d", refined.tracks, kMinTracks));
+  }
+  problem.Linearize();
+  refined.reprojection_chi2 = problem.ReprojectionChi2();
+  // Worse residuals than announced: the pixel noise was set too low.
+  const double variance_factor = std::max(1.0, refined.reprojection_chi2);
+  if (!problem.NewestCovariance(variance_factor, &refined.newest.covariance) ||
+      !problem.RelativeScaleStd(&refined.relative_scale_std)) {
+    return Status::Diverged("moving: the window's information is singular");
+  }
+  refined.relative_scale_std *= std::sqrt(variance_factor);
+  refined.states = problem.states();
+  refined.newest.stamp_ns = window.stamps_ns.back();
+  refined.newest.nav = problem.states().back();
+  refined.newest.bias = problem.biases().back();
+  refined.inertial_chi2 = problem.InertialChi2();
+  refined.bias_prior_sigma = problem.biases().front().accel.norm() / settings.accel_bias_std_mps2;
+  ApplyGauge(&refined);
+  return refined;
+}
+
+}  // namespace alidade

@@ -1,0 +1,75 @@
+// What the alignment problem says about its solution: covariance, scale, fit.
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "frontend/initialization/alignment_problem.h"
+
+namespace alidade {
+
+using Eigen::Vector3d;
+
+bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covariance) const {
+  const Eigen::Index rest = information_.rows() - 15;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(information_.topLeftCorner(rest, rest));
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) {
+    return false;
+  }
+  const Eigen::MatrixXd coupling = information_.bottomLeftCorner(15, rest).transpose();
+  Matrix15d marginal =
+      information_.bottomRightCorner<15, 15>() - coupling.transpose() * factor.solve(coupling);
+  marginal = marginal / variance_factor + gauge_;
+  const Eigen::LDLT<Matrix15d> newest(marginal);
+  if (newest.info() != Eigen::Success || !(newest.vectorD().minCoeff() > 0)) {
+    return false;
+  }
+  const Matrix15d inverse = newest.solve(Matrix15d::Identity());
+  *covariance = 0.5 * (inverse + inverse.transpose());
+  return covariance->allFinite();
+}
+
+bool AlignmentProblem::RelativeScaleStd(double* deviation) const {
+  const Eigen::Index size = information_.rows();
+  Eigen::VectorXd functional = Eigen::VectorXd::Zero(size);
+  double extent = 0;
+  for (size_t k = 0; k + 1 < current_.states.size(); ++k) {
+    const Vector3d arm = current_.states[k].p_WB - current_.states.back().p_WB;
+    functional.segment<3>(15 * static_cast<Eigen::Index>(k) + 3) = arm;
+    functional.tail<12>().head<3>() -= arm;
+    extent += arm.squaredNorm();
+  }
+  if (!(extent > 1e-12)) {
+    return false;
+  }
+  functional /= extent;
+  Eigen::MatrixXd full = information_;
+  full.bottomRightCorner<15, 15>() += gauge_;
+  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  if (factor.info() != Eigen::Success) {
+    return false;
+  }
+  *deviation = std::sqrt(functional.dot(factor.solve(functional)));
+  return std::isfinite(*deviation);
+}
+
+double AlignmentProblem::ReprojectionChi2() const {
+  double sum = 0;
+  double dof = 0;
+  std::vector<double> squared;
+  for (size_t t = 0; t < active_.size(); ++t) {
+    if (active_[t]) {
+      TrackResiduals(current_, t, &squared);
+      for (const double value : squared) {
+        sum += value;
+      }
+      dof += 2 * static_cast<double>(squared.size()) - 3;
+    }
+  }
+  return dof > 0 ? sum / dof : 0;
+}
+
+double AlignmentProblem::InertialChi2() const {
+  return InertialCost(current_) / (15.0 * static_cast<double>(preintegrations_.size()));
+}
+
+}  // namespace alidade

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "core/estimator_config.h"
+#include "core/imu_buffer.h"
+#include "core/measurement_log.h"
+#include "core/status.h"
+#include "frontend/initialization/initializer.h"
+
+namespace alidade {
+
+/// A state found in motion, and the figures that let it pass.
+struct DynamicSolution {
+  NavEstimate estimate;  ///< stamp in IMU time
+  std::string report;
+  InitializerWindow window;  ///< likewise
+};
+
+/// What a solution must meet at this point of the search.
+struct DynamicLimits {
+  double scale_std = 0;        ///< relative standard deviation of the scale, at most
+  double min_parallax_px = 0;  ///< median rotation-compensated motion over the window
+};
+
+/// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),
+/// velocity and gravity in closed form (linear_alignment.h), maximum likelihood over the window,
+/// accelerometer bias included (alignment_refinement.h), then the checks that accept it. The IMU counts as
+/// noisier than its sheet where its samples scatter more. Stamps of `frames` are in IMU time. Error
+/// (kDiverged): why there is no solution yet, with the figure and its limit.
+Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
+                                          const std::deque<TrackFrame>& frames, const DynamicLimits& limits,
+                                          ImuBuffer* imu);
+
+}  // namespace alidade

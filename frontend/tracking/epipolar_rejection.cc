@@ -1,0 +1,256 @@
+#include "frontend/tracking/epipolar_rejection.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <opencv2/calib3d.hpp>
+
+#include "core/lie.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kMaxHypotheses = 100;
+constexpr double kConfidence = 0.999;
+constexpr int kRefinementSteps = 5;
+
+/// Relative motion of the camera, p_2 = R_21 p_1 + t with |t| = 1.
+struct Motion {
+  Matrix3d R_21 = Matrix3d::Identity();
+  Vector3d t = Vector3d::UnitZ();
+};
+
+struct Consensus {
+  std::vector<bool> inliers;
+  int count = 0;
+};
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the standard library's distributions differ between implementations.
+class Sampler {
+ public:
+  size_t Below(size_t bound) {
+    state_ += 0x9E3779B97F4A7C15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return static_cast<size_t>((z ^ (z >> 31)) % bound);
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+Consensus Count(std::vector<bool> inliers) {
+  Consensus consensus{.inliers = std::move(inliers), .count = 0};
+  consensus.count = static_cast<int>(std::count(consensus.inliers.begin(), consensus.inliers.end(), true));
+  return consensus;
+}
+
+/// What one pair says about a motion: the signed distance of x_2 to the epipolar line of x_1 is `error *
+/// scale` [px].
+struct EpipolarTerm {
+  Vector3d g;  // R_21 x_1
+  Vector3d x_2;
+  double error;     // t . (g x x_2)
+  double scale;     // px per unit of error
+  bool at_epipole;  // x_1 lies on the epipole: its line is any line through it
+};
+
+EpipolarTerm Evaluate(const BearingPair& pair, const Motion& motion, double focal_px) {
+  EpipolarTerm term{.g = motion.R_21 * pair.first.homogeneous(),
+                    .x_2 = pair.second.homogeneous(),
+                    .error = 0,
+                    .scale = 0,
+                    .at_epipole = false};
+  const Vector3d line = motion.t.cross(term.g);
+  const double norm = line.head<2>().norm();
+  // Within half a pixel of the epipole the line's direction is noise.
+  term.at_epipole = norm * focal_px < 0.5 * std::abs(term.g.z());
+  term.error = term.x_2.dot(line);
+  term.scale = norm > 0 ? focal_px / norm : 0;
+  return term;
+}
+
+bool IsInlier(const EpipolarTerm& term, double threshold_px, double focal_px) {
+  if (term.g.z() <= 0) {
+    return false;
+  }
+  if (term.at_epipole) {
+    return (term.x_2.head<2>() - term.g.hnormalized()).norm() * focal_px <= threshold_px;
+  }
+  return std::abs(term.error) * term.scale <= threshold_px;
+}
+
+Consensus Score(const std::vector<BearingPair>& pairs, const Motion& motion, double threshold_px,
+                double focal_px) {
+  std::vector<bool> inliers(pairs.size());
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    inliers[i] = IsInlier(Evaluate(pairs[i], motion, focal_px), threshold_px, focal_px);
+  }
+  return Count(std::move(inliers));
+}
+
+/// Best translation direction over two-pair hypotheses with the rotation held.
+Consensus SampleTranslation(const std::vector<BearingPair>& pairs, double threshold_px, double focal_px,
+                            Motion* motion) {
+  Sampler sampler;
+  Consensus best;
+  Motion candidate = *motion;
+  int hypotheses = kMaxHypotheses;
+  for (int k = 0; k < hypotheses; ++k) {
+    const size_t a = sampler.Below(pairs.size());
+    const size_t b = (a + 1 + sampler.Below(pairs.size() - 1)) % pairs.size();
+    const auto normal = [&](size_t i) -> Vector3d {
+      return (candidate.R_21 * pairs[i].first.homogeneous()).cross(pairs[i].second.homogeneous());
+    };
+    const Vector3d direction = normal(a).cross(normal(b));
+    // Neither pair moved, or both along one plane: any direction would do, this one decides nothing.
+    if (direction.norm() > 0) {
+      candidate.t = direction.normalized();
+    }
+    Consensus consensus = Score(pairs, candidate, threshold_px, focal_px);
+    if (consensus.count > best.count) {
+      best = std::move(consensus);
+      *motion = candidate;
+      const double ratio = static_cast<double>(best.count) / static_cast<double>(pairs.size());
+      const double needed = std::log(1 - kConfidence) / std::log(std::max(1e-12, 1 - ratio * ratio));
+      hypotheses = std::min(kMaxHypotheses, static_cast<int>(std::ceil(needed)));
+    }
+  }
+  return best;
+}
+
+/// Orthonormal basis of the plane normal to the unit vector t.
+Eigen::Matrix<double, 3, 2> TangentBasis(const Vector3d& t) {
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = t.unitOrthogonal();
+  basis.col(1) = t.cross(basis.col(0));
+  return basis;
+}
+
+/// Gauss-Newton on (delta, t) over the inliers, Huber weights at threshold_px, prior on the total rotation
+/// correction.
+void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inliers,
+            const Matrix3d& R_21_prior, double rotation_std, const EpipolarOptions& options, Motion* motion) {
+  using Matrix5d = Eigen::Matrix<double, 5, 5>;
+  using Vector5d = Eigen::Matrix<double, 5, 1>;
+  const double sigma_px = 0.5 * options.threshold_px;
+  for (int step = 0; step < kRefinementSteps; ++step) {
+    const Eigen::Matrix<double, 3, 2> basis = TangentBasis(motion->t);
+    Matrix5d hessian = Matrix5d::Zero();
+    Vector5d gradient = Vector5d::Zero();
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const EpipolarTerm term = Evaluate(pairs[i], *motion, options.focal_px);
+      if (!inliers[i] || term.at_epipole) {
+        continue;
+      }
+      // d/d delta of t . ((g + delta x g) x x_2), and d/dt along the tangent plane; the line's norm is held.
+      Vector5d row;
+      row.head<3>() = motion->t.dot(term.g) * term.x_2 - term.g.dot(term.x_2) * motion->t;
+      row.tail<2>() = basis.transpose() * term.g.cross(term.x_2);
+      const double distance_px = term.error * term.scale;
+      const double weight = std::min(1.0, options.threshold_px / std::max(1e-12, std::abs(distance_px))) /
+                            (sigma_px * sigma_px);
+      hessian += weight * term.scale * term.scale * row * row.transpose();
+      gradient += weight * term.scale * distance_px * row;
+    }
+    const Vector3d correction = so3::Log(motion->R_21 * R_21_prior.transpose());
+    const double prior_weight = 1.0 / (rotation_std * rotation_std);
+    hessian.topLeftCorner<3, 3>().diagonal().array() += prior_weight;
+    gradient.head<3>() += prior_weight * correction;
+    // Without parallax the data says nothing about t: a step of a radian costs one sigma.
+    hessian.bottomRightCorner<2, 2>().diagonal().array() += 1.0;
+    const Vector5d update = -hessian.ldlt().solve(gradient);
+    if (!update.allFinite()) {
+      return;
+    }
+    motion->R_21 = so3::Exp(update.head<3>()) * motion->R_21;
+    motion->t = (motion->t + basis * update.tail<2>()).normalized();
+  }
+}
+
+/// Rejects inliers that moved along their epipolar line against the others: no point in front of both images
+/// does. x_2 ~ g + t / depth, so (g x x_2) . (g x t) has the sign of the depth; the sign of t is that of the
+/// majority.
+Consensus RejectNegativeDepth(const std::vector<BearingPair>& pairs, const Motion& motion,
+                              const EpipolarOptions& options, Consensus consensus) {
+  // Twice the threshold: a displacement within noise has no sign.
+  const double min_displacement_px = 2 * options.threshold_px;
+  std::vector<int> signs(pairs.size(), 0);
+  int balance = 0;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const EpipolarTerm term = Evaluate(pairs[i], motion, options.focal_px);
+    const double displacement_px = (term.x_2.head<2>() - term.g.hnormalized()).norm() * options.focal_px;
+    if (consensus.inliers[i] && !term.at_epipole && displacement_px > min_displacement_px) {
+      signs[i] = term.g.cross(term.x_2).dot(term.g.cross(motion.t)) > 0 ? 1 : -1;
+      balance += signs[i];
+    }
+  }
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    if (signs[i] * balance < 0) {
+      consensus.inliers[i] = false;
+    }
+  }
+  return Count(std::move(consensus.inliers));
+}
+
+Consensus AgreeWithRotation(const std::vector<BearingPair>& pairs, const Matrix3d& R_21,
+                            const EpipolarOptions& options) {
+  // 1 mrad: rotation noise and calibration at high frame rates, where the bias alone would promise too much.
+  const double rotation_std = std::max(1e-3, kGyroError * options.dt_s);
+  const double loose_px = options.threshold_px + 2 * rotation_std * options.focal_px;
+  Motion motion{.R_21 = R_21, .t = Vector3d::UnitZ()};
+  Consensus consensus = SampleTranslation(pairs, loose_px, options.focal_px, &motion);
+  Refine(pairs, consensus.inliers, R_21, rotation_std, options, &motion);
+  consensus = Score(pairs, motion, options.threshold_px, options.focal_px);
+  Refine(pairs, consensus.inliers, R_21, rotation_std, options, &motion);
+  consensus = Score(pairs, motion, options.threshold_px, options.focal_px);
+  return RejectNegativeDepth(pairs, motion, options, std::move(consensus));
+}
+
+Consensus AgreeWithFundamental(const std::vector<BearingPair>& pairs, const EpipolarOptions& options) {
+  std::vector<cv::Point2f> first;
+  std::vector<cv::Point2f> second;
+  for (const BearingPair& pair : pairs) {
+    first.emplace_back(static_cast<float>(pair.first.x() * options.focal_px),
+                       static_cast<float>(pair.first.y() * options.focal_px));
+    second.emplace_back(static_cast<float>(pair.second.x() * options.focal_px),
+                        static_cast<float>(pair.second.y() * options.focal_px));
+  }
+  std::vector<unsigned char> mask;
+  // This estimator seeds a generator of its own at each call, so cv::theRNG() is neither read nor advanced.
+  const cv::Mat fundamental = cv::findFundamentalMat(first, second, cv::FM_RANSAC, options.threshold_px, 0.99,
+                                                     kMaxHypotheses * 2, mask);
+  if (fundamental.empty() || mask.size() != pairs.size()) {
+    return Count(std::vector<bool>(pairs.size(), true));
+  }
+  std::vector<bool> inliers(pairs.size());
+  std::transform(mask.begin(), mask.end(), inliers.begin(), [](unsigned char in) { return in != 0; });
+  return Count(std::move(inliers));
+}
+
+}  // namespace
+
+std::vector<bool> FindEpipolarInliers(const std::vector<BearingPair>& pairs,
+                                      const std::optional<Matrix3d>& R_21, const EpipolarOptions& options) {
+  if (pairs.size() < static_cast<size_t>(kMinPairs)) {
+    return std::vector<bool>(pairs.size(), true);
+  }
+  Consensus with_rotation;
+  if (R_21.has_value()) {
+    with_rotation = AgreeWithRotation(pairs, *R_21, options);
+    if (2 * with_rotation.count > static_cast<int>(pairs.size())) {
+      return with_rotation.inliers;
+    }
+  }
+  Consensus without = AgreeWithFundamental(pairs, options);
+  return without.count > with_rotation.count ? without.inliers : with_rotation.inliers;
+}
+
+}  // namespace alidade

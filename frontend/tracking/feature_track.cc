@@ -1,0 +1,63 @@
+#include "frontend/tracking/feature_track.h"
+
+#include <Eigen/LU>
+#include <utility>
+
+namespace alidade {
+
+std::vector<cv::Point2f> Pixels(const std::vector<FeatureTrack>& tracks) {
+  std::vector<cv::Point2f> pixels;
+  pixels.reserve(tracks.size());
+  for (const FeatureTrack& track : tracks) {
+    pixels.push_back(track.pixel);
+  }
+  return pixels;
+}
+
+int Keep(const std::vector<bool>& marked, std::vector<FeatureTrack>* tracks) {
+  size_t kept = 0;
+  for (size_t i = 0; i < tracks->size(); ++i) {
+    if (marked[i]) {
+      if (kept != i) {
+        (*tracks)[kept] = std::move((*tracks)[i]);
+      }
+      ++kept;
+    }
+  }
+  const int removed = static_cast<int>(tracks->size() - kept);
+  tracks->resize(kept);
+  return removed;
+}
+
+Eigen::Matrix2f DeformationBy(const std::optional<Eigen::Matrix3d>& R_C1C0, const CameraModel& camera,
+                              const FeatureTrack& track) {
+  Eigen::Vector2d before, after;
+  Eigen::Matrix<double, 2, 3> before_from_bearing, after_from_bearing;
+  const Eigen::Vector3d bearing = track.normalized.homogeneous();
+  if (!R_C1C0.has_value() || !camera.Project(bearing, &before, &before_from_bearing) ||
+      !camera.Project(*R_C1C0 * bearing, &after, &after_from_bearing)) {
+    return Eigen::Matrix2f::Identity();
+  }
+  const Eigen::Matrix2d deformation =
+      after_from_bearing * R_C1C0->leftCols<2>() * before_from_bearing.leftCols<2>().inverse();
+  return deformation.cast<float>();
+}
+
+bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eigen::Matrix2f& deformation,
+                   FeatureTrack* track, cv::Point2f* pixel) {
+  TemplateMatch match{
+      .centre = {pixel->x, pixel->y}, .affine = deformation * track->affine, .correlation = 0};
+  if (!track->patch.Align(image, &match) || static_cast<double>(match.correlation) < config.min_correlation) {
+    return false;
+  }
+  *pixel = {match.centre.x(), match.centre.y()};
+  track->affine = match.affine;
+  if (PatchTemplate::IsWornOut(match.affine) &&
+      PatchTemplate::Fits(image, match.centre, config.template_px)) {
+    track->patch = PatchTemplate(image, match.centre, config.template_px);
+    track->affine = Eigen::Matrix2f::Identity();
+  }
+  return true;
+}
+
+}  // namespace alidade

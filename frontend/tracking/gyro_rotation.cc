@@ -1,0 +1,78 @@
+#include "frontend/tracking/gyro_rotation.h"
+
+#include <algorithm>
+
+#include "core/lie.h"
+
+namespace alidade {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+bool GyroRotation::Add(const ImuSample& sample) {
+  if (!sample.gyro.allFinite() || (!samples_.empty() && sample.stamp_ns <= samples_.back().stamp_ns)) {
+    return false;
+  }
+  samples_.push_back(sample);
+  return true;
+}
+
+bool GyroRotation::Covers(TimeNs t0_ns, TimeNs t1_ns) const {
+  if (samples_.empty()) {
+    return false;
+  }
+  TimeNs covered_until = t0_ns;
+  for (const ImuSample& sample : samples_) {
+    if (sample.stamp_ns <= t0_ns) {
+      continue;
+    }
+    const TimeNs reached = std::min(sample.stamp_ns, t1_ns);
+    if (SecondsBetween(covered_until, reached) > kMaxGapS) {
+      return false;
+    }
+    covered_until = reached;
+  }
+  return SecondsBetween(covered_until, t1_ns) <= kMaxGapS &&
+         SecondsBetween(samples_.back().stamp_ns, t1_ns) <= kMaxGapS;
+}
+
+Vector3d GyroRotation::RateAt(TimeNs t_ns) const {
+  const auto after = std::lower_bound(samples_.begin(), samples_.end(), t_ns,
+                                      [](const ImuSample& sample, TimeNs t) { return sample.stamp_ns < t; });
+  if (after == samples_.begin()) {
+    return samples_.front().gyro;
+  }
+  if (after == samples_.end()) {
+    return samples_.back().gyro;
+  }
+  const auto before = after - 1;
+  const double fraction =
+      SecondsBetween(before->stamp_ns, t_ns) / SecondsBetween(before->stamp_ns, after->stamp_ns);
+  return (1 - fraction) * before->gyro + fraction * after->gyro;
+}
+
+std::optional<Matrix3d> GyroRotation::Between(TimeNs t0_ns, TimeNs t1_ns) {
+  // The last sample at or before t0 is kept: the rate at t0 is interpolated from it.
+  while (samples_.size() >= 2 && samples_[1].stamp_ns <= t0_ns) {
+    samples_.pop_front();
+  }
+  if (t1_ns <= t0_ns || !Covers(t0_ns, t1_ns)) {
+    return std::nullopt;
+  }
+  Matrix3d R_B0B = Matrix3d::Identity();
+  TimeNs from_ns = t0_ns;
+  const auto advance = [&](TimeNs to_ns) {
+    const Vector3d mean_rate = 0.5 * (RateAt(from_ns) + RateAt(to_ns));
+    R_B0B = R_B0B * so3::Exp(mean_rate * SecondsBetween(from_ns, to_ns));
+    from_ns = to_ns;
+  };
+  for (const ImuSample& sample : samples_) {
+    if (sample.stamp_ns > t0_ns && sample.stamp_ns < t1_ns) {
+      advance(sample.stamp_ns);
+    }
+  }
+  advance(t1_ns);
+  return R_B0B;
+}
+
+}  // namespace alidade

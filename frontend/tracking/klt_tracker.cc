@@ -1,0 +1,293 @@
+#include "frontend/tracking/klt_tracker.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <mutex>
+#include <numeric>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+#include <optional>
+#include <utility>
+
+#include "core/stopwatch.h"
+#include "frontend/tracking/corner_grid.h"
+#include "frontend/tracking/epipolar_rejection.h"
+#include "frontend/tracking/feature_track.h"
+#include "frontend/tracking/gyro_rotation.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Contrast limit and tiles: enough to see into shadows, not enough to make corners of sensor noise.
+constexpr double kClaheClipLimit = 3.0;
+constexpr int kClaheTiles = 8;
+// A patch needs this smaller eigenvalue a pixel (OpenCV's normalisation) for its position to be defined.
+constexpr double kMinEigenvalue = 1e-4;
+
+/// Runs are parallel across sequences, never inside one: a pool of threads under each run would only fight
+/// over the cores.
+void ForbidThreadsInside() {
+  static std::once_flag once;
+  std::call_once(once, [] { cv::setNumThreads(1); });
+}
+
+/// A multiple of four: OpenCV's vector code leaves the rest of each row to a loop that doubles the time.
+int WindowSidePx(const FrontendConfig& config) {
+  return (config.window_px + 3) / 4 * 4;
+}
+
+int BorderPx(const FrontendConfig& config) {
+  return std::max(config.window_px / 2, config.template_px > 0 ? config.template_px / 2 + 3 : 0);
+}
+
+}  // namespace
+
+struct KltTracker::Implementation {
+  Implementation(const FrontendConfig& front_end, const RigCalibration& rig_calibration)
+      : config(front_end),
+        rig(rig_calibration),
+        window(WindowSidePx(front_end), WindowSidePx(front_end)),
+        grid(front_end, rig_calibration.camera.width_px(), rig_calibration.camera.height_px(),
+             BorderPx(front_end)),
+        clahe(cv::createCLAHE(kClaheClipLimit, cv::Size(kClaheTiles, kClaheTiles))) {}
+
+  [[nodiscard]] Status CheckInput(TimeNs stamp_ns, const unsigned char* grey, int width_px,
+                                  int height_px) const;
+  void BuildPyramid(const unsigned char* grey);
+  /// R_C1C0 from the last image to this one, when the gyroscope covers the time between.
+  std::optional<Matrix3d> RotationSinceLast(TimeNs stamp_ns);
+  [[nodiscard]] std::vector<cv::Point2f> Predict(const std::optional<Matrix3d>& R_C1C0) const;
+  void Follow(const std::optional<Matrix3d>& R_C1C0, double dt_s);
+  /// Lucas-Kanade forward from the predictions, then back on the finest level; true where both agree.
+  std::vector<bool> FollowPixels(const std::vector<cv::Point2f>& from, std::vector<cv::Point2f>* to) const;
+  void Spread();
+  void Detect();
+  [[nodiscard]] TrackFrame Observations(TimeNs stamp_ns) const;
+
+  FrontendConfig config;
+  RigCalibration rig;
+  cv::Size window;
+  CornerGrid grid;
+  cv::Ptr<cv::CLAHE> clahe;
+  GyroRotation gyro;
+
+  cv::Mat equalized;
+  cv::Mat smoothed;
+  std::vector<cv::Mat> last_pyramid;
+  std::vector<cv::Mat> pyramid;  // image, derivatives, image, derivatives, ... from fine to coarse
+  std::optional<TimeNs> last_stamp_ns;
+  std::vector<FeatureTrack> tracks;  // sorted by id
+  std::int64_t next_id = 0;
+  TrackerStatistics statistics;
+};
+
+Status KltTracker::Implementation::CheckInput(TimeNs stamp_ns, const unsigned char* grey, int width_px,
+                                              int height_px) const {
+  const std::string frame = "image at " + std::to_string(stamp_ns) + " ns: ";
+  if (grey == nullptr) {
+    return Status::Input(frame + "no pixels");
+  }
+  if (width_px != rig.camera.width_px() || height_px != rig.camera.height_px()) {
+    return Status::Input(frame + "size " + std::to_string(width_px) + " x " + std::to_string(height_px) +
+                         ", expected the camera's " + std::to_string(rig.camera.width_px()) + " x " +
+                         std::to_string(rig.camera.height_px()));
+  }
+  if (last_stamp_ns.has_value() && stamp_ns <= *last_stamp_ns) {
+    return Status::Input(frame + "expected a stamp after the last image's " + std::to_string(*last_stamp_ns) +
+                         " ns");
+  }
+  return Status::Ok();
+}
+
+void KltTracker::Implementation::BuildPyramid(const unsigned char* grey) {
+  // OpenCV has no view of constant memory; the pixels are only read.
+  const cv::Mat image(rig.camera.height_px(), rig.camera.width_px(), CV_8UC1,
+                      const_cast<unsigned char*>(grey));
+  if (config.equalize) {
+    clahe->apply(image, equalized);
+  }
+  if (config.template_px > 0) {
+    // Bilinear sampling of a sharper image depends on where between the pixels it falls.
+    cv::GaussianBlur(image, smoothed, cv::Size(3, 3), 0);
+  }
+  std::swap(pyramid, last_pyramid);
+  // The derivatives serve this frame's backward pass, the ranking of corners, and the next frame's forward
+  // pass.
+  cv::buildOpticalFlowPyramid(config.equalize ? equalized : image, pyramid, window, config.pyramid_levels,
+                              true, cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
+}
+
+std::optional<Matrix3d> KltTracker::Implementation::RotationSinceLast(TimeNs stamp_ns) {
+  if (!config.imu_prediction || !last_stamp_ns.has_value()) {
+    return std::nullopt;
+  }
+  const TimeNs offset_ns = SecondsToNs(rig.camera_time_offset_s);
+  const std::optional<Matrix3d> R_B0B1 = gyro.Between(*last_stamp_ns + offset_ns, stamp_ns + offset_ns);
+  if (!R_B0B1.has_value()) {
+    return std::nullopt;
+  }
+  const Matrix3d& R_BC = rig.T_BC.rotation;
+  return R_BC.transpose() * R_B0B1->transpose() * R_BC;
+}
+
+std::vector<cv::Point2f> KltTracker::Implementation::Predict(const std::optional<Matrix3d>& R_C1C0) const {
+  std::vector<cv::Point2f> predicted = Pixels(tracks);
+  if (!R_C1C0.has_value()) {
+    return predicted;
+  }
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const Vector3d bearing = *R_C1C0 * tracks[i].normalized.homogeneous();
+    Vector2d pixel;
+    // A track the rotation takes out of the camera's domain is searched where it was, and lost there.
+    if (rig.camera.Project(bearing, &pixel)) {
+      predicted[i] = ToPoint(pixel);
+    }
+  }
+  return predicted;
+}
+
+std::vector<bool> KltTracker::Implementation::FollowPixels(const std::vector<cv::Point2f>& from,
+                                                           std::vector<cv::Point2f>* to) const {
+  // Where a template is matched afterwards, its neighbourhood is enough.
+  const bool rough = config.template_px > 0;
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, rough ? 10 : 20,
+                                  rough ? 0.1 : 0.03);
+  std::vector<unsigned char> found;
+  cv::calcOpticalFlowPyrLK(last_pyramid, pyramid, from, *to, found, cv::noArray(), window,
+                           config.pyramid_levels, criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  std::vector<bool> followed(found.begin(), found.end());
+  if (config.forward_backward_px <= 0) {
+    return followed;
+  }
+  std::vector<cv::Point2f> back = from;
+  cv::calcOpticalFlowPyrLK(pyramid, last_pyramid, *to, back, found, cv::noArray(), window, 0, criteria,
+                           cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+  for (size_t i = 0; i < from.size(); ++i) {
+    followed[i] = followed[i] && found[i] != 0 && cv::norm(back[i] - from[i]) <= config.forward_backward_px;
+  }
+  return followed;
+}
+
+void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, double dt_s) {
+  if (tracks.empty()) {
+    return;
+  }
+  std::vector<cv::Point2f> pixels = Predict(R_C1C0);
+  std::vector<bool> alive = FollowPixels(Pixels(tracks), &pixels);
+  std::vector<BearingPair> pairs;
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    BearingPair pair{.first = tracks[i].normalized, .second = Vector2d::Zero()};
+    if (alive[i] && config.template_px > 0) {
+      alive[i] = MatchTemplate(smoothed, config, DeformationBy(R_C1C0, rig.camera, tracks[i]), &tracks[i],
+                               &pixels[i]);
+    }
+    const Vector2d pixel = ToVector(pixels[i]);
+    alive[i] =
+        alive[i] && rig.camera.InImage(pixel, BorderPx(config)) && rig.camera.Unproject(pixel, &pair.second);
+    if (alive[i]) {
+      tracks[i].pixel = pixels[i];
+      tracks[i].normalized = pair.second;
+      ++tracks[i].length;
+      pairs.push_back(pair);
+    }
+  }
+  statistics.lost = Keep(alive, &tracks);
+  const EpipolarOptions options{
+      .threshold_px = config.ransac_threshold_px, .focal_px = rig.camera.mean_focal_px(), .dt_s = dt_s};
+  statistics.rejected = Keep(FindEpipolarInliers(pairs, R_C1C0, options), &tracks);
+}
+
+void KltTracker::Implementation::Spread() {
+  std::vector<size_t> order(tracks.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  // Stable: of equally long tracks the one with the smaller id wins.
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return tracks[a].length > tracks[b].length; });
+  std::vector<cv::Point2f> preferred;
+  for (const size_t i : order) {
+    preferred.push_back(tracks[i].pixel);
+  }
+  const std::vector<bool> kept = grid.Thin(preferred);
+  std::vector<bool> marked(tracks.size());
+  for (size_t k = 0; k < order.size(); ++k) {
+    marked[order[k]] = kept[k];
+  }
+  statistics.thinned = Keep(marked, &tracks);
+  statistics.tracked = static_cast<int>(tracks.size());
+}
+
+void KltTracker::Implementation::Detect() {
+  for (const cv::Point2f& corner : grid.Detect(pyramid[0], pyramid[1], Pixels(tracks))) {
+    FeatureTrack track;
+    track.id = next_id;
+    track.pixel = corner;
+    if (!rig.camera.InImage(ToVector(corner), BorderPx(config)) ||
+        !rig.camera.Unproject(ToVector(corner), &track.normalized)) {
+      continue;
+    }
+    if (config.template_px > 0) {
+      track.patch = PatchTemplate(smoothed, {corner.x, corner.y}, config.template_px);
+    }
+    tracks.push_back(std::move(track));
+    ++next_id;
+    ++statistics.detected;
+  }
+}
+
+TrackFrame KltTracker::Implementation::Observations(TimeNs stamp_ns) const {
+  TrackFrame frame;
+  frame.stamp_ns = stamp_ns;
+  frame.observations.reserve(tracks.size());
+  for (const FeatureTrack& track : tracks) {
+    frame.observations.push_back({track.id, ToVector(track.pixel)});
+  }
+  return frame;
+}
+
+KltTracker::KltTracker(const FrontendConfig& config, const RigCalibration& rig)
+    : implementation_(std::make_unique<Implementation>(config, rig)) {
+  ForbidThreadsInside();
+}
+
+KltTracker::~KltTracker() = default;
+
+void KltTracker::AddImu(const ImuSample& sample) {
+  if (implementation_->config.imu_prediction && !implementation_->gyro.Add(sample)) {
+    ++implementation_->statistics.imu_ignored;
+  }
+}
+
+Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey, int width_px,
+                                     int height_px) {
+  const Stopwatch stopwatch;
+  Implementation& tracker = *implementation_;
+  ALIDADE_RETURN_IF_ERROR(tracker.CheckInput(stamp_ns, grey, width_px, height_px));
+  tracker.statistics = TrackerStatistics{.imu_ignored = tracker.statistics.imu_ignored};
+  tracker.BuildPyramid(grey);
+  if (tracker.last_stamp_ns.has_value()) {
+    tracker.Follow(tracker.RotationSinceLast(stamp_ns), SecondsBetween(*tracker.last_stamp_ns, stamp_ns));
+    tracker.Spread();
+  }
+  tracker.Detect();
+  tracker.last_stamp_ns = stamp_ns;
+  double length_sum = 0;
+  for (const FeatureTrack& track : tracker.tracks) {
+    length_sum += track.length;
+  }
+  tracker.statistics.mean_track_length =
+      length_sum / static_cast<double>(std::max<size_t>(1, tracker.tracks.size()));
+  TrackFrame frame = tracker.Observations(stamp_ns);
+  frame.frontend_ms = stopwatch.ElapsedMs();
+  return frame;
+}
+
+const TrackerStatistics& KltTracker::statistics() const {
+  return implementation_->statistics;
+}
+
+}  // namespace alidade

@@ -1,0 +1,206 @@
+#include "frontend/tracking/patch_template.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix2f;
+using Eigen::Vector2f;
+
+constexpr int kMaxIterations = 10;
+constexpr float kConvergedPx = 0.01F;
+constexpr float kMaxShiftPx = 3;
+// Of one call: with freedom enough any two smooth patches agree.
+constexpr float kMaxChange = 0.4F;
+// Patches of less contrast are noise.
+constexpr float kMinDeviationGrey = 1;
+// Makes H definite where the patch is an edge; changes the steps, not where they end.
+constexpr float kDamping = 1e-3F;
+constexpr float kMaxGrowth = 1.5F;
+
+/// Scales to zero mean and unit variance; false when it is flat.
+bool Normalize(std::vector<float>* grey) {
+  const auto count = static_cast<float>(grey->size());
+  float sum = 0, squares = 0;
+  for (const float value : *grey) {
+    sum += value;
+    squares += value * value;
+  }
+  const float mean = sum / count;
+  const float deviation = std::sqrt(std::max(0.0F, squares / count - mean * mean));
+  if (deviation < kMinDeviationGrey) {
+    return false;
+  }
+  for (float& value : *grey) {
+    value = (value - mean) / deviation;
+  }
+  return true;
+}
+
+bool Inside(const cv::Mat& image, const Vector2f& pixel) {
+  return pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() < static_cast<float>(image.cols - 2) &&
+         pixel.y() < static_cast<float>(image.rows - 2);
+}
+
+float Bilinear(const cv::Mat& image, float x, float y) {
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const float right = x - static_cast<float>(column);
+  const float down = y - static_cast<float>(row);
+  const unsigned char* upper = image.ptr(row) + column;
+  const unsigned char* lower = upper + image.step;
+  const float top = upper[0] + right * static_cast<float>(upper[1] - upper[0]);
+  const float bottom = lower[0] + right * static_cast<float>(lower[1] - lower[0]);
+  return top + down * (bottom - top);
+}
+
+}  // namespace
+
+bool PatchTemplate::Fits(const cv::Mat& image, const Vector2f& centre, int side_px) {
+  const Vector2f reach = Vector2f::Constant(static_cast<float>(side_px / 2 + 2));
+  return Inside(image, centre - reach) && Inside(image, centre + reach);
+}
+
+PatchTemplate::PatchTemplate(const cv::Mat& image, const Vector2f& centre, int side_px) : side_px_(side_px) {
+  // Whole pixels, so that the template itself is not interpolated.
+  const int left = static_cast<int>(std::lround(centre.x())) - side_px / 2;
+  const int top = static_cast<int>(std::lround(centre.y())) - side_px / 2;
+  corner_ = Vector2f(static_cast<float>(left), static_cast<float>(top)) - centre;
+  std::vector<float> grey;
+  std::vector<Vector2f> slope;
+  float deviation = 0;
+  for (int y = top; y < top + side_px; ++y) {
+    const unsigned char* row = image.ptr(y);
+    for (int x = left; x < left + side_px; ++x) {
+      grey.push_back(row[x]);
+      slope.emplace_back(0.5F * static_cast<float>(row[x + 1] - row[x - 1]),
+                         0.5F * static_cast<float>(image.ptr(y + 1)[x] - image.ptr(y - 1)[x]));
+    }
+  }
+  const std::vector<float> raw = grey;
+  if (!Normalize(&grey)) {
+    return;
+  }
+  for (std::size_t i = 1; i < grey.size() && deviation == 0; ++i) {
+    deviation = grey[i] != grey[0] ? (raw[i] - raw[0]) / (grey[i] - grey[0]) : 0;
+  }
+  for (Vector2f& derivative : slope) {
+    derivative /= deviation;
+  }
+  grey_ = std::move(grey);
+  slope_ = std::move(slope);
+
+  Matrix6f hessian = Matrix6f::Zero();
+  Vector6f sum = Vector6f::Zero();
+  std::size_t i = 0;
+  for (int row = 0; row < side_px_; ++row) {
+    for (int column = 0; column < side_px_; ++column, ++i) {
+      const Vector2f x = corner_ + Vector2f(static_cast<float>(column), static_cast<float>(row));
+      Vector6f steepest;
+      steepest << slope_[i], slope_[i].x() * x, slope_[i].y() * x;
+      hessian += steepest * steepest.transpose();
+      share_ += grey_[i] * steepest;
+      sum += steepest;
+    }
+  }
+  const auto count = static_cast<float>(grey_.size());
+  hessian -= (share_ * share_.transpose() + sum * sum.transpose()) / count;
+  hessian.diagonal() *= 1 + kDamping;
+  inverse_ = hessian.ldlt().solve(Matrix6f::Identity());
+}
+
+bool PatchTemplate::Sample(const cv::Mat& image, const TemplateMatch& match, std::vector<float>* grey) const {
+  const Vector2f right = match.affine.col(0);
+  const Vector2f down = match.affine.col(1);
+  const Vector2f start = match.centre + match.affine * corner_;
+  const auto last = static_cast<float>(side_px_ - 1);
+  if (!Inside(image, start) || !Inside(image, start + last * right) || !Inside(image, start + last * down) ||
+      !Inside(image, start + last * (right + down))) {
+    return false;
+  }
+  grey->clear();
+  for (int row = 0; row < side_px_; ++row) {
+    const Vector2f line = start + static_cast<float>(row) * down;
+    for (int column = 0; column < side_px_; ++column) {
+      const auto along = static_cast<float>(column);
+      grey->push_back(Bilinear(image, line.x() + along * right.x(), line.y() + along * right.y()));
+    }
+  }
+  return true;
+}
+
+PatchTemplate::Vector6f PatchTemplate::Gradient(const std::vector<float>& grey, float correlation) const {
+  float across = 0, upright = 0, xx = 0, xy = 0, yx = 0, yy = 0;
+  std::size_t i = 0;
+  for (int row = 0; row < side_px_; ++row) {
+    const float y = corner_.y() + static_cast<float>(row);
+    for (int column = 0; column < side_px_; ++column, ++i) {
+      const float x = corner_.x() + static_cast<float>(column);
+      const float error = grey[i] - grey_[i];
+      const float horizontal = error * slope_[i].x();
+      const float vertical = error * slope_[i].y();
+      across += horizontal;
+      upright += vertical;
+      xx += horizontal * x;
+      xy += horizontal * y;
+      yx += vertical * x;
+      yy += vertical * y;
+    }
+  }
+  Vector6f gradient;
+  gradient << across, upright, xx, xy, yx, yy;
+  return gradient - share_ * (correlation - 1);
+}
+
+bool PatchTemplate::Align(const cv::Mat& image, TemplateMatch* match) const {
+  if (empty()) {
+    return false;
+  }
+  TemplateMatch now = *match;
+  std::vector<float> grey;
+  grey.reserve(grey_.size());
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    if (!Sample(image, now, &grey) || !Normalize(&grey)) {
+      return false;
+    }
+    float product = 0;
+    for (std::size_t i = 0; i < grey.size(); ++i) {
+      product += grey[i] * grey_[i];
+    }
+    now.correlation = product / static_cast<float>(grey.size());
+    const Vector6f step = inverse_ * Gradient(grey, now.correlation);
+    Matrix2f change = Matrix2f::Identity();
+    change(0, 0) += step[2];
+    change(0, 1) += step[3];
+    change(1, 0) += step[4];
+    change(1, 1) += step[5];
+    if (!(change.determinant() > 0.1F)) {
+      return false;
+    }
+    now.affine = now.affine * change.inverse();
+    const Vector2f shift = now.affine * step.head<2>();
+    now.centre -= shift;
+    if (!((now.centre - match->centre).norm() < kMaxShiftPx) ||
+        !((now.affine - match->affine).norm() < kMaxChange)) {
+      return false;
+    }
+    if (shift.norm() < kConvergedPx) {
+      break;
+    }
+  }
+  *match = now;
+  return true;
+}
+
+bool PatchTemplate::IsWornOut(const Matrix2f& affine) {
+  // Singular values of a 2 x 2 matrix from its norm and determinant.
+  const float half = 0.5F * affine.squaredNorm();
+  const float area = affine.determinant();
+  const float root = std::sqrt(std::max(0.0F, half * half - area * area));
+  return half + root > kMaxGrowth * kMaxGrowth || half - root < 1 / (kMaxGrowth * kMaxGrowth);
+}
+
+}  // namespace alidade

@@ -1,0 +1,234 @@
+#include "gnss/alignment/alignment.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+#include "core/robust.h"
+#include "gnss/model/receiver_clock.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kMaxSamples = 40;  // bounds the work; epochs share most errors anyway
+constexpr double kMaxStateGapS = 2;      // no interpolation across a longer silence
+constexpr double kRetryS = 0.5;
+
+Eigen::Matrix3d RotationZ(double yaw_rad) {
+  return Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
+}
+
+bool Refused(const SinglePointSolution& solution, SatelliteId satellite) {
+  const auto found =
+      std::find_if(solution.satellites.begin(), solution.satellites.end(),
+                   [&](const SatelliteResidual& residual) { return residual.satellite == satellite; });
+  return found != solution.satellites.end() && !found->used;
+}
+
+}  // namespace
+
+Eigen::Matrix3d GnssAlignment::R_NW() const {
+  return RotationZ(yaw_rad);
+}
+
+NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate) {
+  const Eigen::Matrix3d R_NW = alignment.R_NW();
+  NavEstimate turned = estimate;
+  turned.nav.R_WB = R_NW * estimate.nav.R_WB;
+  turned.nav.p_WB = R_NW * estimate.nav.p_WB + alignment.p_NW;
+  turned.nav.v_WB = R_NW * estimate.nav.v_WB;
+  Matrix15d turn = Matrix15d::Identity();
+  turn.block<3, 3>(3, 3) = R_NW;
+  turn.block<3, 3>(6, 6) = R_NW;
+  Eigen::Matrix<double, 15, 4> spread = Eigen::Matrix<double, 15, 4>::Zero();
+  spread.block<3, 1>(0, 0) = turned.nav.R_WB.transpose() * Vector3d::UnitZ();
+  spread.block<3, 1>(3, 0) = Vector3d::UnitZ().cross(turned.nav.p_WB - alignment.p_NW);
+  spread.block<3, 1>(6, 0) = Vector3d::UnitZ().cross(turned.nav.v_WB);
+  spread.block<3, 3>(3, 1).setIdentity();
+  const Matrix15d covariance =
+      turn * estimate.covariance * turn.transpose() + spread * alignment.covariance * spread.transpose();
+  turned.covariance = 0.5 * (covariance + covariance.transpose());
+  return turned;
+}
+
+GnssAligner::GnssAligner(const GnssConfig& config, const GnssReceiver& receiver)
+    : config_(config), receiver_(receiver) {}
+
+void GnssAligner::AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias,
+                           const Vector3d& gyro_radps, const Eigen::Matrix3d& velocity_covariance_W) {
+  if (!states_.empty() && stamp_ns <= states_.back().stamp_ns) {
+    return;
+  }
+  AlignmentState state{stamp_ns, nav, bias, gyro_radps, velocity_covariance_W, Vector3d::Zero()};
+  if (!states_.empty()) {
+    state.acceleration_W =
+        (nav.v_WB - states_.back().nav.v_WB) / SecondsBetween(states_.back().stamp_ns, stamp_ns);
+  }
+  states_.push_back(state);
+  MatchEpochs();
+}
+
+void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>& approximate_E,
+                           const std::optional<SinglePointSolution>& solution) {
+  approximate_E_ = approximate_E ? approximate_E : approximate_E_;
+  builder_ = epoch.builder;
+  GnssEpoch taken = epoch;
+  if (solution) {
+    std::erase_if(taken.measurements.satellites,
+                  [&](const SatelliteMeasurement& m) { return Refused(*solution, m.satellite); });
+  }
+  if (static_cast<int>(taken.measurements.satellites.size()) >= config_.align_min_satellites) {
+    pending_.push_back(std::move(taken));
+  }
+  MatchEpochs();
+}
+
+/// Moves pending epochs that two states embrace to the samples, with the state interpolated between them.
+void GnssAligner::MatchEpochs() {
+  while (!pending_.empty() && !states_.empty() && pending_.front().stamp_ns <= states_.back().stamp_ns) {
+    const TimeNs stamp = pending_.front().stamp_ns;
+    const auto after = std::find_if(states_.begin(), states_.end(),
+                                    [&](const AlignmentState& state) { return state.stamp_ns >= stamp; });
+    const bool embraced = after != states_.begin() || after->stamp_ns == stamp;
+    const AlignmentState& late = *after;
+    const AlignmentState& early = after == states_.begin() ? late : *(after - 1);
+    const double span_s = SecondsBetween(early.stamp_ns, late.stamp_ns);
+    if (embraced && span_s <= kMaxStateGapS) {
+      const double share = span_s > 0 ? SecondsBetween(early.stamp_ns, stamp) / span_s : 0;
+      AlignmentSample sample{late, std::move(pending_.front().measurements)};
+      AlignmentState& state = sample.state;
+      state.stamp_ns = stamp;
+      // Position by the cubic that fits both velocities; the rest linearly.
+      const Vector3d chord = late.nav.p_WB - early.nav.p_WB;
+      const double s2 = share * share;
+      const double s3 = s2 * share;
+      state.nav.p_WB = early.nav.p_WB + (3 * s2 - 2 * s3) * chord +
+                       span_s * ((s3 - 2 * s2 + share) * early.nav.v_WB + (s3 - s2) * late.nav.v_WB);
+      state.nav.v_WB = (1 - share) * early.nav.v_WB + share * late.nav.v_WB;
+      state.nav.R_WB =
+          early.nav.R_WB * so3::Exp(share * so3::Log(early.nav.R_WB.transpose() * late.nav.R_WB));
+      state.gyro_radps = (1 - share) * early.gyro_radps + share * late.gyro_radps;
+      samples_.push_back(std::move(sample));
+      located_ = false;
+    }
+    pending_.pop_front();
+  }
+  const TimeNs newest = states_.empty() ? 0 : states_.back().stamp_ns;
+  const TimeNs oldest = newest - SecondsToNs(config_.align_window_s);
+  while (!samples_.empty() && samples_.front().state.stamp_ns < oldest) {
+    samples_.pop_front();
+  }
+  // A late epoch still finds its states.
+  while (states_.size() > 2 && SecondsBetween(states_[1].stamp_ns, newest) > kMaxStateGapS) {
+    states_.pop_front();
+  }
+}
+
+void GnssAligner::Locate() {
+  if (located_) {
+    return;
+  }
+  enu_ = EnuFrame::At(receiver_.anchor_E.value_or(*approximate_E_));
+  for (AlignmentSample& sample : samples_) {
+    builder_->Locate(*approximate_E_, &sample.measurements);
+  }
+  located_ = true;
+}
+
+std::vector<const AlignmentSample*> GnssAligner::Choose() const {
+  const std::size_t step = (samples_.size() + kMaxSamples - 1) / kMaxSamples;
+  std::vector<const AlignmentSample*> chosen;
+  for (std::size_t i = (samples_.size() - 1) % std::max<std::size_t>(step, 1); i < samples_.size();
+       i += step) {
+    chosen.push_back(&samples_[i]);
+  }
+  return chosen;
+}
+
+std::optional<AlignmentGuess> GnssAligner::FirstGuess(const AlignmentFit& fit) const {
+  constexpr int kCandidates = 24;
+  constexpr int kSteps = 3;
+  std::optional<AlignmentGuess> best;
+  double best_cost = INFINITY;
+  const Vector3d last_W = fit.samples().back()->state.nav.p_WB;
+  for (int i = 0; i < kCandidates; ++i) {
+    const double yaw = std::remainder(2 * M_PI * i / kCandidates, 2 * M_PI);
+    AlignmentGuess guess(yaw, enu_.FromEcef(*approximate_E_) - RotationZ(yaw) * last_W, fit.samples().size());
+    AlignmentStep step;
+    for (int k = 0; k < kSteps; ++k) {
+      step = fit.Step({.yaw_free = false, .robust = k > 0, .gate_sigma = INFINITY}, &guess);
+    }
+    if (step.ok && step.cost < best_cost) {
+      best_cost = step.cost;
+      best = std::move(guess);
+    }
+  }
+  return best;
+}
+
+std::optional<GnssAlignment> GnssAligner::TryAlign() {
+  if (static_cast<int>(samples_.size()) < config_.align_min_epochs || !approximate_E_) {
+    report_ = Format("%zu epochs of at least %d satellites within the window, expected %d%s", samples_.size(),
+                     config_.align_min_satellites, config_.align_min_epochs,
+                     approximate_E_ ? "" : "; no position yet");
+    return std::nullopt;
+  }
+  const TimeNs newest = samples_.back().state.stamp_ns;
+  if (tried_ns_ != INT64_MIN && SecondsBetween(tried_ns_, newest) < kRetryS) {
+    return std::nullopt;
+  }
+  tried_ns_ = newest;
+  Locate();
+  const AlignmentFit fit(config_, {enu_, receiver_.p_BA}, Choose());
+  std::optional<AlignmentGuess> guess = FirstGuess(fit);
+  constexpr int kIterations = 18;
+  constexpr int kUngated = 6;
+  constexpr double kGateScales = 3.5;
+  constexpr double kFirstGateSigma = 60;
+  constexpr double kGateShrinks = 0.65;
+  AlignmentStep step;
+  double widest = INFINITY;
+  for (int i = 0; guess && i < kIterations && (i == 0 || step.ok); ++i) {
+    // Huber's kernel alone is pulled by reflections, which are all late: they go, the latest first. A gate as
+    // narrow as it will be would at once refuse good satellites of a solution that is metres off.
+    widest = i < kUngated ? INFINITY : std::min(kFirstGateSigma, kGateShrinks * widest);
+    step = fit.Step({.gate_sigma = std::max(widest, kGateScales * step.scale)}, &*guess);
+  }
+  if (!step.ok) {
+    report_ = "the satellites do not determine the alignment";
+    return std::nullopt;
+  }
+  return Judge(*guess, step);
+}
+
+std::optional<GnssAlignment> GnssAligner::Judge(const AlignmentGuess& guess, const AlignmentStep& fit) {
+  const TimeNs newest = samples_.back().state.stamp_ns;
+  const double inflation = config_.align_inflation * config_.align_inflation * fit.scale * fit.scale;
+  GnssAlignment alignment;
+  alignment.covariance = inflation * fit.covariance;
+  const double yaw_std = std::sqrt(alignment.covariance(0, 0));
+  report_ = Format("%zu epochs over %.1f s: yaw to %.3f rad, position to %.2f m, scale %.2f", samples_.size(),
+                   SecondsBetween(samples_.front().state.stamp_ns, newest), yaw_std,
+                   std::sqrt(alignment.covariance.bottomRightCorner<3, 3>().trace()), fit.scale);
+  if (!(yaw_std < config_.align_max_yaw_std_rad)) {
+    report_ += Format(", expected below %.3f rad: too little motion", config_.align_max_yaw_std_rad);
+    return std::nullopt;
+  }
+  alignment.stamp_ns = newest;
+  alignment.enu = enu_;
+  alignment.yaw_rad = guess.yaw_rad;
+  alignment.p_NW = guess.p_NW;
+  alignment.clock = guess.biases;
+  alignment.clock[ClockState::kClock] = guess.clock_m.back();
+  alignment.clock[ClockState::kDrift] = guess.drift_mps.back();
+  alignment.time_offset_s = guess.time_offset_s;
+  alignment.report =
+      report_ + Format(", yaw %.4f rad", guess.yaw_rad) +
+      (config_.estimate_time_offset ? Format(", time offset %.4f s", guess.time_offset_s) : "");
+  return alignment;
+}
+
+}  // namespace alidade

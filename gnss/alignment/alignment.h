@@ -1,0 +1,79 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/clock_state.h"
+#include "core/measurement_log.h"
+#include "gnss/alignment/alignment_fit.h"
+#include "gnss/positioning/single_point.h"
+
+namespace alidade {
+
+/// How the local world W stands in the ENU frame N at an anchor: p_N = Rz(yaw) p_W + p_NW. Both are
+/// gravity-aligned, so that four numbers say it.
+struct GnssAlignment {
+  TimeNs stamp_ns = 0;  ///< IMU time of the last epoch used
+  EnuFrame enu;         ///< N
+  double yaw_rad = 0;
+  Eigen::Vector3d p_NW = Eigen::Vector3d::Zero();
+  /// Of (yaw, p_NW): truth = estimate + error, the turn about W's origin.
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Vector6d clock = Vector6d::Zero();  ///< at stamp_ns
+  double time_offset_s = 0;           ///< estimated, to be added to the receiver's
+  std::string report;
+
+  [[nodiscard]] Eigen::Matrix3d R_NW() const;
+};
+
+/// An estimate of the local world in the ENU frame, with the alignment's own uncertainty in its covariance.
+[[nodiscard]] NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate);
+
+/// Finds the alignment from epochs and the visual-inertial estimate at their times: least squares over yaw,
+/// p_NW, the clock of each epoch (tied by its process) and the biases between systems, with Huber weights.
+/// Every pseudorange and range rate counts, so that epochs with few satellites accumulate, at any rate, and
+/// the rates give the yaw from the first metres on. Yaw starts from the best of a ring of candidates.
+///
+/// The estimate's velocity may be off by a constant, as its covariance says (gnss/alignment/alignment_fit.h).
+/// Its drift over the window is not modelled otherwise; align_inflation covers it, and what all epochs share.
+class GnssAligner {
+ public:
+  GnssAligner(const GnssConfig& config, const GnssReceiver& receiver);
+
+  /// The estimate in the local world (covariance: of its velocity) and the gyroscope's measurement at its
+  /// stamp; rising stamps.
+  void AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias, const Eigen::Vector3d& gyro_radps,
+                const Eigen::Matrix3d& velocity_covariance_W);
+  /// `approximate_E`: an antenna position (kilometres are enough) or nothing; the last one given counts.
+  /// `solution`: the epoch's own, if it has one: satellites that it refused take no part.
+  void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E,
+                const std::optional<SinglePointSolution>& solution = std::nullopt);
+
+  /// The alignment once it is good enough; report() says what is missing.
+  std::optional<GnssAlignment> TryAlign();
+  [[nodiscard]] const std::string& report() const { return report_; }
+
+ private:
+  void MatchEpochs();
+  void Locate();
+  [[nodiscard]] std::vector<const AlignmentSample*> Choose() const;
+  [[nodiscard]] std::optional<AlignmentGuess> FirstGuess(const AlignmentFit& fit) const;
+  /// The alignment, if its yaw is known well enough; says what came of it.
+  std::optional<GnssAlignment> Judge(const AlignmentGuess& guess, const AlignmentStep& fit);
+
+  GnssConfig config_;
+  GnssReceiver receiver_;
+  std::deque<AlignmentState> states_;
+  std::deque<GnssEpoch> pending_;
+  std::deque<AlignmentSample> samples_;
+  std::optional<Eigen::Vector3d> approximate_E_;
+  std::shared_ptr<const MeasurementBuilder> builder_;
+  EnuFrame enu_;
+  bool located_ = false;
+  TimeNs tried_ns_ = INT64_MIN;
+  std::string report_;
+};
+
+}  // namespace alidade

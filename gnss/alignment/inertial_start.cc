@@ -1,0 +1,250 @@
+#include "gnss/alignment/inertial_start.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+#include "core/imu_buffer.h"
+#include "core/imu_propagation.h"
+#include "core/robust.h"
+#include "gnss/alignment/carried_state.h"
+#include "gnss/model/receiver_clock.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Errors of single points are correlated in time: what they say of a start is not better than this.
+constexpr double kPositionFloorM = 3;
+constexpr double kVelocityFloorMps = 0.15;  // lever arm, scale and quantisation of the IMU too
+constexpr double kMinSpacingS = 0.4;        // between the epochs that are used
+constexpr int kIterations = 8;
+
+Matrix3d InformationRoot(const Matrix3d& covariance, double floor) {
+  const Matrix3d widened = covariance + floor * floor * Matrix3d::Identity();
+  return widened.llt().matrixL().solve(Matrix3d::Identity());
+}
+
+/// The rotation that turns the vectors `from` into `to` best (Kabsch).
+Matrix3d RotationBetween(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to) {
+  Matrix3d sum = Matrix3d::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    sum += to[i] * from[i].transpose();
+  }
+  const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3d sign = Matrix3d::Identity();
+  sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * sign * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+/// State at the first epoch.
+struct GnssInertialStart::Fit {
+  bool ok = false;
+  double cost = INFINITY;
+  TimeNs first_ns = 0;  ///< IMU time of the first epoch
+  NavState nav;
+  ImuBias bias;
+  Matrix15d covariance = Matrix15d::Zero();
+  std::vector<Preintegration> intervals;  ///< from the first epoch to each later one
+};
+
+GnssInertialStart::GnssInertialStart(const EstimatorConfig& config, const RigCalibration& rig)
+    : config_(config.gnss),
+      init_(config.init),
+      receiver_(rig.gnss),
+      noise_(config.imu.Scaled(rig.imu_noise)),
+      gravity_W_(GravityInWorld(config.imu.gravity_mps2)) {}
+
+void GnssInertialStart::AddImu(const ImuSample& sample) {
+  if (imu_.empty() || sample.stamp_ns > imu_.back().stamp_ns) {
+    imu_.push_back(sample);
+  }
+}
+
+void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<SinglePointSolution>& solution) {
+  if (!solution || !solution->has_velocity ||
+      (!fixes_.empty() && SecondsBetween(fixes_.back().stamp_ns, epoch.stamp_ns) < kMinSpacingS)) {
+    return;
+  }
+  if (!enu_) {
+    enu_ = EnuFrame::At(receiver_.anchor_E.value_or(solution->position_E));
+  }
+  const Matrix3d R_NE = enu_->R_EN.transpose();
+  Fix fix;
+  fix.stamp_ns = epoch.stamp_ns;
+  fix.position_N = enu_->FromEcef(solution->position_E);
+  fix.velocity_N = R_NE * solution->velocity_E;
+  fix.position_root =
+      InformationRoot(R_NE * solution->position_covariance_E * R_NE.transpose(), kPositionFloorM);
+  fix.velocity_root =
+      InformationRoot(R_NE * solution->velocity_covariance_E * R_NE.transpose(), kVelocityFloorMps);
+  fix.clock.setZero();
+  fix.clock[ClockState::kClock] = solution->clock_m;
+  fix.clock[ClockState::kDrift] = solution->drift_mps;
+  for (int i = 0; i < kGnssSystems; ++i) {
+    const int index = ClockBiasIndex(static_cast<GnssSystem>(i));
+    if (index >= 0) {
+      fix.clock[index] = solution->inter_system_bias_m[static_cast<std::size_t>(i)].value_or(0);
+    }
+  }
+  fixes_.push_back(fix);
+  const TimeNs oldest = epoch.stamp_ns - SecondsToNs(config_.align_window_s);
+  while (fixes_.front().stamp_ns < oldest) {
+    fixes_.pop_front();
+  }
+  const TimeNs needed = fixes_.front().stamp_ns - SecondsToNs(config_.max_time_offset_s) - kSecondNs;
+  while (imu_.size() > 2 && imu_[1].stamp_ns < needed) {
+    imu_.pop_front();
+  }
+}
+
+std::vector<Preintegration> GnssInertialStart::Integrate(double offset_s, std::vector<Vector3d>* gyro,
+                                                         TimeNs* first_ns) const {
+  constexpr double kAnyGapS = 1e6;
+  ImuBuffer buffer(kAnyGapS);
+  for (const ImuSample& sample : imu_) {
+    (void)buffer.Add(sample);
+  }
+  std::vector<Preintegration> intervals;
+  Preintegration sum(ImuBias(), noise_);
+  *first_ns = fixes_.front().stamp_ns + SecondsToNs(offset_s);
+  TimeNs from = *first_ns;
+  std::vector<ImuSample> samples;
+  for (std::size_t k = 1; k < fixes_.size(); ++k) {
+    const TimeNs to = fixes_[k].stamp_ns + SecondsToNs(offset_s);
+    if (!buffer.Interval(from, to, &samples).ok()) {
+      return {};
+    }
+    sum.Add(samples);
+    intervals.push_back(sum);
+    gyro->push_back(samples.back().gyro);
+    from = to;
+  }
+  return intervals;
+}
+
+GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
+  Fit fit;
+  std::vector<Vector3d> gyro;
+  fit.intervals = Integrate(offset_s, &gyro, &fit.first_ns);
+  if (fit.intervals.empty()) {
+    return fit;
+  }
+  const Fix& first = fixes_.front();
+  std::vector<Vector3d> sensed;
+  std::vector<Vector3d> seen;
+  for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
+    sensed.push_back(fit.intervals[k].beta());
+    seen.push_back(fixes_[k + 1].velocity_N - first.velocity_N - fit.intervals[k].duration_s() * gravity_W_);
+  }
+  fit.nav.R_WB = RotationBetween(sensed, seen);
+  fit.nav.v_WB = first.velocity_N;
+  fit.nav.p_WB = first.position_N - fit.nav.R_WB * receiver_.p_BA;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Matrix15d hessian = Matrix15d::Zero();
+    Vector15d gradient = Vector15d::Zero();
+    fit.cost = 0;
+    const auto add = [&](const Vector3d& residual, const Eigen::Matrix<double, 3, 15>& jacobian,
+                         const Matrix3d& root) {
+      const Vector3d r = root * residual;
+      const double weight = RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r.squaredNorm());
+      const Eigen::Matrix<double, 3, 15> j = root * jacobian;
+      hessian += weight * j.transpose() * j;
+      gradient += weight * j.transpose() * r;
+      fit.cost += weight * r.squaredNorm();
+    };
+    const auto add_fix = [&](const Fix& fix, const NavState& nav, const Matrix15d& chain,
+                             const Vector3d& omega_B) {
+      const Vector3d swing = omega_B.cross(receiver_.p_BA);
+      Eigen::Matrix<double, 3, 15> position = chain.middleRows<3>(3);
+      position -= nav.R_WB * Skew(receiver_.p_BA) * chain.topRows<3>();
+      Eigen::Matrix<double, 3, 15> velocity = chain.middleRows<3>(6);
+      velocity -= nav.R_WB * Skew(swing) * chain.topRows<3>();
+      add(nav.p_WB + nav.R_WB * receiver_.p_BA - fix.position_N, position, fix.position_root);
+      add(nav.v_WB + nav.R_WB * swing - fix.velocity_N, velocity, fix.velocity_root);
+    };
+    add_fix(first, fit.nav, Matrix15d::Identity(), gyro.front() - fit.bias.gyro);
+    for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
+      Matrix15d chain;
+      const NavState nav = CarryState(fit.intervals[k], fit.nav, fit.bias, gravity_W_, &chain);
+      add_fix(fixes_[k + 1], nav, chain, gyro[k] - fit.bias.gyro);
+    }
+    const double gyro_information = 1 / (init_.gyro_bias_std_radps * init_.gyro_bias_std_radps);
+    const double accel_information = 1 / (init_.accel_bias_std_mps2 * init_.accel_bias_std_mps2);
+    hessian.diagonal().segment<3>(9).array() += gyro_information;
+    hessian.diagonal().segment<3>(12).array() += accel_information;
+    gradient.segment<3>(9) += gyro_information * fit.bias.gyro;
+    gradient.segment<3>(12) += accel_information * fit.bias.accel;
+    const Eigen::LDLT<Matrix15d> solver(hessian);
+    const Vector15d step = solver.solve(-gradient);
+    if (solver.info() != Eigen::Success || !solver.isPositive() || !step.allFinite()) {
+      return fit;
+    }
+    fit.nav.R_WB = so3::Normalize(fit.nav.R_WB * so3::Exp(step.head<3>()));
+    fit.nav.p_WB += step.segment<3>(3);
+    fit.nav.v_WB += step.segment<3>(6);
+    fit.bias.gyro += step.segment<3>(9);
+    fit.bias.accel += step.segment<3>(12);
+    fit.covariance = solver.solve(Matrix15d::Identity());
+  }
+  fit.ok = true;
+  return fit;
+}
+
+std::optional<GnssInertialStart::Start> GnssInertialStart::TryStart() {
+  if (static_cast<int>(fixes_.size()) < config_.align_min_epochs) {
+    report_ = Format("%zu single points with velocity, expected %d", fixes_.size(), config_.align_min_epochs);
+    return std::nullopt;
+  }
+  Fit best = Solve(0);
+  const auto yaw_std = [&](const Fit& fit) {
+    const Matrix3d attitude = fit.nav.R_WB * fit.covariance.topLeftCorner<3, 3>() * fit.nav.R_WB.transpose();
+    return config_.align_inflation * std::sqrt(attitude(2, 2));
+  };
+  if (!best.ok || !(yaw_std(best) < config_.align_max_yaw_std_rad)) {
+    report_ = best.ok ? Format("heading to %.2f rad, expected below %.2f: too little motion", yaw_std(best),
+                               config_.align_max_yaw_std_rad)
+                      : "the single points do not determine a start";
+    return std::nullopt;
+  }
+  double offset_s = 0;
+  if (config_.estimate_time_offset) {
+    constexpr int kSteps = 20;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+      const double candidate = config_.max_time_offset_s * i / kSteps;
+      Fit fit = Solve(candidate);
+      if (fit.ok && fit.cost < best.cost) {
+        best = std::move(fit);
+        offset_s = candidate;
+      }
+    }
+  }
+  Matrix15d chain;
+  const Preintegration& whole = best.intervals.back();
+  Start start;
+  start.estimate.nav = CarryState(whole, best.nav, best.bias, gravity_W_, &chain);
+  start.estimate.bias = best.bias;
+  start.estimate.stamp_ns = fixes_.back().stamp_ns + SecondsToNs(offset_s);
+  const Matrix15d covariance =
+      config_.align_inflation * config_.align_inflation * chain * best.covariance * chain.transpose();
+  start.estimate.covariance = 0.5 * (covariance + covariance.transpose());
+  start.alignment.stamp_ns = start.estimate.stamp_ns;
+  start.alignment.enu = *enu_;
+  constexpr double kNothing = 1e-12;  // the uncertainty is in the state
+  start.alignment.covariance = kNothing * Eigen::Matrix4d::Identity();
+  start.alignment.clock = fixes_.back().clock;
+  start.alignment.time_offset_s = offset_s;
+  report_ = Format("%zu single points over %.1f s: heading to %.3f rad", fixes_.size(),
+                   SecondsBetween(fixes_.front().stamp_ns, fixes_.back().stamp_ns), yaw_std(best)) +
+            (config_.estimate_time_offset ? Format(", time offset %.3f s", offset_s) : "");
+  start.alignment.report = report_;
+  return start;
+}
+
+}  // namespace alidade

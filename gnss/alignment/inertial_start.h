@@ -1,0 +1,62 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "core/measurement_log.h"
+#include "core/preintegration.h"
+#include "gnss/alignment/alignment.h"
+
+namespace alidade {
+
+/// The start of GNSS with IMU and without a camera: a state that stands in the ENU frame at once.
+///
+/// Least squares over attitude, velocity, position and biases at the first epoch of the window: the IMU,
+/// integrated from there, must pass through the single-point positions and velocities of the others. Attitude
+/// starts from the rotation between specific force, integrated in the first body frame, and change of
+/// velocity less gravity (velocity matching as in Wu and Pan, "Velocity/position integration formula part I",
+/// 2013; solved by SVD). Rest leaves the heading open, so that the start waits for motion.
+class GnssInertialStart {
+ public:
+  GnssInertialStart(const EstimatorConfig& config, const RigCalibration& rig);
+
+  /// Rising stamps; the IMU reaches beyond an epoch before the epoch comes.
+  void AddImu(const ImuSample& sample);
+  void AddEpoch(const GnssEpoch& epoch, const std::optional<SinglePointSolution>& solution);
+
+  struct Start {
+    NavEstimate estimate;     ///< in the ENU frame, at the last epoch
+    GnssAlignment alignment;  ///< without turn or shift: anchor and clock
+  };
+  /// The start once the heading is known to gnss.align_max_yaw_std_rad; report() says what is missing.
+  std::optional<Start> TryStart();
+  [[nodiscard]] const std::string& report() const { return report_; }
+
+ private:
+  struct Fix {
+    TimeNs stamp_ns = 0;
+    Eigen::Vector3d position_N, velocity_N;
+    Eigen::Matrix3d position_root, velocity_root;  ///< of information
+    Vector6d clock;
+  };
+  struct Fit;
+
+  [[nodiscard]] Fit Solve(double offset_s) const;
+  [[nodiscard]] std::vector<Preintegration> Integrate(double offset_s, std::vector<Eigen::Vector3d>* gyro,
+                                                      TimeNs* first_ns) const;
+
+  GnssConfig config_;
+  InitConfig init_;
+  GnssReceiver receiver_;
+  ImuNoise noise_;
+  Eigen::Vector3d gravity_W_;
+  std::deque<ImuSample> imu_;
+  std::deque<Fix> fixes_;
+  std::optional<EnuFrame> enu_;
+  std::string report_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+
+#include "gnss/base/satellite_id.h"
+
+namespace alidade {
+
+/// Place of a system in an array of kGnssSystems.
+[[nodiscard]] constexpr std::size_t Index(GnssSystem system) {
+  return static_cast<std::size_t>(system);
+}
+
+}  // namespace alidade

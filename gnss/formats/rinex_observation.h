@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "gnss/formats/observation.h"
+
+namespace alidade {
+
+/// Reads a RINEX observation file of version 2.xx, 3.xx or 4.xx, plain, Compact RINEX 1 or 3, each of them
+/// also as gzip. Sources: RINEX 2.11, 3.05 and 4.00.
+///
+/// A fault in the header is an error that names file and line. Records that are torn or ill-formed are passed
+/// over up to the next epoch and told in `warnings`; so are epochs that do not come after the one before.
+/// Event records (flags 2 to 6) are counted and their header lines obeyed. A file without one good epoch is
+/// an error.
+Result<ObservationFile> ReadRinexObservation(const std::string& path);
+
+/// The same from memory; `path` is used in messages.
+Result<ObservationFile> ParseRinexObservation(const std::string& path, std::string_view text);
+
+}  // namespace alidade

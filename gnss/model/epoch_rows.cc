@@ -1,0 +1,116 @@
+#include "gnss/model/epoch_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/robust.h"
+#include "gnss/model/receiver_clock.h"
+
+namespace alidade {
+
+Eigen::Matrix<double, 1, 6> GnssRow::ClockJacobian() const {
+  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
+  row[is_rate ? ClockState::kDrift : ClockState::kClock] = 1;
+  if (!is_rate && bias_index >= 0) {
+    row[bias_index] = 1;
+  }
+  return row;
+}
+
+void LocateEpoch(const MeasurementBuilder& builder, const AntennaMount& mount, const NavState& nav,
+                 EpochMeasurements* epoch) {
+  builder.Locate(mount.Position(nav, nullptr), epoch);
+}
+
+std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount& mount,
+                                    const GnssPoint& point, const EpochMeasurements& epoch,
+                                    GnssResiduals* residuals) {
+  Eigen::Matrix<double, 3, 15> position_jacobian;
+  Eigen::Matrix<double, 3, 15> velocity_jacobian;
+  const Eigen::Vector3d antenna_E = mount.Position(point.nav, &position_jacobian);
+  const Eigen::Vector3d velocity_E =
+      mount.Velocity(point.nav, point.bias, point.gyro_radps, &velocity_jacobian);
+  const double mask = config.corrections.elevation_mask_deg * M_PI / 180;
+  std::vector<GnssRow> rows;
+  std::vector<GnssRow> rates;
+  residuals->satellites.clear();
+  for (const SatelliteMeasurement& m : epoch.satellites) {
+    if (m.direction.elevation_rad < mask) {
+      continue;
+    }
+    SatelliteResidual told{m.satellite, m.direction,  0,    std::sqrt(m.pseudorange_variance),
+                           false,       std::nullopt, false};
+    GnssRow row;
+    row.satellite = residuals->satellites.size();
+    row.bias_index = ClockBiasIndex(m.satellite.system);
+    RowVector3d line;
+    const double clock =
+        point.clock[ClockState::kClock] + (row.bias_index >= 0 ? point.clock[row.bias_index] : 0);
+    PseudorangeModel::Of(m).Evaluate(antenna_E, clock, &row.residual, &line);
+    told.residual_m = row.residual;
+    if (config.pseudorange) {
+      row.deviation = told.deviation_m;
+      row.jacobian.noalias() = line * position_jacobian;
+      rows.push_back(row);
+    }
+    if (config.doppler && m.range_rate_mps) {
+      RowVector3d by_velocity;
+      row.is_rate = true;
+      row.deviation = std::sqrt(m.range_rate_variance);
+      RangeRateModel::Of(m).Evaluate(antenna_E, velocity_E, point.clock[ClockState::kDrift], &row.residual,
+                                     &line, &by_velocity);
+      row.jacobian.noalias() = line * position_jacobian + by_velocity * velocity_jacobian;
+      told.range_rate_residual_mps = row.residual;
+      rates.push_back(row);
+    }
+    residuals->satellites.push_back(told);
+  }
+  rows.insert(rows.end(), rates.begin(), rates.end());
+  return rows;
+}
+
+double CommonStep(const std::vector<GnssRow>& rows) {
+  std::vector<double> steps;
+  for (const GnssRow& row : rows) {
+    if (!row.is_rate) {
+      steps.push_back(-row.residual);
+    }
+  }
+  if (steps.empty()) {
+    return 0;
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+bool IsClockJump(const GnssConfig& config, const std::vector<GnssRow>& rows, double step_m,
+                 double clock_std_m) {
+  constexpr int kLeastSatellites = 3;
+  constexpr double kDeviations = 6;
+  const auto ranges = std::count_if(rows.begin(), rows.end(), [](const GnssRow& r) { return !r.is_rate; });
+  const double threshold = std::max(config.clock_jump_m, kDeviations * clock_std_m);
+  return ranges >= kLeastSatellites && std::abs(step_m) > threshold;
+}
+
+GnssWeights WeighRows(const GnssConfig& config, double gate_threshold, const std::vector<double>& nis) {
+  constexpr int kLeastRefused = 4;
+  GnssWeights result;
+  result.weights.assign(nis.size(), 0);
+  const auto refused =
+      std::count_if(nis.begin(), nis.end(), [&](double value) { return !(value <= gate_threshold); });
+  const bool suspect =
+      refused >= kLeastRefused &&
+      static_cast<double>(refused) > config.max_gated_share * static_cast<double>(nis.size());
+  for (std::size_t i = 0; i < nis.size(); ++i) {
+    if (nis[i] <= gate_threshold) {
+      result.weights[i] = RobustWeight(config.robust_kernel, config.robust_scale_sigma, nis[i]);
+    } else if (suspect && std::isfinite(nis[i])) {
+      result.weights[i] = gate_threshold / nis[i];
+    }
+    ++(result.weights[i] > 0 ? result.used : result.refused);
+  }
+  return result;
+}
+
+}  // namespace alidade

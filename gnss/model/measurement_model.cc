@@ -1,0 +1,114 @@
+#include "gnss/model/measurement_model.h"
+
+#include "core/check.h"
+#include "gnss/base/constants.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSagnac = kEarthRotationRate / kSpeedOfLight;  // [1/m]
+
+}  // namespace
+
+PseudorangeModel PseudorangeModel::Of(const SatelliteMeasurement& m) {
+  return {m.pseudorange_m, m.state.position_E,
+          -m.state.clock_m + m.troposphere_m + m.ionosphere_m + m.group_delay_m};
+}
+
+void PseudorangeModel::Evaluate(const Vector3d& antenna_E, double clock_m, double* residual,
+                                RowVector3d* position_jacobian) const {
+  const Vector3d& s = satellite_position_E;
+  const Vector3d apart = s - antenna_E;
+  const double range = apart.norm();
+  const double sagnac = kSagnac * (s.x() * antenna_E.y() - s.y() * antenna_E.x());
+  *residual = range + sagnac + clock_m + correction_m - measured_m;
+  if (position_jacobian != nullptr) {
+    *position_jacobian = -apart.transpose() / range + kSagnac * RowVector3d(-s.y(), s.x(), 0);
+  }
+}
+
+RangeRateModel RangeRateModel::Of(const SatelliteMeasurement& m) {
+  CHECK(m.range_rate_mps.has_value());
+  return {*m.range_rate_mps, m.state};
+}
+
+void RangeRateModel::Evaluate(const Vector3d& antenna_E, const Vector3d& velocity_E, double drift_mps,
+                              double* residual, RowVector3d* position_jacobian,
+                              RowVector3d* velocity_jacobian) const {
+  const Vector3d& s = satellite.position_E;
+  const Vector3d& vs = satellite.velocity_E;
+  const Vector3d apart = s - antenna_E;
+  const double range = apart.norm();
+  const Vector3d e = apart / range;
+  const Vector3d relative = vs - velocity_E;
+  const double sagnac = kSagnac * (vs.x() * antenna_E.y() + s.x() * velocity_E.y() - vs.y() * antenna_E.x() -
+                                   s.y() * velocity_E.x());
+  const double rate = e.dot(relative) + sagnac;
+  const double flight = 1 + e.dot(vs) / kSpeedOfLight;
+  *residual = rate / flight + drift_mps - satellite.drift_mps - measured_mps;
+  if (velocity_jacobian != nullptr) {
+    *velocity_jacobian = (-e.transpose() + kSagnac * RowVector3d(-s.y(), s.x(), 0)) / flight;
+  }
+  if (position_jacobian != nullptr) {
+    // d e / d p_A = -(I - e e^T) / range
+    const RowVector3d rate_jacobian =
+        -(relative - e.dot(relative) * e).transpose() / range + kSagnac * RowVector3d(-vs.y(), vs.x(), 0);
+    const RowVector3d flight_jacobian = -(vs - e.dot(vs) * e).transpose() / (range * kSpeedOfLight);
+    *position_jacobian = rate_jacobian / flight - rate / (flight * flight) * flight_jacobian;
+  }
+}
+
+Vector3d AntennaMount::Position(const NavState& state, Eigen::Matrix<double, 3, 15>* jacobian) const {
+  if (jacobian != nullptr) {
+    jacobian->setZero();
+    jacobian->block<3, 3>(0, 0) = -enu.R_EN * state.R_WB * Skew(p_BA);
+    jacobian->block<3, 3>(0, 3) = enu.R_EN;
+  }
+  return enu.ToEcef(state.p_WB + state.R_WB * p_BA);
+}
+
+Vector3d AntennaMount::Velocity(const NavState& state, const ImuBias& bias, const Vector3d& gyro_radps,
+                                Eigen::Matrix<double, 3, 15>* jacobian) const {
+  const Vector3d swing = (gyro_radps - bias.gyro).cross(p_BA);
+  if (jacobian != nullptr) {
+    jacobian->setZero();
+    jacobian->block<3, 3>(0, 0) = -enu.R_EN * state.R_WB * Skew(swing);
+    jacobian->block<3, 3>(0, 6) = enu.R_EN;
+    jacobian->block<3, 3>(0, 9) = enu.R_EN * state.R_WB * Skew(p_BA);
+  }
+  return enu.R_EN * (state.v_WB + state.R_WB * swing);
+}
+
+void EvaluatePseudorange(const PseudorangeModel& model, const AntennaMount& mount, const NavState& state,
+                         double clock_m, double* residual, GnssJacobian* jacobian) {
+  if (jacobian == nullptr) {
+    model.Evaluate(mount.Position(state, nullptr), clock_m, residual, nullptr);
+    return;
+  }
+  Eigen::Matrix<double, 3, 15> antenna;
+  RowVector3d line;
+  model.Evaluate(mount.Position(state, &antenna), clock_m, residual, &line);
+  *jacobian = line * antenna;
+}
+
+void EvaluateRangeRate(const RangeRateModel& model, const AntennaMount& mount, const NavState& state,
+                       const ImuBias& bias, const Vector3d& gyro_radps, double drift_mps, double* residual,
+                       GnssJacobian* jacobian) {
+  if (jacobian == nullptr) {
+    model.Evaluate(mount.Position(state, nullptr), mount.Velocity(state, bias, gyro_radps, nullptr),
+                   drift_mps, residual, nullptr, nullptr);
+    return;
+  }
+  Eigen::Matrix<double, 3, 15> position;
+  Eigen::Matrix<double, 3, 15> velocity;
+  RowVector3d by_position;
+  RowVector3d by_velocity;
+  const Vector3d antenna_E = mount.Position(state, &position);
+  const Vector3d velocity_E = mount.Velocity(state, bias, gyro_radps, &velocity);
+  model.Evaluate(antenna_E, velocity_E, drift_mps, residual, &by_position, &by_velocity);
+  *jacobian = by_position * position + by_velocity * velocity;
+}
+
+}  // namespace alidade

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gnss/positioning/single_point.h"
+
+namespace alidade {
+
+/// Solutions as RTKLIB's .pos text: GPST calendar time, latitude and longitude [deg], height [m], Q = 5
+/// (single), number of satellites, deviations [m], age and ratio 0, then velocity north, east, up with
+/// deviations [m/s] (0 where there is none). `remark` lines head the file, each behind "% ".
+[[nodiscard]] std::string FormatPositionFile(const std::vector<SinglePointSolution>& solutions,
+                                             const std::vector<std::string>& remarks);
+
+}  // namespace alidade

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <cmath>
+
+#include "gnss/positioning/consensus.h"
+#include "gnss/positioning/single_point_state.h"
+
+namespace alidade {
+
+/// Many reflections, which are all late, pull Huber's minimum by metres, where good satellites look no better
+/// than they. Where the residuals are far larger than their deviations and most satellites agree far better
+/// elsewhere, those that do are fitted.
+void SinglePointSolver::Agree(const EpochMeasurements& epoch, State* state) const {
+  constexpr double kSuspiciousScale = 1.5;
+  constexpr double kBetter = 0.5;
+  constexpr double kAgreeSigma = 4;
+  if (state->scale < kSuspiciousScale) {
+    return;
+  }
+  State other = *state;
+  const WhitenedRows rows = PositionRows(epoch, &other);
+  std::vector<int> group;
+  for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
+    if (other.active[k]) {
+      group.push_back(other.column[Index(epoch.satellites[k].satellite.system)] + 1);
+    }
+  }
+  const std::optional<Consensus> consensus = SeekConsensus(rows, group);
+  if (!consensus || consensus->spread > kBetter * state->scale) {
+    return;
+  }
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
+    if (other.active[k]) {
+      other.active[k] = std::abs(consensus->residual[row++]) < kAgreeSigma * std::max(1.0, consensus->spread);
+    }
+  }
+  other.biases_anew = true;
+  if (Iterate(epoch, &other).ok()) {
+    *state = other;
+  }
+}
+
+/// Takes out satellites beyond the gate, the worst first as long as the rest has one to spare; true if any.
+bool SinglePointSolver::Gate(const EpochMeasurements& epoch, State* state) const {
+  std::vector<std::pair<double, std::size_t>> refused;
+  for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
+    const double squared = state->residual_m[k] * state->residual_m[k] /
+                           (epoch.satellites[k].pseudorange_variance * state->scale * state->scale);
+    if (state->active[k] && !gate_.Accepts(squared, 1)) {
+      refused.emplace_back(-squared, k);
+    }
+  }
+  std::sort(refused.begin(), refused.end());
+  auto left = std::count(state->active.begin(), state->active.end(), true);
+  bool any = false;
+  for (const auto& [squared, k] : refused) {
+    if (left > state->unknowns + 1) {
+      state->active[k] = false;
+      --left;
+      any = true;
+    }
+  }
+  return any;
+}
+
+}  // namespace alidade

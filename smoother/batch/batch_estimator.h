@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/estimator.h"
+#include "core/imu_buffer.h"
+#include "smoother/batch/batch_sequence.h"
+
+namespace alidade {
+
+/// The maximum-a-posteriori estimate over the whole sequence (smoother/batch/batch_solver.h): every state
+/// given ALL data, the later ones too. A bound for other estimators, not a rival (docs/batch.md).
+///
+/// While the sequence runs, `initial`, another estimator on the same input, answers for it; its states are
+/// the initial values, and the frames it accepts are the frames of the batch. TakeFinalized then solves.
+class BatchEstimator final : public Estimator {
+ public:
+  BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,
+                 std::unique_ptr<Estimator> initial);
+
+  Status Initialize(const NavEstimate& initial) override;
+  Status AddImu(const ImuSample& sample) override;
+  Status AddFrame(const TrackFrame& frame) override;
+  [[nodiscard]] NavEstimate Latest() const override { return initial_->Latest(); }
+  [[nodiscard]] bool initialized() const override { return initial_->initialized(); }
+  [[nodiscard]] const FrameStatistics& last_statistics() const override {
+    return initial_->last_statistics();
+  }
+  Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* stop) override;
+
+  [[nodiscard]] const BatchSequence& sequence() const { return sequence_; }
+
+ private:
+  EstimatorConfig config_;
+  RigCalibration rig_;
+  std::unique_ptr<Estimator> initial_;
+  ImuBuffer imu_;
+  BatchSequence sequence_;
+  std::vector<int> accepted_;  ///< index in the sequence of every accepted frame
+  std::vector<int> tracks_in_;
+};
+
+}  // namespace alidade

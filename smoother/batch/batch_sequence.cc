@@ -1,0 +1,172 @@
+#include "smoother/batch/batch_sequence.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "smoother/factors/imu_factor.h"
+
+namespace alidade {
+namespace {
+
+// Every solve linearises anew and works on inverse depths, so a track may enter as soon as its depth is known
+// to its own size; below that it would hold hardly more than rotation, and the inverse depth is not Gaussian.
+constexpr double kMaxDepthDeviation = 1.0;
+constexpr int kMaxLandmarkIterations = 50;
+constexpr size_t kMinViews = 2;
+
+std::unique_ptr<WindowFrame> MakeFrame(const NavEstimate& estimate, int index) {
+  auto frame = std::make_unique<WindowFrame>();
+  frame->stamp_ns = estimate.stamp_ns;
+  frame->index = index;
+  PackNavState(estimate.nav, frame->nav.data());
+  PackBias(estimate.bias, frame->bias.data());
+  return frame;
+}
+
+}  // namespace
+
+ObservationKernel GuardKernel(const VisionConfig& vision) {
+  return {RobustKernel::kHuber, vision.robust_scale_sigma};
+}
+
+BatchSequence::BatchSequence(const EstimatorConfig& config, const RigCalibration& rig)
+    : config_(config),
+      rig_(rig),
+      kernel_{config.batch.robust_kernel, config.vision.robust_scale_sigma},
+      gate_(config.batch.gate_probability),
+      rest_(config.vision, config.init, rig.camera) {}
+
+bool BatchSequence::Start(const NavEstimate& initial) {
+  frames_.clear();
+  invalid_.assign(1, 0);
+  tracks_.clear();
+  track_of_id_.clear();
+  rest_.Clear();
+  frames_.push_back(MakeFrame(initial, 0));
+  return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial.covariance, &prior_);
+}
+
+void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu,
+                             const TrackFrame& frame) {
+  if (!imu.empty()) {
+    rest_.AddImu(imu);
+    frames_.push_back(MakeFrame(estimate, static_cast<int>(frames_.size())));
+    frames_.back()->imu = std::move(imu);
+    invalid_.push_back(0);
+  }
+  WindowFrame& node = *frames_.back();
+  AddObservations(frame, node);
+  if (config_.vision.rest_updates) {
+    const RestVerdict verdict = rest_.AddFrame(frame, estimate.nav.R_WB * rig_.T_BC.rotation);
+    if (verdict.no_translation) {
+      node.rest = MakeRestMeasurement(verdict, rest_.MeanGyro(), config_.vision);
+    }
+  }
+}
+
+void BatchSequence::AddObservations(const TrackFrame& frame, const WindowFrame& node) {
+  for (const TrackObservation& measured : frame.observations) {
+    NormalizedObservation observation;
+    if (!NormalizeObservation(rig_.camera, measured.pixel, config_.vision.pixel_noise_px, &observation)) {
+      ++invalid_.back();
+      continue;
+    }
+    const auto [entry, is_new] = track_of_id_.try_emplace(measured.track_id, tracks_.size());
+    if (is_new) {
+      tracks_.emplace_back();
+      tracks_.back().used.id = measured.track_id;
+    }
+    std::vector<WindowView>& views = tracks_[entry->second].views;
+    if (!views.empty() && views.back().frame == &node) {  // twice in one frame: the first counts
+      ++invalid_.back();
+      continue;
+    }
+    views.push_back({&node, observation});
+  }
+}
+
+void BatchSequence::Preintegrate() {
+  const ImuNoise noise = config_.imu.Scaled(rig_.imu_noise);
+  for (size_t i = 1; i < frames_.size(); ++i) {
+    frames_[i]->preintegration.emplace(frames_[i - 1]->imu_bias(), noise);
+    frames_[i]->preintegration->Add(frames_[i]->imu);
+  }
+}
+
+TrackSelection BatchSequence::Select(bool gate) {
+  std::vector<FrameGeometry> geometry;
+  geometry.reserve(frames_.size());
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    geometry.push_back(MakeGeometry(frame->nav_state(), rig_.T_BC));
+  }
+  TrackSelection selection;
+  for (BatchTrack& track : tracks_) {
+    if (track.views.size() < kMinViews) {
+      continue;
+    }
+    const bool was_selected = track.selected;
+    const size_t views_before = track.used.views.size();
+    track.selected = Judge(geometry, gate, &selection, &track);
+    if (track.selected) {
+      ++selection.tracks;
+      selection.observations += static_cast<int>(track.used.views.size());
+    }
+    selection.changed = selection.changed || track.selected != was_selected ||
+                        (track.selected && track.used.views.size() != views_before);
+  }
+  return selection;
+}
+
+bool BatchSequence::Judge(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
+                          BatchTrack* track) const {
+  WindowTrack& used = track->used;
+  used.views = gate ? Inliers(geometry, *track) : track->views;
+  selection->outliers += static_cast<int>(track->views.size() - used.views.size());
+  used.has_landmark = used.views.size() >= kMinViews &&
+                      InitializeLandmark(used.views, geometry, kMaxDepthDeviation, &used.landmark) &&
+                      SolveLandmark(used.views, geometry, gate ? kernel_ : GuardKernel(config_.vision),
+                                    kMaxLandmarkIterations, &used.landmark);
+  if (!used.has_landmark) {
+    ++selection->without_depth;
+    return false;
+  }
+  const int dof = 2 * static_cast<int>(used.views.size()) - 3;
+  if (gate && !gate_.Accepts(TrackChiSquare(used.views, geometry, used.landmark), dof)) {
+    ++selection->gated;
+    return false;
+  }
+  return true;
+}
+
+std::vector<WindowView> BatchSequence::Inliers(const std::vector<FrameGeometry>& geometry,
+                                               const BatchTrack& track) const {
+  const ObservationKernel guard = GuardKernel(config_.vision);
+  Eigen::Vector3d landmark;
+  if (!InitializeLandmark(track.views, geometry, kMaxDepthDeviation, &landmark) ||
+      !SolveLandmark(track.views, geometry, guard, kMaxLandmarkIterations, &landmark)) {
+    return track.views;
+  }
+  const FrameGeometry& base = geometry[static_cast<size_t>(track.views.front().frame->index)];
+  std::vector<WindowView> inliers;
+  for (const WindowView& view : track.views) {
+    ViewRows rows;
+    if (LinearizeView(base, geometry[static_cast<size_t>(view.frame->index)], view.observation, guard,
+                      landmark, &rows) &&
+        gate_.Accepts(rows.squared_norm, 2)) {
+      inliers.push_back(view);
+    }
+  }
+  return inliers;
+}
+
+std::vector<WindowTrack*> BatchSequence::SelectedTracks() {
+  std::vector<WindowTrack*> selected;
+  for (BatchTrack& track : tracks_) {
+    if (track.selected) {
+      selected.push_back(&track.used);
+    }
+  }
+  return selected;
+}
+
+}  // namespace alidade

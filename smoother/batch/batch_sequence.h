@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "core/rest_detector.h"
+#include "core/robust.h"
+#include "smoother/factors/prior_factor.h"
+#include "smoother/tracks/track_system.h"
+
+namespace alidade {
+
+/// A track of a whole sequence. `used.views` are the observations that the gate lets pass.
+struct BatchTrack {
+  std::vector<WindowView> views;  ///< all observations, in time order
+  WindowTrack used;
+  bool selected = false;  ///< enters the estimate
+};
+
+/// Counts of one selection.
+struct TrackSelection {
+  int tracks = 0;         ///< selected
+  int observations = 0;   ///< of the selected tracks
+  int without_depth = 0;  ///< tracks of two views or more whose depth is not determined
+  int gated = 0;          ///< tracks refused as a whole
+  int outliers = 0;       ///< single observations refused
+  bool changed = false;   ///< against the selection before
+};
+
+/// All frames and tracks of a sequence, for the batch estimate.
+class BatchSequence {
+ public:
+  BatchSequence(const EstimatorConfig& config, const RigCalibration& rig);
+
+  /// Starts anew at an initial state, which is the prior. False: its covariance is not positive
+  /// semi-definite.
+  bool Start(const NavEstimate& initial);
+  /// Appends a frame: its initial values and the IMU samples since the frame before (empty when the frame is
+  /// the initial state's own).
+  void AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu, const TrackFrame& frame);
+
+  /// Which tracks and observations enter, judged at the present states. With `gate` off only the parallax
+  /// counts: a depth known to kMaxDepthDeviation, in front of every view. With it on, an observation must lie
+  /// in the chi-square gate (2 degrees of freedom) around a robustly estimated landmark, then its track
+  /// (2N-3). The verdicts on one track do not depend on earlier ones.
+  TrackSelection Select(bool gate);
+  /// Integrates the IMU of every interval anew at the present biases.
+  void Preintegrate();
+
+  [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }
+  [[nodiscard]] const std::vector<BatchTrack>& tracks() const { return tracks_; }
+  [[nodiscard]] const LinearPrior& prior() const { return prior_; }
+  /// The tracks that Select chose, in order of first observation.
+  [[nodiscard]] std::vector<WindowTrack*> SelectedTracks();
+  [[nodiscard]] int invalid_observations(int frame) const { return invalid_[static_cast<size_t>(frame)]; }
+
+ private:
+  void AddObservations(const TrackFrame& frame, const WindowFrame& node);
+  bool Judge(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
+             BatchTrack* track) const;
+  [[nodiscard]] std::vector<WindowView> Inliers(const std::vector<FrameGeometry>& geometry,
+                                                const BatchTrack& track) const;
+
+  EstimatorConfig config_;
+  RigCalibration rig_;
+  ObservationKernel kernel_;  ///< of the final estimate
+  ChiSquareGate gate_;
+  RestDetector rest_;
+  LinearPrior prior_;
+  std::vector<std::unique_ptr<WindowFrame>> frames_;
+  std::vector<int> invalid_;  ///< observations outside the camera model's domain, a frame
+  std::vector<BatchTrack> tracks_;
+  std::map<std::int64_t, size_t> track_of_id_;
+};
+
+/// The kernel that a first solve, and the judgement of single observations, use whatever the final estimate
+/// does: Huber, convex, so that outliers cannot trap it.
+[[nodiscard]] ObservationKernel GuardKernel(const VisionConfig& vision);
+
+}  // namespace alidade

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+
+#include "gnss/model/epoch_rows.h"
+#include "gnss/model/receiver_clock.h"
+#include "smoother/manifold/lifted_cost.h"
+#include "smoother/window/frame_epoch.h"
+
+namespace alidade {
+
+/// What the factors of a window's epochs share.
+struct GnssFactorContext {
+  GnssConfig config;
+  AntennaMount mount;
+  Eigen::Vector3d gravity_W = Eigen::Vector3d::Zero();
+};
+
+/// The rows of an epoch, whitened, over the frame's 15 canonical coordinates and its clock. Rows that the
+/// gate refused are zero.
+struct FrameEpochRows {
+  Eigen::Matrix<double, Eigen::Dynamic, 15> frame;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> clock;
+  Eigen::VectorXd residual;
+};
+/// `robust`: the kernel acts, as a residual whose square is the kernel's cost.
+[[nodiscard]] FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const FrameEpoch& epoch,
+                                                 double dt_s, const NavState& nav, const ImuBias& bias,
+                                                 const Vector6d& clock, bool robust,
+                                                 GnssResiduals* residuals);
+
+/// An epoch as a factor over blocks nav, bias and clock of its frame.
+class GnssEpochFactor {
+ public:
+  static constexpr int kRows = Eigen::Dynamic;
+
+  /// Both must outlive the factor; `rows` is what LinearizeFrameEpoch gives for them.
+  GnssEpochFactor(const GnssFactorContext* context, const FrameEpoch* epoch, double dt_s, int rows)
+      : context_(context), epoch_(epoch), dt_s_(dt_s), rows_(rows) {}
+
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
+                                                       BlockKind::kClock};
+  const GnssFactorContext* context_;
+  const FrameEpoch* epoch_;
+  double dt_s_;
+  int rows_;
+};
+
+/// The clock's process between two frames, whitened: residual = root (c_j - phi c_i).
+struct ClockStep {
+  /// `anew`: the clock was lost between them, as at a jump that is not of whole milliseconds.
+  ClockStep(const GnssConfig& config, double dt_s, bool anew);
+
+  Matrix6d phi;
+  Matrix6d root;
+};
+
+class ClockFactor {
+ public:
+  static constexpr int kRows = 6;
+
+  explicit ClockFactor(const ClockStep& step) : step_(step) {}
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  static constexpr std::array<BlockKind, 2> kBlocks = {BlockKind::kClock, BlockKind::kClock};
+  ClockStep step_;
+};
+
+}  // namespace alidade

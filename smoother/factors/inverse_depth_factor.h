@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/inverse_depth.h"
+#include "smoother/manifold/lifted_cost.h"
+#include "smoother/tracks/track_system.h"
+
+namespace alidade {
+
+/// One observation of a landmark (x, y, rho) anchored in another frame: InverseDepthModel with the base
+/// bearing (x, y) as part of the landmark, whitened. Blocks nav_base, nav_view, landmark and, of a camera
+/// that is calibrated online, its calibration; 2 rows.
+///
+/// The model takes the base bearing as exact. It is a measurement like any other, so here the bearing is
+/// estimated too and BaseBearingFactor holds it to the base observation: base noise is then accounted for
+/// exactly, correlation between the views of a track included. (Holding it fixed, as VINS-Mono does, counts
+/// the common error of a track as information.)
+class InverseDepthFactor {
+ public:
+  static constexpr int kRows = 2;
+
+  /// All must outlive the factor.
+  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC);
+  /// With a camera that is calibrated online.
+  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration);
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const {
+    return std::span(kBlocks).first(calibration_ == nullptr ? 3 : 4);
+  }
+  /// Behind the view the residual is replaced by a large constant with zero Jacobians, so that a trial step
+  /// of the solver is refused rather than the whole solve failing. False: the calibration block is no camera.
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kNavState,
+                                                       BlockKind::kLandmark, BlockKind::kCalibration};
+  const WindowFrame* base_;
+  const WindowView* view_;
+  const Pose* T_BC_ = nullptr;
+  const WindowCalibration* calibration_ = nullptr;
+};
+
+/// The base observation of an inverse-depth landmark: W ((x, y) - z). Block landmark and, where the
+/// intrinsics are estimated, the camera's calibration; 2 rows.
+class BaseBearingFactor {
+ public:
+  static constexpr int kRows = 2;
+
+  explicit BaseBearingFactor(const NormalizedObservation& observation) : observation_(observation) {}
+  /// Both must outlive the factor.
+  BaseBearingFactor(const WindowView* view, const WindowCalibration* calibration);
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const {
+    return std::span(kBlocks).first(calibration_ == nullptr ? 1 : 2);
+  }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  static constexpr std::array<BlockKind, 2> kBlocks = {BlockKind::kLandmark, BlockKind::kCalibration};
+  NormalizedObservation observation_;
+  const WindowView* view_ = nullptr;  ///< with calibration_
+  const WindowCalibration* calibration_ = nullptr;
+};
+
+/// The weak prior on the inverse depth of a track without parallax. Block landmark; 1 row.
+class DepthPriorFactor {
+ public:
+  static constexpr int kRows = 1;
+
+  explicit DepthPriorFactor(const DepthPrior& prior) : prior_(prior) {}
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  static constexpr std::array<BlockKind, 1> kBlocks = {BlockKind::kLandmark};
+  DepthPrior prior_;
+};
+
+}  // namespace alidade

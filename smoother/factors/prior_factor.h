@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "smoother/manifold/lifted_cost.h"
+#include "smoother/window/window.h"
+#include "smoother/window/window_calibration.h"
+
+namespace alidade {
+
+/// What frames and landmarks that left the window said about those that stay: r = r0 + J xi, unit noise, with
+/// xi the stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed
+/// when the prior is made.
+///
+/// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision
+/// reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the next one
+/// alone. Once aligned with GNSS, the clock of the first frame has six more, then comes the camera's
+/// calibration where it is estimated. Landmarks whose information outlives the window have three each at the
+/// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge.
+struct LinearPrior {
+  struct Anchor {
+    const WindowFrame* frame = nullptr;
+    NavState origin;
+    ImuBias bias_origin;  ///< used for the first frame
+  };
+  struct Landmark {
+    std::int64_t track_id = 0;
+    const WindowFrame* anchor = nullptr;
+    Eigen::Vector3d origin;  ///< (x, y, rho) in the anchor's camera
+  };
+  ErrorConvention convention = ErrorConvention::kRightInvariant;
+  std::vector<Anchor> anchors;
+  std::vector<Landmark> landmarks;
+  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1) [+ 6] + 3 landmarks)
+  Eigen::VectorXd residual;  ///< m, r0
+
+  std::optional<Vector6d> clock_origin;
+  /// Of a camera that is calibrated online.
+  std::optional<WindowCalibration> calibration_origin;
+
+  [[nodiscard]] static int Column(int anchor) { return anchor == 0 ? 0 : 15 + 6 * (anchor - 1); }
+  [[nodiscard]] int columns() const { return LandmarkColumn(static_cast<int>(landmarks.size())); }
+  [[nodiscard]] int ClockColumn() const { return Column(static_cast<int>(anchors.size())); }
+  [[nodiscard]] int CalibrationColumn() const { return ClockColumn() + (clock_origin ? 6 : 0); }
+  [[nodiscard]] int calibration_size() const { return calibration_origin ? calibration_origin->size() : 0; }
+  [[nodiscard]] int LandmarkColumn(int landmark) const {
+    return CalibrationColumn() + calibration_size() + 3 * landmark;
+  }
+};
+
+/// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False
+/// when the covariance is not positive definite to rounding.
+bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
+                      LinearPrior* prior);
+
+/// Appends what is known about the calibration, independent of all else, to a prior without landmarks that
+/// has its clock already.
+void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior);
+
+/// LinearPrior without landmarks as a factor (with them: smoother/factors/slam_prior_factor.h); blocks nav
+/// and bias of the first frame, nav of the others, clock of the first, calibration.
+class PriorFactor {
+ public:
+  static constexpr int kRows = Eigen::Dynamic;
+
+  /// Both must outlive the factor. calibration: what the calibration's block refers to.
+  explicit PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration = nullptr);
+
+  [[nodiscard]] int rows() const { return static_cast<int>(prior_->residual.size()); }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
+
+ private:
+  const LinearPrior* prior_;
+  const WindowCalibration* calibration_;
+  std::vector<BlockKind> blocks_;
+};
+
+}  // namespace alidade

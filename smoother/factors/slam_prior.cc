@@ -1,0 +1,330 @@
+#include "smoother/factors/slam_prior.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "smoother/manifold/dense_blas.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kMaxLandmarkIterations = 15;
+constexpr double kDecrementTolerance = 1e-9;  // of the cost
+constexpr double kMaxDamping = 1e8;
+// A landmark that only the prior knows may have no depth there: its block is made regular.
+constexpr double kRegularization = 1e-10;
+
+}  // namespace
+
+std::vector<const WindowTrack*> PriorTracks(const LinearPrior& prior, const Window& window) {
+  std::vector<const WindowTrack*> tracks;
+  for (const LinearPrior::Landmark& landmark : prior.landmarks) {
+    const auto found = window.tracks().find(landmark.track_id);
+    const bool known = found != window.tracks().end() && found->second.anchor != nullptr;
+    tracks.push_back(known ? &found->second : nullptr);
+  }
+  return tracks;
+}
+
+WindowPoint PointOf(const Window& window) {
+  WindowPoint point;
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    point.states.push_back(frame->nav_state());
+  }
+  point.bias = window.frame(0).imu_bias();
+  if (window.frame(0).clock) {
+    point.clock = window.frame(0).clock_state();
+  }
+  return point;
+}
+
+/// Normal equations of the views over landmarks and, when asked for, frames.
+struct SlamPrior::Views {
+  std::vector<Eigen::Matrix3d> landmark_hessian;
+  VectorXd landmark_gradient;
+  double robust_cost = 0;
+  MatrixXd coupling;       ///< 3L x columns
+  MatrixXd frame_hessian;  ///< full
+  VectorXd frame_gradient;
+
+  /// A view's part over the calibration, whose columns begin at `at`, and over its landmark.
+  void AddCalibration(const AnchoredRows& rows, Index landmark, Index at) {
+    const Index size = rows.calibration.cols();
+    const Eigen::MatrixX2d weighted = rows.weight * rows.calibration.transpose();
+    coupling.block(landmark, at, 3, size).noalias() +=
+        rows.weight * rows.landmark.transpose() * rows.calibration;
+    frame_hessian.block(at, at, size, size).noalias() += weighted * rows.calibration;
+    frame_gradient.segment(at, size).noalias() += weighted * rows.residual;
+  }
+  /// And between the calibration and a pose.
+  void Couple(const AnchoredRows& rows, const Eigen::Matrix<double, 2, 6>& pose, Index pose_at, Index at) {
+    const Index size = rows.calibration.cols();
+    const Eigen::MatrixXd both = rows.weight * pose.transpose() * rows.calibration;
+    frame_hessian.block(pose_at, at, 6, size) += both;
+    frame_hessian.block(at, pose_at, size, 6) += both.transpose();
+  }
+};
+
+struct SlamPrior::Scene {
+  std::vector<FrameGeometry> geometry;
+  std::optional<WindowCalibration> calibration;
+  std::vector<std::vector<WindowView>> renormalized;  ///< of each track, where the intrinsics are estimated
+
+  [[nodiscard]] const std::vector<WindowView>& Views(const std::vector<const WindowTrack*>& tracks,
+                                                     size_t track) const {
+    return renormalized.empty() ? tracks[track]->views : renormalized[track];
+  }
+};
+
+SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+                     const Pose& T_BC, const ObservationKernel& kernel)
+    : prior_(prior),
+      tracks_(std::move(tracks)),
+      T_BC_(T_BC),
+      kernel_(kernel),
+      window_(&window),
+      frames_(window.size()) {
+  MatrixXd rows(prior->jacobian.rows(), prior->jacobian.cols() + 1);
+  rows << prior->jacobian, prior->residual;
+  FormGram(rows, &gram_);
+  gram_.triangularView<Eigen::StrictlyUpper>() = gram_.transpose();
+  origins_.resize(3 * static_cast<Index>(prior->landmarks.size()));
+  for (size_t i = 0; i < prior->landmarks.size(); ++i) {
+    origins_.segment<3>(3 * static_cast<Index>(i)) = prior->landmarks[i].origin;
+  }
+}
+
+SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+                     const WindowCalibration& calibration, const ObservationKernel& kernel)
+    : SlamPrior(prior, std::move(tracks), window, calibration.mean.T_BC, kernel) {
+  calibration_ = &calibration;
+}
+
+SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
+  Scene scene;
+  for (size_t i = 0; i < point.states.size(); ++i) {
+    const WindowFrame& frame = window_->frame(static_cast<int>(i));
+    scene.geometry.push_back(calibration_ == nullptr ? MakeGeometry(frame, point.states[i], T_BC_)
+                                                     : MakeGeometry(frame, point.states[i], point.camera));
+  }
+  if (calibration_ == nullptr) {
+    return scene;
+  }
+  scene.calibration = WindowCalibration{calibration_->layout, point.camera};
+  if (calibration_->layout.intrinsics() >= 0) {
+    for (const WindowTrack* track : tracks_) {
+      scene.renormalized.push_back(track == nullptr ? std::vector<WindowView>()
+                                                    : Renormalized(point.camera.camera, track->views));
+    }
+  }
+  return scene;
+}
+
+VectorXd SlamPrior::StartingLandmarks() const {
+  VectorXd landmarks = origins_;
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    if (tracks_[i] != nullptr) {
+      landmarks.segment<3>(3 * static_cast<Index>(i)) = tracks_[i]->landmark;
+    }
+  }
+  return landmarks;
+}
+
+bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool with_frames,
+                          Views* views) const {
+  const std::vector<FrameGeometry>& geometry = scene.geometry;
+  const WindowCalibration* calibration = scene.calibration ? &*scene.calibration : nullptr;
+  views->landmark_hessian.assign(tracks_.size(), Eigen::Matrix3d::Zero());
+  views->landmark_gradient.setZero(landmarks.size());
+  views->robust_cost = 0;
+  if (with_frames) {
+    views->coupling.setZero(landmarks.size(), columns());
+    views->frame_hessian.setZero(columns(), columns());
+    views->frame_gradient.setZero(columns());
+  }
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    if (tracks_[i] == nullptr) {
+      continue;
+    }
+    const Index row = 3 * static_cast<Index>(i);
+    const int anchor = tracks_[i]->anchor->index;
+    for (const WindowView& view : scene.Views(tracks_, i)) {
+      AnchoredRows rows;
+      if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)],
+                                 geometry[static_cast<size_t>(view.frame->index)], view.observation, kernel_,
+                                 landmarks.segment<3>(row), &rows, with_frames, calibration)) {
+        return false;
+      }
+      views->robust_cost += kernel_.Rho(rows.squared_norm);
+      const Eigen::Matrix<double, 3, 2> weighted = rows.weight * rows.landmark.transpose();
+      views->landmark_hessian[i].noalias() += weighted * rows.landmark;
+      views->landmark_gradient.segment<3>(row).noalias() += weighted * rows.residual;
+      if (with_frames && calibration != nullptr) {
+        views->AddCalibration(rows, row, CalibrationColumn());
+      }
+      if (!with_frames || view.frame->index == anchor) {
+        continue;  // seen from its own anchor a landmark concerns no pose
+      }
+      Eigen::Matrix<double, 2, 12> both;
+      both << rows.anchor, rows.view;
+      const Eigen::Matrix<double, 12, 12> hessian = rows.weight * both.transpose() * both;
+      const Eigen::Matrix<double, 12, 1> gradient = rows.weight * both.transpose() * rows.residual;
+      const std::array<int, 2> at = {Column(anchor), Column(view.frame->index)};
+      for (int k = 0; k < 2; ++k) {
+        views->coupling.block<3, 6>(row, at[k]).noalias() += weighted * both.middleCols<6>(6 * k);
+        views->frame_gradient.segment<6>(at[k]) += gradient.segment<6>(6 * k);
+        for (int l = 0; l < 2; ++l) {
+          views->frame_hessian.block<6, 6>(at[k], at[l]) += hessian.block<6, 6>(6 * k, 6 * l);
+        }
+        if (calibration != nullptr) {
+          views->Couple(rows, both.middleCols<6>(6 * k), at[k], CalibrationColumn());
+        }
+      }
+    }
+  }
+  return true;
+}
+
+VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
+  VectorXd xi(prior_->LandmarkColumn(0));
+  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
+    const LinearPrior::Anchor& anchor = prior_->anchors[i];
+    const Index width = i == 0 ? 9 : 6;
+    xi.segment(LinearPrior::Column(static_cast<int>(i)), width) =
+        Local(prior_->convention, anchor.origin, point.states[static_cast<size_t>(anchor.frame->index)])
+            .head(width);
+  }
+  const ImuBias& origin = prior_->anchors.front().bias_origin;
+  xi.segment<6>(9) << point.bias.gyro - origin.gyro, point.bias.accel - origin.accel;
+  if (prior_->clock_origin) {
+    xi.segment<6>(prior_->ClockColumn()) = *point.clock - *prior_->clock_origin;
+  }
+  if (prior_->calibration_origin) {
+    const WindowCalibration& camera = *prior_->calibration_origin;
+    xi.segment(prior_->CalibrationColumn(), camera.size()) = Local(camera.layout, camera.mean, point.camera);
+  }
+  return xi;
+}
+
+/// Columns over the prior's frames [, clock and calibration] to columns of the reduced system.
+MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& columns) const {
+  MatrixXd chained = MatrixXd::Zero(columns.rows(), this->columns());
+  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
+    const LinearPrior::Anchor& anchor = prior_->anchors[i];
+    const NavState& state = point.states[static_cast<size_t>(anchor.frame->index)];
+    const Matrix9d chain = LocalJacobian(prior_->convention, anchor.origin, state) *
+                           InverseChartJacobian(prior_->convention, state);
+    const Index width = i == 0 ? 9 : 6;
+    chained.middleCols(Column(anchor.frame->index), width).noalias() =
+        columns.middleCols(LinearPrior::Column(static_cast<int>(i)), width) *
+        chain.topLeftCorner(width, width);
+  }
+  chained.middleCols<6>(9) = columns.middleCols<6>(9);
+  if (prior_->clock_origin) {
+    chained.middleCols<6>(Column(frames_)) = columns.middleCols<6>(prior_->ClockColumn());
+  }
+  if (prior_->calibration_origin) {
+    const WindowCalibration& camera = *prior_->calibration_origin;
+    chained.rightCols(camera.size()).noalias() =
+        columns.middleCols(prior_->CalibrationColumn(), camera.size()) *
+        LocalJacobian(camera.layout, camera.mean, point.camera);
+  }
+  return chained;
+}
+
+bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landmarks, double* cost) const {
+  const Index frames = xi.size();
+  const Index size = landmarks->size();
+  const auto landmark_gram = gram_.block(frames, frames, size, size);
+  const VectorXd slope =
+      gram_.block(frames, frames + size, size, 1) + gram_.block(frames, 0, size, frames) * xi;
+  const double offset =
+      gram_(frames + size, frames + size) +
+      xi.dot(2 * gram_.block(0, frames + size, frames, 1).col(0) + gram_.topLeftCorner(frames, frames) * xi);
+  const auto total = [&](const VectorXd& at, const VectorXd& pull, const Views& views) {
+    return offset + (at - origins_).dot(slope + pull) + views.robust_cost;
+  };
+  Views views;
+  if (!Linearize(scene, *landmarks, false, &views)) {
+    return false;
+  }
+  VectorXd pull = slope + landmark_gram * (*landmarks - origins_);
+  *cost = total(*landmarks, pull, views);
+  double damping = 0;
+  for (int k = 0; k < kMaxLandmarkIterations; ++k) {
+    MatrixXd hessian = landmark_gram;
+    for (size_t i = 0; i < tracks_.size(); ++i) {
+      const Index row = 3 * static_cast<Index>(i);
+      hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
+    }
+    hessian.diagonal() *= 1 + kRegularization + damping;
+    const VectorXd gradient = pull + views.landmark_gradient;
+    if (!FactorLower(&hessian)) {
+      return false;
+    }
+    VectorXd step = -gradient;
+    SolveCholesky(hessian, &step);
+    if (!(-step.dot(gradient) > kDecrementTolerance * (1 + *cost))) {
+      break;
+    }
+    const VectorXd candidate = *landmarks + step;
+    Views next;
+    const bool in_front = Linearize(scene, candidate, false, &next);
+    const VectorXd next_pull = slope + landmark_gram * (candidate - origins_);
+    const double next_cost = in_front ? total(candidate, next_pull, next) : *cost;
+    if (in_front && next_cost <= *cost) {
+      *landmarks = candidate;
+      *cost = next_cost;
+      views = std::move(next);
+      pull = next_pull;
+      damping = damping < 1e-6 ? 0 : damping * 0.1;
+    } else {
+      damping = std::max(damping * 100, 1e-4);
+      if (damping > kMaxDamping) {
+        break;
+      }
+    }
+  }
+  return std::isfinite(*cost) && landmarks->allFinite();
+}
+
+bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* reduced) const {
+  const Scene scene = MakeScene(point);
+  const VectorXd xi = Displacement(point);
+  Views views;
+  if (!Minimize(xi, scene, landmarks, &reduced->robust_cost) || !Linearize(scene, *landmarks, true, &views)) {
+    return false;
+  }
+  const Index frames = xi.size();
+  const Index size = landmarks->size();
+  const VectorXd shift = *landmarks - origins_;
+  const MatrixXd chained = ChainFrames(point, gram_.leftCols(frames));
+  const VectorXd pull =
+      gram_.col(frames + size) + gram_.leftCols(frames) * xi + gram_.middleCols(frames, size) * shift;
+  reduced->hessian = ChainFrames(point, chained.topRows(frames).transpose()) + views.frame_hessian;
+  reduced->gradient = ChainFrames(point, pull.head(frames).transpose()).transpose() + views.frame_gradient;
+
+  MatrixXd hessian = gram_.block(frames, frames, size, size);
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    const Index row = 3 * static_cast<Index>(i);
+    hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
+  }
+  hessian.diagonal() *= 1 + kRegularization;
+  if (!FactorLower(&hessian)) {
+    return false;
+  }
+  MatrixXd coupling = chained.middleRows(frames, size) + views.coupling;
+  VectorXd gradient = pull.segment(frames, size) + views.landmark_gradient;
+  SolveLower(hessian, coupling);
+  SolveLower(hessian, gradient);
+  SubtractGram(coupling, &reduced->hessian);
+  reduced->gradient.noalias() -= coupling.transpose() * gradient;
+  return reduced->hessian.allFinite();
+}
+
+}  // namespace alidade

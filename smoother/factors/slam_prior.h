@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "smoother/factors/prior_factor.h"
+#include "smoother/tracks/anchored_landmark.h"
+
+namespace alidade {
+
+/// Tracks of the prior's landmarks, in their order; null where the track was lost or refused, so that only
+/// the prior knows of the landmark.
+[[nodiscard]] std::vector<const WindowTrack*> PriorTracks(const LinearPrior& prior, const Window& window);
+
+/// States of a window at an evaluation.
+struct WindowPoint {
+  std::vector<NavState> states;   ///< of every frame
+  ImuBias bias;                   ///< of the first
+  std::optional<Vector6d> clock;  ///< of the first, in an aligned window
+  CameraCalibration camera;       ///< where it is calibrated online
+};
+[[nodiscard]] WindowPoint PointOf(const Window& window);
+
+/// A LinearPrior together with the views of its landmarks (SLAM features), as a function of the frames alone:
+///
+///     F(X) = min_L |r0 + J_x xi(X) + J_l (L - L0)|^2 + sum over views of rho(|W (pi(X, l) - z)|^2).
+///
+/// Variable projection as in PoseOnlyFactor, but the prior couples the landmarks, so that they are solved for
+/// together (3L x 3L, damped, re-weighted Gauss-Newton).
+class SlamPrior {
+ public:
+  /// `prior`, `tracks` (PriorTracks) and `window` must outlive it.
+  SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+            const Pose& T_BC, const ObservationKernel& kernel);
+  /// With a camera that is calibrated online; `calibration` must outlive it too.
+  SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
+            const WindowCalibration& calibration, const ObservationKernel& kernel);
+
+  /// Normal equations, landmarks eliminated, canonical chart: 15 columns of the first frame, (phi, dp) of
+  /// every other one, the first clock's six in an aligned window, the calibration's where it is estimated.
+  struct Reduced {
+    Eigen::MatrixXd hessian;  ///< lower triangle
+    Eigen::VectorXd gradient;
+    double robust_cost = 0;
+  };
+  [[nodiscard]] static int Column(int frame) { return LinearPrior::Column(frame); }
+  [[nodiscard]] int CalibrationColumn() const { return Column(frames_) + (prior_->clock_origin ? 6 : 0); }
+  [[nodiscard]] int columns() const { return CalibrationColumn() + prior_->calibration_size(); }
+  /// Null unless it is estimated.
+  [[nodiscard]] const WindowCalibration* calibration() const { return calibration_; }
+  [[nodiscard]] const LinearPrior& prior() const { return *prior_; }
+  [[nodiscard]] std::span<const WindowTrack* const> tracks() const { return tracks_; }
+
+  /// Landmarks of the tracks, the prior's origins where there is none: where Reduce may start.
+  [[nodiscard]] Eigen::VectorXd StartingLandmarks() const;
+  /// `landmarks` (3L) is start and result. False: behind a view, or not finite.
+  bool Reduce(const WindowPoint& point, Eigen::VectorXd* landmarks, Reduced* reduced) const;
+
+ private:
+  struct Views;  // what the views say at a point
+  struct Scene;  // where the cameras are at a point, and the rays they see
+  [[nodiscard]] Scene MakeScene(const WindowPoint& point) const;
+  bool Linearize(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
+  [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point) const;
+  [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Eigen::MatrixXd& columns) const;
+  bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,
+                double* cost) const;
+
+  const LinearPrior* prior_;
+  std::vector<const WindowTrack*> tracks_;
+  Pose T_BC_;
+  ObservationKernel kernel_;
+  const Window* window_;
+  int frames_;
+  const WindowCalibration* calibration_ = nullptr;
+  Eigen::MatrixXd gram_;  ///< [J r0]^T [J r0]: frames, clock and calibration first, then landmarks, then r0
+  Eigen::VectorXd origins_;
+};
+
+}  // namespace alidade

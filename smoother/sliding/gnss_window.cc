@@ -1,0 +1,161 @@
+#include "smoother/sliding/gnss_window.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/robust.h"
+#include "gnss/base/constants.h"
+
+namespace alidade {
+
+GnssWindow::GnssWindow(const GnssConfig& config, const GnssReceiver& receiver,
+                       const Eigen::Vector3d& gravity_W)
+    : config_(config),
+      receiver_(receiver),
+      gravity_W_(gravity_W),
+      gate_threshold_(ChiSquareQuantile(1, config.gate_probability)) {}
+
+void GnssWindow::Align(const GnssAlignment& alignment, WindowFrame* frame, LinearPrior* prior) {
+  context_ = GnssFactorContext{config_, {alignment.enu, receiver_.p_BA}, gravity_W_};
+  removed_jumps_m_ = 0;
+  clock_lost_ = false;
+  const double since_s = std::max(0.0, SecondsBetween(alignment.stamp_ns, frame->stamp_ns));
+  const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * alignment.clock);
+  frame->clock.emplace();
+  Eigen::Map<Vector6d>{frame->clock->data()} = fresh.mean;
+  const Eigen::LLT<Matrix6d> factor(fresh.covariance);
+  const Eigen::Index rows = prior->jacobian.rows();
+  const Eigen::Index columns = prior->jacobian.cols();
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows + 6, columns + 6);
+  jacobian.topLeftCorner(rows, columns) = prior->jacobian;
+  jacobian.bottomRightCorner<6, 6>() = factor.matrixL().solve(Matrix6d::Identity());
+  prior->jacobian = std::move(jacobian);
+  prior->residual.conservativeResize(rows + 6);
+  prior->residual.tail<6>().setZero();
+  prior->clock_origin = fresh.mean;
+}
+
+void GnssWindow::PredictClock(const WindowFrame& from, WindowFrame* frame) {
+  if (!aligned() || !from.clock) {
+    return;
+  }
+  const double dt_s = SecondsBetween(from.stamp_ns, frame->stamp_ns);
+  frame->clock.emplace();
+  Eigen::Map<Vector6d>{frame->clock->data()} = PropagateClock(config_, dt_s).phi * from.clock_state();
+  frame->clock_anew = clock_lost_;
+  clock_lost_ = false;
+}
+
+void GnssWindow::Reattach(WindowFrame* dropped, WindowFrame* frame) const {
+  for (FrameEpoch& epoch : dropped->epochs) {
+    std::vector<ImuSample> imu = dropped->imu;
+    if (!epoch.imu.empty()) {
+      imu.insert(imu.end(), epoch.imu.begin() + 1, epoch.imu.end());
+    }
+    epoch.imu = std::move(imu);
+    epoch.preintegration.emplace(frame->imu_bias(), dropped->preintegration->noise());
+    epoch.preintegration->Add(epoch.imu);
+    frame->epochs.push_back(std::move(epoch));
+  }
+  dropped->epochs.clear();
+}
+
+bool GnssWindow::Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise,
+                        WindowFrame* frame) {
+  FrameEpoch hung;
+  hung.stamp_ns = epoch.stamp_ns;
+  hung.measurements = epoch.measurements;
+  hung.imu = std::move(imu);
+  if (hung.imu.size() > 1) {
+    hung.preintegration.emplace(frame->imu_bias(), noise);
+    hung.preintegration->Add(hung.imu);
+  }
+  if (!hung.imu.empty()) {
+    hung.gyro_radps = hung.imu.back().gyro;
+  }
+  LocateEpoch(*epoch.builder, context_->mount, frame->nav_state(), &hung.measurements);
+  for (SatelliteMeasurement& m : hung.measurements.satellites) {
+    m.pseudorange_m -= removed_jumps_m_;
+  }
+  jumped_ = false;
+  if (!Judge(&hung, *frame)) {
+    return false;
+  }
+  frame->epochs.push_back(std::move(hung));
+  return true;
+}
+
+/// Looks for a jump of the clock at the predicted state and takes whole milliseconds out; false when another
+/// jump lost the clock.
+bool GnssWindow::Judge(FrameEpoch* epoch, const WindowFrame& frame) {
+  constexpr double kMillisecondM = 1e-3 * kSpeedOfLight;
+  constexpr double kSureM = 200;  // of a step that is said to be whole milliseconds
+  GnssResiduals ignored;
+  const double dt_s = epoch->SecondsAfter(frame.stamp_ns);
+  GnssPoint point{frame.nav_state(), frame.imu_bias(), epoch->gyro_radps, frame.clock_state()};
+  point.nav.p_WB += dt_s * point.nav.v_WB;
+  point.clock[ClockState::kClock] += dt_s * point.clock[ClockState::kDrift];
+  const std::vector<GnssRow> rows =
+      LinearizeEpoch(config_, context_->mount, point, epoch->measurements, &ignored);
+  const double step = CommonStep(rows);
+  constexpr double kPredictedStdM = kFreshClockStdM;
+  if (!IsClockJump(config_, rows, step, kPredictedStdM)) {
+    return !clock_lost_;
+  }
+  jumped_ = true;
+  const double whole = std::round(step / kMillisecondM) * kMillisecondM;
+  if (whole == 0 || std::abs(step - whole) > kSureM) {
+    clock_lost_ = true;
+    return false;
+  }
+  removed_jumps_m_ += whole;
+  for (SatelliteMeasurement& m : epoch->measurements.satellites) {
+    m.pseudorange_m -= whole;
+  }
+  return !clock_lost_;
+}
+
+void GnssWindow::Gate(Window* window, FrameStatistics* statistics) {
+  for (int i = 0; i < window->size(); ++i) {
+    WindowFrame& frame = window->frame(i);
+    for (FrameEpoch& epoch : frame.epochs) {
+      const double dt_s = epoch.SecondsAfter(frame.stamp_ns);
+      epoch.used.clear();
+      GnssResiduals residuals;
+      residuals.stamp_ns = epoch.stamp_ns;
+      const FrameEpochRows rows =
+          LinearizeFrameEpoch(*context_, epoch, dt_s, frame.nav_state(), frame.imu_bias(),
+                              frame.clock_state(), false, &residuals);
+      std::vector<double> nis;
+      for (const double residual : rows.residual) {
+        nis.push_back(residual * residual);
+      }
+      const GnssWeights weights = WeighRows(config_, gate_threshold_, nis);
+      for (const double weight : weights.weights) {
+        epoch.used.push_back(weight > 0);
+      }
+      if (epoch.counted) {
+        continue;
+      }
+      epoch.counted = true;
+      statistics->gnss_nis_dof += weights.used;
+      for (std::size_t k = 0; k < nis.size(); ++k) {
+        statistics->gnss_nis += weights.weights[k] * nis[k];
+      }
+      // Pseudoranges come first, one a satellite; then the rates of those that have one.
+      std::size_t row = 0;
+      for (SatelliteResidual& told : residuals.satellites) {
+        told.used = config_.pseudorange && epoch.used[row++];
+      }
+      for (SatelliteResidual& told : residuals.satellites) {
+        told.range_rate_used = config_.doppler && told.range_rate_residual_mps && epoch.used[row++];
+        ++(told.used || told.range_rate_used ? statistics->satellites_used : statistics->satellites_gated);
+      }
+      residuals_ = residuals;
+    }
+  }
+}
+
+}  // namespace alidade

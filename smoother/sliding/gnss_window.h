@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/estimator.h"
+#include "gnss/alignment/alignment.h"
+#include "smoother/factors/gnss_factors.h"
+#include "smoother/factors/prior_factor.h"
+#include "smoother/window/window.h"
+
+namespace alidade {
+
+/// The smoother's part of GNSS. Every frame has a clock block, tied to the next one by the clock's process;
+/// an epoch hangs on the frame before it. Prior and marginalisation take the first frame's clock along.
+class GnssWindow {
+ public:
+  GnssWindow(const GnssConfig& config, const GnssReceiver& receiver, const Eigen::Vector3d& gravity_W);
+
+  void Reset() { context_.reset(); }
+  [[nodiscard]] bool aligned() const { return context_.has_value(); }
+  /// Null before Align.
+  [[nodiscard]] const GnssFactorContext* context() const { return context_ ? &*context_ : nullptr; }
+
+  /// From now on; the window is one frame, which gets its clock, and `prior` that clock's columns.
+  void Align(const GnssAlignment& alignment, WindowFrame* frame, LinearPrior* prior);
+  /// The clock of a frame that was just added, from that of the frame `from` before it.
+  void PredictClock(const WindowFrame& from, WindowFrame* frame);
+  /// Epochs of a frame that was taken out move to the one before it, `frame`.
+  void Reattach(WindowFrame* dropped, WindowFrame* frame) const;
+
+  /// Hangs the epoch on the frame; `imu` leads there from the frame, empty at the frame itself. False when
+  /// the epoch was left out since the clock was lost: the next frame finds it anew.
+  bool Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame);
+  /// After a solve: the gate of each row of each epoch; statistics of those that are judged for the first
+  /// time.
+  void Gate(Window* window, FrameStatistics* statistics);
+
+  [[nodiscard]] const GnssResiduals& residuals() const { return residuals_; }
+  [[nodiscard]] bool jumped() const { return jumped_; }
+
+ private:
+  bool Judge(FrameEpoch* epoch, const WindowFrame& frame);
+
+  GnssConfig config_;
+  GnssReceiver receiver_;
+  Eigen::Vector3d gravity_W_;
+  double gate_threshold_;
+  std::optional<GnssFactorContext> context_;
+  double removed_jumps_m_ = 0;  ///< whole milliseconds taken out of the pseudoranges since
+  bool clock_lost_ = false;
+  bool jumped_ = false;
+  GnssResiduals residuals_;
+};
+
+}  // namespace alidade

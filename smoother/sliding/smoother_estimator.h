@@ -1,0 +1,113 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/estimator.h"
+#include "core/imu_buffer.h"
+#include "core/rest_detector.h"
+#include "core/robust.h"
+#include "smoother/sliding/gnss_window.h"
+#include "smoother/solve/window_solver.h"
+#include "smoother/tracks/track_system.h"
+
+namespace alidade {
+
+/// Sliding-window smoother: least squares over the states of the last frames, their tracks and a prior that
+/// holds what left.
+///
+/// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval.
+///           2. When the window is full the oldest frame is marginalised together with every track based
+///           there: all
+///              observations of such a track, in newer frames too, go into the prior, each exactly once. A
+///              track still seen starts anew with its next observation. (Re-anchoring it and using its
+///              observations again, as VINS-Mono does, would count them twice.) A track without parallax only
+///              loses its oldest view.
+///           3. IMU prediction of the new frame, rest measurement when it stands still, landmarks of new
+///              tracks, solve.
+///           4. Chi-square gate on each track at the solution: a refused track forgets its observations. When
+///              the gate refuses more than vision.max_gated_share the state is suspect and not the tracks:
+///              they stay, their information scaled down to the gate.
+///           5. Covariance of the newest state.
+/// A long track may keep its landmark instead (smoother.slam_features): a SLAM feature has columns in the
+/// prior, only its view in the oldest frame goes there, and the rest of its views stay. Nothing about it is
+/// lost until the track is. The first prior is the covariance of Initialize, which also fixes the gauge (yaw
+/// and position).
+class SmootherEstimator final : public Estimator {
+ public:
+  SmootherEstimator(const EstimatorConfig& config, const RigCalibration& rig);
+
+  Status Initialize(const NavEstimate& initial) override;
+  Status AddImu(const ImuSample& sample) override;
+  Status AddFrame(const TrackFrame& frame) override;
+  Status Align(const GnssAlignment& alignment) override;
+  Status AddGnss(const GnssEpoch& epoch) override;
+  [[nodiscard]] std::optional<ClockState> LatestClock() const override;
+  [[nodiscard]] const GnssResiduals* last_gnss() const override;
+  [[nodiscard]] NavEstimate Latest() const override { return latest_; }
+  [[nodiscard]] bool initialized() const override { return initialized_; }
+  [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
+
+  [[nodiscard]] std::optional<CalibrationEstimate> LatestCalibration() const override;
+
+  [[nodiscard]] const Window& window() const { return window_; }
+
+ private:
+  /// Without the calibration's prior.
+  Status Begin(const NavEstimate& initial);
+  Status BeginFrame(TimeNs stamp_ns);
+  /// The camera as it is known now.
+  [[nodiscard]] const CameraCalibration& camera() const { return calibration_.mean; }
+  [[nodiscard]] bool calibrates() const { return calibration_.size() > 0; }
+  [[nodiscard]] std::vector<FrameGeometry> Geometry() const;
+  /// Null unless it is calibrated online.
+  [[nodiscard]] const WindowCalibration* Calibration() const {
+    return calibrates() ? &calibration_ : nullptr;
+  }
+  [[nodiscard]] bool NewestIsKeyframe() const;
+  void DetectRest(const TrackFrame& frame);
+  void MarginalizeOldestFrame();
+  [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);
+  [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
+                                                      size_t free);
+  [[nodiscard]] std::optional<SlamPrior> MakeSlamPrior() const;
+  bool ReduceSlamPrior(const SlamPrior& slam, SlamPrior::Reduced* reduced);
+  void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
+  [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
+  bool PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track);
+  [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
+  [[nodiscard]] double TypicalInverseDepth() const;
+  Status SolveAndGate(std::vector<WindowTrack*>* tracks);
+  /// True when a SLAM feature was refused.
+  bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
+  Status UpdateLatest(const PoseSystem& vision, const SlamPrior::Reduced* slam);
+  [[nodiscard]] Status Lost(const std::string& message);
+
+  // Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
+  static constexpr size_t kMinViews = 2;
+  static constexpr int kMaxLandmarkIterations = 30;
+
+  EstimatorConfig config_;
+  RigCalibration rig_;
+  ImuNoise noise_;
+  WindowSolveOptions solve_options_;
+  ObservationKernel kernel_;
+  ChiSquareGate gate_;
+  ImuBuffer imu_;
+  RestDetector rest_;
+  Window window_;
+  GnssWindow gnss_;
+  LinearPrior prior_;
+  CalibrationEstimate given_;  ///< the calibration a run starts with
+  WindowCalibration calibration_;
+  Eigen::VectorXd calibration_deviations_;
+  NavEstimate latest_;
+  ClockState latest_clock_;
+  bool has_frames_ = false;  ///< a camera has been heard of
+  FrameStatistics statistics_;
+  TrackWorkspace workspace_;
+  std::vector<ImuSample> interval_;
+  bool initialized_ = false;
+};
+
+}  // namespace alidade

@@ -1,0 +1,103 @@
+// SLAM features of a SmootherEstimator, and what leaves with the oldest frame.
+
+#include <algorithm>
+
+#include "smoother/sliding/smoother_estimator.h"
+#include "smoother/solve/marginalization.h"
+
+namespace alidade {
+namespace {
+
+// A landmark joins the prior once its depth is known so well that its rows are close to linear.
+constexpr double kMaxFeatureDepthDeviation = 0.1;
+constexpr size_t kMinFeatureViews = 3;
+
+bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, const WindowFrame& from,
+              WindowTrack* track) {
+  AnchorChange change;
+  if (!ChangeAnchor(geometry[static_cast<size_t>(from.index)], geometry[static_cast<size_t>(newest.index)],
+                    track->landmark, &change)) {
+    return false;
+  }
+  track->landmark = change.to;
+  track->anchor = &newest;
+  return true;
+}
+
+}  // namespace
+
+std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<FrameGeometry>& geometry) {
+  std::vector<WindowTrack*> staying;
+  for (const LinearPrior::Landmark& landmark : prior_.landmarks) {
+    const auto found = window_.tracks().find(landmark.track_id);
+    if (found == window_.tracks().end() || found->second.anchor == nullptr || !found->second.alive) {
+      continue;
+    }
+    WindowTrack& track = found->second;
+    if (track.anchor->index > 0 || AnchorIn(window_.newest(), geometry, *track.anchor, &track)) {
+      staying.push_back(&track);
+    }
+  }
+  return staying;
+}
+
+std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<FrameGeometry>& geometry,
+                                                         size_t free) {
+  std::vector<WindowTrack*> candidates;
+  for (auto& [id, track] : window_.tracks()) {
+    Eigen::Vector3d pose_only;
+    if (free > 0 && track.anchor == nullptr && track.alive && track.views.size() >= kMinFeatureViews &&
+        track.views.front().frame->index == 0 && PrepareLandmark(geometry, &track) &&
+        InitializeLandmark(track.views, geometry, kMaxFeatureDepthDeviation, &pose_only) &&
+        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
+        DepthInRange(track.landmark)) {
+      candidates.push_back(&track);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(), [](const WindowTrack* a, const WindowTrack* b) {
+    return a->views.size() > b->views.size();
+  });
+  std::vector<WindowTrack*> promoted;
+  for (WindowTrack* track : candidates) {
+    if (promoted.size() < free && AnchorIn(window_.newest(), geometry, window_.frame(0), track)) {
+      promoted.push_back(track);
+    }
+  }
+  return promoted;
+}
+
+void SmootherEstimator::MarginalizeOldestFrame() {
+  const WindowFrame* oldest = &window_.frame(0);
+  const std::vector<FrameGeometry> geometry = Geometry();
+  SlamChange slam{PriorTracks(prior_, window_), {}, camera().T_BC, kernel_};
+  const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
+  const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
+  const std::vector<WindowTrack*> promoted = NewFeatures(geometry, limit - std::min(limit, staying.size()));
+  slam.after.assign(staying.begin(), staying.end());
+  slam.after.insert(slam.after.end(), promoted.begin(), promoted.end());
+
+  PoseSystem vision(window_.size(), Calibration());
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.anchor != nullptr || track.views.empty() || track.views.front().frame != oldest) {
+      continue;
+    }
+    if (track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) &&
+        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
+        AddTrack(track.views, geometry, kernel_, track.landmark, &workspace_, &vision)) {
+      track.Restart();
+    }
+  }
+  prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W, gnss_.context(), slam);
+  if (config_.smoother.first_estimates) {
+    KeepFirstEstimates(prior_, &window_);
+  }
+  for (const WindowTrack* track : slam.before) {
+    if (track != nullptr && std::find(slam.after.begin(), slam.after.end(), track) == slam.after.end()) {
+      window_.tracks().at(track->id).Restart();
+    }
+  }
+  window_.RemoveOldest();
+  window_.Prune();
+}
+
+}  // namespace alidade

@@ -1,0 +1,136 @@
+// The tracks of a SmootherEstimator: which of them a frame uses, and which it refuses afterwards.
+
+#include <algorithm>
+
+#include "smoother/sliding/smoother_estimator.h"
+
+namespace alidade {
+namespace {
+
+// The filter linearises a track once and needs its depth to vision.max_relative_depth_deviation; here every
+// solve linearises again, so a track may enter earlier. It is still held to this multiple when it is
+// marginalised, linearised for good.
+constexpr double kParallaxSlack = 10;
+// Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
+// as uncertain as it is large.
+constexpr double kUnknownInverseDepth = 0.2;
+constexpr double kDepthPriorRelative = 1.0;
+constexpr size_t kMinKnownDepths = 10;
+// Fewer refusals are a matter of tracks, whatever their share.
+constexpr size_t kMinRefusedForConsensus = 8;
+
+}  // namespace
+
+bool SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) {
+  if (track->has_landmark) {
+    return true;
+  }
+  Eigen::Vector3d landmark;
+  if (!InitializeLandmark(track->views, geometry,
+                          kParallaxSlack * config_.vision.max_relative_depth_deviation, &landmark)) {
+    ++statistics_.features_waiting;
+    return false;
+  }
+  if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &landmark) ||
+      !DepthInRange(landmark)) {
+    ++statistics_.features_degenerate;
+    return false;
+  }
+  track->landmark = landmark;
+  track->has_landmark = true;
+  track->depth_prior = {};
+  return true;
+}
+
+bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
+  return landmark.z() >= 1 / config_.vision.max_depth_m && landmark.z() <= 1 / config_.vision.min_depth_m;
+}
+
+double SmootherEstimator::TypicalInverseDepth() const {
+  std::vector<double> known;
+  for (const auto& [id, track] : window_.tracks()) {
+    if (track.has_landmark) {
+      known.push_back(track.landmark.z());
+    }
+  }
+  if (known.size() < kMinKnownDepths) {
+    return kUnknownInverseDepth;
+  }
+  std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
+  return known[known.size() / 2];
+}
+
+std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
+  const std::vector<FrameGeometry> geometry = Geometry();
+  std::vector<WindowTrack*> selected;
+  std::vector<WindowTrack*> without_depth;
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.anchor == nullptr && track.views.size() >= kMinViews) {
+      (PrepareLandmark(geometry, &track) ? selected : without_depth).push_back(&track);
+    }
+  }
+  const double typical = TypicalInverseDepth();
+  // With enough depths known the others add little, and the assumed one would only bias them: they wait.
+  const bool enough = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked;
+  for (WindowTrack* track : without_depth) {
+    if (enough) {
+      track->depth_prior = {};
+      continue;
+    }
+    // Not solved for here: where the prediction has drifted, the depth would be bent to excuse it.
+    if (track->depth_prior.sqrt_information == 0) {
+      track->landmark << track->views.front().observation.z, typical;
+    }
+    track->depth_prior = {typical, 1 / (kDepthPriorRelative * typical)};
+    selected.push_back(track);
+  }
+  const size_t limit = static_cast<size_t>(config_.smoother.max_landmarks);
+  if (selected.size() > limit) {
+    std::stable_sort(selected.begin(), selected.end(), [](const WindowTrack* a, const WindowTrack* b) {
+      return a->views.size() > b->views.size();
+    });
+    selected.resize(limit);
+  }
+  return selected;
+}
+
+bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
+                                   const std::vector<WindowTrack*>& tracks) {
+  std::vector<WindowTrack*> refused;
+  bool feature_refused = false;
+  for (WindowTrack* track : tracks) {
+    if (track->anchor == nullptr && !SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
+                                                   &track->landmark, track->depth_prior)) {
+      ++statistics_.features_degenerate;
+      track->Restart();
+      continue;
+    }
+    if (!gate_.Accepts(TrackChiSquare(*track, geometry), track->dof())) {
+      refused.push_back(track);
+    } else if (track->anchor != nullptr && !DepthInRange(track->landmark)) {
+      ++statistics_.features_degenerate;
+      feature_refused = true;
+      track->Restart();
+    } else if (track->has_landmark && !DepthInRange(track->landmark)) {
+      // It fits, but its depth was none: it falls back on an assumed one.
+      ++statistics_.features_degenerate;
+      track->has_landmark = false;
+    }
+  }
+  const bool state_is_suspect = refused.size() >= kMinRefusedForConsensus &&
+                                static_cast<double>(refused.size()) >
+                                    config_.vision.max_gated_share * static_cast<double>(tracks.size());
+  statistics_.suspect = state_is_suspect;
+  for (WindowTrack* track : refused) {
+    if (state_is_suspect) {
+      track->ScaleInformation(gate_.Threshold(track->dof()) / TrackChiSquare(*track, geometry));
+    } else {
+      ++statistics_.features_gated;
+      feature_refused = feature_refused || track->anchor != nullptr;
+      track->Restart();
+    }
+  }
+  return feature_refused;
+}
+
+}  // namespace alidade

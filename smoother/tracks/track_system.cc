@@ -1,0 +1,242 @@
+#include "smoother/tracks/track_system.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "core/predicted_observation.h"
+#include "core/robust.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Matrix2x3 = Eigen::Matrix<double, 2, 3>;
+
+constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into its camera no row can be trusted
+constexpr double kMinViewDepth = 1e-6;    // of the scaled point (x, y, 1) + rho t
+
+const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const WindowView& view) {
+  return geometry[static_cast<size_t>(view.frame->index)];
+}
+/// Row of the depth prior on rho, the inverse depth in the base view: d rho = drho - rho dz_b, z_b the depth
+/// of (x, y, 1) there.
+void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vector3d& landmark,
+                   const CalibrationLayout* layout, TrackWorkspace* workspace) {
+  const double rho = landmark.z();
+  const Vector3d ray = landmark.head<2>().homogeneous();
+  Eigen::Matrix<double, 1, 6> camera;
+  camera << -rho * Skew(ray).row(2), rho * rho * base.Linearized().rotation.col(2).transpose();
+  const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
+  const double residual = prior.sqrt_information * (rho - prior.mean);
+  workspace->prior_residual = residual;
+  if (layout != nullptr) {
+    workspace->prior_calibration.noalias() =
+        prior.sqrt_information * camera * CalibrationChain(*layout, base);
+  }
+  workspace->prior_pose = pose;
+  workspace->prior_hessian.noalias() = pose.transpose() * pose;
+  workspace->prior_gradient.noalias() = pose.transpose() * residual;
+  workspace->coupling[0].col(2).noalias() += pose.transpose() * prior.sqrt_information;
+  workspace->landmark_hessian(2, 2) += prior.sqrt_information * prior.sqrt_information;
+  workspace->landmark_gradient.z() += prior.sqrt_information * residual;
+  workspace->robust_cost += residual * residual;
+}
+
+/// Weighted rows of every view over its own pose and the landmark. False behind a view.
+bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                    const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace) {
+  const FrameGeometry& base = Geometry(geometry, views.front());
+  workspace->rows.resize(views.size());
+  workspace->coupling.resize(views.size());
+  workspace->reduced.resize(views.size());
+  workspace->landmark_hessian.setZero();
+  workspace->landmark_gradient.setZero();
+  workspace->robust_cost = 0;
+  workspace->chi2 = 0;
+  for (size_t k = 0; k < views.size(); ++k) {
+    ViewRows& rows = workspace->rows[k];
+    if (!LinearizeView(base, Geometry(geometry, views[k]), views[k].observation, kernel, landmark, &rows)) {
+      return false;
+    }
+    workspace->robust_cost += kernel.Rho(rows.squared_norm);
+    workspace->chi2 += rows.squared_norm;
+    workspace->coupling[k].noalias() = rows.weight * rows.pose.transpose() * rows.landmark;
+    workspace->landmark_hessian.noalias() += rows.weight * rows.landmark.transpose() * rows.landmark;
+    workspace->landmark_gradient.noalias() += rows.weight * rows.landmark.transpose() * rows.residual;
+  }
+  return true;
+}
+
+/// The calibration's part of AddTrack, once the poses' is done: `landmark_root` is L^-T of the scaled
+/// landmark Hessian.
+void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                    const Matrix3d& landmark_root, const Vector3d& reduced_gradient, bool has_prior,
+                    const DepthPrior& prior, const TrackWorkspace& workspace, PoseSystem* system) {
+  const WindowCalibration& calibration = *system->calibration;
+  const Eigen::Index size = calibration.size();
+  const Eigen::Index first = system->hessian.rows() - size;
+  Eigen::MatrixXd rows(2, size);
+  Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(size, 3);
+  auto own = system->hessian.bottomRightCorner(size, size);
+  auto gradient = system->gradient.tail(size);
+  for (size_t k = 0; k < views.size(); ++k) {
+    const ViewRows& view = workspace.rows[k];
+    const FrameGeometry& frame = Geometry(geometry, views[k]);
+    CalibrationRows(calibration.layout, calibration.mean.camera, frame.R_WB, &frame.camera_from_time,
+                    view.camera, Predicted(views[k].observation, view.residual), rows);
+    coupling.noalias() += view.weight * rows.transpose() * view.landmark;
+    own.noalias() += view.weight * rows.transpose() * rows;
+    gradient.noalias() += view.weight * rows.transpose() * view.residual;
+    system->hessian.block(first, 6 * views[k].frame->index, size, 6).noalias() +=
+        view.weight * rows.transpose() * view.pose;
+  }
+  if (has_prior) {
+    const Eigen::RowVectorXd& row = workspace.prior_calibration;
+    coupling.col(2) += row.transpose() * prior.sqrt_information;
+    own.noalias() += row.transpose() * row;
+    gradient += row.transpose() * workspace.prior_residual;
+    system->hessian.block(first, 6 * views.front().frame->index, size, 6).noalias() +=
+        row.transpose() * workspace.prior_pose;
+  }
+  const Eigen::MatrixXd reduced = coupling * landmark_root;
+  own.noalias() -= reduced * reduced.transpose();
+  gradient.noalias() -= reduced * reduced_gradient;
+  for (size_t k = 0; k < views.size(); ++k) {
+    system->hessian.block(first, 6 * views[k].frame->index, size, 6).noalias() -=
+        reduced * workspace.reduced[k].transpose();
+  }
+}
+
+/// The point (x, y, 1) / rho of the base camera in another, times rho.
+struct ScaledPoint {
+  ScaledPoint(const Pose& base, const Pose& T_WC, const Vector3d& landmark)
+      : shift_W(base.translation - T_WC.translation) {
+    const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
+    q = T_WC.rotation.transpose() * (ray_W + landmark.z() * shift_W);
+  }
+  Vector3d shift_W;
+  Vector3d q;
+};
+}  // namespace
+
+double ObservationKernel::Rho(double s) const {
+  const double k2 = scale_sigma * scale_sigma;
+  switch (kernel) {
+    case RobustKernel::kHuber:
+      return s <= k2 ? s : 2 * scale_sigma * std::sqrt(s) - k2;
+    case RobustKernel::kCauchy:
+      return k2 * std::log1p(s / k2);
+    case RobustKernel::kNone:
+      break;
+  }
+  return s;
+}
+bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
+                   const NormalizedObservation& observation, const ObservationKernel& kernel,
+                   const Vector3d& landmark, ViewRows* rows) {
+  const double rho = landmark.z();
+  ScaledPoint seen(base.T_WC, frame.T_WC, landmark);
+  if (!(seen.q.z() > kMinViewDepth)) {
+    return false;
+  }
+  rows->residual = observation.sqrt_information * (seen.q.hnormalized() - observation.z);
+  const Pose& T_WC = frame.Linearized();
+  const Pose& T_W_base = base.Linearized();
+  if (base.T_WC_first || frame.T_WC_first) {
+    seen = ScaledPoint(T_W_base, T_WC, landmark);
+    if (!(seen.q.z() > kMinViewDepth)) {
+      return false;
+    }
+  }
+  const Vector2d predicted = seen.q.hnormalized();
+  Matrix2x3 perspective;
+  perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
+  const Matrix2x3 weighted = observation.sqrt_information * (perspective / seen.q.z());
+  const Matrix2x3 to_world = weighted * T_WC.rotation.transpose();
+  rows->landmark << to_world * T_W_base.rotation.leftCols<2>(), to_world * seen.shift_W;
+  rows->camera << weighted * Skew(seen.q), -rho * to_world;
+  rows->pose.noalias() = rows->camera * frame.camera_from_body;
+  rows->squared_norm = rows->residual.squaredNorm();
+  rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
+  return true;
+}
+
+PoseSystem::PoseSystem(int frames, const WindowCalibration* of_camera) : calibration(of_camera) {
+  const Eigen::Index size = 6 * frames + calibration_size();
+  hessian = Eigen::MatrixXd::Zero(size, size);
+  gradient = Eigen::VectorXd::Zero(size);
+}
+bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+              const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
+              PoseSystem* system, const DepthPrior& prior) {
+  if (!(std::abs(landmark.z()) < kMaxInverseDepth) ||
+      !LinearizeViews(views, geometry, kernel, landmark, workspace)) {
+    return false;
+  }
+  workspace->prior_hessian.setZero();
+  workspace->prior_gradient.setZero();
+  if (prior.sqrt_information > 0) {
+    AddDepthPrior(prior, Geometry(geometry, views.front()), landmark,
+                  system->calibration == nullptr ? nullptr : &system->calibration->layout, workspace);
+  }
+  // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
+  const Vector3d scale = workspace->landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Matrix3d> factor(scale.asDiagonal() * workspace->landmark_hessian * scale.asDiagonal());
+  if (!scale.allFinite() || factor.info() != Eigen::Success ||
+      !(factor.matrixLLT().diagonal().minCoeff() > 1e-7)) {
+    return false;
+  }
+  const Vector3d reduced_gradient = factor.matrixL().solve(scale.asDiagonal() * workspace->landmark_gradient);
+  const Matrix3d scaled = scale.asDiagonal();
+  const Matrix3d inverse_transposed = factor.matrixL().solve(scaled).transpose();
+  const int base_row = 6 * views.front().frame->index;
+  system->hessian.block<6, 6>(base_row, base_row) += workspace->prior_hessian;
+  system->gradient.segment<6>(base_row) += workspace->prior_gradient;
+  for (size_t k = 0; k < views.size(); ++k) {
+    const int row = 6 * views[k].frame->index;
+    const ViewRows& rows = workspace->rows[k];
+    workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
+    system->hessian.block<6, 6>(row, row).noalias() += rows.weight * rows.pose.transpose() * rows.pose;
+    system->gradient.segment<6>(row).noalias() += rows.weight * rows.pose.transpose() * rows.residual;
+    system->gradient.segment<6>(row).noalias() -= workspace->reduced[k] * reduced_gradient;
+    for (size_t l = 0; l <= k; ++l) {
+      system->hessian.block<6, 6>(row, 6 * views[l].frame->index).noalias() -=
+          workspace->reduced[k] * workspace->reduced[l].transpose();
+    }
+  }
+  if (system->calibration_size() > 0) {
+    AddCalibration(views, geometry, inverse_transposed, reduced_gradient, prior.sqrt_information > 0, prior,
+                   *workspace, system);
+  }
+  system->robust_cost += workspace->robust_cost;
+  system->chi2 += workspace->chi2;
+  system->dof += 2 * static_cast<int>(views.size()) - 3;
+  ++system->tracks;
+  return true;
+}
+void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                    Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
+  const Eigen::Index size = hessian.rows();
+  Eigen::MatrixXd lower = hessian;  // left-looking Cholesky on the lower triangle
+  *residual = gradient;
+  for (Eigen::Index j = 0; j < size; ++j) {
+    const double pivot = lower(j, j) - lower.row(j).head(j).squaredNorm();
+    const Eigen::Index below = size - j - 1;
+    if (!(pivot > 1e-13 * hessian(j, j)) || !(hessian(j, j) > 0)) {
+      lower.col(j).tail(below + 1).setZero();
+      (*residual)[j] = 0;
+      continue;
+    }
+    const double root = std::sqrt(pivot);
+    lower.col(j).tail(below).noalias() -= lower.bottomLeftCorner(below, j) * lower.row(j).head(j).transpose();
+    lower.col(j).tail(below) /= root;
+    lower(j, j) = root;
+    (*residual)[j] /= root;
+    residual->tail(below).noalias() -= (*residual)[j] * lower.col(j).tail(below);
+  }
+  *jacobian = lower.triangularView<Eigen::Lower>().transpose();
+}
+
+}  // namespace alidade

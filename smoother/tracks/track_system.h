@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/estimator_config.h"
+#include "smoother/window/frame_geometry.h"
+
+namespace alidade {
+
+/// Robust kernel of one observation: rho(s) of its whitened squared residual s, with ceres' conventions
+/// (rho'(0) = 1).
+struct ObservationKernel {
+  RobustKernel kernel = RobustKernel::kNone;
+  double scale_sigma = 1;
+
+  [[nodiscard]] double Rho(double squared_norm) const;
+};
+
+/// Normal equations of vision alone, every landmark eliminated (the 2N-3 rows N^T [H | r] of each track; N
+/// the left null space of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical
+/// chart.
+struct PoseSystem {
+  /// calibration: of a camera that is calibrated online, else null; it must outlive the system.
+  explicit PoseSystem(int frames, const WindowCalibration* calibration = nullptr);
+
+  [[nodiscard]] int calibration_size() const { return calibration == nullptr ? 0 : calibration->size(); }
+
+  const WindowCalibration* calibration;
+  Eigen::MatrixXd hessian;   ///< 6F + calibration squared, lower triangle; the calibration comes last
+  Eigen::VectorXd gradient;  ///< 6F + calibration
+  double robust_cost = 0;    ///< sum of rho(s) (twice the cost)
+  double chi2 = 0;           ///< sum of s, no kernel
+  int dof = 0;               ///< sum of 2N-3
+  int tracks = 0;
+};
+
+/// The whitened rows of one view of a track, before the landmark is eliminated.
+struct ViewRows {
+  Eigen::Matrix<double, 2, 6> camera;    ///< over (phi, dp) of the view's camera pose, canonical chart
+  Eigen::Matrix<double, 2, 6> pose;      ///< over (phi, dp) of the view's body pose, canonical chart
+  Eigen::Matrix<double, 2, 3> landmark;  ///< over (x, y, rho)
+  Eigen::Vector2d residual;              ///< predicted - measured
+  double squared_norm = 0;               ///< of the residual
+  double weight = 1;                     ///< of both rows: the kernel's
+};
+
+/// Linearises one view, its Jacobians at first estimates where the frames have such. The landmark's three
+/// coordinates (x, y, rho) are taken in the base camera's frame as it is NOW, `base`, which then stands
+/// still: a point of the world. So every row, the base's too, concerns one pose, and rho = 0 is regular.
+/// False behind the view.
+bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
+                   const NormalizedObservation& observation, const ObservationKernel& kernel,
+                   const Eigen::Vector3d& landmark, ViewRows* rows);
+
+/// Scratch space of AddTrack, reused from track to track.
+struct TrackWorkspace {
+  std::vector<ViewRows> rows;
+  std::vector<Eigen::Matrix<double, 6, 3>> coupling;  ///< B_k^T A_k
+  Eigen::Matrix3d landmark_hessian;
+  Eigen::Vector3d landmark_gradient;
+  Matrix6d prior_hessian;                  ///< of the depth prior, over the base view's pose
+  Vector6d prior_gradient;                 ///< likewise
+  Eigen::Matrix<double, 1, 6> prior_pose;  ///< its row there
+  Eigen::RowVectorXd prior_calibration;    ///< the depth prior's row over the calibration
+  double prior_residual = 0;
+  double robust_cost = 0;
+  double chi2 = 0;
+  std::vector<Eigen::Matrix<double, 6, 3>> reduced;  ///< coupling times L^-T, so that H -= reduced reduced^T
+};
+
+/// Landmark of the track with the poses held fixed: damped, iteratively re-weighted Gauss-Newton over (x, y,
+/// rho) of the base view, run to convergence so that the cost's derivative through the landmark vanishes.
+/// `landmark` is start and result. False: behind a view, or not finite.
+bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                   const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,
+                   const DepthPrior& prior = {});
+
+/// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its
+/// optimum is stepped there to first order. rho <= 0 (a point at infinity, or beyond) is regular.
+/// False (system untouched): behind a view, or the landmark is not determined.
+bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+              const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
+              PoseSystem* system, const DepthPrior& prior = {});
+
+/// Sum of whitened squared residuals (no kernel) at the landmark; infinite when behind a view.
+[[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,
+                                    std::span<const FrameGeometry> geometry, const Eigen::Vector3d& landmark);
+
+/// First value of a landmark from the pose-only depth (core/pose_only.h). False without parallax: when the
+/// depth's relative deviation exceeds `max_relative_deviation` (DepthIsDetermined).
+bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
+                        double max_relative_deviation, Eigen::Vector3d* landmark);
+
+/// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H
+/// (lower triangle given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.
+void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                    Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual);
+
+}  // namespace alidade

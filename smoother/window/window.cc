@@ -1,0 +1,178 @@
+#include "smoother/window/window.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/calibration.h"
+#include "core/check.h"
+#include "smoother/manifold/nav_state_manifold.h"
+
+namespace alidade {
+
+// The correction's error is of second order in these: 1e-6 rad and 1e-5 m/s after a second.
+constexpr double kMaxGyroBiasShift = 1e-3;
+constexpr double kMaxAccelBiasShift = 2e-2;
+
+NavState WindowFrame::nav_state() const {
+  return UnpackNavState(nav.data());
+}
+ImuBias WindowFrame::imu_bias() const {
+  return UnpackBias(bias.data());
+}
+
+double WindowFrame::mean_step_s() const {
+  return imu.size() < 2 ? 0.0
+                        : SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns) /
+                              static_cast<double>(imu.size() - 1);
+}
+
+void WindowTrack::ScaleInformation(double factor) {
+  for (WindowView& view : views) {
+    view.observation.sqrt_information *= std::sqrt(factor);
+    view.root_weight_per_px *= std::sqrt(factor);
+  }
+}
+
+void Window::Clear() {
+  frames_.clear();
+  tracks_.clear();
+}
+
+WindowFrame& Window::AddFrame(std::unique_ptr<WindowFrame> frame) {
+  frames_.push_back(std::move(frame));
+  Renumber();
+  for (auto& [id, track] : tracks_) {
+    track.alive = false;
+  }
+  return *frames_.back();
+}
+
+int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
+                            const std::vector<TrackObservation>& observations) {
+  int invalid = 0;
+  for (const TrackObservation& measured : observations) {
+    NormalizedObservation observation;
+    if (!NormalizeObservation(camera, measured.pixel, pixel_noise_px, &observation)) {
+      ++invalid;
+      continue;
+    }
+    WindowTrack& track = tracks_[measured.track_id];
+    if (track.alive) {  // twice in one frame: the first counts
+      ++invalid;
+      continue;
+    }
+    track.id = measured.track_id;
+    track.alive = true;
+    track.views.push_back({frames_.back().get(), observation, measured.pixel, 1 / pixel_noise_px});
+  }
+  return invalid;
+}
+
+WindowView Renormalized(const CameraModel& camera, const WindowView& view) {
+  WindowView seen = view;
+  NormalizedObservation observation;
+  if (NormalizeObservation(camera, view.pixel, 1 / view.root_weight_per_px, &observation)) {
+    seen.observation = observation;
+  }
+  return seen;
+}
+
+std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views) {
+  for (WindowView& view : views) {
+    view = Renormalized(camera, view);
+  }
+  return views;
+}
+
+void Window::UpdateRates() {
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    const Eigen::Vector3d bias = frame->imu_bias().gyro;
+    frame->rates = BodyRates(frame->gyro_radps.value_or(bias) - bias, frame->nav_state().v_WB);
+  }
+}
+
+void Window::Renormalize(const CameraModel& camera) {
+  for (auto& [id, track] : tracks_) {
+    track.views = Renormalized(camera, std::move(track.views));
+  }
+}
+
+std::unique_ptr<WindowFrame> Window::RemoveNewest() {
+  std::unique_ptr<WindowFrame> frame = std::move(frames_.back());
+  frames_.pop_back();
+  for (auto& [id, track] : tracks_) {
+    if (!track.views.empty() && track.views.back().frame == frame.get()) {
+      track.views.pop_back();
+      track.has_landmark = track.has_landmark && (track.anchor != nullptr || !track.views.empty());
+    }
+  }
+  return frame;
+}
+
+void Window::RemoveOldest() {
+  const WindowFrame* oldest = frames_.front().get();
+  for (auto& [id, track] : tracks_) {
+    if (!track.views.empty() && track.views.front().frame == oldest) {
+      track.views.erase(track.views.begin());
+      if (track.anchor == nullptr) {
+        track.has_landmark = false;  // its coordinates were those of the base
+        track.depth_prior = {};
+      }
+    }
+  }
+  frames_.erase(frames_.begin());
+  frames_.front()->imu.clear();
+  frames_.front()->preintegration.reset();
+  Renumber();
+}
+
+void Window::Prune() {
+  std::erase_if(tracks_, [](const auto& item) {
+    const WindowTrack& track = item.second;
+    return !track.alive && track.anchor == nullptr && track.views.size() < 2;
+  });
+}
+
+void Window::Renumber() {
+  for (size_t i = 0; i < frames_.size(); ++i) {
+    frames_[i]->index = static_cast<int>(i);
+  }
+}
+
+FrameParallax ComputeParallax(const Window& window, const WindowFrame& first, const WindowFrame& second,
+                              const Pose& T_BC) {
+  const Eigen::Matrix3d R_first_second =
+      (first.nav_state().R_WB * T_BC.rotation).transpose() * second.nav_state().R_WB * T_BC.rotation;
+  FrameParallax parallax;
+  double sum = 0;
+  for (const auto& [id, track] : window.tracks()) {
+    const WindowView* in_first = nullptr;
+    const WindowView* in_second = nullptr;
+    for (const WindowView& view : track.views) {
+      in_first = view.frame == &first ? &view : in_first;
+      in_second = view.frame == &second ? &view : in_second;
+    }
+    if (in_first == nullptr || in_second == nullptr) {
+      continue;
+    }
+    const Eigen::Vector3d rotated = R_first_second * in_second->observation.z.homogeneous();
+    if (rotated.z() > 1e-3) {
+      sum += (rotated.hnormalized() - in_first->observation.z).norm();
+      ++parallax.common;
+    }
+  }
+  parallax.mean = parallax.common > 0 ? sum / parallax.common : 0.0;
+  return parallax;
+}
+
+void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame) {
+  const ImuBias bias = previous.imu_bias();
+  if (frame->preintegration && (frame->preintegration->bias().gyro - bias.gyro).norm() < kMaxGyroBiasShift &&
+      (frame->preintegration->bias().accel - bias.accel).norm() < kMaxAccelBiasShift) {
+    return;
+  }
+  frame->preintegration.emplace(bias, noise);
+  frame->preintegration->Add(frame->imu);
+}
+
+}  // namespace alidade

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/clock_state.h"
+#include "core/measurement_log.h"
+#include "core/preintegration.h"
+#include "core/rest_model.h"
+#include "core/visual_observation.h"
+#include "smoother/manifold/first_estimate.h"
+#include "smoother/window/frame_epoch.h"
+
+namespace alidade {
+
+/// One frame of the window. `nav` and `bias` are the parameter blocks the solver works on
+/// (smoother/manifold/nav_state_manifold.h).
+struct WindowFrame {
+  TimeNs stamp_ns = 0;
+  int index = 0;  ///< position in the window, 0 the oldest
+  std::array<double, 10> nav{};
+  std::array<double, 6> bias{};
+  std::vector<ImuSample> imu;                    ///< from the previous frame to this one; empty in the first
+  std::optional<Preintegration> preintegration;  ///< of `imu`, at the previous frame's bias
+  std::optional<RestMeasurement> rest;           ///< set when the rig stood still in this frame
+  // With an estimated time offset: the camera saw from where the body is later by the present offset less
+  // this one, moving on at these rates (core/calibration.h, BodyRates).
+  double time_offset_s = 0;                   ///< that placed the frame in IMU time
+  std::optional<Eigen::Vector3d> gyro_radps;  ///< measured at the frame
+  Vector6d rates = Vector6d::Zero();          ///< kept fixed in a solve
+  /// With smoother.first_estimates, once the prior holds the frame.
+  std::optional<FirstEstimate> first;
+  // Once aligned with GNSS (smoother/sliding/gnss_window.h).
+  std::optional<std::array<double, ClockState::kSize>> clock;  ///< a parameter block
+  bool clock_anew = false;         ///< the clock before says nothing about this one
+  std::vector<FrameEpoch> epochs;  ///< from this frame to the next
+
+  [[nodiscard]] NavState nav_state() const;
+  [[nodiscard]] ImuBias imu_bias() const;
+  /// Null unless the frame has one.
+  [[nodiscard]] const FirstEstimate* first_estimate() const { return first ? &*first : nullptr; }
+  /// Precondition: clock.
+  [[nodiscard]] Vector6d clock_state() const { return Eigen::Map<const Vector6d>(clock->data()); }
+  /// Mean length of one IMU step [s].
+  [[nodiscard]] double mean_step_s() const;
+};
+
+/// One observation of a track inside the window.
+struct WindowView {
+  const WindowFrame* frame = nullptr;
+  NormalizedObservation observation;
+  // Whatever the intrinsics are:
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< what was seen
+  double root_weight_per_px = 1;                    ///< whitens the pixel
+};
+
+/// Weak prior on a landmark's inverse depth, for tracks without parallax: sqrt_information (rho - mean). Such
+/// a track (at rest, or far away) still holds rotation and says that the camera did not move; leaving it out
+/// would leave both to the IMU.
+struct DepthPrior {
+  double mean = 0;              ///< [1/m]
+  double sqrt_information = 0;  ///< [m]; 0: no prior
+};
+
+/// A landmark seen in the window. The first view is its base. A SLAM feature instead has columns in the prior
+/// (LinearPrior::Landmark) and is anchored in a frame of the window, seen there or not.
+struct WindowTrack {
+  std::int64_t id = 0;
+  std::vector<WindowView> views;  ///< in time order
+  /// (x, y, rho): bearing on the normalised plane of the base, or of the anchor, and inverse depth [1/m]; set
+  /// when has_landmark.
+  Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
+  const WindowFrame* anchor = nullptr;  ///< of a SLAM feature
+  bool has_landmark = false;            ///< its depth is known from parallax
+  DepthPrior depth_prior;               ///< stands in for parallax while has_landmark is false
+  bool alive = false;                   ///< seen in the newest frame
+
+  /// Degrees of freedom of its residuals: a SLAM feature's landmark is mostly the prior's.
+  [[nodiscard]] int dof() const { return 2 * static_cast<int>(views.size()) - (anchor != nullptr ? 0 : 3); }
+  /// Multiplies the information of all observations so far.
+  void ScaleInformation(double factor);
+  /// Forgets all observations; the next one starts the track anew.
+  void Restart() {
+    views.clear();
+    anchor = nullptr;
+    has_landmark = false;
+    depth_prior = {};
+  }
+};
+
+/// Frames and tracks of a sliding window, with the bookkeeping that keeps them consistent. Frames keep their
+/// address for life.
+class Window {
+ public:
+  void Clear();
+  WindowFrame& AddFrame(std::unique_ptr<WindowFrame> frame);
+  /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's
+  /// domain.
+  int AddObservations(const CameraModel& camera, double pixel_noise_px,
+                      const std::vector<TrackObservation>& observations);
+  /// What moves each frame's camera with the time offset, at the present states.
+  void UpdateRates();
+  /// Rays of all views anew, after the camera's intrinsics have changed; see Renormalized.
+  void Renormalize(const CameraModel& camera);
+  /// Takes the newest frame out, its observations with it, and returns it.
+  std::unique_ptr<WindowFrame> RemoveNewest();
+  /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one
+  /// becomes base. No SLAM feature may be anchored there.
+  void RemoveOldest();
+  /// Drops tracks that are not seen any more and have fewer than two views left; SLAM features stay.
+  void Prune();
+
+  [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }
+  [[nodiscard]] WindowFrame& frame(int index) { return *frames_[static_cast<size_t>(index)]; }
+  [[nodiscard]] const WindowFrame& frame(int index) const { return *frames_[static_cast<size_t>(index)]; }
+  [[nodiscard]] WindowFrame& newest() { return *frames_.back(); }
+  [[nodiscard]] const WindowFrame& newest() const { return *frames_.back(); }
+  [[nodiscard]] int size() const { return static_cast<int>(frames_.size()); }
+  [[nodiscard]] std::map<std::int64_t, WindowTrack>& tracks() { return tracks_; }
+  [[nodiscard]] const std::map<std::int64_t, WindowTrack>& tracks() const { return tracks_; }
+
+ private:
+  void Renumber();
+
+  std::vector<std::unique_ptr<WindowFrame>> frames_;
+  std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
+};
+
+/// Views with the rays that their pixels have in `camera`. One outside its domain stays as it is.
+[[nodiscard]] WindowView Renormalized(const CameraModel& camera, const WindowView& view);
+[[nodiscard]] std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views);
+
+/// Mean rotation-compensated motion of the tracks common to two frames, on the normalised plane, and their
+/// number.
+struct FrameParallax {
+  double mean = 0;
+  int common = 0;
+};
+[[nodiscard]] FrameParallax ComputeParallax(const Window& window, const WindowFrame& first,
+                                            const WindowFrame& second, const Pose& T_BC);
+
+/// Integrates frame.imu anew at the bias `previous` holds now, when the preintegration is missing or the bias
+/// has moved so far that its first-order correction no longer does.
+void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame);
+
+}  // namespace alidade

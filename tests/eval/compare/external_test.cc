@@ -1,0 +1,129 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/lie.h"
+#include "eval/compare/external_run.h"
+#include "eval/trajectory/external_trajectory.h"
+#include "gnss/base/geodesy.h"
+#include "tests/support/read_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+class External : public testing::Test {
+ protected:
+  Result<Trajectory> Read(const std::string& name, const std::string& text) {
+    return ReadExternalTrajectory(folder_.Write(name, text), &context_);
+  }
+  test::TemporaryFolder folder_;
+  ExternalContext context_;
+};
+
+// A quarter turn about z, body to world: Hamilton (w, z) = (sqrt(1/2), sqrt(1/2)).
+const Eigen::Matrix3d kTurn = so3::Exp(Eigen::Vector3d(0, 0, M_PI / 2));
+
+TEST_F(External, VinsMonoResult) {
+  const Result<Trajectory> t = Read("vins.csv",
+                                    "1403636580838555648,1.5,-2,3,0.70710678,0,0,0.70710678,0.1,0,0,\n"
+                                    "1403636580888555648,1.6,-2,3,0.70710678,0,0,0.70710678,0.1,0,0,\n");
+  ASSERT_TRUE(t.ok()) << t.message();
+  ASSERT_EQ(t->points.size(), 2u);
+  EXPECT_EQ(t->points[0].stamp_ns, 1403636580838555648);
+  EXPECT_EQ(t->points[0].nav.p_WB, Eigen::Vector3d(1.5, -2, 3));
+  EXPECT_LT((t->points[0].nav.R_WB - kTurn).norm(), 1e-7);
+}
+
+TEST_F(External, OpenVinsStateAndTrajectory) {
+  const Result<Trajectory> state =
+      Read("state.txt",
+           "# timestamp(s) q p v bg ba cam_imu_dt\n"
+           "1403636580.838555648 0 0 0.70710678 0.70710678 1.5 -2 3 0 0 0 0 0 0 0 0 0 0.01\n");
+  ASSERT_TRUE(state.ok()) << state.message();
+  EXPECT_EQ(state->points[0].stamp_ns, 1403636580838555648);
+  EXPECT_EQ(state->points[0].nav.p_WB, Eigen::Vector3d(1.5, -2, 3));
+  EXPECT_LT((state->points[0].nav.R_WB - kTurn).norm(), 1e-7);
+  const Result<Trajectory> trajectory = Read("traj.txt",
+                                             "# timestamp(s) tx ty tz qx qy qz qw Pr11 Pr12\n"
+                                             "1403636580.838555648 1.5 -2 3 0 0 0.70710678 0.70710678 1 2\n");
+  ASSERT_TRUE(trajectory.ok()) << trajectory.message();
+  EXPECT_LT((trajectory->points[0].nav.R_WB - kTurn).norm(), 1e-7);
+}
+
+TEST_F(External, KittiTakesTheStampsOfTheCameraAndItsFrame) {
+  const std::string rows = "0 -1 0 1 1 0 0 2 0 0 1 3\n0 -1 0 1 1 0 0 2 0 0 1 4\n";
+  EXPECT_THAT(Read("kitti.txt", rows).message(), HasSubstr("one row a camera stamp"));
+  context_.camera_stamps = {100, 200};
+  const Result<Trajectory> body = Read("kitti.txt", rows);
+  ASSERT_TRUE(body.ok()) << body.message();
+  EXPECT_EQ(body->points[1].stamp_ns, 200);
+  EXPECT_LT((body->points[1].nav.R_WB - kTurn).norm(), 1e-12);
+  EXPECT_EQ(body->points[1].nav.p_WB, Eigen::Vector3d(1, 2, 4));
+  // The camera sits at (0.5, 0, 0) of the body, turned by R_BC: p_WC = p_WB + R_WB p_BC.
+  context_.T_BC = Pose{so3::Exp(Eigen::Vector3d(0.3, -0.2, 0.1)), Eigen::Vector3d(0.5, 0, 0)};
+  const Result<Trajectory> camera = Read("kitti.txt", rows);
+  ASSERT_TRUE(camera.ok()) << camera.message();
+  const NavState& nav = camera->points[1].nav;
+  EXPECT_LT((nav.p_WB + nav.R_WB * context_.T_BC->translation - Eigen::Vector3d(1, 2, 4)).norm(), 1e-12);
+  EXPECT_LT((nav.R_WB * context_.T_BC->rotation - kTurn).norm(), 1e-12);
+}
+
+TEST_F(External, PositionFilesAreEnuInImuTime) {
+  context_.gnss_time_offset_s = -18;
+  const Result<Trajectory> t = Read("a.pos",
+                                    "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n"
+                                    "2023/11/14 22:13:21.000 22.300000000 114.2 5.0 1 9\n"
+                                    "2288 252802.100 22.300010000 114.2 6.0 5 9\n");
+  ASSERT_TRUE(t.ok()) << t.message();
+  EXPECT_FALSE(t->has_orientation);
+  ASSERT_EQ(t->points.size(), 2u);
+  EXPECT_EQ(t->points[1].stamp_ns - t->points[0].stamp_ns, 1'100'000'000);
+  EXPECT_EQ(t->points[0].stamp_ns, 1'700'000'001'000'000'000 - 18'000'000'000);
+  EXPECT_LT(t->points[0].nav.p_WB.norm(), 1e-6);
+  EXPECT_NEAR(t->points[1].nav.p_WB.y(), 1.1075, 1e-3);
+  EXPECT_NEAR(t->points[1].nav.p_WB.z(), 1, 1e-5);
+  EXPECT_TRUE(context_.anchor_E.has_value());
+  const Eigen::Vector3d& e = *context_.anchor_E;
+  const Result<Trajectory> ecef =
+      Read("b.pos", "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns\n2288 252802.1 " + std::to_string(e.x()) +
+                        " " + std::to_string(e.y()) + " " + std::to_string(e.z()) + " 5 9\n");
+  ASSERT_TRUE(ecef.ok()) << ecef.message();
+  EXPECT_LT(ecef->points[0].nav.p_WB.norm(), 1e-5);
+  EXPECT_THAT(Read("c.pos", "2288 252802.1 95 114 5\n").message(), HasSubstr("c.pos:1: "));
+  EXPECT_THAT(Read("d.pos", "2023/13/40 22:13:21.000 22 114 5\n").message(), HasSubstr("d.pos:1: "));
+  EXPECT_FALSE(Read("e.pos", "% nothing\n").ok());
+}
+
+TEST_F(External, OtherFilesReadAsEver) {
+  const Result<Trajectory> tum = Read("a.tum", "1.5 1 2 3 0 0 0 1\n2.5 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(tum.ok()) << tum.message();
+  EXPECT_EQ(tum->points[0].stamp_ns, 1'500'000'000);
+  EXPECT_FALSE(Read("b.txt", "hello\n").ok());
+  EXPECT_THAT(Read("c.csv", "1403636580838555648,1,2\n").message(), HasSubstr("c.csv:1"));
+  EXPECT_THAT(Read("d.csv", "2,1,2,3,1,0,0,0\n1,1,2,3,1,0,0,0\n").message(), HasSubstr("d.csv:2"));
+}
+
+TEST(FillCommandTest, WordsAreQuotedAndChecked) {
+  EXPECT_EQ(*FillCommand("run {dataset} > {output}/x ${HOME} {1}", {{"dataset", "/a b's"}, {"output", "/o"}}),
+            "run '/a b'\\''s' > '/o'/x ${HOME} {1}");
+  EXPECT_THAT(FillCommand("run {datset}", {{"dataset", "x"}}).message(), HasSubstr("dataset"));
+}
+
+TEST(RunExternalTest, TimesSucceedsFailsAndEnds) {
+  const test::TemporaryFolder folder;
+  const std::string log = folder.File("log");
+  const Result<ExternalRun> fine = RunExternal("echo hello; echo there >&2; sleep 0.2", log, 10, nullptr);
+  ASSERT_TRUE(fine.ok()) << fine.message();
+  EXPECT_GE(fine->wall_s, 0.2);
+  EXPECT_EQ(test::ReadFile(log), "hello\nthere\n");
+  EXPECT_THAT(RunExternal("echo no data; exit 3", log, 10, nullptr).message(), HasSubstr("code 3: no data"));
+  // What the shell started is ended with it.
+  EXPECT_THAT(RunExternal("sleep 60 & wait", log, 0.2, nullptr).message(), HasSubstr("longer than 0.2 s"));
+  const std::atomic<bool> stop = true;
+  EXPECT_THAT(RunExternal("sleep 60", log, 60, &stop).message(), HasSubstr("stopped"));
+}
+
+}  // namespace
+}  // namespace alidade

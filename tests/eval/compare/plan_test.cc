@@ -1,0 +1,226 @@
+#include "eval/compare/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class PlanTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.Write("estimators/a.yaml", "name: a\n");
+    folder_.Write("estimators/b.yaml", "name: b\n");
+    folder_.Write("sim.yaml", "name: s\n");
+    folder_.Write("data/seq/mav0/x", "");
+    folder_.Write("other.tum", "");
+  }
+  Result<Plan> Read(const std::string& text, const std::string& data_root = "") {
+    return ReadPlan(folder_.Write("plan.yaml", text), data_root);
+  }
+  test::TemporaryFolder folder_;
+};
+
+constexpr char kMinimal[] = "estimators: [estimators/a.yaml]\nsequences:\n  - config: sim.yaml\n";
+
+TEST_F(PlanTest, ReadsEveryKey) {
+  const Result<Plan> plan = Read(
+      "title: Both\n"
+      "set: {init.method: truth}\n"
+      "estimators:\n"
+      "  - estimators/a.yaml\n"
+      "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}, "
+      "sequences: [loud]}\n"
+      "  - {name: other, trajectories: {seq: other.tum}, align: pos, align_share: 0.05}\n"
+      "sequences:\n"
+      "  - {path: '${data}/seq', seeds: [4, 2]}\n"
+      "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
+      "'${data}/seq'}}\n"
+      "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}}\n"
+      "audit: true\n"
+      "metrics: {align: se3, align_share: 0.5, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
+      "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
+      "baseline: loud\n"
+      "reference:\n"
+      "  - {source: the paper, estimator: a, sequence: sim, figures: {ate_pos_m: 0.1}}\n",
+      folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_EQ(plan->title, "Both");
+  EXPECT_THAT(plan->settings, ElementsAre("init.method=truth"));
+  ASSERT_EQ(plan->estimators.size(), 3u);
+  EXPECT_EQ(plan->estimators[0].name, "a");
+  EXPECT_EQ(plan->estimators[0].config, folder_.File("estimators/a.yaml"));
+  EXPECT_THAT(plan->estimators[1].settings, ElementsAre("filter.window=10", "x.v=[1, 2, 3]"));
+  EXPECT_TRUE(plan->estimators[0].RunsOn("sim"));
+  EXPECT_TRUE(plan->estimators[1].RunsOn("loud"));
+  EXPECT_FALSE(plan->estimators[1].RunsOn("sim"));
+  EXPECT_TRUE(plan->estimators[2].external());
+  EXPECT_FALSE(plan->estimators[2].RunsOn("sim"));
+  EXPECT_EQ(plan->estimators[2].trajectories.at("seq"), folder_.File("other.tum"));
+  EXPECT_THAT(plan->pair_figures, ElementsAre("ate_pos_m"));
+  EXPECT_TRUE(plan->pair_across);
+  EXPECT_EQ(plan->baseline, "loud");
+  ASSERT_EQ(plan->sequences.size(), 3u);
+  EXPECT_THAT(plan->sequences[2].estimator_settings, ElementsAre("vision.pixel_noise_px=2"));
+  EXPECT_EQ(plan->sequences[0].name, "seq");
+  EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(4, 2));
+  EXPECT_EQ(plan->sequences[1].name, "loud");
+  EXPECT_THAT(plan->sequences[1].seeds, ElementsAre(1, 2, 3));
+  EXPECT_THAT(plan->sequences[1].settings,
+              ElementsAre("pixel_noise_px=2", "hybrid_dataset=" + folder_.File("data") + "/seq"));
+  EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
+  EXPECT_TRUE(plan->audit);
+  EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0]).alignment, Alignment::kSe3);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0]).align_share, 0.5);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2]).alignment, Alignment::kPos);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2]).align_share, 0.05);
+  EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
+  EXPECT_EQ(plan->metrics.association.max_dt_s, 0.02);
+  EXPECT_TRUE(plan->metrics.association.interpolate);
+  EXPECT_EQ(plan->metrics.association.max_gap_s, 0.2);
+  ASSERT_EQ(plan->references.size(), 1u);
+  EXPECT_EQ(plan->references[0].figures.at("ate_pos_m"), 0.1);
+}
+
+TEST_F(PlanTest, FillsTitleAndSeedWhenTheyAreLeftOut) {
+  const Result<Plan> plan = Read(kMinimal);
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_EQ(plan->title, "plan");
+  EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(1));
+}
+
+TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
+  const std::string sequences = "sequences: [{config: sim.yaml}]\n";
+  const std::string estimators = "estimators: [estimators/a.yaml]\n";
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"", "empty"},
+      {"- a\n", "expected keys and values"},
+      {"estimators: [\n", "not valid YAML"},
+      {estimators, "sequences: missing"},
+      {sequences, "estimators: missing"},
+      {sequences + "estimators: []\n", "at least one entry"},
+      {sequences + estimators + "metrix: {}\n",
+       "plan.yaml:3:1: metrix: unknown key in a plan; did you mean 'metrics'"},
+      {sequences + estimators + "title: x\ntitle: y\n", "duplicate"},
+      {sequences + "estimators: [estimators/none.yaml]\n", "a file that exists"},
+      {sequences + "estimators: [{name: x}]\n", "one of `config`, `trajectories` and `command`"},
+      {sequences + "estimators: [{config: estimators/a.yaml, name: a/b}]\n", "letters, digits"},
+      {sequences + "estimators: [{config: estimators/a.yaml, name: ..}]\n", "letters, digits"},
+      {sequences + "estimators: [estimators/a.yaml, {config: estimators/b.yaml, name: a}]\n", "is taken"},
+      {sequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
+       "no such sequence; did you mean 'sim'"},
+      {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
+      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` beside `config` only"},
+      {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: -1}]\n", "from 0 to"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: 1.5}]\n", "whole number"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: 0..4000000000}]\n", "at most 1000"},
+      {estimators + "sequences: [{config: sim.yaml, seeds: [010]}]\n", "whole number"},
+      {sequences + estimators + "metrics: {align: yaw}\n", "posyaw"},
+      {sequences + estimators + "metrics: {rpe: [0]}\n", "rpe: found"},
+      {sequences + estimators + "metrics: {max_dt: .nan}\n", "max_dt: found"},
+      {sequences + estimators + "metrics: {interpolate: maybe}\n", "interpolate: found"},
+      {sequences + estimators + "pairs: {figures: [rmse_pos]}\n", "did you mean 'rmse_pos_m'"},
+      {sequences + estimators + "pairs: {figures: [backend_ms]}\n", "not a time"},
+      {sequences + "estimators: [{config: estimators/a.yaml, sequences: [sin]}]\n",
+       "no such sequence; did you mean 'sim'"},
+      {sequences + estimators + "baseline: sin\n", "no such sequence; did you mean 'sim'"},
+      {sequences + estimators + "reference: [{source: x}]\n", "missing in reference"}};
+  for (const auto& [text, expected] : faults) {
+    const Result<Plan> plan = Read(text);
+    EXPECT_EQ(plan.code(), StatusCode::kConfig) << text;
+    EXPECT_THAT(plan.message(), HasSubstr(expected)) << text;
+    EXPECT_THAT(plan.message(), HasSubstr("plan.yaml")) << text;
+  }
+}
+
+TEST_F(PlanTest, MissingFileIsAConfigurationFault) {
+  EXPECT_EQ(ReadPlan(folder_.File("none.yaml"), "").code(), StatusCode::kConfig);
+}
+
+TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
+  const Result<Plan> plan = Read(
+      "estimators:\n"
+      "  - {name: theirs, command: 'run {dataset} {output}', result: out.txt, timeout: 60, frame: camera}\n"
+      "sequences:\n  - config: sim.yaml\n");
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  const PlanEstimator& theirs = plan->estimators.at(0);
+  EXPECT_TRUE(theirs.external());
+  EXPECT_EQ(theirs.command.text, "run {dataset} {output}");
+  EXPECT_EQ(theirs.command.result, "out.txt");
+  EXPECT_EQ(theirs.command.timeout_s, 60);
+  EXPECT_TRUE(theirs.camera_frame);
+  for (const char* wrong : {"{name: x, command: a, config: estimators/a.yaml}", "{command: a}",
+                            "{name: x, command: a, frame: lens}", "{name: x, command: a, set: {b: 1}}"}) {
+    const Result<Plan> refused =
+        Read(std::string("estimators:\n  - ") + wrong + "\nsequences:\n  - config: sim.yaml\n");
+    EXPECT_EQ(refused.code(), StatusCode::kConfig) << wrong;
+  }
+}
+
+TEST_F(PlanTest, ABagMayBringItsTopicsAndCalibration) {
+  const std::string head =
+      "estimators: [estimators/a.yaml]\nskip_missing: true\nsequences:\n  - config: sim.yaml\n";
+  const std::string keys = "topics: imu=/imu/data, calibration: ['${data}/a.yaml', b.yaml], camera: cam1";
+  folder_.Write("data/walk.bag", "");
+  const Result<Plan> plan =
+      Read(head + "  - {path: '${data}/walk.bag', " + keys + "}\n", folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  const PlanSequence& sequence = plan->sequences.at(1);
+  EXPECT_EQ(sequence.name, "walk");
+  EXPECT_EQ(sequence.dataset.topics, "imu=/imu/data");
+  EXPECT_EQ(sequence.dataset.camera, "cam1");
+  EXPECT_EQ(sequence.dataset.calibration,
+            (std::vector<std::string>{folder_.File("data/a.yaml"), folder_.File("b.yaml")}));
+  const Result<Plan> of_folder =
+      Read(head + "  - {path: '${data}/seq', " + keys + "}\n", folder_.File("data"));
+  EXPECT_EQ(of_folder.code(), StatusCode::kConfig);
+  EXPECT_THAT(of_folder.message(), HasSubstr("`path` of a bag"));
+}
+
+TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
+  const std::string rest =
+      "estimators: [estimators/a.yaml]\nsequences:\n  - path: ${data}/seq\n  - {path: '${data}/gone', name: "
+      "far}\n";
+  EXPECT_EQ(Read(rest, folder_.File("data")).code(), StatusCode::kConfig);
+  // Wherever the key stands.
+  const Result<Plan> plan = Read(rest + "skip_missing: true\n", folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  ASSERT_EQ(plan->sequences.size(), 1u);
+  ASSERT_EQ(plan->absent.size(), 1u);
+  EXPECT_EQ(plan->absent[0].first, "far");
+  EXPECT_EQ(plan->absent[0].second, folder_.File("data/gone"));
+  const Result<Plan> none = Read(rest + "skip_missing: true\n", folder_.File("nowhere"));
+  EXPECT_EQ(none.code(), StatusCode::kInput);
+  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is there"));
+}
+
+// The shipped plans of published data read without any of it, and say what they would need.
+TEST(PublishedPlans, SayWhatDataTheyNeed) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"euroc", "tumvi", "gvins"}) {
+    const std::string path = std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/" + name + ".yaml";
+    EXPECT_EQ(ReadPlan(path, "").code(), StatusCode::kConfig) << name;
+    const Result<Plan> none = ReadPlan(path, folder.path());
+    EXPECT_EQ(none.code(), StatusCode::kInput) << name << ": " << none.message();
+    EXPECT_THAT(none.message(), HasSubstr("is there; the first, ")) << name;
+  }
+  folder.Write("V1_02_medium/mav0/x", "");
+  const Result<Plan> one =
+      ReadPlan(std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/euroc.yaml", folder.path());
+  ASSERT_TRUE(one.ok()) << one.message();
+  EXPECT_EQ(one->sequences.size(), 1u);
+  EXPECT_EQ(one->absent.size(), 10u);
+  EXPECT_EQ(one->references.size(), 55u);
+}
+
+}  // namespace
+}  // namespace alidade

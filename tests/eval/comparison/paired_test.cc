@@ -1,0 +1,232 @@
+#include "eval/comparison/paired.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "eval/comparison/nees_over_time.h"
+#include "eval/report/pair_tables.h"
+#include "tests/eval/report/synthetic_comparison.h"
+
+namespace alidade {
+namespace {
+
+using ::testing::HasSubstr;
+
+CellResult Cell(const std::string& estimator, unsigned seed, double rmse_pos_m, double nees_pose = 6) {
+  CellResult cell;
+  cell.estimator = estimator;
+  cell.backend = "filter";
+  cell.sequence = "walk";
+  cell.seed = seed;
+  cell.status = "ok";
+  cell.frames = 10;
+  cell.rmse_pos_m = rmse_pos_m;
+  cell.nees_pose = nees_pose;
+  cell.input_digest = "d" + std::to_string(seed);
+  return cell;
+}
+
+PairedDifference PairOf(const Comparison& comparison, const std::string& key, const std::string& sequence) {
+  const std::vector<Figure> figures = ListFigures(comparison);
+  for (const PairedDifference& pair : ComparePairs(comparison, figures)) {
+    if (figures[pair.figure].key == key && pair.sequence == sequence) {
+      return pair;
+    }
+  }
+  ADD_FAILURE() << "no pair of " << key;
+  return {};
+}
+
+TEST(PairedT, GivenAPublishedExampleThenTheIntervalIsTheOneOfTheBook) {
+  // Student's own sleep data (Biometrika 1908): extra hours on two drugs, ten patients. t = -4.0621,
+  // p = 0.002833, interval -2.4598855 to -0.7001145 (R: t.test(..., paired = TRUE)).
+  const std::vector<double> first = {0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
+  const std::vector<double> second = {1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+  std::vector<double> differences;
+  for (size_t i = 0; i < first.size(); ++i) {
+    differences.push_back(first[i] - second[i]);
+  }
+  const PairedT test = TestPairs(differences);
+  EXPECT_EQ(test.count, 10);
+  EXPECT_NEAR(test.mean, -1.58, 1e-12);
+  EXPECT_NEAR(test.mean / test.standard_error, -4.0621, 1e-4);
+  EXPECT_NEAR(test.low, -2.4598858, 1e-6);
+  EXPECT_NEAR(test.high, -0.7001142, 1e-6);
+  EXPECT_NEAR(test.p_value, 0.002833, 1e-6);
+}
+
+TEST(PairedT, GivenDifferencesWithoutMeanThenOneStudyInTwentyLooksSignificant) {
+  std::mt19937 random(4);
+  std::exponential_distribution<double> skewed(1.0);
+  int significant = 0;
+  constexpr int kStudies = 4000;
+  for (int study = 0; study < kStudies; ++study) {
+    std::vector<double> differences;
+    for (int i = 0; i < 30; ++i) {
+      differences.push_back(skewed(random) - skewed(random));
+    }
+    const PairedT test = TestPairs(differences);
+    significant += test.low > 0 || test.high < 0 ? 1 : 0;
+    ASSERT_EQ(test.p_value<0.05, test.low> 0 || test.high < 0);
+  }
+  EXPECT_NEAR(significant / static_cast<double>(kStudies), 0.05, 0.012);
+}
+
+TEST(PairedT, GivenFewOrEqualDifferencesThenThereIsNoFalseCertainty) {
+  EXPECT_TRUE(std::isnan(TestPairs({}).p_value));
+  EXPECT_TRUE(std::isnan(TestPairs({1.0}).low));
+  EXPECT_EQ(TestPairs({0, 0, 0}).p_value, 1);
+  EXPECT_EQ(TestPairs({2, 2, 2}).low, 2);
+}
+
+TEST(SignTest, GivenSplitsThenTheChancesAreThoseOfACoin) {
+  EXPECT_NEAR(SignTest(0, 5), 2.0 / 32, 1e-12);
+  EXPECT_NEAR(SignTest(9, 1), 2 * 11.0 / 1024, 1e-12);
+  EXPECT_EQ(SignTest(3, 3), 1);
+  EXPECT_EQ(SignTest(0, 0), 1);
+}
+
+// GIVEN two estimators whose errors differ far less than the runs do WHEN compared run by run THEN the small
+// but steady difference is found, although the means' standard errors overlap.
+TEST(ComparePairs, FindsASteadyDifferenceAmongUnlikeRuns) {
+  Comparison comparison;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    comparison.cells.push_back(Cell("a", seed, 1.0 * seed));
+    comparison.cells.push_back(Cell("b", seed, 1.0 * seed + 0.1 + 0.01 * (seed % 2)));
+  }
+  const PairedDifference pair = PairOf(comparison, "rmse_pos_m", "walk");
+  EXPECT_EQ(pair.first, "a");
+  EXPECT_EQ(pair.difference.count, 6);
+  EXPECT_NEAR(pair.difference.mean, -0.105, 1e-12);
+  EXPECT_EQ(pair.verdict, PairVerdict::kBetter);
+  EXPECT_EQ(pair.first_lower, 6);
+  EXPECT_NEAR(pair.first_mean, 3.5, 1e-12);
+}
+
+TEST(ComparePairs, GivenALostRunThenItIsLeftOutOfThePairsAndTold) {
+  Comparison comparison;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    comparison.cells.push_back(Cell("a", seed, 1));
+    comparison.cells.push_back(Cell("b", seed, 2 + 0.1 * seed));
+  }
+  comparison.cells[1].status = "diverged";  // b, seed 1
+  comparison.cells[6].status = "failed";    // a, seed 4
+  comparison.cells[7].status = "failed";    // b, seed 4
+  const PairedDifference pair = PairOf(comparison, "rmse_pos_m", "walk");
+  EXPECT_EQ(pair.difference.count, 2);
+  EXPECT_EQ(pair.only_first, 1);
+  EXPECT_EQ(pair.only_second, 0);
+  EXPECT_EQ(pair.neither, 1);
+  const std::vector<TextTable> tables = LayOutPairTables(comparison, ListFigures(comparison), "+-");
+  ASSERT_FALSE(tables.empty());
+  EXPECT_THAT(tables.back().rows[0].cells[2].text, HasSubstr("(2 lost)"));
+}
+
+TEST(ComparePairs, GivenRunsOfDifferentInputThenTheyAreNoPair) {
+  Comparison comparison;
+  comparison.cells = {Cell("a", 1, 1), Cell("a", 2, 1), Cell("b", 1, 2), Cell("b", 2, 2)};
+  comparison.cells[3].input_digest = "other";
+  EXPECT_EQ(PairOf(comparison, "rmse_pos_m", "walk").difference.count, 1);
+}
+
+TEST(ComparePairs, GivenANeesThenHigherIsNotCalledWorse) {
+  Comparison comparison;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    comparison.cells.push_back(Cell("a", seed, 1, 9 + 0.1 * seed));
+    comparison.cells.push_back(Cell("b", seed, 1, 5));
+  }
+  EXPECT_EQ(PairOf(comparison, "nees_pose", "walk").verdict, PairVerdict::kHigher);
+  EXPECT_EQ(PairOf(comparison, "rmse_pos_m", "walk").verdict, PairVerdict::kNoDifference);
+}
+
+// GIVEN three sequences WHEN pooled THEN each counts once, whatever its number of seeds.
+TEST(ComparePairs, PoolsSequencesWithOneSampleEach) {
+  Comparison comparison;
+  comparison.pair_across = true;
+  const double shift[] = {0.1, 0.2, 0.6};
+  for (int s = 0; s < 3; ++s) {
+    for (unsigned seed = 1; seed <= (s == 0 ? 5U : 1U); ++seed) {
+      for (const char* name : {"a", "b"}) {
+        CellResult cell = Cell(name, seed, 1 + (name[0] == 'b' ? shift[s] : 0));
+        cell.sequence = "s" + std::to_string(s);
+        comparison.cells.push_back(cell);
+      }
+    }
+  }
+  const PairedDifference pool = PairOf(comparison, "rmse_pos_m", kAllSequences);
+  EXPECT_EQ(pool.difference.count, 3);
+  EXPECT_NEAR(pool.difference.mean, -0.3, 1e-12);
+  // Student's t with 2 degrees of freedom: 4.30265 standard errors of sqrt(0.07 / 3).
+  EXPECT_NEAR(pool.difference.high, -0.3 + 4.30265 * std::sqrt(0.07 / 3), 1e-5);
+  EXPECT_EQ(pool.verdict, PairVerdict::kNoDifference);
+  const std::vector<TextTable> tables = LayOutPairTables(comparison, ListFigures(comparison), "+-");
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_THAT(tables[1].title, HasSubstr(kAllSequences));
+}
+
+TEST(PairTables, GivenAMatrixThenBothSidesOfThePairAgree) {
+  Comparison comparison;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    comparison.cells.push_back(Cell("a", seed, 1 + 0.5 * (seed % 2)));
+    comparison.cells.push_back(Cell("b", seed, 2));
+  }
+  comparison.pair_figures = {"rmse_pos_m"};
+  const std::vector<TextTable> tables = LayOutPairTables(comparison, ListFigures(comparison), "+-");
+  ASSERT_EQ(tables.size(), 1U);
+  EXPECT_EQ(tables[0].rows[0].cells[2].text, "\u22120.750+-0.459 better");
+  EXPECT_TRUE(tables[0].rows[0].cells[2].best);
+  EXPECT_EQ(tables[0].rows[1].cells[1].text, "0.750+-0.459 worse");
+  EXPECT_THAT(PairsCsv(comparison, ListFigures(comparison)),
+              HasSubstr("walk,rmse_pos_m,a,b,4,0,0,0,1.25,2,0.625,-0.75,"));
+}
+
+// GIVEN runs of a consistent filter WHEN averaged THEN the average is in its band 95 % of the time, and one
+// of a filter whose errors are 1.5 times what it claims hardly ever is.
+TEST(NeesOverTime, TellsAConsistentFilterFromAnOverconfidentOne) {
+  std::vector<CellResult> honest, bold;
+  std::vector<const CellResult*> honest_cells, bold_cells;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    honest.push_back(test::SyntheticCell("honest", "walk", seed, 0.1, 1.0, 1, 600));
+    bold.push_back(test::SyntheticCell("bold", "walk", seed, 0.1, 1.5, 1, 600));
+  }
+  for (size_t i = 0; i < honest.size(); ++i) {
+    honest_cells.push_back(&honest[i]);
+    bold_cells.push_back(&bold[i]);
+  }
+  bold[0].status = "diverged";
+  const NeesOverTime fair = AverageNees(honest_cells);
+  ASSERT_EQ(fair.mean.size(), 600U);
+  EXPECT_EQ(fair.runs[10], 30);
+  // Chi-square of 180 degrees of freedom over 30: R, qchisq(c(.025, .975), 180) / 30.
+  EXPECT_NEAR(fair.band[10].first, 4.8247, 1e-4);
+  EXPECT_NEAR(fair.band[10].second, 7.3015, 1e-4);
+  EXPECT_GT(fair.share_inside, 0.85);
+  const NeesOverTime wrong = AverageNees(bold_cells);
+  EXPECT_EQ(wrong.runs[10], 29) << "a lost run is not averaged";
+  EXPECT_LT(wrong.share_inside, 0.05);
+}
+
+TEST(NeesOverTime, GivenRunsOfUnequalLengthThenTheBandFollowsTheirNumber) {
+  CellResult brief = test::SyntheticCell("a", "walk", 1, 0.1, 1, 1, 100);
+  CellResult whole = test::SyntheticCell("a", "walk", 2, 0.1, 1, 1, 200);
+  const NeesOverTime average = AverageNees({&brief, &whole});
+  ASSERT_EQ(average.mean.size(), 200U);
+  EXPECT_EQ(average.runs[99], 2);
+  EXPECT_EQ(average.runs[100], 1);
+  EXPECT_GT(average.band[100].second, average.band[99].second);
+  EXPECT_NEAR(average.mean[50], (brief.series.nees_pose[50] + whole.series.nees_pose[50]) / 2, 1e-12);
+  EXPECT_DOUBLE_EQ(average.mean[150], whole.series.nees_pose[150]);
+}
+
+TEST(NeesOverTime, GivenAMeanThenItsVerdictFollowsTheBand) {
+  EXPECT_EQ(NeesVerdict(6, {4.8, 7.3}), "consistent");
+  EXPECT_EQ(NeesVerdict(8, {4.8, 7.3}), "overconfident");
+  EXPECT_EQ(NeesVerdict(3, {4.8, 7.3}), "cautious");
+  EXPECT_EQ(NeesVerdict(std::nan(""), {4.8, 7.3}), "");
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,280 @@
+// Every way a sequence can be wrong that we have met or can think of: the fault is a Status of the right
+// code, and its message names the place and what was expected. None of them may crash or be read as something
+// plausible.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <ostream>
+
+#include "eval/dataset/dataset.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr char kImuHeader[] =
+    "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+constexpr char kImuRows[] = "1000,0,0,0,0,0,9.81\n2000,0,0,0,0,0,9.81\n3000,0,0,0,0,0,9.81\n";
+constexpr char kImuYaml[] =
+    "sensor_type: imu\nrate_hz: 200\ngyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-5\n"
+    "accelerometer_noise_density: 2e-3\naccelerometer_random_walk: 3e-3\n";
+constexpr char kIdentity[] = "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]";
+constexpr char kTracksHeader[] = "#timestamp [ns],track_id,u [px],v [px]\n";
+constexpr char kTruthHeader[] = "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n";
+
+std::string CameraYaml(const std::string& transform, const std::string& lens) {
+  return "%YAML:1.0\nsensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: " + transform +
+         "\nresolution: [640, 480]\nintrinsics: [400, 400, 320, 240]\n" + lens;
+}
+
+const std::string kNoLens = "distortion_model: none\n";
+
+void WriteGoodSequence(const test::TemporaryFolder& folder) {
+  folder.Write("mav0/imu0/sensor.yaml", kImuYaml);
+  folder.Write("mav0/imu0/data.csv", std::string(kImuHeader) + kImuRows);
+  folder.Write("mav0/cam0/sensor.yaml", CameraYaml(kIdentity, kNoLens));
+  folder.Write("mav0/cam0/tracks.csv", std::string(kTracksHeader) + "1000,1,10,20\n2000,1,11,21\n");
+  folder.Write("mav0/state_groundtruth_estimate0/data_pose.csv",
+               std::string(kTruthHeader) + "1000,0,0,0,1,0,0,0\n2000,1,0,0,1,0,0,0\n");
+}
+
+struct FileCase {
+  const char* story;
+  const char* file;  ///< under mav0; its content is replaced, or removed when `content` is empty
+  std::string content;
+  std::vector<std::string> said;  ///< what the message must contain
+};
+
+std::ostream& operator<<(std::ostream& stream, const FileCase& c) {
+  return stream << c.story;
+}
+
+class BadSequence : public testing::TestWithParam<FileCase> {};
+
+TEST_P(BadSequence, IsAnInputErrorThatNamesThePlace) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  ASSERT_TRUE(ReadDataset(folder.path()).ok()) << ReadDataset(folder.path()).message();
+  const std::string file = std::string("mav0/") + GetParam().file;
+  std::filesystem::remove(folder.File(file));
+  if (!GetParam().content.empty()) {
+    folder.Write(file, GetParam().content);
+  }
+  const Result<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_FALSE(dataset.ok());
+  EXPECT_EQ(dataset.code(), StatusCode::kInput);
+  for (const std::string& said : GetParam().said) {
+    EXPECT_THAT(dataset.message(), HasSubstr(said));
+  }
+}
+
+std::string Imu(const std::string& rows) {
+  return kImuHeader + rows;
+}
+std::string Tracks(const std::string& rows) {
+  return kTracksHeader + rows;
+}
+std::string Truth(const std::string& rows) {
+  return kTruthHeader + rows;
+}
+
+const FileCase kImuCases[] = {
+    {"missing IMU", "imu0/data.csv", "", {"imu0/data.csv", "No such file"}},
+    {"empty IMU", "imu0/data.csv", " \n\r\n", {"imu0/data.csv", "is empty"}},
+    {"header alone", "imu0/data.csv", kImuHeader, {"data.csv", "expected at least two"}},
+    {"no header", "imu0/data.csv", kImuRows, {"data.csv:1", "'1000'", "'#timestamp [ns]'"}},
+    {"gyro in deg/s",
+     "imu0/data.csv",
+     "#timestamp [ns],w_RS_S_x [deg s^-1],w_RS_S_y [deg s^-1],w_RS_S_z [deg s^-1],a_RS_S_x [m s^-2],"
+     "a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n1000,0,0,0,0,0,9.81\n",
+     {"data.csv:1", "column 2", "[deg s^-1]", "[rad s^-1]"}},
+    {"stamps in seconds by header",
+     "imu0/data.csv",
+     "#timestamp [s],w_RS_S_x [rad s^-1]\n1,0\n",
+     {"data.csv:1", "'#timestamp [s]'", "[ns]"}},
+    {"torn row",
+     "imu0/data.csv",
+     Imu("1000,0,0,0,0,0,9.81\n2000,0,0,0,0"),
+     {"data.csv:3", "torn row", "5 columns", "7"}},
+    {"extra column",
+     "imu0/data.csv",
+     Imu("1000,0,0,0,0,0,9.81,42\n"),
+     {"data.csv:2", "8 columns", "'42'", "expected 7"}},
+    {"NaN",
+     "imu0/data.csv",
+     Imu("1000,0,0,nan,0,0,9.81\n"),
+     {"data.csv:2", "column 4 (w_RS_S_z)", "'nan'", "finite"}},
+    {"infinite", "imu0/data.csv", Imu("1000,0,0,0,0,-inf,9.81\n"), {"data.csv:2", "column 6", "'-inf'"}},
+    {"overflow", "imu0/data.csv", Imu("1000,0,0,0,0,1e999,9.81\n"), {"data.csv:2", "column 6", "'1e999'"}},
+    {"word",
+     "imu0/data.csv",
+     Imu("1000,0,0,0,0,0,9.81\n2000,zero,0,0,0,0,9\n"),
+     {"data.csv:3", "column 2", "'zero'"}},
+    {"empty field", "imu0/data.csv", Imu("1000,0,,0,0,0,9.81\n"), {"data.csv:2", "column 3", "''"}},
+    {"trailing letters",
+     "imu0/data.csv",
+     Imu("1000,0,0,0,0,0,9.81m\n"),
+     {"data.csv:2", "column 7", "'9.81m'"}},
+    {"stamp as real",
+     "imu0/data.csv",
+     Imu("1000.5,0,0,0,0,0,9.81\n"),
+     {"data.csv:2", "column 1", "'1000.5'", "integer"}},
+    {"stamp of 65 bits",
+     "imu0/data.csv",
+     Imu("99999999999999999999,0,0,0,0,0,9\n"),
+     {"data.csv:2", "64 bits"}},
+    {"stamps repeat",
+     "imu0/data.csv",
+     Imu("1000,0,0,0,0,0,9\n1000,0,0,0,0,0,9\n"),
+     {"data.csv:3", "'1000'", "later than 1000"}},
+    {"stamps go back",
+     "imu0/data.csv",
+     Imu("2000,0,0,0,0,0,9\r\n1999,0,0,0,0,0,9\r\n"),
+     {"data.csv:3", "'1999'", "later than 2000"}},
+    {"missing IMU sheet", "imu0/sensor.yaml", "", {"imu0/sensor.yaml", "No such file"}},
+    {"noise missing",
+     "imu0/sensor.yaml",
+     "sensor_type: imu\ngyroscope_noise_densty: 1e-4\n",
+     {"sensor.yaml", "gyroscope_noise_density: is missing", "'gyroscope_noise_densty'"}},
+    {"noise negative",
+     "imu0/sensor.yaml",
+     std::string(kImuYaml).replace(std::string(kImuYaml).find("1e-5"), 4, "-1.0"),
+     {"sensor.yaml:4:24", "gyroscope_random_walk", "'-1.0'"}},
+    {"body is another sensor",
+     "imu0/sensor.yaml",
+     std::string(kImuYaml) +
+         "T_BS: {rows: 4, cols: 4, data: [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n",
+     {"sensor.yaml:7:7", "T_BS", "identity"}},
+    {"camera sheet in the IMU folder",
+     "imu0/sensor.yaml",
+     "sensor_type: camera\n",
+     {"sensor.yaml:1:14", "'camera'", "'imu'"}},
+};
+INSTANTIATE_TEST_SUITE_P(Imu, BadSequence, testing::ValuesIn(kImuCases));
+
+const FileCase kCameraCases[] = {
+    {"missing camera sheet", "cam0/sensor.yaml", "", {"cam0/sensor.yaml", "No such file"}},
+    {"not YAML",
+     "cam0/sensor.yaml",
+     "sensor_type: camera\nT_BS: [1, 2\n",
+     {"sensor.yaml:", "not valid YAML"}},
+    {"scaled rotation",
+     "cam0/sensor.yaml",
+     CameraYaml("[2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]", kNoLens),
+     {"sensor.yaml:4:3", "T_BS", "rigid", "determinant of its rotation is 8", "orthogonality error 3"}},
+    {"mirrored rotation",
+     "cam0/sensor.yaml",
+     CameraYaml("[-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", kNoLens),
+     {"T_BS", "determinant of its rotation is -1"}},
+    {"column-major transform",
+     "cam0/sensor.yaml",
+     CameraYaml("[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.1, 0.2, 0.3, 1]", kNoLens),
+     {"T_BS", "last row 0 0 0 1"}},
+    {"fifteen numbers",
+     "cam0/sensor.yaml",
+     CameraYaml("[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0]", kNoLens),
+     {"T_BS", "16 numbers, not 15"}},
+    {"NaN in the transform",
+     "cam0/sensor.yaml",
+     CameraYaml("[1, 0, 0, .nan, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", kNoLens),
+     {"T_BS", "entry 4", "finite"}},
+    {"Kalibr's name of the lens",
+     "cam0/sensor.yaml",
+     CameraYaml(kIdentity, "distortion_model: radtan\n"),
+     {"sensor.yaml:9:19", "'radtan'", "radial-tangential, equidistant, fov, mei, none"}},
+    {"too few coefficients",
+     "cam0/sensor.yaml",
+     CameraYaml(kIdentity, "distortion_model: equidistant\ndistortion_coefficients: [0.1, 0.2]\n"),
+     {"sensor.yaml", "equidistant takes 4, found 2"}},
+    {"lens key twice",
+     "cam0/sensor.yaml",
+     CameraYaml(kIdentity, kNoLens + kNoLens),
+     {"sensor.yaml:10:1", "duplicate"}},
+    {"two extrinsics",
+     "cam0/sensor.yaml",
+     CameraYaml(kIdentity, kNoLens + "T_cam_imu: " + kIdentity + "\n"),
+     {"sensor.yaml:10:", "T_cam_imu", "no second transform beside T_BS"}},
+    {"half a pixel of width",
+     "cam0/sensor.yaml",
+     "T_BS: " + std::string(kIdentity) +
+         "\nresolution: [640.5, 480]\nintrinsics: [1, 1, 0, 0]\ndistortion_model: none\n",
+     {"sensor.yaml:2:13", "resolution"}},
+    {"octal-looking focal length",
+     "cam0/sensor.yaml",
+     "T_BS: " + std::string(kIdentity) +
+         "\nresolution: [640, 480]\nintrinsics: [0400, 1, 0, 0]\ndistortion_model: none\n",
+     {"sensor.yaml:3:13", "intrinsics", "'0400'", "octal"}},
+    {"no tracks, images or stamps",
+     "cam0/tracks.csv",
+     "",
+     {"cam0", "expected tracks.csv, data.csv with images, or timestamps.csv"}},
+    {"track twice in a frame",
+     "cam0/tracks.csv",
+     Tracks("1000,7,1,2\n1000,8,1,2\n1000,7,3,4\n"),
+     {"tracks.csv:2", "track_id 7", "twice"}},
+    {"track frames go back",
+     "cam0/tracks.csv",
+     Tracks("2000,1,1,2\n1000,1,1,2\n"),
+     {"tracks.csv:3", "'1000'", "later than 2000"}},
+    {"negative track id", "cam0/tracks.csv", Tracks("2000,-1,1,2\n"), {"tracks.csv:2", "track_id", "'-1'"}},
+    {"track id is no integer",
+     "cam0/tracks.csv",
+     Tracks("2000,1.0,1,2\n"),
+     {"tracks.csv:2", "column 2 (track_id)", "'1.0'"}},
+    {"tracks on the normalised plane",
+     "cam0/tracks.csv",
+     "#timestamp [ns],track_id,u [-],v [-]\n",
+     {"tracks.csv:1", "u [px]"}},
+    {"stamps without the tracks' frames",
+     "cam0/timestamps.csv",
+     "#timestamp [ns]\n1000\n3000\n",
+     {"tracks.csv", "stamp 2000"}},
+    {"image missing",
+     "cam0/data.csv",
+     "#timestamp [ns],filename\n1000,1000.png\n",
+     {"data.csv:2", "1000.png", "missing"}},
+};
+INSTANTIATE_TEST_SUITE_P(Camera, BadSequence, testing::ValuesIn(kCameraCases));
+
+constexpr char kTruthFile[] = "state_groundtruth_estimate0/data_pose.csv";
+const FileCase kTruthCases[] = {
+    {"truth folder without a file",
+     kTruthFile,
+     "",
+     {"state_groundtruth_estimate0", "data.csv, data_pose.csv or data_position.csv"}},
+    {"truth of nine columns",
+     kTruthFile,
+     "#timestamp [ns],a,b,c,d,e,f,g,h\n",
+     {"data_pose.csv:1", "9 columns"}},
+    {"x y z w order",
+     kTruthFile,
+     "#timestamp [ns],p_x,p_y,p_z,q_x,q_y,q_z,q_w\n1,0,0,0,0,0,0,1\n",
+     {":1", "'q_x'", "q_w"}},
+    {"quaternion too long", kTruthFile, Truth("1000,0,0,0,1.1,0,0,0\n"), {"data_pose.csv:2", "norm 1.1"}},
+    {"zero quaternion", kTruthFile, Truth("1000,0,0,0,0,0,0,0\n"), {"data_pose.csv:2", "norm 0.0"}},
+    {"truth stamps repeat",
+     kTruthFile,
+     Truth("1000,0,0,0,1,0,0,0\n1000,0,0,0,1,0,0,0\n"),
+     {"data_pose.csv:3"}},
+    {"truth header alone", kTruthFile, kTruthHeader, {"data_pose.csv", "no pose"}},
+};
+INSTANTIATE_TEST_SUITE_P(Truth, BadSequence, testing::ValuesIn(kTruthCases));
+
+TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  const Result<Dataset> inside = ReadDataset(folder.File("mav0"));
+  EXPECT_EQ(inside.code(), StatusCode::kInput);
+  EXPECT_THAT(inside.message(), HasSubstr("give the folder that holds it"));
+  const Result<Dataset> missing = ReadDataset(folder.File("nowhere"));
+  EXPECT_EQ(missing.code(), StatusCode::kInput);
+  EXPECT_THAT(missing.message(), HasSubstr("nowhere: no such folder"));
+}
+
+}  // namespace
+}  // namespace alidade

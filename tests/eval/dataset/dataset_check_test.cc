@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "eval/dataset/dataset.h"
+#include "tests/support/shared_data.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+using Severity = DatasetFinding::Severity;
+
+/// Ten seconds at rest, a camera that sees two tracks, truth throughout: nothing to complain about.
+Dataset Healthy() {
+  Dataset dataset;
+  dataset.rig.camera =
+      CameraModel::Create(DistortionModel::kNone, Eigen::Vector4d(400, 400, 320, 240), {}, 640, 480).value();
+  dataset.imu_rate_hz = 100;
+  dataset.camera_rate_hz = 10;
+  Trajectory truth;
+  for (int i = 0; i <= 1000; ++i) {
+    const TimeNs stamp = 1'500'000'000'000'000'000 + i * TimeNs{10'000'000};
+    dataset.imu.push_back({stamp, Eigen::Vector3d(1e-4 * i, 0.1, 0), Eigen::Vector3d(0, 0, 9.8)});
+    TrajectoryPoint point;
+    point.stamp_ns = stamp;
+    truth.points.push_back(point);
+    if (i % 10 == 0) {
+      dataset.tracks.push_back({stamp, {{1, Eigen::Vector2d(5, 5)}, {2, Eigen::Vector2d(600, 400)}}, 0});
+    }
+  }
+  dataset.truth = truth;
+  return dataset;
+}
+
+/// The worst findings, one text a line.
+std::string Complaints(const Dataset& dataset, Severity severity) {
+  std::string text;
+  for (const DatasetFinding& finding : CheckDataset(dataset)) {
+    if (finding.severity == severity) {
+      text += finding.text + "\n";
+    }
+  }
+  return text;
+}
+
+TEST(DatasetCheck, GivenAHealthySequenceThenItStatesFactsAndComplainsOfNothing) {
+  EXPECT_EQ(Complaints(Healthy(), Severity::kError), "");
+  EXPECT_EQ(Complaints(Healthy(), Severity::kWarning), "");
+  const std::string facts = Complaints(Healthy(), Severity::kFact);
+  EXPECT_THAT(facts, HasSubstr("imu0: 1001 stamps over 10.000 s"));
+  EXPECT_THAT(facts, HasSubstr("mean rate 100.00 Hz"));
+  EXPECT_THAT(facts, HasSubstr("202 observations of 2 tracks, 2.0 a frame, mean length 101.00"));
+  EXPECT_THAT(facts, HasSubstr("truth: covers 100.0 %"));
+}
+
+TEST(DatasetCheck, GivenWrongUnitsThenTheyAreErrors) {
+  Dataset in_g = Healthy();
+  Dataset in_degrees = Healthy();
+  for (size_t i = 0; i < in_g.imu.size(); ++i) {
+    in_g.imu[i].accel /= 9.80665;
+    in_degrees.imu[i].gyro *= 180 / 3.14159 * 3;
+  }
+  EXPECT_THAT(Complaints(in_g, Severity::kError), HasSubstr("in g, expected m/s^2"));
+  EXPECT_THAT(Complaints(in_degrees, Severity::kError), HasSubstr("in deg/s, expected rad/s"));
+}
+
+TEST(DatasetCheck, GivenAGapThenItsLengthAndPlaceAreNamed) {
+  Dataset dataset = Healthy();
+  dataset.imu.erase(dataset.imu.begin() + 500, dataset.imu.begin() + 550);
+  const std::string warnings = Complaints(dataset, Severity::kWarning);
+  EXPECT_THAT(warnings, HasSubstr("imu0: 1 gaps"));
+  EXPECT_THAT(warnings, HasSubstr("0.510 s after 1500000004990000000 ns"));
+}
+
+TEST(DatasetCheck, GivenRepeatedRowsThenTheirShareIsNamed) {
+  Dataset dataset = Healthy();
+  for (size_t i = 1; i < dataset.imu.size(); i += 2) {
+    dataset.imu[i].gyro = dataset.imu[i - 1].gyro;
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), HasSubstr("500 rows (50.0 %) repeat"));
+}
+
+TEST(DatasetCheck, GivenAnotherClockThenTheSensorsShareNoTime) {
+  Dataset dataset = Healthy();
+  for (TrackFrame& frame : dataset.tracks) {
+    frame.stamp_ns /= 1000;
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kError),
+              HasSubstr("cam0: shares no time with imu0: another unit of time?"));
+}
+
+TEST(DatasetCheck, GivenPixelsOutsideTheImageThenTheResolutionIsDoubted) {
+  Dataset dataset = Healthy();
+  for (TrackFrame& frame : dataset.tracks) {
+    frame.observations[1].pixel.x() += 200;
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("101 observations lie outside 640 x 480 px"));
+}
+
+TEST(DatasetCheck, GivenATrackThatComesBackThenItIsNamed) {
+  Dataset dataset = Healthy();
+  dataset.tracks[50].observations.pop_back();
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), HasSubstr("1 times a track skips frames"));
+}
+
+TEST(DatasetCheck, GivenTruthOfHalfTheFlightThenItsCoverageIsWarnedOf) {
+  Dataset dataset = Healthy();
+  dataset.truth->points.resize(400);
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), HasSubstr("covers only 39.9 %"));
+}
+
+TEST(DatasetCheck, GivenTheRealTumViRoomThenItsTruthGapsAreFound) {
+  ALIDADE_SKIP_WITHOUT_SHARED_DATA();
+  const Result<Dataset> dataset = ReadDataset(test::SharedDir() + "/data/tumvi/room3");
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_THAT(Complaints(*dataset, Severity::kWarning), HasSubstr("the longest is 1.99"));
+}
+
+}  // namespace
+}  // namespace alidade

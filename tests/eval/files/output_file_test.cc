@@ -1,0 +1,52 @@
+#include "eval/files/output_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "eval/files/input_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+TEST(OutputFile, WhenWrittenThenFoldersAreMadeAndNoTemporaryStays) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.File("a/b/c.txt");
+  ASSERT_TRUE(WriteFileAtomically(path, "first").ok());
+  ASSERT_TRUE(WriteFileAtomically(path, "second").ok());
+  EXPECT_EQ(ReadWholeFile(path).value(), "second");
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.File("a/b"))) {
+    files += entry.exists() ? 1 : 0;
+  }
+  EXPECT_EQ(files, 1);
+}
+
+TEST(OutputFile, GivenAPathThatCannotBeWrittenThenTheStatusNamesIt) {
+  const test::TemporaryFolder folder;
+  folder.Write("file", "");
+  const Status below_a_file = WriteFileAtomically(folder.File("file/x"), "content");
+  EXPECT_EQ(below_a_file.code(), StatusCode::kOutput);
+  EXPECT_THAT(below_a_file.message(), testing::HasSubstr("file"));
+  std::filesystem::create_directories(folder.File("folder/inner"));
+  const Status over_a_folder = WriteFileAtomically(folder.File("folder"), "content");
+  EXPECT_EQ(over_a_folder.code(), StatusCode::kOutput);
+  EXPECT_THAT(over_a_folder.message(), testing::HasSubstr("cannot be replaced"));
+}
+
+TEST(ShortestDouble, ReadsBackToTheSameNumber) {
+  for (const double value : {0.1, 1.0 / 3.0, -1e-300, 1403715273.262142976,
+                             std::numeric_limits<double>::denorm_min(), std::nextafter(1.0, 2.0), 0.0}) {
+    EXPECT_EQ(std::strtod(ShortestDouble(std::abs(value)).c_str(), nullptr), std::abs(value));
+  }
+  EXPECT_EQ(ShortestDouble(0.1), "0.1");
+  EXPECT_EQ(ShortestDouble(20), "20");
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,147 @@
+#include "eval/metrics/evaluate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/eval/trajectory/synthetic_trajectory.h"
+
+namespace alidade {
+namespace {
+
+using test::MakeTrajectory;
+using testing::HasSubstr;
+using testing::Not;
+
+/// An estimate turned by 90 degrees of yaw, shifted, and 1 % too long.
+Trajectory ScaledEstimate(bool with_covariance) {
+  Trajectory estimate = MakeTrajectory(300);
+  const Eigen::Matrix3d yaw = so3::Exp({0, 0, -M_PI / 2});
+  for (TrajectoryPoint& point : estimate.points) {
+    point.nav.p_WB = (1.01 * (yaw * point.nav.p_WB) + Eigen::Vector3d(1, 2, 3)).eval();
+    point.nav.R_WB = (yaw * point.nav.R_WB).eval();
+    point.covariance = Matrix6d::Identity();
+  }
+  estimate.has_covariance = with_covariance;
+  return estimate;
+}
+
+Evaluation EvaluateScaled(Alignment alignment, bool with_covariance) {
+  EvaluationOptions options;
+  options.alignment = alignment;
+  options.rpe_distances_m = {2, 5000};
+  const Result<Evaluation> evaluation =
+      Evaluate(MakeTrajectory(400), ScaledEstimate(with_covariance), options);
+  EXPECT_TRUE(evaluation.ok()) << evaluation.message();
+  return *evaluation;
+}
+
+TEST(Evaluate, UndoesTheSimilarityAndReportsItsScale) {
+  const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
+  EXPECT_EQ(evaluation.pairs.size(), 300u);
+  EXPECT_EQ(evaluation.truth_rows, 400u);
+  EXPECT_NEAR(evaluation.duration_s, 29.9, 1e-9);
+  EXPECT_NEAR(evaluation.transform.scale, 1 / 1.01, 1e-9);
+  EXPECT_LT(evaluation.ate.pos_m, 1e-9);
+  EXPECT_LT(evaluation.rpe[0].pos_rmse_m, 1e-9);
+  EXPECT_GT(evaluation.unaligned.pos_m, 3);
+  EXPECT_NEAR(evaluation.unaligned.ori_deg, 90, 1e-6);
+}
+
+TEST(Evaluate, LeavesAScaleErrorInARigidAlignment) {
+  const Evaluation evaluation = EvaluateScaled(Alignment::kPosYaw, false);
+  EXPECT_NEAR(evaluation.rpe[0].pos_rmse_m, 0.02, 1.5e-3);  // below 1 % of 2 m where the path bends
+  EXPECT_LT(evaluation.ate.ori_deg, 1e-5);
+  EXPECT_FALSE(evaluation.nees.has_value());
+}
+
+TEST(Evaluate, JudgesConsistencyUnaligned) {
+  const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
+  ASSERT_TRUE(evaluation.nees.has_value());
+  EXPECT_NEAR(evaluation.nees->mean_orientation, M_PI * M_PI / 4, 1e-6);
+}
+
+// GIVEN an estimate in a world of its own, 1 % too long WHEN it is anchored at its first pose THEN yaw and
+// offset are gone from RMSE and NEES, and what grows along the path stays.
+TEST(Evaluate, AnchorsAnEstimateOfItsOwnWorldAtItsFirstPose) {
+  EvaluationOptions options;
+  options.anchor_at_first = true;
+  const Result<Evaluation> evaluation = Evaluate(MakeTrajectory(400), ScaledEstimate(true), options);
+  ASSERT_TRUE(evaluation.ok()) << evaluation.message();
+  const StatePair& first = evaluation->pairs.front();
+  EXPECT_LT((first.estimate.nav.p_WB - first.truth.nav.p_WB).norm(), 1e-12);
+  EXPECT_LT(evaluation->unaligned.ori_deg, 1e-5);
+  EXPECT_LT(evaluation->nees->mean_orientation, 1e-12);
+  double expected = 0;
+  for (const StatePair& pair : evaluation->pairs) {
+    expected += 1e-4 * (pair.truth.nav.p_WB - first.truth.nav.p_WB).squaredNorm();
+  }
+  EXPECT_NEAR(evaluation->unaligned.pos_m, std::sqrt(expected / 300), 1e-9);
+}
+
+TEST(Evaluate, PassesTheAssociationErrorOn) {
+  const Result<Evaluation> evaluation = Evaluate(MakeTrajectory(400), MakeTrajectory(5, 0, 1), {});
+  EXPECT_EQ(evaluation.code(), StatusCode::kInput);
+}
+
+// GIVEN an estimate that drifts and is turned, THEN an alignment of its first twentieth leaves the drift.
+TEST(Evaluate, AlignsByTheFirstShare) {
+  Trajectory truth, estimate;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.1 * i;
+    TrajectoryPoint point;
+    point.stamp_ns = i * 100'000'000LL;
+    point.nav.p_WB = Eigen::Vector3d(10 * std::sin(t), 10 * std::cos(t), 0);
+    truth.points.push_back(point);
+    point.nav.p_WB = turn * (point.nav.p_WB + Eigen::Vector3d(5 + (i < 50 ? 0 : 1), 6, 7));
+    estimate.points.push_back(point);
+  }
+  EvaluationOptions options;
+  options.align_share = 0.05;
+  EXPECT_NEAR(Evaluate(truth, estimate, options)->ate.pos_m, std::sqrt(0.95), 1e-6);
+  options.align_share = 1;
+  EXPECT_NEAR(Evaluate(truth, estimate, options)->ate.pos_m, std::sqrt(0.05 * 0.95), 1e-2);
+}
+
+TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
+  const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
+  const std::string text = FormatEvaluationJson(evaluation);
+  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(text);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) {
+    keys.push_back(key);
+  }
+  EXPECT_EQ(keys, (std::vector<std::string>{"pairs", "truth_rows", "estimate_rows", "association",
+                                            "duration_s", "path_m", "anchor_at_first", "align_share",
+                                            "alignment", "unaligned", "ate", "rpe", "nees"}));
+  EXPECT_EQ(json["pairs"], 300);
+  EXPECT_EQ(json["alignment"]["name"], "sim3");
+  EXPECT_EQ(json["alignment"]["scale"].get<double>(), 0.99009901);
+  EXPECT_EQ(json["alignment"]["q_wxyz"].size(), 4u);
+  EXPECT_EQ(json["alignment"]["translation_m"].size(), 3u);
+  EXPECT_NEAR(json["unaligned"]["ori_rmse_deg"].get<double>(), 90, 1e-6);
+  EXPECT_NEAR(json["nees"]["orientation"]["mean"].get<double>(), M_PI * M_PI / 4, 1e-6);
+  EXPECT_EQ(json["nees"]["pose"]["band_95"].size(), 2u);
+  EXPECT_GT(json["rpe"][0]["count"], 100);
+  EXPECT_EQ(json["rpe"][1]["count"], 0);
+  EXPECT_TRUE(json["rpe"][1]["pos_rmse_m"].is_null());
+  EXPECT_EQ(text, FormatEvaluationJson(EvaluateScaled(Alignment::kSim3, true)));
+  EXPECT_TRUE(
+      nlohmann::json::parse(FormatEvaluationJson(EvaluateScaled(Alignment::kPos, false)))["nees"].is_null());
+}
+
+TEST(FormatEvaluation, TextSaysWhatAPersonNeeds) {
+  const std::string text = FormatEvaluationText(EvaluateScaled(Alignment::kSim3, true));
+  EXPECT_THAT(text, HasSubstr("pairs      300 of 300 estimate and 400 truth rows (nearest within 0.01 s)"));
+  EXPECT_THAT(text, HasSubstr("scale      0.990099"));
+  EXPECT_THAT(text, HasSubstr("aligned (sim3)"));
+  EXPECT_THAT(text, HasSubstr("5000 m"));
+  EXPECT_THAT(text, HasSubstr("NEES (unaligned)"));
+  EXPECT_THAT(text, Not(HasSubstr("nan")));
+  EXPECT_THAT(FormatEvaluationText(EvaluateScaled(Alignment::kPos, false)), Not(HasSubstr("NEES")));
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,254 @@
+#include "eval/render/rendered_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "eval/files/sha256.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// The figure-8 at EuRoC's size and frame rate through a lens like EuRoC's.
+SimulatorConfig RenderedConfig() {
+  SimulatorConfig config;
+  config.duration_s = 2;
+  config.path_m = 2.6;
+  config.imu_rate_hz = 200;
+  config.camera_rate_hz = 20;
+  config.camera_time_offset_s = 0.01;
+  config.distortion = DistortionModel::kRadialTangential;
+  config.distortion_coefficients << -0.28, 0.07, 2e-4, 2e-5;
+  config.landmark_min_distance_m = 0.8;
+  config.render.enabled = true;
+  return config;
+}
+
+/// The same, a quarter as wide and high: for what does not depend on the size.
+SimulatorConfig SmallConfig() {
+  SimulatorConfig config = RenderedConfig();
+  config.width_px = 188;
+  config.height_px = 120;
+  config.focal_px = 115;
+  config.duration_s = 1;
+  return config;
+}
+
+struct Scene {
+  SimulatorConfig config;
+  Simulation simulation;
+  RenderedSequence sequence;
+
+  static Scene Make(const SimulatorConfig& config, unsigned seed = 3) {
+    Simulation simulation = SimulateWithMotion(config, seed).value();
+    RenderedSequence sequence = RenderedSequence::Create(config, simulation, seed).value();
+    return {config, std::move(simulation), std::move(sequence)};
+  }
+
+  [[nodiscard]] const Dataset& dataset() const { return simulation.dataset; }
+  [[nodiscard]] Pose CameraAt(TimeNs stamp_ns) const {
+    const double time_s =
+        SecondsBetween(simulation.motion_start_ns, stamp_ns) + dataset().rig.camera_time_offset_s;
+    return simulation.motion->At(time_s).nav.T_WB() * dataset().rig.T_BC;
+  }
+};
+
+double Quantile(std::vector<double> values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// Distances [px] of tracked pixels from where the surface point of the track's first pixel projects.
+std::vector<double> ReprojectionErrors(const Scene& scene, const std::vector<TrackFrame>& frames) {
+  const CameraModel& camera = scene.dataset().rig.camera;
+  std::map<std::int64_t, Vector3d> points_W;
+  std::vector<double> errors;
+  for (const TrackFrame& frame : frames) {
+    const Pose T_WC = scene.CameraAt(frame.stamp_ns);
+    for (const TrackObservation& observation : frame.observations) {
+      const auto known = points_W.find(observation.track_id);
+      Vector2d place;
+      if (known != points_W.end()) {
+        EXPECT_TRUE(camera.Project(T_WC.Inverse() * known->second, &place));
+        errors.push_back((observation.pixel - place).norm());
+      } else if (camera.Unproject(observation.pixel, &place)) {
+        const Vector3d ray_W = T_WC.rotation * place.homogeneous().normalized();
+        const double distance = scene.sequence.hall().Distance(T_WC.translation, ray_W);
+        points_W[observation.track_id] = T_WC.translation + distance * ray_W;
+      }
+    }
+  }
+  return errors;
+}
+
+TEST(RenderedSequence, TrackedCornersFitTheTruthWithinAThirdOfAPixel) {
+  const Scene scene = Scene::Make(RenderedConfig());
+  const Result<std::vector<TrackFrame>> frames =
+      TrackRenderedImages(scene.sequence, scene.dataset(), FrontendConfig(), {.jobs = 2});
+  ASSERT_TRUE(frames.ok()) << frames.message();
+  const std::vector<double> errors = ReprojectionErrors(scene, *frames);
+  ASSERT_GT(errors.size(), 100 * (frames->size() - 1)) << "of 150 tracks most live on";
+  std::cout << errors.size() << " observations; reprojection error median " << Quantile(errors, 0.5)
+            << " px, 90 % " << Quantile(errors, 0.9) << " px, 99 % " << Quantile(errors, 0.99) << " px\n";
+  EXPECT_LT(Quantile(errors, 0.5), 0.3);
+  EXPECT_LT(Quantile(errors, 0.9), 1.0);
+}
+
+TEST(RenderedSequence, RaysMeetWhatTheHallSays) {
+  // The renderer's short cuts (single precision, cones, sorted boxes) against the plain intersection.
+  const Scene scene = Scene::Make(SmallConfig());
+  const Hall& hall = scene.sequence.hall();
+  ASSERT_GT(hall.boxes.size(), 20U);
+  ASSERT_GE(hall.columns.size(), 1U);
+  const CameraModel& camera = scene.dataset().rig.camera;
+  const Pose T_WC = scene.CameraAt(scene.sequence.stamps().front());
+  std::vector<Eigen::Vector3f> rays;
+  for (int y = 0; y < camera.height_px(); ++y) {
+    for (int x = 0; x < camera.width_px(); ++x) {
+      Vector2d place = Vector2d::Zero();
+      camera.Unproject(Vector2d(x, y), &place);
+      rays.push_back(place.homogeneous().normalized().cast<float>());
+    }
+  }
+  const ViewTile field = ViewTile::Around(0, 0, rays);
+  const HallView view(hall, T_WC, field);
+  std::vector<HallView::Candidate> candidates;
+  view.ListCandidates(field, &candidates);
+  std::size_t off = 0, on_room = 0;
+  for (const Eigen::Vector3f& ray : rays) {
+    const HallHit hit = view.Cast(ray, candidates);
+    const double distance = hall.Distance(T_WC.translation, T_WC.rotation * ray.cast<double>());
+    off += std::abs(static_cast<double>(hit.distance) - distance) > 1e-4 * distance ? 1 : 0;
+    on_room += hit.surface >= hall.room.faces.data() && hit.surface < hall.room.faces.data() + 6 ? 1 : 0;
+  }
+  EXPECT_LT(off, 5U) << "rays that graze an edge may differ";
+  EXPECT_GT(on_room, rays.size() / 10);
+  EXPECT_LT(on_room, rays.size() * 9 / 10) << "boxes and columns cover some of the walls";
+}
+
+TEST(RenderedSequence, NothingStandsInThePath) {
+  SimulatorConfig config = SmallConfig();
+  config.duration_s = 20;
+  config.path_m = 26;
+  const Scene scene = Scene::Make(config);
+  for (double time_s = 0; time_s < config.duration_s; time_s += 0.1) {
+    const Vector3d p_WB = scene.simulation.motion->At(time_s).nav.p_WB;
+    for (int i = 0; i < 200; ++i) {
+      // Evenly over the sphere (Fibonacci).
+      const double z = 1 - (2 * i + 1) / 200.0;
+      const double azimuth = 2.399963229728653 * i;
+      const double flat = std::sqrt(1 - z * z);
+      const Vector3d direction(flat * std::cos(azimuth), flat * std::sin(azimuth), z);
+      ASSERT_GT(scene.sequence.hall().Distance(p_WB, direction), config.landmark_min_distance_m - 0.01);
+    }
+  }
+}
+
+/// Mean squared difference of neighbours along a row: how sharp an image is.
+double Sharpness(const GreyImage& image) {
+  double sum = 0;
+  for (std::size_t i = 1; i < image.pixels.size(); ++i) {
+    const double step = image.pixels[i] - image.pixels[i - 1];
+    sum += step * step;
+  }
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+double MeanGrey(const GreyImage& image) {
+  double sum = 0;
+  for (const unsigned char grey : image.pixels) {
+    sum += grey;
+  }
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+/// The frame at 0.5 s with other keys of the renderer.
+GreyImage FrameWith(const std::function<void(RenderConfig*)>& change) {
+  SimulatorConfig config = SmallConfig();
+  config.render.read_noise_grey = 0;
+  config.render.shot_noise_grey = 0;
+  change(&config.render);
+  return Scene::Make(config).sequence.Frame(10);
+}
+
+TEST(RenderedSequence, ALongExposureBlursAFastTurn) {
+  const GreyImage sharp = FrameWith([](RenderConfig* render) { render->exposure_s = 0; });
+  const GreyImage blurred = FrameWith([](RenderConfig* render) { render->exposure_s = 0.2; });
+  EXPECT_LT(Sharpness(blurred), 0.6 * Sharpness(sharp));
+  EXPECT_NEAR(MeanGrey(blurred), MeanGrey(sharp), 3);
+}
+
+TEST(RenderedSequence, BrightnessAndNoiseAreAsTheirKeysSay) {
+  const GreyImage plain = FrameWith([](RenderConfig*) {});
+  const GreyImage dark = FrameWith([](RenderConfig* render) { render->brightness = 0.5; });
+  EXPECT_NEAR(MeanGrey(dark), 0.5 * MeanGrey(plain), 1);
+  const GreyImage noisy = FrameWith([](RenderConfig* render) {
+    render->read_noise_grey = 3;
+    render->shot_noise_grey = 0.1;
+  });
+  double excess = 0;
+  for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+    const double difference = noisy.pixels[i] - plain.pixels[i];
+    excess += difference * difference - (9 + 0.1 * plain.pixels[i]);
+  }
+  // Two roundings add a sixth.
+  EXPECT_NEAR(excess / static_cast<double>(plain.pixels.size()), 1.0 / 6, 0.5);
+}
+
+TEST(RenderedSequence, ThreadsChangeNoByteAndTheFolderReadsBack) {
+  const Scene scene = Scene::Make(SmallConfig());
+  const test::TemporaryFolder one, three;
+  for (const auto& [folder, jobs] : {std::pair(&one, 1), std::pair(&three, 3)}) {
+    ASSERT_TRUE(WriteDataset(scene.dataset(), folder->path()).ok());
+    ASSERT_TRUE(WriteRenderedImages(scene.sequence, folder->path(), {.jobs = jobs}).ok());
+  }
+  EXPECT_EQ(DigestOfFolder(one.path()).value(), DigestOfFolder(three.path()).value());
+
+  const Dataset read = ReadDataset(one.path()).value();
+  ASSERT_EQ(read.images.size(), 21U);
+  EXPECT_TRUE(read.tracks.empty()) << "the front end makes them";
+  const GreyImage image = ReadGreyImage(read.images[7].path).value();
+  EXPECT_EQ(image.pixels, scene.sequence.Frame(7).pixels);
+
+  // Tracks from files and from memory are the same measurement log.
+  const std::vector<TrackFrame> from_files = TrackImages(read, FrontendConfig(), {}).value();
+  const std::vector<TrackFrame> from_memory =
+      TrackRenderedImages(scene.sequence, scene.dataset(), FrontendConfig(), {.jobs = 2}).value();
+  EXPECT_EQ(DigestOf({read.rig, read.imu, from_files}), DigestOf({read.rig, read.imu, from_memory}));
+}
+
+TEST(RenderedSequence, SeedsDrawOtherHallsAndNoise) {
+  const std::vector<unsigned char> first = Scene::Make(SmallConfig(), 3).sequence.Frame(0).pixels;
+  EXPECT_EQ(first, Scene::Make(SmallConfig(), 3).sequence.Frame(0).pixels);
+  EXPECT_NE(first, Scene::Make(SmallConfig(), 4).sequence.Frame(0).pixels);
+}
+
+TEST(RenderedSequence, WallsNearerThanTheClearanceAreRefused) {
+  SimulatorConfig config = SmallConfig();
+  config.room_margin_m.z() = 0.7;
+  const Simulation simulation = SimulateWithMotion(config, 1).value();
+  const Result<RenderedSequence> sequence = RenderedSequence::Create(config, simulation, 1);
+  ASSERT_FALSE(sequence.ok());
+  EXPECT_EQ(sequence.code(), StatusCode::kConfig);
+  EXPECT_NE(sequence.message().find("room_margin_m"), std::string::npos) << sequence.message();
+}
+
+TEST(RenderedSequence, MoreThanOneCameraIsRefused) {
+  SimulatorConfig config = SmallConfig();
+  config.camera_count = 2;
+  EXPECT_EQ(config.Validate().code(), StatusCode::kConfig);
+}
+
+}  // namespace
+}  // namespace alidade

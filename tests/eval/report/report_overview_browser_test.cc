@@ -1,0 +1,126 @@
+// What the report tells in words and tables, as a browser shows it.
+#include <regex>
+
+#include "tests/eval/report/report_in_browser.h"
+
+namespace alidade {
+namespace {
+
+using test::ExpectWhole;
+using test::PageVisit;
+using test::ReadFile;
+using test::ReportInBrowser;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+TEST_F(ReportInBrowser, GivenPairsThenTheOverviewTellsWhichDifferencesAreSignificant) {
+  const PageVisit best = Open(page_, "#figure=rmse_pos_m");
+  EXPECT_THAT(best.dom, HasSubstr("the test of its difference to the best of the column"));
+  EXPECT_TRUE(std::regex_search(
+      best.dom, std::regex("class=\"sub test tie\" title=\"[^\"]*no difference\">\u2248 p = 0")));
+  const PageVisit chosen = Open(page_, "#figure=rmse_pos_m&against=invio_l5");
+  EXPECT_THAT(chosen.dom, HasSubstr("the test of its difference to invio_l5"));
+  EXPECT_THAT(chosen.dom, HasSubstr("title=\"difference to invio_l5: "));
+  EXPECT_THAT(best.dom, Not(HasSubstr("title=\"difference to invio_l5: ")));
+}
+
+TEST_F(ReportInBrowser, GivenAnEstimatorOrASequenceSwitchedOffThenItIsGoneFromTablesAndPlots) {
+  const PageVisit visit = Open(WithScript(R"(
+    const note = function (name, value) { document.documentElement.setAttribute('data-' + name, value); };
+    const rows = function (id) { return document.querySelectorAll('#' + id + ' tbody tr:not(.reference)').length; };
+    const press = function (id, name) { document.querySelector('#' + id + ' [data-name="' + name + '"]').click(); };
+    note('rows', rows('overview-table') + ' ' + rows('sequence-table') + ' ' + rows('pairs-table'));
+    press('chips', 'invio_l5');
+    note('rows-without', rows('overview-table') + ' ' + rows('sequence-table') + ' ' + rows('pairs-table'));
+    press('sequence-chips', 'figure8');
+    note('columns', document.querySelectorAll('#overview-table thead th').length);
+    note('title', document.getElementById('sequence-title').textContent);
+    note('address', location.hash);
+  )"));
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("rows"), "3 3 6");  // pairs of the sequence, and over both
+  EXPECT_EQ(visit.Mark("rows-without"), "2 2 4");
+  EXPECT_EQ(visit.Mark("columns"), "2");
+  EXPECT_EQ(visit.Mark("title"), "V1_01_easy");
+  EXPECT_EQ(visit.Mark("address"), "#without=invio_l5&amp;skip=figure8");
+  const PageVisit again = Open(page_, "#without=invio_l5&skip=figure8");
+  EXPECT_EQ(again.Mark("lines"), visit.Mark("lines"));
+  EXPECT_THAT(again.dom, HasSubstr("data-name=\"invio_l5\" aria-pressed=\"false\""));
+}
+
+TEST_F(ReportInBrowser, GivenRunsThatWereLostOrNotStartedThenTheOverviewNamesThem) {
+  Comparison comparison = test::SyntheticComparison(60);
+  comparison.notes = {"MH_05: its data is not there, expected the folder /data/<MH_05> & more"};
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("absent.html")).ok());
+  const PageVisit visit = Open(ReadFile(folder_.File("absent.html")));
+  EXPECT_THAT(
+      visit.dom,
+      HasSubstr("<li>MH_05: its data is not there, expected the folder /data/&lt;MH_05&gt; &amp; more</li>"));
+  EXPECT_THAT(visit.dom, HasSubstr("1 not ok</b>; <b class=\"bad\">not run: 1</b>"));
+  EXPECT_THAT(visit.dom, HasSubstr("vins_mono_class on V1_01_easy, seed 2: failed</span>"));
+}
+
+TEST_F(ReportInBrowser, GivenGnssThenItsInnovationsHaveAPlotOfTheirOwn) {
+  Comparison comparison;
+  comparison.cells = {test::SyntheticCell("gvio", "field", 1, 0.1, 1, 2, 60),
+                      test::SyntheticCell("vio", "field", 1, 0.1, 1, 2, 60)};
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("without.html")).ok());
+  EXPECT_THAT(Open(ReadFile(folder_.File("without.html"))).dom, Not(HasSubstr("of GNSS: gvio")));
+  CellResult& gvio = comparison.cells[0];
+  gvio.series.gnss_nis_ratio = gvio.series.nis_ratio;
+  gvio.gnss_innovations = {0.97, 0.95, {0.5, 1.7}};
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("with.html")).ok());
+  const PageVisit visit = Open(ReadFile(folder_.File("with.html")));
+  EXPECT_THAT(visit.console, IsEmpty());
+  EXPECT_EQ(visit.Mark("errors"), "");
+  EXPECT_THAT(visit.dom, HasSubstr("of GNSS: gvio 0.97, 95.0 %."));
+}
+
+TEST_F(ReportInBrowser, GivenDifferentAlignmentsThenItSaysWhose) {
+  Comparison comparison;
+  comparison.title = "mixed";
+  for (const char* name : {"gvio", "gvins_class", "pockf"}) {
+    comparison.cells.push_back(test::SyntheticCell(name, "field", 1, 0.1, 1, 2, 60));
+    comparison.cells.back().align = "none";
+  }
+  comparison.cells.back().align = "posyaw of the first 5 %";
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("mixed.html")).ok());
+  const PageVisit visit = Open(ReadFile(folder_.File("mixed.html")));
+  ExpectWhole(visit);
+  EXPECT_THAT(visit.dom, HasSubstr("none: gvio, gvins_class; posyaw of the first 5 %: pockf"));
+}
+
+TEST_F(ReportInBrowser, GivenNamesOfMarkupThenTheyAreTextEverywhere) {
+  const std::string evil = "<img src=x>&amp;\"'`${x}";
+  Comparison comparison;
+  comparison.title = evil;
+  comparison.command = evil;
+  comparison.notes = {evil};
+  comparison.references = {{evil, evil, evil, {{"ate_pos_m", 0.1}}}};
+  for (const unsigned seed : {1U, 2U}) {
+    comparison.cells.push_back(test::SyntheticCell(evil, evil, seed, 0.1, 1, 2, 60));
+    comparison.cells.push_back(test::SyntheticCell("plain", evil, seed, 0.12, 1, 2, 60));
+    comparison.cells.back().message = evil;
+  }
+  comparison.cells.back().status = evil;
+  comparison.cells[0].sky = {{evil, {0, 1}, {10, 11}, {40, 41}, {0.1, 0.2}, 1, 0.1}};
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("evil.html")).ok());
+  std::string page = ReadFile(folder_.File("evil.html"));
+  page.insert(page.rfind("</body>"), R"(<script>
+    document.querySelector('#chips .chip').click();
+    document.documentElement.setAttribute('data-images', document.images.length);
+    document.documentElement.setAttribute('data-heading', document.querySelector('h1').textContent.length);
+    document.documentElement.setAttribute('data-address', decodeURIComponent(location.hash).length);
+  </script>)");
+  const PageVisit visit = Open(page);
+  EXPECT_THAT(visit.console, IsEmpty());
+  EXPECT_EQ(visit.Mark("errors"), "");
+  EXPECT_EQ(visit.Mark("ready"), "true");
+  EXPECT_EQ(visit.Mark("images"), "0");
+  EXPECT_EQ(visit.Mark("heading"), std::to_string(evil.size()));
+  EXPECT_EQ(visit.Mark("address"), std::to_string(std::string("#without=").size() + evil.size()));
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,137 @@
+#include "frontend/tracking/corner_grid.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/frontend/tracking/synthetic_scene.h"
+
+namespace alidade {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr int kWidthPx = 403;  // no multiple of the columns
+constexpr int kHeightPx = 247;
+constexpr int kBorderPx = 10;
+
+FrontendConfig SmallConfig() {
+  FrontendConfig config;
+  config.max_features = 40;
+  config.min_distance_px = 12;
+  config.grid_columns = 5;
+  config.grid_rows = 4;
+  return config;
+}
+
+/// A textured image and its Scharr derivatives.
+struct Textured {
+  std::vector<unsigned char> pixels;
+  cv::Mat image;
+  cv::Mat derivatives;
+
+  explicit Textured(const std::function<bool(int column)>& blank)
+      : pixels(test::Render(kWidthPx, kHeightPx, [](const Eigen::Vector2d& u) { return u; })) {
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      if (blank(static_cast<int>(i % kWidthPx))) {
+        pixels[i] = 80;
+      }
+    }
+    image = cv::Mat(kHeightPx, kWidthPx, CV_8UC1, pixels.data());
+    std::array<cv::Mat, 2> gradient;
+    cv::Scharr(image, gradient[0], CV_16S, 1, 0);
+    cv::Scharr(image, gradient[1], CV_16S, 0, 1);
+    cv::merge(gradient.data(), 2, derivatives);
+  }
+};
+
+std::map<int, int> CountByColumn(const std::vector<cv::Point2f>& pixels) {
+  std::map<int, int> counts;
+  for (const cv::Point2f& pixel : pixels) {
+    ++counts[static_cast<int>(pixel.x) * 5 / kWidthPx];
+  }
+  return counts;
+}
+
+TEST(CornerGrid, ThinningPrefersTheFirst) {
+  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
+  // 5 px apart is nearer than half of 12; 7 px is not.
+  EXPECT_THAT(grid.Thin({{100, 100}, {105, 100}, {100, 107}, {300, 100}}),
+              ElementsAre(true, false, true, true));
+  EXPECT_THAT(grid.Thin({}), ElementsAre());
+}
+
+TEST(CornerGrid, ThinningLeavesACellTwiceItsShare) {
+  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
+  std::vector<cv::Point2f> pixels;  // six in the first cell, whose share is 40 / 20
+  for (int i = 0; i < 6; ++i) {
+    pixels.emplace_back(12.F + 10 * static_cast<float>(i), 20.F);
+  }
+  EXPECT_THAT(grid.Thin(pixels), ElementsAre(true, true, true, true, false, false));
+}
+
+TEST(CornerGrid, FillsTheEmptiestCellsFirst) {
+  const Textured scene([](int) { return false; });
+  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
+  // The left two columns have their share already, 16 features; 24 are left for the 12 cells of the others.
+  std::vector<cv::Point2f> existing;
+  for (int i = 0; i < 16; ++i) {
+    existing.emplace_back(20.F + 40 * static_cast<float>(i % 4), 20.F + 60 * static_cast<float>(i / 4));
+  }
+  const std::vector<cv::Point2f> found = grid.Detect(scene.image, scene.derivatives, existing);
+  EXPECT_EQ(found.size(), 24U);
+  EXPECT_LE(CountByColumn(found)[0] + CountByColumn(found)[1], 1) << "refinement may cross an edge";
+  existing.resize(40, cv::Point2f(200, 200));
+  EXPECT_TRUE(grid.Detect(scene.image, scene.derivatives, existing).empty());
+}
+
+TEST(CornerGrid, BlankCellsGiveTheirShareToOthersUpToTwice) {
+  const Textured scene([](int column) { return column > 160; });
+  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
+  const std::vector<cv::Point2f> found = grid.Detect(scene.image, scene.derivatives, {});
+  EXPECT_GT(found.size(), 24U);
+  EXPECT_LE(found.size(), 33U);
+  for (const cv::Point2f& pixel : found) {
+    EXPECT_LT(pixel.x, 170);
+    EXPECT_GE(pixel.x, kBorderPx - 4);
+    EXPECT_GE(pixel.y, kBorderPx - 4);
+    EXPECT_LE(pixel.y, kHeightPx - kBorderPx + 4);
+  }
+}
+
+TEST(CornerGrid, FindsNothingInABlankOrATinyImage) {
+  const Textured scene([](int) { return true; });
+  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
+  EXPECT_TRUE(grid.Detect(scene.image, scene.derivatives, {}).empty());
+  const cv::Rect corner(0, 0, 15, 9);
+  const CornerGrid tiny(SmallConfig(), corner.width, corner.height, kBorderPx);
+  EXPECT_TRUE(tiny.Detect(scene.image(corner).clone(), scene.derivatives(corner).clone(), {}).empty());
+}
+
+TEST(CornerGrid, RefinesACornerToTheMeetingPointOfItsEdges) {
+  // A bright quadrant whose edges lie at x = 200.3 and y = 120.6, drawn with partly covered pixels.
+  cv::Mat image(kHeightPx, kWidthPx, CV_8UC1);
+  for (int row = 0; row < kHeightPx; ++row) {
+    for (int column = 0; column < kWidthPx; ++column) {
+      const double covered =
+          std::clamp(column + 0.5 - 200.3, 0.0, 1.0) * std::clamp(row + 0.5 - 120.6, 0.0, 1.0);
+      image.at<unsigned char>(row, column) = static_cast<unsigned char>(40 + 160 * covered);
+    }
+  }
+  cv::GaussianBlur(image, image, cv::Size(5, 5), 1);
+  std::array<cv::Mat, 2> gradient;
+  cv::Scharr(image, gradient[0], CV_16S, 1, 0);
+  cv::Scharr(image, gradient[1], CV_16S, 0, 1);
+  cv::Mat derivatives;
+  cv::merge(gradient.data(), 2, derivatives);
+  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
+  const std::vector<cv::Point2f> found = grid.Detect(image, derivatives, {});
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(found.front().x, 200.3, 0.4);
+  EXPECT_NEAR(found.front().y, 120.6, 0.4);
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,134 @@
+#include "frontend/tracking/epipolar_rejection.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "core/lie.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kFocalPx = 460;
+
+struct Scene {
+  std::vector<BearingPair> pairs;
+  std::vector<bool> outlier;
+};
+
+/// 120 points 2 to 8 m away seen from two places, 0.2 px noise; every fourth moved by 15 px in a random
+/// direction.
+Scene MakeScene(const Matrix3d& R_21, const Vector3d& t, unsigned seed, bool with_outliers = true) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::normal_distribution<double> noise(0, 0.2 / kFocalPx);
+  Scene scene;
+  for (int i = 0; i < 120; ++i) {
+    const double depth = 5 + 3 * unit(random);
+    const Vector3d p_1(0.7 * depth * unit(random), 0.5 * depth * unit(random), depth);
+    BearingPair pair{.first = p_1.hnormalized(), .second = (R_21 * p_1 + t).hnormalized()};
+    pair.first += Vector2d(noise(random), noise(random));
+    pair.second += Vector2d(noise(random), noise(random));
+    scene.outlier.push_back(with_outliers && i % 4 == 3);
+    if (scene.outlier.back()) {
+      const double direction = M_PI * unit(random);
+      pair.second += 15 / kFocalPx * Vector2d(std::cos(direction), std::sin(direction));
+    }
+    scene.pairs.push_back(pair);
+  }
+  return scene;
+}
+
+struct Verdict {
+  int good_kept = 0;
+  int good = 0;
+  int bad_kept = 0;
+  int bad = 0;
+};
+
+Verdict Judge(const Scene& scene, const std::vector<bool>& inliers) {
+  Verdict verdict;
+  for (size_t i = 0; i < inliers.size(); ++i) {
+    ++(scene.outlier[i] ? verdict.bad : verdict.good);
+    if (inliers[i]) {
+      ++(scene.outlier[i] ? verdict.bad_kept : verdict.good_kept);
+    }
+  }
+  return verdict;
+}
+
+const EpipolarOptions kOptions{.threshold_px = 1.0, .focal_px = kFocalPx, .dt_s = 0.05};
+
+TEST(EpipolarRejection, FindsOutliersWithABiasedGyroscope) {
+  // 4 mrad is 0.08 rad/s of bias over a frame, 1.8 px: more than the threshold, so the rotation must be
+  // refined.
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Matrix3d R_21 = so3::Exp({0.03, -0.05, 0.02});
+    const Vector3d t = seed % 2 == 0 ? Vector3d(0.15, 0.02, 0.05) : Vector3d(0.02, 0.01, -0.2);
+    const Scene scene = MakeScene(R_21, t, seed);
+    const Matrix3d R_measured = so3::Exp({0.002, -0.003, 0.002}) * R_21;
+    const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, R_measured, kOptions));
+    EXPECT_GE(verdict.good_kept, verdict.good * 95 / 100) << "seed " << seed;
+    // An outlier along its own epipolar line, the right way, cannot be told from a near point.
+    EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
+  }
+}
+
+TEST(EpipolarRejection, FindsOutliersWithoutGyroscope) {
+  const Scene scene = MakeScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 3);
+  const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, std::nullopt, kOptions));
+  EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
+  EXPECT_LE(verdict.bad_kept, verdict.bad / 3);
+}
+
+TEST(EpipolarRejection, AWrongGyroscopeDoesNotCostTheTracks) {
+  const Scene scene = MakeScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 4);
+  const Verdict verdict =
+      Judge(scene, FindEpipolarInliers(scene.pairs, so3::Exp({-0.1, 0.2, 0.3}), kOptions));
+  EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
+}
+
+TEST(EpipolarRejection, WithoutParallaxRotationAloneDecides) {
+  const Matrix3d R_21 = so3::Exp({0.03, -0.05, 0.02});
+  const Scene scene = MakeScene(R_21, Vector3d::Zero(), 5);
+  const Verdict verdict =
+      Judge(scene, FindEpipolarInliers(scene.pairs, so3::Exp({0.003, 0, -0.003}) * R_21, kOptions));
+  EXPECT_GE(verdict.good_kept, verdict.good * 97 / 100);
+  EXPECT_LE(verdict.bad_kept, verdict.bad / 4);
+}
+
+TEST(EpipolarRejection, RejectsMotionAgainstTheOthersAlongTheEpipolarLine) {
+  const Vector3d t(0.3, 0, 0);
+  Scene scene = MakeScene(Matrix3d::Identity(), t, 6, false);
+  for (size_t i = 0; i < scene.pairs.size(); i += 6) {
+    scene.pairs[i].second = scene.pairs[i].first - Vector2d(12 / kFocalPx, 0);  // depth -3.8 m
+    scene.outlier[i] = true;
+  }
+  const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
+  EXPECT_EQ(verdict.bad_kept, 0);
+  EXPECT_GE(verdict.good_kept, verdict.good * 97 / 100);
+}
+
+TEST(EpipolarRejection, JudgesNothingOnTooFewPairs) {
+  Scene scene = MakeScene(Matrix3d::Identity(), {0.1, 0, 0}, 7);
+  scene.pairs.resize(kMinPairs - 1);
+  for (const bool inlier : FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions)) {
+    EXPECT_TRUE(inlier);
+  }
+  EXPECT_TRUE(FindEpipolarInliers({}, std::nullopt, kOptions).empty());
+}
+
+TEST(EpipolarRejection, IdenticalPairsAreHarmless) {
+  const std::vector<BearingPair> pairs(20, {.first = {0.1, 0.2}, .second = {0.1, 0.2}});
+  for (const bool inlier : FindEpipolarInliers(pairs, Matrix3d::Identity(), kOptions)) {
+    EXPECT_TRUE(inlier);
+  }
+}
+
+}  // namespace
+}  // namespace alidade

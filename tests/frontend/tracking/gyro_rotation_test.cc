@@ -1,0 +1,74 @@
+#include "frontend/tracking/gyro_rotation.h"
+
+#include <gtest/gtest.h>
+
+#include "core/lie.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr TimeNs kMs = 1'000'000;
+
+ImuSample Sample(TimeNs stamp_ns, const Vector3d& gyro) {
+  return {.stamp_ns = stamp_ns, .gyro = gyro, .accel = Vector3d::Zero()};
+}
+
+TEST(GyroRotation, ConstantRateIsExactBetweenSampleTimes) {
+  GyroRotation gyro;
+  const Vector3d rate(1.0, -2.0, 0.5);
+  for (int i = 0; i <= 30; ++i) {
+    EXPECT_TRUE(gyro.Add(Sample(i * 5 * kMs, rate)));
+  }
+  const std::optional<Matrix3d> R = gyro.Between(13 * kMs, 61 * kMs);
+  ASSERT_TRUE(R.has_value());
+  EXPECT_TRUE(R->isApprox(so3::Exp(rate * 0.048), 1e-12));
+  // The next interval still finds the sample before its start.
+  ASSERT_TRUE(gyro.Between(61 * kMs, 111 * kMs).has_value());
+}
+
+TEST(GyroRotation, ChangingRateAboutOneAxisIntegratesExactly) {
+  GyroRotation gyro;
+  for (int i = 0; i <= 20; ++i) {  // rate 40 t about z
+    gyro.Add(Sample(i * 5 * kMs, Vector3d(0, 0, 40 * 0.005 * i)));
+  }
+  const std::optional<Matrix3d> R = gyro.Between(7 * kMs, 83 * kMs);
+  ASSERT_TRUE(R.has_value());
+  EXPECT_NEAR(so3::Log(*R).z(), 20 * (0.083 * 0.083 - 0.007 * 0.007), 1e-12);
+}
+
+TEST(GyroRotation, ComposesInTheBodyFrame) {
+  GyroRotation gyro;
+  gyro.Add(Sample(0, Vector3d(0, 0, 20)));
+  gyro.Add(Sample(40 * kMs, Vector3d(0, 0, 20)));
+  gyro.Add(Sample(40 * kMs + 1, Vector3d(30, 0, 0)));
+  gyro.Add(Sample(80 * kMs, Vector3d(30, 0, 0)));
+  const std::optional<Matrix3d> R = gyro.Between(0, 80 * kMs);
+  ASSERT_TRUE(R.has_value());
+  EXPECT_TRUE(R->isApprox(so3::Exp({0, 0, 0.8}) * so3::Exp({1.2, 0, 0}), 1e-6));
+}
+
+TEST(GyroRotation, SaysNothingAcrossAGap) {
+  GyroRotation gyro;
+  EXPECT_FALSE(gyro.Between(0, 50 * kMs).has_value());
+  gyro.Add(Sample(0, Vector3d::Zero()));
+  EXPECT_TRUE(gyro.Between(0, 50 * kMs).has_value()) << "the last rate is held over a short time";
+  EXPECT_FALSE(gyro.Between(0, 51 * kMs).has_value());
+  EXPECT_FALSE(gyro.Between(60 * kMs, 70 * kMs).has_value()) << "too old to be held";
+  gyro.Add(Sample(60 * kMs, Vector3d::Zero()));
+  EXPECT_FALSE(gyro.Between(0, 70 * kMs).has_value()) << "60 ms without a sample";
+  EXPECT_FALSE(gyro.Between(70 * kMs, 70 * kMs).has_value());
+}
+
+TEST(GyroRotation, IgnoresDisorderAndNotANumber) {
+  GyroRotation gyro;
+  EXPECT_TRUE(gyro.Add(Sample(10, Vector3d::Zero())));
+  EXPECT_FALSE(gyro.Add(Sample(10, Vector3d::Ones())));
+  EXPECT_FALSE(gyro.Add(Sample(9, Vector3d::Ones())));
+  EXPECT_FALSE(gyro.Add(Sample(20, Vector3d(0, 0, std::nan("")))));
+}
+
+}  // namespace
+}  // namespace alidade

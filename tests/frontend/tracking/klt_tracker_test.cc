@@ -1,0 +1,336 @@
+#include "frontend/tracking/klt_tracker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "tests/frontend/tracking/synthetic_scene.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using test::Median;
+using test::Render;
+using test::TestRig;
+using test::Wall;
+
+constexpr int kWidthPx = 752;
+constexpr int kHeightPx = 480;
+constexpr TimeNs kFrameNs = 50'000'000;
+
+/// Tracks an image that must be accepted.
+TrackFrame MustTrack(KltTracker* tracker, TimeNs stamp_ns, const std::vector<unsigned char>& image,
+                     int width_px = kWidthPx, int height_px = kHeightPx) {
+  Result<TrackFrame> frame = tracker->Track(stamp_ns, image.data(), width_px, height_px);
+  EXPECT_TRUE(frame.ok()) << frame.message();
+  return frame.ok() ? *frame : TrackFrame{};
+}
+
+std::map<std::int64_t, Vector2d> ById(const TrackFrame& frame) {
+  std::map<std::int64_t, Vector2d> pixels;
+  for (const TrackObservation& observation : frame.observations) {
+    pixels[observation.track_id] = observation.pixel;
+  }
+  return pixels;
+}
+
+/// Distance [px] of each common track's second position from where `moved` takes its first.
+std::vector<double> Errors(const TrackFrame& first, const TrackFrame& second,
+                           const std::function<Vector2d(const Vector2d&)>& moved) {
+  const std::map<std::int64_t, Vector2d> before = ById(first);
+  std::vector<double> errors;
+  for (const auto& [id, pixel] : ById(second)) {
+    if (before.contains(id)) {
+      errors.push_back((pixel - moved(before.at(id))).norm());
+    }
+  }
+  return errors;
+}
+
+/// Gyroscope samples at 200 Hz of the constant body rate that turns the camera by C0_rotation_C1 in one
+/// frame.
+void FeedRotation(KltTracker* tracker, const RigCalibration& rig, const Matrix3d& R_C0C1, TimeNs from_ns) {
+  const Vector3d rate = rig.T_BC.rotation * so3::Log(R_C0C1) / (kFrameNs * kNsToSeconds);
+  for (int i = 0; i < 10; ++i) {
+    tracker->AddImu({.stamp_ns = from_ns + i * kFrameNs / 10, .gyro = rate, .accel = Vector3d::Zero()});
+  }
+}
+
+FrontendConfig WithoutImu() {
+  FrontendConfig config;
+  config.imu_prediction = false;
+  return config;
+}
+
+TEST(KltTracker, FollowsATranslatedImageToATenthOfAPixel) {
+  KltTracker tracker(WithoutImu(), TestRig());
+  const Vector2d step(3.3, -2.7);
+  TrackFrame first = MustTrack(&tracker, 0, Render(kWidthPx, kHeightPx, [](const Vector2d& u) { return u; }));
+  ASSERT_GE(first.observations.size(), 140U);
+  const TrackFrame second =
+      MustTrack(&tracker, kFrameNs,
+                Render(kWidthPx, kHeightPx, [&](const Vector2d& u) -> Vector2d { return u - step; }));
+  const std::vector<double> errors =
+      Errors(first, second, [&](const Vector2d& u) -> Vector2d { return u + step; });
+  EXPECT_GE(errors.size(), 120U);
+  EXPECT_LT(Median(errors), 0.1);
+  EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.7);
+}
+
+TEST(KltTracker, FollowsAHomographyOverTenFrames) {
+  KltTracker tracker(WithoutImu(), TestRig());
+  Matrix3d step = Matrix3d::Identity();  // one degree about the centre, 1 % larger, slightly tilted, shifted
+  const Vector2d centre(kWidthPx / 2, kHeightPx / 2);
+  step.topLeftCorner<2, 2>() = 1.01 * Eigen::Rotation2Dd(0.0175).toRotationMatrix();
+  step.topRightCorner<2, 1>() = centre - step.topLeftCorner<2, 2>() * centre + Vector2d(1.5, -0.8);
+  step.bottomLeftCorner<1, 2>() << 1e-6, -2e-6;
+  Matrix3d homography = Matrix3d::Identity();
+  TrackFrame first;
+  for (int k = 0; k <= 10; ++k) {
+    const Matrix3d inverse = homography.inverse();
+    const TrackFrame frame =
+        MustTrack(&tracker, k * kFrameNs, Render(kWidthPx, kHeightPx, [&](const Vector2d& u) -> Vector2d {
+          return (inverse * u.homogeneous()).hnormalized();
+        }));
+    if (k == 0) {
+      first = frame;
+      homography = step * homography;
+      continue;
+    }
+    const std::vector<double> errors = Errors(first, frame, [&](const Vector2d& u) -> Vector2d {
+      return (homography * u.homogeneous()).hnormalized();
+    });
+    EXPECT_GE(errors.size(), 60U) << "frame " << k;
+    // Without templates turning and growing pull a patch aside by a few hundredths each frame, and it adds
+    // up.
+    EXPECT_LT(Median(errors), 0.1) << "frame " << k;
+    homography = step * homography;
+  }
+  EXPECT_GT(tracker.statistics().mean_track_length, 5);
+}
+
+/// Turns by `angle_deg` a frame about a tilted axis and counts the tracks that end where they should.
+int CorrectTracksWhenTurning(double angle_deg, bool with_gyro, double camera_time_offset_s) {
+  RigCalibration rig = TestRig();
+  rig.camera_time_offset_s = camera_time_offset_s;
+  FrontendConfig config;
+  config.pyramid_levels = 2;
+  KltTracker tracker(config, rig);
+  const Wall wall(rig.camera, 1.0);
+  const Matrix3d R_step = so3::Exp(Vector3d(0.3, 1.0, 0.4).normalized() * angle_deg * M_PI / 180);
+  const Pose before{.rotation = so3::Exp({0, -0.05, 0}), .translation = Vector3d::Zero()};
+  const Pose after{.rotation = before.rotation * R_step, .translation = Vector3d::Zero()};
+  const TrackFrame first = MustTrack(&tracker, 0, wall.Image(before));
+  if (with_gyro) {
+    FeedRotation(&tracker, rig, R_step, SecondsToNs(camera_time_offset_s));
+  }
+  const TrackFrame second = MustTrack(&tracker, kFrameNs, wall.Image(after));
+  const std::vector<double> errors = Errors(first, second, [&](const Vector2d& u) -> Vector2d {
+    Vector2d moved(-1e3, -1e3);
+    wall.Transfer(u, before, after, &moved);
+    return moved;
+  });
+  return static_cast<int>(std::count_if(errors.begin(), errors.end(), [](double e) { return e < 1.0; }));
+}
+
+TEST(KltTracker, GyroscopeCarriesTracksThroughATurnThatLosesThemWithout) {
+  EXPECT_GE(CorrectTracksWhenTurning(7.0, true, 0.0), 80);
+  EXPECT_LE(CorrectTracksWhenTurning(7.0, false, 0.0), 10);
+}
+
+TEST(KltTracker, GyroscopeIsReadAtTheCamerasTimeOffset) {
+  EXPECT_GE(CorrectTracksWhenTurning(7.0, true, 3.0), 80);
+  EXPECT_GE(CorrectTracksWhenTurning(7.0, true, -3.0), 80);
+}
+
+TEST(KltTracker, RejectsARegionThatMovesOnItsOwn) {
+  const RigCalibration rig = TestRig();
+  const Wall wall(rig.camera, 4.0);
+  const Pose before;
+  const Pose after{.rotation = so3::Exp({0.002, -0.003, 0.004}), .translation = {0.10, 0.0, 0.02}};
+  // A block of the image is pasted from another part of the texture and moves down, across the epipolar
+  // lines.
+  const auto in_block = [](const Vector2d& u) {
+    return u.x() > 430 && u.x() < 640 && u.y() > 130 && u.y() < 330;
+  };
+  const auto paste = [&](std::vector<unsigned char> image, double shift_px) {
+    for (int row = 130; row < 330; ++row) {
+      for (int column = 430; column < 640; ++column) {
+        image[static_cast<size_t>(row * kWidthPx + column)] =
+            test::Texture(Vector2d(column + 5000, row - shift_px + 5000));
+      }
+    }
+    return image;
+  };
+  KltTracker tracker({}, rig);
+  MustTrack(&tracker, 0, paste(wall.Image(before), 0));
+  // Without the rotation nothing is wrong here: two planes that move apart fit some fundamental matrix.
+  FeedRotation(&tracker, rig, after.rotation, 0);
+  const TrackFrame second = MustTrack(&tracker, kFrameNs, paste(wall.Image(after), 6));
+  const std::int64_t first_new = second.observations.back().track_id - tracker.statistics().detected + 1;
+  int inside = 0;
+  int outside = 0;
+  for (const TrackObservation& observation : second.observations) {
+    if (observation.track_id < first_new) {
+      ++(in_block(observation.pixel) ? inside : outside);
+    }
+  }
+  EXPECT_LE(inside, 1);
+  EXPECT_GE(outside, 80);
+  EXPECT_GE(tracker.statistics().rejected, 8);
+}
+
+TEST(KltTracker, BackwardPassAndTemplateEachLoseTracksWhoseTextureIsCovered) {
+  const std::vector<unsigned char> before = Render(kWidthPx, kHeightPx, [](const Vector2d& u) { return u; });
+  // Something else comes to stand before the right half.
+  const std::vector<unsigned char> after = Render(kWidthPx, kHeightPx, [](const Vector2d& u) -> Vector2d {
+    return u.x() > kWidthPx / 2 ? Vector2d(u + Vector2d(3000, 4000)) : u;
+  });
+  const auto wrong_tracks = [&](double forward_backward_px, int template_px) {
+    FrontendConfig config = WithoutImu();
+    config.forward_backward_px = forward_backward_px;
+    config.template_px = template_px;
+    config.ransac_threshold_px = 20;  // out of the way
+    KltTracker tracker(config, TestRig());
+    const TrackFrame first = MustTrack(&tracker, 0, before);
+    const TrackFrame second = MustTrack(&tracker, kFrameNs, after);
+    const std::map<std::int64_t, Vector2d> start = ById(first);
+    return std::count_if(second.observations.begin(), second.observations.end(),
+                         [&](const TrackObservation& o) {
+                           return start.contains(o.track_id) && start.at(o.track_id).x() > kWidthPx / 2 + 15;
+                         });
+  };
+  EXPECT_LE(wrong_tracks(0.5, 0), 12);
+  EXPECT_LE(wrong_tracks(0, 13), 12);
+  EXPECT_GE(wrong_tracks(0, 0), 30);
+}
+
+TEST(KltTracker, SpreadsFeaturesOverTheGridAndKeepsThemApart) {
+  const FrontendConfig config = WithoutImu();
+  KltTracker tracker(config, TestRig());
+  // Strong contrast in the left third only: the rest must get its share none the less.
+  std::vector<unsigned char> image = Render(kWidthPx, kHeightPx, [](const Vector2d& u) { return u; });
+  for (size_t i = 0; i < image.size(); ++i) {
+    if (i % kWidthPx > kWidthPx / 3) {
+      image[i] = static_cast<unsigned char>(100 + image[i] / 4);
+    }
+  }
+  const TrackFrame frame = MustTrack(&tracker, 0, image);
+  EXPECT_EQ(static_cast<int>(frame.observations.size()), config.max_features);
+  std::map<int, int> cells;
+  for (const TrackObservation& a : frame.observations) {
+    const int column = static_cast<int>(a.pixel.x()) * config.grid_columns / kWidthPx;
+    const int row = static_cast<int>(a.pixel.y()) * config.grid_rows / kHeightPx;
+    ++cells[row * config.grid_columns + column];
+    for (const TrackObservation& b : frame.observations) {
+      // Sub-pixel refinement may bring two corners a little nearer than they were chosen.
+      EXPECT_TRUE(a.track_id == b.track_id || (a.pixel - b.pixel).norm() > config.min_distance_px - 6);
+    }
+  }
+  EXPECT_EQ(static_cast<int>(cells.size()), config.grid_columns * config.grid_rows);
+  for (const auto& [cell, count] : cells) {
+    EXPECT_LE(count, 6) << "cell " << cell;
+  }
+}
+
+TEST(KltTracker, IdsIncreaseAndNeverReturn) {
+  KltTracker tracker(WithoutImu(), TestRig());
+  const std::vector<unsigned char> wall = Render(kWidthPx, kHeightPx, [](const Vector2d& u) { return u; });
+  const std::vector<unsigned char> black(wall.size(), 0);
+  const TrackFrame first = MustTrack(&tracker, 0, wall);
+  const TrackFrame dark = MustTrack(&tracker, kFrameNs, black);
+  EXPECT_TRUE(dark.observations.empty());
+  EXPECT_EQ(tracker.statistics().tracked, 0);
+  EXPECT_EQ(tracker.statistics().lost, static_cast<int>(first.observations.size()));
+  const TrackFrame again = MustTrack(&tracker, 2 * kFrameNs, wall);
+  ASSERT_FALSE(again.observations.empty());
+  EXPECT_GT(again.observations.front().track_id, first.observations.back().track_id);
+  for (size_t i = 1; i < again.observations.size(); ++i) {
+    EXPECT_LT(again.observations[i - 1].track_id, again.observations[i].track_id);
+  }
+}
+
+TEST(KltTracker, DropsTracksThatLeaveTheImageAndAccountsForEveryTrack) {
+  KltTracker tracker(WithoutImu(), TestRig());
+  size_t before = 0;
+  for (int k = 0; k < 6; ++k) {
+    const TrackFrame frame =
+        MustTrack(&tracker, k * kFrameNs, Render(kWidthPx, kHeightPx, [&](const Vector2d& u) -> Vector2d {
+          return u + Vector2d(9.5 * k, 4.0 * k);
+        }));
+    const TrackerStatistics& statistics = tracker.statistics();
+    EXPECT_EQ(
+        static_cast<size_t>(statistics.tracked + statistics.lost + statistics.rejected + statistics.thinned),
+        before);
+    EXPECT_EQ(static_cast<size_t>(statistics.tracked + statistics.detected), frame.observations.size());
+    if (k > 0) {
+      EXPECT_GT(statistics.lost, 0);
+    }
+    for (const TrackObservation& observation : frame.observations) {
+      EXPECT_TRUE(TestRig().camera.InImage(observation.pixel, 10)) << observation.pixel.transpose();
+    }
+    EXPECT_GT(frame.frontend_ms, 0);
+    before = frame.observations.size();
+  }
+}
+
+TEST(KltTracker, TwoTrackersGiveTheSameBytesWhateverRunsBetween) {
+  const RigCalibration rig = TestRig(376, 240);
+  const Wall wall(rig.camera, 2.0);
+  KltTracker alone({}, rig);
+  KltTracker beside({}, rig);
+  KltTracker disturber({}, rig);
+  std::vector<TrackFrame> frames;
+  std::vector<std::vector<unsigned char>> images;
+  const Matrix3d R_step = so3::Exp({0.01, -0.02, 0.01});
+  Pose T_WC;
+  for (int k = 0; k < 5; ++k) {
+    images.push_back(wall.Image(T_WC));
+    frames.push_back(MustTrack(&alone, k * kFrameNs, images.back(), 376, 240));
+    FeedRotation(&alone, rig, R_step, k * kFrameNs);
+    T_WC.rotation = T_WC.rotation * R_step;
+    T_WC.translation += Vector3d(0.02, 0, 0);
+  }
+  for (int k = 0; k < 5; ++k) {
+    MustTrack(&disturber, k * kFrameNs, images[static_cast<size_t>(4 - k)], 376, 240);
+    const TrackFrame frame = MustTrack(&beside, k * kFrameNs, images[static_cast<size_t>(k)], 376, 240);
+    FeedRotation(&beside, rig, R_step, k * kFrameNs);
+    const TrackFrame& expected = frames[static_cast<size_t>(k)];
+    ASSERT_EQ(frame.observations.size(), expected.observations.size()) << "frame " << k;
+    for (size_t i = 0; i < frame.observations.size(); ++i) {
+      EXPECT_EQ(frame.observations[i].track_id, expected.observations[i].track_id);
+      EXPECT_EQ(frame.observations[i].pixel, expected.observations[i].pixel);
+    }
+  }
+}
+
+TEST(KltTracker, RefusesWrongSizesAndStampsThatDoNotIncrease) {
+  KltTracker tracker({}, TestRig());
+  const std::vector<unsigned char> image(kWidthPx * kHeightPx, 7);
+  const Result<TrackFrame> narrow = tracker.Track(0, image.data(), 640, kHeightPx);
+  EXPECT_EQ(narrow.code(), StatusCode::kInput);
+  EXPECT_THAT(narrow.message(), testing::HasSubstr("640 x 480, expected the camera's 752 x 480"));
+  EXPECT_EQ(tracker.Track(0, nullptr, kWidthPx, kHeightPx).code(), StatusCode::kInput);
+  MustTrack(&tracker, 1000, image);
+  const Result<TrackFrame> repeated = tracker.Track(1000, image.data(), kWidthPx, kHeightPx);
+  EXPECT_EQ(repeated.code(), StatusCode::kInput);
+  EXPECT_THAT(repeated.message(), testing::HasSubstr("1000 ns"));
+  EXPECT_FALSE(tracker.Track(999, image.data(), kWidthPx, kHeightPx).ok());
+  MustTrack(&tracker, 1001, image);
+}
+
+TEST(KltTracker, CountsImuSamplesItCannotUse) {
+  KltTracker tracker({}, TestRig());
+  tracker.AddImu({.stamp_ns = 10, .gyro = Vector3d::Zero(), .accel = Vector3d::Zero()});
+  tracker.AddImu({.stamp_ns = 10, .gyro = Vector3d::Zero(), .accel = Vector3d::Zero()});
+  tracker.AddImu({.stamp_ns = 20, .gyro = Vector3d(0, std::nan(""), 0), .accel = Vector3d::Zero()});
+  EXPECT_EQ(tracker.statistics().imu_ignored, 2);
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,318 @@
+#include "smoother/factors/slam_prior.h"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "smoother/factors/slam_prior_factor.h"
+#include "smoother/solve/window_system.h"
+#include "tests/smoother/factors/slam_fixture.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::CompareJacobians;
+using test::DenseWindow;
+using test::kAllConventions;
+using test::NumericJacobian;
+using test::SlamFixture;
+
+void ExpectPrior(const LinearPrior& prior, const DenseWindow& dense) {
+  ASSERT_EQ(prior.columns(), dense.hessian.rows());
+  const MatrixXd information = prior.jacobian.transpose() * prior.jacobian;
+  EXPECT_LT((information - dense.hessian).norm(), 1e-6 * dense.hessian.norm());
+  const VectorXd gradient = prior.jacobian.transpose() * prior.residual;
+  EXPECT_LT((gradient - dense.gradient).norm(), 1e-6 * dense.gradient.norm());
+  // The calibration's columns are judged by themselves: those of the poses are far larger.
+  const Index at = prior.CalibrationColumn();
+  const Index size = prior.calibration_size();
+  const VectorXd scale = dense.hessian.diagonal().segment(at, size).cwiseSqrt().cwiseInverse();
+  const MatrixXd own = scale.asDiagonal() * information.block(at, at, size, size) * scale.asDiagonal();
+  const MatrixXd expected = scale.asDiagonal() * dense.hessian.block(at, at, size, size) * scale.asDiagonal();
+  EXPECT_LE((own - expected).norm(), 1e-5 * expected.norm());
+}
+
+/// In every convention; with and without a calibration.
+class SlamPriorTest : public testing::TestWithParam<std::tuple<ErrorConvention, bool>> {
+ protected:
+  [[nodiscard]] static ErrorConvention convention() { return std::get<0>(GetParam()); }
+  [[nodiscard]] static SlamFixture Fixture(unsigned seed, const std::vector<int>& anchors) {
+    return SlamFixture(seed, convention(), std::get<1>(GetParam()), anchors);
+  }
+};
+
+TEST_P(SlamPriorTest, RowsOfAnAnchoredViewAgainstDifferences) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const SlamFixture fixture = Fixture(seed, {3, 4});
+    const std::vector<FrameGeometry> geometry = fixture.Geometry();
+    const int size = 15 + fixture.calibration.size();
+    for (const WindowTrack* track : fixture.change.after) {
+      const WindowView& view = track->views[1];
+      AnchoredRows rows;
+      ASSERT_TRUE(LinearizeAnchoredView(geometry[static_cast<size_t>(track->anchor->index)],
+                                        geometry[static_cast<size_t>(view.frame->index)], view.observation,
+                                        {}, track->landmark, &rows, true, fixture.Calibration()));
+      MatrixXd analytic(2, size);
+      analytic << rows.anchor * ChartJacobian(convention(), track->anchor->nav_state().T_WB()),
+          rows.view * ChartJacobian(convention(), view.frame->nav_state().T_WB()), rows.landmark,
+          rows.calibration;
+      const auto residual = [&](const VectorXd& delta) { return fixture.ViewResidual(*track, view, delta); };
+      EXPECT_EQ(CompareJacobians(analytic, NumericJacobian(residual, size), 1e-6), "");
+      EXPECT_LT((rows.residual - residual(VectorXd::Zero(size))).norm(), 1e-9);
+    }
+  }
+}
+
+TEST_P(SlamPriorTest, ChangeOfAnchorAgainstDifferences) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const SlamFixture fixture = Fixture(seed, {3});
+    const WindowTrack& track = *fixture.change.after.front();
+    const WindowFrame& from = *track.anchor;
+    const WindowFrame& to = fixture.window.frame(1);
+    const int size = 15 + fixture.calibration.size();
+    const auto geometry = [&](const WindowFrame& frame, const VectorXd& pose, const VectorXd& delta) {
+      return fixture.MovedGeometry(frame, pose, delta.tail(fixture.calibration.size()));
+    };
+    const VectorXd none = VectorXd::Zero(size);
+    AnchorChange change;
+    ASSERT_TRUE(ChangeAnchor(geometry(from, none.head<6>(), none), geometry(to, none.head<6>(), none),
+                             track.landmark, &change, fixture.Layout()));
+    const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
+      AnchorChange back;
+      EXPECT_TRUE(ChangeAnchor(geometry(to, delta.segment<6>(6), delta),
+                               geometry(from, delta.head<6>(), delta), change.to + delta.segment<3>(12),
+                               &back));
+      return back.to;
+    };
+    EXPECT_LT((old_coordinates(none) - track.landmark).norm(), 1e-12);
+    MatrixXd analytic(3, size);
+    analytic << change.from_frame * ChartJacobian(convention(), from.nav_state().T_WB()),
+        change.to_frame * ChartJacobian(convention(), to.nav_state().T_WB()), change.landmark,
+        change.calibration;
+    EXPECT_EQ(CompareJacobians(analytic, NumericJacobian(old_coordinates, size), 1e-6), "");
+  }
+}
+
+// GIVEN tracks that keep their landmarks, WHEN their oldest frame leaves, THEN the prior is the Schur
+// complement over prior, IMU and their views in that frame; no other view is used up.
+TEST_P(SlamPriorTest, NewFeaturesGiveTheSchurComplement) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SlamFixture fixture = Fixture(seed, {3, 4});
+    const size_t count = fixture.change.after.size();
+    ASSERT_GT(count, 3u);
+    DenseWindow dense(fixture, count);
+    dense.AddImu();
+    dense.AddPrior(fixture.first, 1, 0);
+    std::vector<size_t> all;
+    for (size_t i = 0; i < count; ++i) {
+      const WindowTrack& track = *fixture.change.after[i];
+      dense.AddView(track, track.views.front(), i);
+      all.push_back(i);
+    }
+    dense.KeepPrior(all);
+    ExpectPrior(fixture.Leave(), dense);
+  }
+}
+
+// GIVEN a prior with landmarks, WHEN its oldest frame leaves, THEN a landmark anchored there is expressed in
+// another frame and a lost one is eliminated with all of its views, nothing else being lost.
+TEST_P(SlamPriorTest, AnchorsThatLeaveAndLostFeaturesGiveTheSchurComplement) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SlamFixture fixture = Fixture(seed, {1, 4});
+    const LinearPrior prior = fixture.Leave();
+    const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
+    const size_t count = tracks.size();
+    const size_t lost = 1;
+    const int frames = fixture.window.size();
+    const Index cameras = fixture.calibration.size();
+    DenseWindow dense(fixture, count);
+    dense.AddImu();
+    dense.AddPrior(prior, frames, count);
+    std::vector<size_t> staying;
+    for (size_t i = 0; i < count; ++i) {
+      for (const WindowView& view : tracks[i]->views) {
+        if (i == lost || view.frame->index == 0) {
+          dense.AddView(*tracks[i], view, i);
+        }
+      }
+      if (i != lost) {
+        staying.push_back(i);
+      }
+    }
+    // The landmarks' new coordinates, by differences of the change of anchor.
+    MatrixXd substitute = MatrixXd::Identity(dense.hessian.rows(), dense.hessian.cols());
+    SlamChange change{tracks, {}, fixture.T_BC, {}};
+    for (const size_t i : staying) {
+      WindowTrack& track = fixture.window.tracks().at(tracks[i]->id);
+      change.after.push_back(&track);
+      if (track.anchor->index > 0) {
+        continue;
+      }
+      const WindowFrame& from = *track.anchor;
+      const WindowFrame& to = fixture.window.newest();
+      fixture.Anchor(&from, &to, &track);
+      const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
+        AnchorChange back;
+        EXPECT_TRUE(ChangeAnchor(fixture.MovedGeometry(to, delta.segment<6>(6), delta.tail(cameras)),
+                                 fixture.MovedGeometry(from, delta.head<6>(), delta.tail(cameras)),
+                                 track.landmark + delta.segment<3>(12), &back));
+        return back.to;
+      };
+      const MatrixXd jacobian = NumericJacobian(old_coordinates, static_cast<int>(15 + cameras));
+      const Index row = dense.Landmark(i);
+      substitute.block<3, 6>(row, 0) = jacobian.leftCols<6>();
+      substitute.block<3, 6>(row, 15 * (frames - 1)) = jacobian.middleCols<6>(6);
+      substitute.block<3, 3>(row, row) = jacobian.middleCols<3>(12);
+      substitute.block(row, dense.Calibration(), 3, cameras) = jacobian.rightCols(cameras);
+    }
+    dense.hessian = (substitute.transpose() * dense.hessian * substitute).eval();
+    dense.gradient = (substitute.transpose() * dense.gradient).eval();
+    dense.KeepPrior(staying);
+    ExpectPrior(
+        MarginalizeOldest(fixture.window, prior, fixture.NoVision(), fixture.gravity_W, nullptr, change),
+        dense);
+  }
+}
+
+// The factor's cost is the minimum over the landmarks, so its gradient is that of the cost: no derivative of
+// the landmarks is missing; and its rows are its gradient and its Gauss-Newton matrix.
+TEST_P(SlamPriorTest, ReducedSystemIsThatOfTheMinimumOverTheLandmarks) {
+  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+    SlamFixture fixture = Fixture(7, {2, 4});
+    const LinearPrior prior = fixture.Leave();
+    const int frames = fixture.window.size();
+    const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
+    const SlamPrior slam = fixture.calibrated()
+                               ? SlamPrior(&prior, tracks, fixture.window, fixture.calibration, {kernel, 1.5})
+                               : SlamPrior(&prior, tracks, fixture.window, fixture.T_BC, {kernel, 1.5});
+    WindowPoint origin = PointOf(fixture.window);
+    origin.camera = fixture.calibration.mean;
+    const auto reduce = [&](const VectorXd& zeta) {
+      WindowPoint point = origin;
+      for (int i = 0; i < frames; ++i) {
+        Vector9d xi = Vector9d::Zero();
+        xi.head(i == 0 ? 9 : 6) = zeta.segment(SlamPrior::Column(i), i == 0 ? 9 : 6);
+        point.states[static_cast<size_t>(i)] =
+            Retract(ErrorConvention::kSo3xRn, origin.states[static_cast<size_t>(i)], xi);
+      }
+      point.bias.gyro += zeta.segment<3>(9);
+      point.bias.accel += zeta.segment<3>(12);
+      if (fixture.calibrated()) {
+        point.camera = fixture.Moved(zeta.tail(fixture.calibration.size()));
+      }
+      VectorXd landmarks = slam.StartingLandmarks();
+      SlamPrior::Reduced reduced;
+      for (int k = 0; k < 4; ++k) {  // re-weighting converges linearly
+        EXPECT_TRUE(slam.Reduce(point, &landmarks, &reduced));
+      }
+      return reduced;
+    };
+    const SlamPrior::Reduced at = reduce(VectorXd::Zero(slam.columns()));
+    const auto cost = [&](const VectorXd& zeta) -> VectorXd {
+      return VectorXd::Constant(1, reduce(zeta).robust_cost / 2);
+    };
+    const VectorXd numeric = NumericJacobian(cost, slam.columns(), 1e-4).transpose();
+    EXPECT_LT((numeric - at.gradient).norm(), 1e-3 * at.gradient.norm()) << static_cast<int>(kernel);
+    // A focal length's own, many orders below a rotation's.
+    if (fixture.calibrated()) {
+      EXPECT_LT((numeric - at.gradient).tail<4>().norm(), 1e-3 * at.gradient.tail<4>().norm());
+    }
+  }
+}
+
+// GIVEN a window that fits its data, WHEN the oldest frame leaves and its tracks keep their landmarks, THEN
+// what is known about the newest state and the calibration stays the same.
+TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
+  SlamFixture fixture = Fixture(9, {3, 4});
+  for (auto& [id, track] : fixture.window.tracks()) {  // without noise, at their landmarks
+    const std::vector<FrameGeometry> geometry = fixture.Geometry();
+    const int base = track.anchor != nullptr ? track.anchor->index : track.views.front().frame->index;
+    for (WindowView& view : track.views) {
+      const LandmarkTransfer seen(geometry[static_cast<size_t>(base)],
+                                  geometry[static_cast<size_t>(view.frame->index)], track.landmark);
+      view.observation.z = seen.q.hnormalized();
+      if (fixture.calibrated()) {
+        ASSERT_TRUE(fixture.calibration.mean.camera.Project(seen.q, &view.pixel));
+      }
+    }
+  }
+  fixture.first.residual.setZero();
+  const auto vision = [&](bool all) {
+    const std::vector<FrameGeometry> geometry = fixture.Geometry();
+    PoseSystem system = fixture.NoVision();
+    TrackWorkspace workspace;
+    for (const WindowTrack* track : fixture.tracks()) {
+      Eigen::Vector3d landmark = track->landmark;
+      AnchorChange back;
+      if (track->anchor != nullptr) {
+        EXPECT_TRUE(ChangeAnchor(geometry[static_cast<size_t>(track->anchor->index)], geometry[0],
+                                 track->landmark, &back));
+        landmark = back.to;
+      }
+      if (all || track->anchor == nullptr) {
+        EXPECT_TRUE(AddTrack(track->views, geometry, {}, landmark, &workspace, &system));
+      }
+    }
+    return system;
+  };
+  Matrix15d before, after;
+  VectorXd camera_before, camera_after;
+  ASSERT_TRUE(NewestCovariance(fixture.window, fixture.first, vision(true), fixture.gravity_W, &before,
+                               nullptr, nullptr, nullptr, &camera_before));
+  const LinearPrior prior = fixture.Leave();
+  const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
+  const SlamPrior slam = fixture.calibrated()
+                             ? SlamPrior(&prior, tracks, fixture.window, fixture.calibration, {})
+                             : SlamPrior(&prior, tracks, fixture.window, fixture.T_BC, {});
+  WindowPoint point = PointOf(fixture.window);
+  point.camera = fixture.calibration.mean;
+  VectorXd landmarks = slam.StartingLandmarks();
+  SlamPrior::Reduced reduced;
+  ASSERT_TRUE(slam.Reduce(point, &landmarks, &reduced));
+  ASSERT_TRUE(NewestCovariance(fixture.window, prior, vision(false), fixture.gravity_W, &after, nullptr,
+                               nullptr, &reduced, &camera_after));
+  EXPECT_LT((after - before).norm(), 1e-5 * before.norm());
+  ASSERT_EQ(camera_after.size(), fixture.calibration.size());
+  for (Index i = 0; i < camera_after.size(); ++i) {
+    EXPECT_NEAR(camera_after[i], camera_before[i], 1e-5 * camera_before[i]) << i;
+    EXPECT_LT(camera_after[i], 0.999 * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
+  }
+}
+
+// Yaw and position of the whole window are unknown to vision and IMU, and stay so in the prior.
+TEST(SlamPriorGaugeTest, NothingIsLearntOfYawAndPosition) {
+  SlamFixture fixture(8, ErrorConvention::kRightInvariant, false, {1, 4});
+  fixture.first.jacobian.setZero();
+  LinearPrior prior = fixture.Leave();
+  for (int leave = 0; leave < 2; ++leave) {
+    MatrixXd gauge = MatrixXd::Zero(prior.columns(), 4);
+    for (int i = 0; i < static_cast<int>(prior.anchors.size()); ++i) {
+      gauge(LinearPrior::Column(i) + 2, 0) = 1;
+      gauge.block<3, 3>(LinearPrior::Column(i) + 3, 1).setIdentity();
+    }
+    EXPECT_LT((prior.jacobian * gauge).norm(), 1e-6 * prior.jacobian.norm());
+    // Once more, with anchors that leave.
+    SlamChange change{PriorTracks(prior, fixture.window), {}, fixture.T_BC, {}};
+    for (const WindowTrack* known : change.before) {
+      WindowTrack& track = fixture.window.tracks().at(known->id);
+      if (track.anchor->index == 0) {
+        fixture.Anchor(track.anchor, &fixture.window.newest(), &track);
+      }
+      change.after.push_back(&track);
+    }
+    prior = MarginalizeOldest(fixture.window, prior, fixture.NoVision(), fixture.gravity_W, nullptr, change);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Conventions, SlamPriorTest,
+                         testing::Combine(testing::ValuesIn(kAllConventions), testing::Bool()),
+                         [](const auto& item) {
+                           return std::string(ToString(std::get<0>(item.param))) +
+                                  (std::get<1>(item.param) ? "_calibrated" : "");
+                         });
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "smoother/window/window_calibration.h"
+#include "tests/smoother/window/window_fixture.h"
+
+namespace alidade::test {
+
+/// A pinhole camera for the fixture, all of whose calibration is estimated: views keep their pixels, and the
+/// frames were placed by other time offsets than the present one.
+inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
+  const Result<CameraModel> camera =
+      CameraModel::Create(DistortionModel::kNone, {458, 457, 367, 248}, {}, 752, 480);
+  EXPECT_TRUE(camera.ok());
+  CalibrationConfig config;
+  config.extrinsics = config.time_offset = config.intrinsics = true;
+  for (int i = 0; i < fixture->window.size(); ++i) {
+    WindowFrame& frame = fixture->window.frame(i);
+    frame.time_offset_s = 0.001 * i;
+    frame.rates = BodyRates(fixture->random.Vector(1), frame.nav_state().v_WB);
+  }
+  for (auto& [id, track] : fixture->window.tracks()) {
+    for (WindowView& view : track.views) {
+      EXPECT_TRUE(camera->Project(view.observation.z.homogeneous(), &view.pixel));
+      EXPECT_TRUE(NormalizeObservation(*camera, view.pixel, 1.0, &view.observation));
+    }
+  }
+  return InitialCalibration(config, {*camera, fixture->T_BC, 0.004});
+}
+
+}  // namespace alidade::test

@@ -1,0 +1,315 @@
+#include "smoother/window/window_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "smoother/factors/inverse_depth_factor.h"
+#include "smoother/factors/pose_only_factor.h"
+#include "smoother/factors/prior_factor.h"
+#include "smoother/solve/marginalization.h"
+#include "smoother/solve/window_solver.h"
+#include "smoother/solve/window_system.h"
+#include "tests/smoother/window/calibrated_window.h"
+#include "tests/support/jacobian_checker.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::WindowFixture;
+
+constexpr int kBlock = CalibrationLayout::kMaxSize;
+
+/// A window seen by a camera whose calibration is estimated.
+struct CalibratedWindow : WindowFixture {
+  explicit CalibratedWindow(unsigned seed, double noise_sigma = 1.0, int frames = 4, int landmarks = 12)
+      : WindowFixture(seed, frames, landmarks, noise_sigma) {
+    estimate = test::CalibrateWindow(this);
+    calibration = {estimate.layout, estimate.mean};
+  }
+
+  [[nodiscard]] PoseSystem Vision(int first_base, int last_base) const {
+    const std::vector<FrameGeometry> geometry = MakeGeometry(window, calibration.mean);
+    PoseSystem system(window.size(), &calibration);
+    TrackWorkspace workspace;
+    for (const WindowTrack* track : tracks()) {
+      const int base = track->views.front().frame->index;
+      if (base >= first_base && base <= last_base) {
+        EXPECT_TRUE(AddTrack(track->views, geometry, {}, track->landmark, &workspace, &system));
+      }
+    }
+    return system;
+  }
+
+  WindowCalibration calibration;
+  CalibrationEstimate estimate;
+};
+
+Matrix15d SomeCovariance() {
+  Vector15d deviations;
+  deviations << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.1),
+      Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.05);
+  return deviations.cwiseAbs2().asDiagonal();
+}
+
+/// The gradient J^T r of a factor over poses (canonical chart) and calibration block at a point.
+VectorXd Gradient(const PoseOnlyFactor& factor, const std::vector<VectorXd>& blocks, double* cost) {
+  std::vector<const double*> parameters;
+  std::vector<std::vector<double>> storage;
+  std::vector<double*> jacobians;
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    parameters.push_back(blocks[i].data());
+    storage.emplace_back(static_cast<size_t>(factor.rows()) * (i + 1 < blocks.size() ? 9 : kBlock));
+  }
+  for (std::vector<double>& each : storage) {
+    jacobians.push_back(each.data());
+  }
+  VectorXd residual(factor.rows());
+  EXPECT_TRUE(factor.Evaluate(parameters.data(), residual.data(), jacobians.data()));
+  *cost = 0.5 * residual.squaredNorm();
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  VectorXd gradient(0);
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    const Eigen::Index width = i + 1 < blocks.size() ? 9 : kBlock;
+    const Eigen::Map<const RowMatrix> jacobian(storage[i].data(), factor.rows(), width);
+    gradient.conservativeResize(gradient.size() + width);
+    gradient.tail(width) = jacobian.transpose() * residual;
+  }
+  return gradient;
+}
+
+TEST(WindowCalibrationTest, PoseOnlyGradientIsThatOfItsCostOverPosesAndCalibration) {
+  CalibratedWindow fixture(11);
+  const PoseOnlyFactor factor(fixture.window, fixture.tracks(), fixture.calibration, {});
+  test::RandomStates random(12);
+  for (int trial = 0; trial < 5; ++trial) {
+    std::vector<VectorXd> blocks;
+    for (int i = 0; i < fixture.window.size(); ++i) {
+      VectorXd block(kNavAmbientSize);
+      PackNavState(fixture.window.frame(i).nav_state(), block.data());
+      blocks.push_back(block);
+    }
+    blocks.push_back(VectorXd::Zero(kBlock));
+    for (int i = 0; trial > 0 && i < fixture.calibration.size(); ++i) {
+      // Well away from zero, where the rotation's chart bends.
+      blocks.back()[i] = fixture.estimate.deviations[i] * random.Uniform(-0.5, 0.5);
+    }
+    const auto move = [&](const VectorXd& xi) -> VectorXd {
+      std::vector<VectorXd> moved = blocks;
+      for (int i = 0; i < fixture.window.size(); ++i) {
+        const NavState state =
+            Retract(ErrorConvention::kSo3xRn, UnpackNavState(blocks[static_cast<size_t>(i)].data()),
+                    Vector9d(xi.segment<9>(9 * i)));
+        PackNavState(state, moved[static_cast<size_t>(i)].data());
+      }
+      moved.back() += xi.tail<kBlock>();
+      double cost = 0;
+      Gradient(factor, moved, &cost);
+      return VectorXd::Constant(1, cost);
+    };
+    double cost = 0;
+    const VectorXd gradient = Gradient(factor, blocks, &cost);
+    const int size = 9 * fixture.window.size() + kBlock;
+    const MatrixXd numeric = test::NumericJacobian(move, size, 1e-6);
+    EXPECT_EQ(test::CompareJacobians(gradient.transpose(), numeric, 2e-5), "") << "trial " << trial;
+  }
+}
+
+TEST(WindowCalibrationTest, PriorOnTheCalibrationIsNumeric) {
+  CalibratedWindow fixture(13);
+  LinearPrior prior;
+  ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kSo3xRn, fixture.window.frame(0), SomeCovariance(), &prior));
+  AddCalibrationPrior(fixture.estimate, &prior);
+  ASSERT_EQ(prior.columns(), prior.jacobian.cols());
+  WindowCalibration moved = fixture.calibration;  // the window has moved on since the prior was made
+  VectorXd shift = 0.7 * fixture.estimate.deviations;
+  ASSERT_TRUE(Retract(moved.layout, shift, &moved.mean));
+  const PriorFactor factor(&prior, &moved);
+  const WindowFrame& frame = fixture.window.frame(0);
+  const auto evaluate = [&](const VectorXd& block, double* jacobian) {
+    const double* parameters[] = {frame.nav.data(), frame.bias.data(), block.data()};
+    double* jacobians[] = {nullptr, nullptr, jacobian};
+    VectorXd residual(factor.rows());
+    EXPECT_TRUE(factor.Evaluate(parameters, residual.data(), jacobians));
+    return residual;
+  };
+  const VectorXd at = VectorXd::Zero(kBlock);
+  EXPECT_NEAR(evaluate(at, nullptr).norm(), 0.7 * std::sqrt(11.0), 1e-3);
+  Eigen::Matrix<double, Eigen::Dynamic, kBlock, Eigen::RowMajor> jacobian(factor.rows(), kBlock);
+  evaluate(at, jacobian.data());
+  const auto residual = [&](const VectorXd& block) { return evaluate(block, nullptr); };
+  EXPECT_EQ(test::CompareJacobians(jacobian, test::NumericJacobian(residual, kBlock, 1e-5), 1e-7), "");
+}
+
+// GIVEN a linear problem, WHEN its oldest frame is marginalised, THEN what is known about the newest state
+// and the calibration stays the same.
+TEST(WindowCalibrationTest, MarginalizationKeepsWhatIsKnown) {
+  for (const ErrorConvention convention : test::kAllConventions) {
+    CalibratedWindow fixture(14);
+    LinearPrior prior;
+    ASSERT_TRUE(MakeInitialPrior(convention, fixture.window.frame(0), SomeCovariance(), &prior));
+    AddCalibrationPrior(fixture.estimate, &prior);
+    const PoseSystem all = fixture.Vision(0, 3);
+    Matrix15d before;
+    VectorXd deviations_before;
+    ASSERT_TRUE(NewestCovariance(fixture.window, prior, all, fixture.gravity_W, &before, nullptr, nullptr,
+                                 nullptr, &deviations_before));
+    ASSERT_EQ(deviations_before.size(), 11);
+    for (int i = 0; i < 11; ++i) {
+      EXPECT_LT(deviations_before[i], (1 + 1e-9) * fixture.estimate.deviations[i]) << i;
+    }
+    const PoseSystem leaving = fixture.Vision(0, 0);
+    LinearPrior next = MarginalizeOldest(fixture.window, prior, leaving, fixture.gravity_W);
+    ASSERT_EQ(next.columns(), next.jacobian.cols());
+    for (auto& [id, track] : fixture.window.tracks()) {
+      if (track.views.front().frame->index == 0) {
+        track.Restart();
+      }
+    }
+    std::erase_if(fixture.window.tracks(), [](const auto& item) { return item.second.views.empty(); });
+    fixture.window.RemoveOldest();
+    Matrix15d after;
+    VectorXd deviations_after;
+    ASSERT_TRUE(NewestCovariance(fixture.window, next, fixture.Vision(0, 2), fixture.gravity_W, &after,
+                                 nullptr, nullptr, nullptr, &deviations_after));
+    EXPECT_LT((after - before).norm(), 1e-6 * before.norm()) << ToString(convention);
+    EXPECT_LT((deviations_after - deviations_before).cwiseQuotient(deviations_before).norm(), 1e-6);
+  }
+}
+
+// The rows of explicit inverse depths over all of their blocks, well away from the calibration block's zero.
+TEST(WindowCalibrationTest, InverseDepthRowsAgainstDifferences) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    CalibratedWindow fixture(seed);
+    const WindowTrack& track = *fixture.tracks().front();
+    const WindowView& view = track.views.back();
+    const WindowFrame* base = track.views.front().frame;
+    const InverseDepthFactor factor(base, &view, &fixture.calibration);
+    const BaseBearingFactor bearing(&track.views.front(), &fixture.calibration);
+    VectorXd at = VectorXd::Zero(kBlock);
+    for (int i = 0; i < fixture.calibration.size(); ++i) {
+      at[i] = fixture.estimate.deviations[i] * fixture.random.Uniform(-0.5, 0.5);
+    }
+    const auto evaluate = [&](const VectorXd& delta, double* const* jacobians) -> VectorXd {
+      Eigen::Matrix<double, kNavAmbientSize, 2> nav;
+      for (int i = 0; i < 2; ++i) {
+        const NavState state = (i == 0 ? *base : *view.frame).nav_state();
+        PackNavState(Retract(ErrorConvention::kSo3xRn, state, Vector9d(delta.segment<9>(9 * i))),
+                     nav.col(i).data());
+      }
+      const Eigen::Vector3d landmark = track.landmark + delta.segment<3>(18);
+      const VectorXd block = at + delta.tail<kBlock>();
+      const double* parameters[] = {nav.col(0).data(), nav.col(1).data(), landmark.data(), block.data()};
+      VectorXd residual(4);
+      EXPECT_TRUE(factor.Evaluate(parameters, residual.data(), jacobians));
+      EXPECT_TRUE(bearing.Evaluate(parameters + 2, residual.data() + 2,
+                                   jacobians == nullptr ? nullptr : jacobians + 4));
+      return residual;
+    };
+    using Rows3 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
+    using Rows9 = Eigen::Matrix<double, 2, 9, Eigen::RowMajor>;
+    using RowsBlock = Eigen::Matrix<double, 2, kBlock, Eigen::RowMajor>;
+    Rows9 of_base, of_view;
+    Rows3 of_landmark, bearing_of_landmark;
+    RowsBlock of_camera, bearing_of_camera;
+    double* jacobians[] = {of_base.data(),
+                           of_view.data(),
+                           of_landmark.data(),
+                           of_camera.data(),
+                           bearing_of_landmark.data(),
+                           bearing_of_camera.data()};
+    evaluate(VectorXd::Zero(21 + kBlock), jacobians);
+    MatrixXd analytic = MatrixXd::Zero(4, 21 + kBlock);
+    analytic.topRows<2>() << of_base, of_view, of_landmark, of_camera;
+    analytic.bottomRows<2>().middleCols<3>(18) = bearing_of_landmark;
+    analytic.bottomRows<2>().rightCols<kBlock>() = bearing_of_camera;
+    const auto residual = [&](const VectorXd& delta) { return evaluate(delta, nullptr); };
+    const MatrixXd numeric = test::NumericJacobian(residual, 21 + kBlock);
+    EXPECT_EQ(test::CompareJacobians(analytic, numeric, 1e-6), "") << "seed " << seed;
+    // Over the intrinsics alone: theirs are a thousand times smaller than a rotation's.
+    const int first = 21 + fixture.calibration.layout.intrinsics();
+    EXPECT_EQ(test::CompareJacobians(analytic.middleCols<4>(first), numeric.middleCols<4>(first), 1e-6), "");
+    EXPECT_GT(numeric.middleCols<4>(first).norm(), 0.1);
+  }
+}
+
+/// GIVEN exact data and a camera that is given wrong and hardly trusted, WHEN the window is solved, THEN the
+/// right one is found.
+void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
+  CalibratedWindow fixture(21, 0.0, 8, 40);
+  CalibrationConfig config;
+  config.extrinsics = config.time_offset = true;
+  config.rotation_std_rad = config.translation_std_m = config.time_offset_std_s = 1e4;
+  fixture.estimate = InitialCalibration(config, fixture.estimate.mean);
+  fixture.calibration.layout = fixture.estimate.layout;
+  const CameraCalibration truth = fixture.calibration.mean;
+  const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, truth);
+  for (auto& [id, track] : fixture.window.tracks()) {
+    for (WindowView& view : track.views) {
+      const LandmarkTransfer seen(geometry[static_cast<size_t>(track.views.front().frame->index)],
+                                  geometry[static_cast<size_t>(view.frame->index)], track.landmark);
+      view.observation.z = seen.q.hnormalized();
+    }
+  }
+  LinearPrior prior;
+  ASSERT_TRUE(
+      MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0), SomeCovariance(), &prior));
+  AddCalibrationPrior(fixture.estimate, &prior);
+  if (slam_features) {
+    SlamChange change;
+    for (auto& [id, track] : fixture.window.tracks()) {
+      AnchorChange moved;
+      if (track.views.front().frame->index == 0 &&
+          ChangeAnchor(geometry.front(), geometry.back(), track.landmark, &moved)) {
+        track.landmark = moved.to;
+        track.anchor = &fixture.window.newest();
+        change.after.push_back(&track);
+      }
+    }
+    prior = MarginalizeOldest(fixture.window, prior, PoseSystem(fixture.window.size(), &fixture.calibration),
+                              fixture.gravity_W, nullptr, change);
+    fixture.window.RemoveOldest();
+    ASSERT_GT(prior.landmarks.size(), 10u);
+  }
+  VectorXd wrong(7);
+  wrong << 0.02, -0.02, 0.02, 0.01, -0.01, 0.015, 0.01;
+  ASSERT_TRUE(Retract(fixture.calibration.layout, wrong, &fixture.calibration.mean));
+  WindowSolveOptions options;
+  options.smoother.landmark = landmark;
+  options.smoother.max_iterations = 50;
+  options.T_BC = fixture.T_BC;
+  options.gravity_W = fixture.gravity_W;
+  std::vector<WindowTrack*> tracks;
+  for (auto& [id, track] : fixture.window.tracks()) {
+    if (track.anchor == nullptr) {
+      tracks.push_back(&track);
+    }
+  }
+  std::optional<SlamPrior> slam;
+  if (slam_features) {
+    slam.emplace(&prior, PriorTracks(prior, fixture.window), fixture.window, fixture.calibration,
+                 ObservationKernel{});
+  }
+  const Result<WindowSolveReport> report = SolveWindow(options, prior, tracks, &fixture.window, nullptr,
+                                                       slam ? &*slam : nullptr, &fixture.calibration);
+  ASSERT_TRUE(report.ok()) << report.message();
+  const VectorXd error = Local(fixture.calibration.layout, truth, fixture.calibration.mean);
+  EXPECT_LT(error.head<3>().norm(), 1e-4);
+  EXPECT_LT(error.segment<3>(3).norm(), 1e-3);
+  EXPECT_LT(std::abs(error[6]), 1e-4);
+}
+
+TEST(WindowCalibrationTest, PoseOnlyLandmarksRecoverTheCamera) {
+  ExpectRecovery(SmootherLandmark::kPoseOnly, false);
+}
+TEST(WindowCalibrationTest, InverseDepthsRecoverTheCamera) {
+  ExpectRecovery(SmootherLandmark::kInverseDepth, false);
+}
+TEST(WindowCalibrationTest, FeaturesOfThePriorRecoverTheCamera) {
+  ExpectRecovery(SmootherLandmark::kPoseOnly, true);
+}
+
+}  // namespace
+}  // namespace alidade
