@@ -8,8 +8,6 @@
 namespace alidade {
 namespace {
 
-// Fewer refusals are a matter of tracks, whatever their share.
-constexpr int kMinRefusedForConsensus = 8;
 // A remembered track that is refused more often in a row is taken for another point.
 constexpr int kMaxRefusals = 1;
 
@@ -131,8 +129,8 @@ void FilterEstimator::GateBlocks() {
     refused += accepted_[i] ? 0 : 1;
   }
   const bool state_is_suspect =
-      refused >= kMinRefusedForConsensus &&
-      refused > config_.vision.max_gated_share * static_cast<double>(appended_.size());
+      StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
+                     kLeastRefusedTracks);
   statistics_.suspect = state_is_suspect;
   Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
   Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();

@@ -8,7 +8,6 @@
 #include "core/inverse_depth.h"
 #include "core/landmark_reduction.h"
 #include "core/pose_only.h"
-#include "core/robust.h"
 #include "tests/support/jacobian_checker.h"
 #include "tests/support/random_states.h"
 
@@ -298,25 +297,6 @@ TEST(LandmarkReductionTest, RefinementReachesTheMinimum) {
     EXPECT_LT(gradient.norm(), 1e-2) << "of " << at_minimum.point_jacobian.squaredNorm();
     EXPECT_LT((p - scene.point).norm(), 0.3);
   }
-}
-
-TEST(RobustTest, GateKeepsItsProbability) {
-  EXPECT_NEAR(ChiSquareQuantile(2, 0.95), 5.991464547, 1e-8);  // tables
-  EXPECT_NEAR(ChiSquareQuantile(300, 0.99), 359.906, 1e-2);
-  const ChiSquareGate gate(0.95, 10);
-  EXPECT_TRUE(gate.Accepts(5.9, 2));
-  EXPECT_FALSE(gate.Accepts(6.1, 2));
-  EXPECT_NEAR(gate.Threshold(20), 31.410, 1e-2) << "beyond the table";
-  EXPECT_TRUE(ChiSquareGate(1.0).Accepts(1e300, 3));
-}
-
-TEST(RobustTest, KernelsDescendFromOne) {
-  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
-    EXPECT_NEAR(RobustWeight(kernel, 2, 1e-12), 1, 1e-9);
-  }
-  EXPECT_EQ(RobustWeight(RobustKernel::kHuber, 2, 3.9), 1);
-  EXPECT_NEAR(RobustWeight(RobustKernel::kHuber, 2, 16), 0.5, 1e-15);
-  EXPECT_NEAR(RobustWeight(RobustKernel::kCauchy, 2, 4), 0.5, 1e-15);
 }
 
 }  // namespace
