@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error_convention.h"
 #include "core/format.h"
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
 #include "core/robust.h"
 #include "gnss/alignment/carried_state.h"
+#include "gnss/model/measurement_model.h"
 #include "gnss/model/receiver_clock.h"
 
 namespace alidade {
@@ -22,7 +24,8 @@ using Eigen::Vector3d;
 constexpr double kPositionFloorM = 3;
 constexpr double kVelocityFloorMps = 0.15;  // lever arm, scale and quantisation of the IMU too
 constexpr double kMinSpacingS = 0.4;        // between the epochs that are used
-constexpr int kIterations = 8;
+constexpr int kIntegrations = 2;
+constexpr int kStepsPerIntegration = 5;
 
 Matrix3d InformationRoot(const Matrix3d& covariance, double floor) {
   const Matrix3d widened = covariance + floor * floor * Matrix3d::Identity();
@@ -52,6 +55,31 @@ struct GnssInertialStart::Fit {
   ImuBias bias;
   Matrix15d covariance = Matrix15d::Zero();
   std::vector<Preintegration> intervals;  ///< from the first epoch to each later one
+  std::vector<Vector3d> gyro_radps;       ///< as measured at each epoch, the first included
+};
+
+/// Normal equations over the error of the state at the first epoch, canonical chart.
+struct GnssInertialStart::Equations {
+  Matrix15d hessian = Matrix15d::Zero();
+  Vector15d gradient = Vector15d::Zero();
+  double cost = 0;  ///< robust
+
+  /// `jacobian`: of the residual over the state at its epoch; `chain`: of that state over the first.
+  void Add(const Vector3d& residual, const Eigen::Matrix<double, 3, 15>& jacobian, const Matrix15d& chain,
+           const Matrix3d& root, double huber_sigma) {
+    const Vector3d r = root * residual;
+    const double weight = RobustWeight(RobustKernel::kHuber, huber_sigma, r.squaredNorm());
+    const Eigen::Matrix<double, 3, 15> j = root * jacobian * chain;
+    hessian += weight * j.transpose() * j;
+    gradient += weight * j.transpose() * r;
+    cost += weight * r.squaredNorm();
+  }
+  /// Zero-mean prior of the three unknowns from `column` on.
+  void AddPrior(Eigen::Index column, const Vector3d& value, double deviation) {
+    const double information = 1 / (deviation * deviation);
+    hessian.diagonal().segment<3>(column).array() += information;
+    gradient.segment<3>(column) += information * value;
+  }
 };
 
 GnssInertialStart::GnssInertialStart(const EstimatorConfig& config, const RigCalibration& rig)
@@ -75,15 +103,12 @@ void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<Sin
   if (!enu_) {
     enu_ = EnuFrame::At(receiver_.anchor_E.value_or(solution->position_E));
   }
-  const Matrix3d R_NE = enu_->R_EN.transpose();
   Fix fix;
   fix.stamp_ns = epoch.stamp_ns;
-  fix.position_N = enu_->FromEcef(solution->position_E);
-  fix.velocity_N = R_NE * solution->velocity_E;
-  fix.position_root =
-      InformationRoot(R_NE * solution->position_covariance_E * R_NE.transpose(), kPositionFloorM);
-  fix.velocity_root =
-      InformationRoot(R_NE * solution->velocity_covariance_E * R_NE.transpose(), kVelocityFloorMps);
+  fix.position_E = solution->position_E;
+  fix.velocity_E = solution->velocity_E;
+  fix.position_root = InformationRoot(solution->position_covariance_E, kPositionFloorM);
+  fix.velocity_root = InformationRoot(solution->velocity_covariance_E, kVelocityFloorMps);
   fix.clock.setZero();
   fix.clock[ClockState::kClock] = solution->clock_m;
   fix.clock[ClockState::kDrift] = solution->drift_mps;
@@ -104,93 +129,95 @@ void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<Sin
   }
 }
 
-std::vector<Preintegration> GnssInertialStart::Integrate(double offset_s, std::vector<Vector3d>* gyro,
-                                                         TimeNs* first_ns) const {
+bool GnssInertialStart::Integrate(double offset_s, Fit* fit) const {
   constexpr double kAnyGapS = 1e6;
   ImuBuffer buffer(kAnyGapS);
   for (const ImuSample& sample : imu_) {
     (void)buffer.Add(sample);
   }
-  std::vector<Preintegration> intervals;
-  Preintegration sum(ImuBias(), noise_);
-  *first_ns = fixes_.front().stamp_ns + SecondsToNs(offset_s);
-  TimeNs from = *first_ns;
+  Preintegration sum(fit->bias, noise_);
+  fit->intervals.clear();
+  fit->gyro_radps.clear();
+  fit->first_ns = fixes_.front().stamp_ns + SecondsToNs(offset_s);
+  TimeNs from = fit->first_ns;
   std::vector<ImuSample> samples;
   for (std::size_t k = 1; k < fixes_.size(); ++k) {
     const TimeNs to = fixes_[k].stamp_ns + SecondsToNs(offset_s);
     if (!buffer.Interval(from, to, &samples).ok()) {
-      return {};
+      return false;
     }
     sum.Add(samples);
-    intervals.push_back(sum);
-    gyro->push_back(samples.back().gyro);
+    fit->intervals.push_back(sum);
+    if (k == 1) {
+      fit->gyro_radps.push_back(samples.front().gyro);
+    }
+    fit->gyro_radps.push_back(samples.back().gyro);
     from = to;
   }
-  return intervals;
+  return !fit->intervals.empty();
 }
 
-GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
-  Fit fit;
-  std::vector<Vector3d> gyro;
-  fit.intervals = Integrate(offset_s, &gyro, &fit.first_ns);
-  if (fit.intervals.empty()) {
-    return fit;
-  }
+/// Attitude by velocity matching; velocity and position as the first epoch says.
+NavState GnssInertialStart::FirstGuess(const Fit& fit) const {
+  const Matrix3d R_NE = enu_->R_EN.transpose();
   const Fix& first = fixes_.front();
   std::vector<Vector3d> sensed;
   std::vector<Vector3d> seen;
   for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
     sensed.push_back(fit.intervals[k].beta());
-    seen.push_back(fixes_[k + 1].velocity_N - first.velocity_N - fit.intervals[k].duration_s() * gravity_W_);
+    seen.push_back(R_NE * (fixes_[k + 1].velocity_E - first.velocity_E) -
+                   fit.intervals[k].duration_s() * gravity_W_);
   }
-  fit.nav.R_WB = RotationBetween(sensed, seen);
-  fit.nav.v_WB = first.velocity_N;
-  fit.nav.p_WB = first.position_N - fit.nav.R_WB * receiver_.p_BA;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Matrix15d hessian = Matrix15d::Zero();
-    Vector15d gradient = Vector15d::Zero();
-    fit.cost = 0;
-    const auto add = [&](const Vector3d& residual, const Eigen::Matrix<double, 3, 15>& jacobian,
-                         const Matrix3d& root) {
-      const Vector3d r = root * residual;
-      const double weight = RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r.squaredNorm());
-      const Eigen::Matrix<double, 3, 15> j = root * jacobian;
-      hessian += weight * j.transpose() * j;
-      gradient += weight * j.transpose() * r;
-      fit.cost += weight * r.squaredNorm();
-    };
-    const auto add_fix = [&](const Fix& fix, const NavState& nav, const Matrix15d& chain,
-                             const Vector3d& omega_B) {
-      const Vector3d swing = omega_B.cross(receiver_.p_BA);
-      Eigen::Matrix<double, 3, 15> position = chain.middleRows<3>(3);
-      position -= nav.R_WB * Skew(receiver_.p_BA) * chain.topRows<3>();
-      Eigen::Matrix<double, 3, 15> velocity = chain.middleRows<3>(6);
-      velocity -= nav.R_WB * Skew(swing) * chain.topRows<3>();
-      add(nav.p_WB + nav.R_WB * receiver_.p_BA - fix.position_N, position, fix.position_root);
-      add(nav.v_WB + nav.R_WB * swing - fix.velocity_N, velocity, fix.velocity_root);
-    };
-    add_fix(first, fit.nav, Matrix15d::Identity(), gyro.front() - fit.bias.gyro);
-    for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
-      Matrix15d chain;
-      const NavState nav = CarryState(fit.intervals[k], fit.nav, fit.bias, gravity_W_, &chain);
-      add_fix(fixes_[k + 1], nav, chain, gyro[k] - fit.bias.gyro);
+  NavState nav;
+  nav.R_WB = RotationBetween(sensed, seen);
+  nav.v_WB = R_NE * first.velocity_E;
+  nav.p_WB = enu_->FromEcef(first.position_E) - nav.R_WB * receiver_.p_BA;
+  return nav;
+}
+
+GnssInertialStart::Equations GnssInertialStart::Linearize(const Fit& fit) const {
+  const AntennaMount mount{*enu_, receiver_.p_BA};
+  Equations equations;
+  for (std::size_t k = 0; k < fixes_.size(); ++k) {
+    NavState nav = fit.nav;
+    Matrix15d chain = Matrix15d::Identity();
+    if (k > 0) {
+      nav = CarryState(fit.intervals[k - 1], fit.nav, fit.bias, gravity_W_, &chain);
     }
-    const double gyro_information = 1 / (init_.gyro_bias_std_radps * init_.gyro_bias_std_radps);
-    const double accel_information = 1 / (init_.accel_bias_std_mps2 * init_.accel_bias_std_mps2);
-    hessian.diagonal().segment<3>(9).array() += gyro_information;
-    hessian.diagonal().segment<3>(12).array() += accel_information;
-    gradient.segment<3>(9) += gyro_information * fit.bias.gyro;
-    gradient.segment<3>(12) += accel_information * fit.bias.accel;
-    const Eigen::LDLT<Matrix15d> solver(hessian);
-    const Vector15d step = solver.solve(-gradient);
+    Eigen::Matrix<double, 3, 15> jacobian;
+    const Vector3d position_E = mount.Position(nav, &jacobian);
+    equations.Add(position_E - fixes_[k].position_E, jacobian, chain, fixes_[k].position_root,
+                  config_.robust_scale_sigma);
+    const Vector3d velocity_E = mount.Velocity(nav, fit.bias, fit.gyro_radps[k], &jacobian);
+    equations.Add(velocity_E - fixes_[k].velocity_E, jacobian, chain, fixes_[k].velocity_root,
+                  config_.robust_scale_sigma);
+  }
+  equations.AddPrior(9, fit.bias.gyro, init_.gyro_bias_std_radps);
+  equations.AddPrior(12, fit.bias.accel, init_.accel_bias_std_mps2);
+  return equations;
+}
+
+GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
+  Fit fit;
+  for (int iteration = 0; iteration < kIntegrations * kStepsPerIntegration; ++iteration) {
+    // Over tens of seconds a bias of 5 mrad/s is beyond the increments' first order.
+    if (iteration % kStepsPerIntegration == 0 && !Integrate(offset_s, &fit)) {
+      return fit;
+    }
+    if (iteration == 0) {
+      fit.nav = FirstGuess(fit);
+    }
+    const Equations equations = Linearize(fit);
+    const Eigen::LDLT<Matrix15d> solver(equations.hessian);
+    const Vector15d step = solver.solve(-equations.gradient);
     if (solver.info() != Eigen::Success || !solver.isPositive() || !step.allFinite()) {
       return fit;
     }
-    fit.nav.R_WB = so3::Normalize(fit.nav.R_WB * so3::Exp(step.head<3>()));
-    fit.nav.p_WB += step.segment<3>(3);
-    fit.nav.v_WB += step.segment<3>(6);
+    fit.nav = Retract(ErrorConvention::kSo3xRn, fit.nav, step.head<9>());
+    fit.nav.R_WB = so3::Normalize(fit.nav.R_WB);
     fit.bias.gyro += step.segment<3>(9);
     fit.bias.accel += step.segment<3>(12);
+    fit.cost = equations.cost;
     fit.covariance = solver.solve(Matrix15d::Identity());
   }
   fit.ok = true;

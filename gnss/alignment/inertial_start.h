@@ -36,17 +36,21 @@ class GnssInertialStart {
   [[nodiscard]] const std::string& report() const { return report_; }
 
  private:
+  /// An epoch's single point.
   struct Fix {
     TimeNs stamp_ns = 0;
-    Eigen::Vector3d position_N, velocity_N;
-    Eigen::Matrix3d position_root, velocity_root;  ///< of information
+    Eigen::Vector3d position_E, velocity_E;
+    Eigen::Matrix3d position_root, velocity_root;  ///< of information, ECEF axes
     Vector6d clock;
   };
   struct Fit;
+  struct Equations;
 
   [[nodiscard]] Fit Solve(double offset_s) const;
-  [[nodiscard]] std::vector<Preintegration> Integrate(double offset_s, std::vector<Eigen::Vector3d>* gyro,
-                                                      TimeNs* first_ns) const;
+  /// The IMU between the epochs, integrated with the fit's biases; false when it does not reach them.
+  bool Integrate(double offset_s, Fit* fit) const;
+  [[nodiscard]] NavState FirstGuess(const Fit& fit) const;
+  [[nodiscard]] Equations Linearize(const Fit& fit) const;
 
   GnssConfig config_;
   InitConfig init_;
