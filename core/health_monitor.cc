@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/format.h"
-#include "core/lie.h"
+#include "core/yaw_shift.h"
 
 namespace alidade {
 namespace {
@@ -24,12 +24,11 @@ double Yaw(const Matrix3d& R_WB) {
   return upright ? std::atan2(-R_WB(0, 1), R_WB(1, 1)) : std::atan2(R_WB(1, 0), R_WB(0, 0));
 }
 
-/// A turn about the vertical and a shift, in the canonical chart of a state: 15 x 4.
+/// A rotation about the vertical through the position, and a shift, in the canonical chart of a state: 15
+/// x 4.
 Eigen::Matrix<double, 15, 4> GaugeDirections(const NavState& state) {
   Eigen::Matrix<double, 15, 4> directions = Eigen::Matrix<double, 15, 4>::Zero();
-  directions.block<3, 1>(0, 0) = state.R_WB.row(2).transpose();
-  directions.block<3, 3>(3, 1).setIdentity();
-  directions.block<3, 1>(6, 0) = Vector3d::UnitZ().cross(state.v_WB);
+  directions.topRows<9>() = YawShift{0, state.p_WB}.ParameterJacobian(state);
   return directions;
 }
 

@@ -72,4 +72,35 @@ double ObservationKernel::RadialCurvature(double s) const {
   return 1;
 }
 
+RobustResidual Robustify(RobustKernel kernel, double scale_sigma, double residual) {
+  const double k = scale_sigma;
+  const double size = std::abs(residual);
+  const double sign = residual < 0 ? -1 : 1;
+  switch (kernel) {
+    case RobustKernel::kHuber: {
+      if (size <= k) {
+        break;
+      }
+      const double root = std::sqrt(2 * k * size - k * k);
+      return {sign * root, k / root};
+    }
+    case RobustKernel::kCauchy: {
+      const double ratio = size / k;
+      constexpr double kQuadratic = 1e-4;  // below, rho = r^2 to 1e-8 and the slope is 0 / 0 at zero
+      if (ratio < kQuadratic) {
+        break;
+      }
+      const double root = k * std::sqrt(std::log1p(ratio * ratio));
+      return {sign * root, size / ((1 + ratio * ratio) * root)};
+    }
+    case RobustKernel::kNone:
+      break;
+  }
+  return {residual, 1};
+}
+
+bool StateIsSuspect(int refused, int total, double max_refused_share, int least_refused) {
+  return refused >= least_refused && refused > max_refused_share * static_cast<double>(total);
+}
+
 }  // namespace alidade

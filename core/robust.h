@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/robust_kernel.h"
 
 namespace alidade {
 
@@ -41,5 +41,27 @@ struct ObservationKernel {
   /// rho' + 2 s rho'': second derivative of rho(|r|^2) / 2 along r. Zero or negative in the tails.
   [[nodiscard]] double RadialCurvature(double s) const;
 };
+
+/// A scalar whitened residual whose square is the kernel's cost rho(r^2), with rho' = RobustWeight:
+/// Huber r^2 up to k, then 2 k |r| - k^2; Cauchy k^2 log(1 + r^2 / k^2).
+struct RobustResidual {
+  double value = 0;  ///< sign(r) sqrt(rho(r^2))
+  double slope = 1;  ///< d value / d r
+};
+[[nodiscard]] RobustResidual Robustify(RobustKernel kernel, double scale_sigma, double residual);
+
+/// Whether so many of `total` measurements failed their gates that the state is suspect and not the
+/// measurements: more than `max_refused_share` of them, and at least `least_refused`. A caller then uses them
+/// all, those beyond the gate scaled down to it.
+///
+/// `least_refused` keeps a few wrong measurements among few from passing for a wrong state. With wrong
+/// measurements in independent proportion q, more than half of n are wrong with the binomial probability
+/// P(X > n/2); the least number is the smallest for which that is 5 % or less for every n it admits.
+[[nodiscard]] bool StateIsSuspect(int refused, int total, double max_refused_share, int least_refused);
+
+/// For tracks: q = 0.3, as where a large moving object or a failed outlier rejection spoils them.
+inline constexpr int kLeastRefusedTracks = 8;
+/// For pseudoranges and range rates: q = 0.2, as with reflections between buildings.
+inline constexpr int kLeastRefusedGnssRows = 4;
 
 }  // namespace alidade

@@ -8,6 +8,7 @@
 #include "core/error_convention.h"
 #include "core/imu_propagation.h"
 #include "core/measurement_log.h"
+#include "core/yaw_shift.h"
 #include "filter/filter_observer.h"
 #include "filter/landmark_error.h"
 #include "filter/square_root_covariance.h"
@@ -87,10 +88,9 @@ class FilterState {
   /// regular.
   void AddLandmark(const LandmarkRows& rows);
   void RemoveLandmark(size_t index);
-  /// Turns world and states by R_NW about the vertical, shifts them by p_NW, adds the covariance of that (of
-  /// yaw about W's origin and shift) to that of all states, and enters the clock's rows. Without landmarks.
-  void Align(const Eigen::Matrix3d& R_NW, const Eigen::Vector3d& p_NW, const Eigen::Matrix4d& covariance,
-             const Matrix6d& clock_covariance);
+  /// Transforms all states, adds the covariance of the transform's parameters (yaw, p_NW) to theirs, and
+  /// enters the clock's rows. Precondition: no landmarks.
+  void Align(const YawShift& transform, const Eigen::Matrix4d& covariance, const Matrix6d& clock_covariance);
   /// Retracts every state by its part of the correction (error order of the class).
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction);
 

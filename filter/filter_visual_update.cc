@@ -8,8 +8,6 @@
 namespace alidade {
 namespace {
 
-// Fewer refusals are a matter of tracks, whatever their share.
-constexpr int kMinRefusedForConsensus = 8;
 // A remembered track that is refused more often in a row is taken for another point.
 constexpr int kMaxRefusals = 1;
 
@@ -126,9 +124,8 @@ void FilterEstimator::GateBlocks(PreparedRows* rows) {
     accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
     refused += accepted_[i] ? 0 : 1;
   }
-  const bool state_is_suspect =
-      refused >= kMinRefusedForConsensus &&
-      refused > config_.vision.max_gated_share * static_cast<double>(appended_.size());
+  const bool state_is_suspect = StateIsSuspect(refused, static_cast<int>(appended_.size()),
+                                               config_.vision.max_gated_share, kLeastRefusedTracks);
   statistics_.suspect = state_is_suspect;
   for (size_t i = 0; i < appended_.size(); ++i) {
     const FeatureUpdate::Block& block = update_.blocks()[i];

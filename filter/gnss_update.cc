@@ -20,7 +20,7 @@ GnssUpdate::GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver)
 
 void GnssUpdate::Align(const GnssAlignment& alignment, FilterState* state) {
   const ClockState fresh = FreshClock(config_, alignment.clock);
-  state->Align(alignment.R_NW(), alignment.p_NW, alignment.covariance, fresh.covariance);
+  state->Align(alignment.Transform(), alignment.covariance, fresh.covariance);
   mount_ = AntennaMount{alignment.enu, receiver_.p_BA};
   clock_ = fresh.mean;
   clock_stamp_ns_ = alignment.stamp_ns;

@@ -241,7 +241,8 @@ double AlignmentProblem::TryStep(double damping) {
     std::vector<double> squared;
     TrackResiduals(current_, t, &squared);
     for (size_t k = 0; k < weighted.size(); ++k) {
-      weighted[k].sqrt_information *= std::sqrt(RobustWeight(RobustKernel::kCauchy, kCauchyScale, squared[k]));
+      weighted[k].sqrt_information *=
+          std::sqrt(RobustWeight(RobustKernel::kCauchy, kCauchyScale, squared[k]));
     }
     static_cast<void>(RefineLandmark(cameras, weighted, kLandmarkIterations, &trial_.landmarks[t]));
     cost += TrackCost(trial_, t);

@@ -1,6 +1,5 @@
 #include "gnss/alignment/alignment.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -17,10 +16,6 @@ constexpr std::size_t kMaxSamples = 40;  // bounds the work; epochs share most e
 constexpr double kMaxStateGapS = 2;      // no interpolation across a longer silence
 constexpr double kRetryS = 0.5;
 
-Eigen::Matrix3d RotationZ(double yaw_rad) {
-  return Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
-}
-
 bool Refused(const SinglePointSolution& solution, SatelliteId satellite) {
   const auto found =
       std::find_if(solution.satellites.begin(), solution.satellites.end(),
@@ -30,24 +25,14 @@ bool Refused(const SinglePointSolution& solution, SatelliteId satellite) {
 
 }  // namespace
 
-Eigen::Matrix3d GnssAlignment::R_NW() const {
-  return RotationZ(yaw_rad);
-}
-
 NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate) {
-  const Eigen::Matrix3d R_NW = alignment.R_NW();
+  const YawShift transform = alignment.Transform();
   NavEstimate turned = estimate;
-  turned.nav.R_WB = R_NW * estimate.nav.R_WB;
-  turned.nav.p_WB = R_NW * estimate.nav.p_WB + alignment.p_NW;
-  turned.nav.v_WB = R_NW * estimate.nav.v_WB;
+  turned.nav = transform * estimate.nav;
   Matrix15d turn = Matrix15d::Identity();
-  turn.block<3, 3>(3, 3) = R_NW;
-  turn.block<3, 3>(6, 6) = R_NW;
+  turn.topLeftCorner<9, 9>() = transform.StateJacobian();
   Eigen::Matrix<double, 15, 4> spread = Eigen::Matrix<double, 15, 4>::Zero();
-  spread.block<3, 1>(0, 0) = turned.nav.R_WB.transpose() * Vector3d::UnitZ();
-  spread.block<3, 1>(3, 0) = Vector3d::UnitZ().cross(turned.nav.p_WB - alignment.p_NW);
-  spread.block<3, 1>(6, 0) = Vector3d::UnitZ().cross(turned.nav.v_WB);
-  spread.block<3, 3>(3, 1).setIdentity();
+  spread.topRows<9>() = transform.ParameterJacobian(turned.nav);
   const Matrix15d covariance =
       turn * estimate.covariance * turn.transpose() + spread * alignment.covariance * spread.transpose();
   turned.covariance = 0.5 * (covariance + covariance.transpose());
@@ -156,7 +141,8 @@ std::optional<AlignmentGuess> GnssAligner::FirstGuess(const AlignmentFit& fit) c
   const Vector3d last_W = fit.samples().back()->state.nav.p_WB;
   for (int i = 0; i < kCandidates; ++i) {
     const double yaw = std::remainder(2 * M_PI * i / kCandidates, 2 * M_PI);
-    AlignmentGuess guess(yaw, enu_.FromEcef(*approximate_E_) - RotationZ(yaw) * last_W, fit.samples().size());
+    const Vector3d shift = enu_.FromEcef(*approximate_E_) - YawShift{.yaw_rad = yaw}.Rotation() * last_W;
+    AlignmentGuess guess(yaw, shift, fit.samples().size());
     AlignmentStep step;
     for (int k = 0; k < kSteps; ++k) {
       step = fit.Step({.yaw_free = false, .robust = k > 0, .gate_sigma = INFINITY}, &guess);

@@ -7,25 +7,26 @@
 
 #include "core/clock_state.h"
 #include "core/measurement_log.h"
+#include "core/yaw_shift.h"
 #include "gnss/alignment/alignment_fit.h"
 #include "gnss/positioning/single_point.h"
 
 namespace alidade {
 
 /// How the local world W stands in the ENU frame N at an anchor: p_N = Rz(yaw) p_W + p_NW. Both are
-/// gravity-aligned, so that four numbers say it.
+/// gravity-aligned (core/yaw_shift.h).
 struct GnssAlignment {
   TimeNs stamp_ns = 0;  ///< IMU time of the last epoch used
   EnuFrame enu;         ///< N
   double yaw_rad = 0;
   Eigen::Vector3d p_NW = Eigen::Vector3d::Zero();
-  /// Of (yaw, p_NW): truth = estimate + error, the turn about W's origin.
+  /// Of (yaw, p_NW): truth = estimate + error.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   Vector6d clock = Vector6d::Zero();  ///< at stamp_ns
   double time_offset_s = 0;           ///< estimated, to be added to the receiver's
   std::string report;
 
-  [[nodiscard]] Eigen::Matrix3d R_NW() const;
+  [[nodiscard]] YawShift Transform() const { return {yaw_rad, p_NW}; }
 };
 
 /// An estimate of the local world in the ENU frame, with the alignment's own uncertainty in its covariance.

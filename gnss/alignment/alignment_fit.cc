@@ -1,12 +1,12 @@
 #include "gnss/alignment/alignment_fit.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/robust.h"
+#include "core/yaw_shift.h"
 #include "gnss/model/receiver_clock.h"
 #include "gnss/positioning/robust_fit.h"
 
@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 // Columns of the unknowns; then clock and drift of each sample.
 constexpr Index kYaw = 0;
-constexpr Index kShift = 1;
+constexpr Index kShift = 1;  // directly after the yaw, as in YawShift::ParameterJacobian
 constexpr Index kOffset = 4;
 constexpr Index kVelocity = 5;
 constexpr Index kState = 8;  // the columns before act on the state
@@ -81,12 +81,12 @@ double AlignmentFit::EpochsOfOneError() const {
 
 AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* guess) const {
   const AlignmentState& state = samples_[index]->state;
-  const Eigen::Matrix3d R_NW = Eigen::AngleAxisd(guess->yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
+  const YawShift transform{guess->yaw_rad, guess->p_NW};
+  const Eigen::Matrix3d R_NW = transform.Rotation();
   GnssPoint point{state.nav, state.bias, state.gyro_radps, guess->biases};
   const double since_newest_s = SecondsBetween(samples_.back()->state.stamp_ns, state.stamp_ns);
-  point.nav.R_WB = R_NW * state.nav.R_WB;
-  point.nav.p_WB = R_NW * (state.nav.p_WB + since_newest_s * guess->dv_W) + guess->p_NW;
-  point.nav.v_WB = R_NW * (state.nav.v_WB + guess->dv_W);
+  point.nav = transform * NavState{state.nav.R_WB, state.nav.p_WB + since_newest_s * guess->dv_W,
+                                   state.nav.v_WB + guess->dv_W};
   // Where the epoch's offset puts the state.
   const Vector3d acceleration_N = R_NW * state.acceleration_W;
   const Vector3d omega_B = state.gyro_radps - state.bias.gyro;
@@ -115,10 +115,7 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
     const Eigen::RowVector3d e = row.jacobian.segment<3>(6) + since_newest_s * row.jacobian.segment<3>(3);
     row.deviation = std::sqrt(row.deviation * row.deviation + e.dot(e * variance_N));
   }
-  epoch.chart.block<3, 1>(0, kYaw) = point.nav.R_WB.transpose() * Vector3d::UnitZ();
-  epoch.chart.block<3, 1>(3, kYaw) = Vector3d::UnitZ().cross(point.nav.p_WB - guess->p_NW);
-  epoch.chart.block<3, 1>(6, kYaw) = Vector3d::UnitZ().cross(point.nav.v_WB);
-  epoch.chart.block<3, 3>(3, kShift).setIdentity();
+  epoch.chart.block<9, 4>(0, kYaw) = transform.ParameterJacobian(point.nav);
   epoch.chart.block<3, 1>(0, kOffset) = omega_B;
   epoch.chart.block<3, 1>(3, kOffset) = point.nav.v_WB;
   epoch.chart.block<3, 1>(6, kOffset) = acceleration_N;

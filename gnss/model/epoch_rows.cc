@@ -94,14 +94,12 @@ bool IsClockJump(const GnssConfig& config, const std::vector<GnssRow>& rows, dou
 }
 
 GnssWeights WeighRows(const GnssConfig& config, double gate_threshold, const std::vector<double>& nis) {
-  constexpr int kLeastRefused = 4;
   GnssWeights result;
   result.weights.assign(nis.size(), 0);
   const auto refused =
       std::count_if(nis.begin(), nis.end(), [&](double value) { return !(value <= gate_threshold); });
-  const bool suspect =
-      refused >= kLeastRefused &&
-      static_cast<double>(refused) > config.max_gated_share * static_cast<double>(nis.size());
+  const bool suspect = StateIsSuspect(static_cast<int>(refused), static_cast<int>(nis.size()),
+                                      config.max_gated_share, kLeastRefusedGnssRows);
   for (std::size_t i = 0; i < nis.size(); ++i) {
     if (nis[i] <= gate_threshold) {
       result.weights[i] = RobustWeight(config.robust_kernel, config.robust_scale_sigma, nis[i]);

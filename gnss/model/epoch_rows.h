@@ -55,9 +55,8 @@ struct GnssWeights {
   int used = 0;
   int refused = 0;
 };
-/// Each row is used below the gate, with its kernel's weight. When more than max_gated_share of them, and at
-/// least four, are refused, the state is suspect and not the satellites: all are used, the refused ones
-/// scaled down to the gate.
+/// Each row is used below the gate, with its kernel's weight. When the state is suspect and not the
+/// satellites (StateIsSuspect in core/robust.h), all are used, those beyond the gate scaled down to it.
 [[nodiscard]] GnssWeights WeighRows(const GnssConfig& config, double gate_threshold,
                                     const std::vector<double>& nis);
 

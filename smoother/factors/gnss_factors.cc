@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/robust.h"
 #include "gnss/alignment/carried_state.h"
 #include "smoother/factors/imu_factor.h"
 
@@ -11,37 +12,6 @@ namespace alidade {
 namespace {
 
 using Eigen::Index;
-
-/// Makes the square of a whitened residual the kernel's cost; returns d robust / d plain.
-double Robustify(const GnssConfig& config, double* residual) {
-  const double k = config.robust_scale_sigma;
-  const double size = std::abs(*residual);
-  const double sign = *residual < 0 ? -1 : 1;
-  switch (config.robust_kernel) {
-    case RobustKernel::kHuber: {
-      if (size <= k) {
-        return 1;
-      }
-      // rho = 2 k |r| - k^2
-      const double root = std::sqrt(2 * k * size - k * k);
-      *residual = sign * root;
-      return k / root;
-    }
-    case RobustKernel::kCauchy: {
-      // rho = k^2 log(1 + r^2 / k^2)
-      const double ratio = size / k;
-      if (ratio < 1e-4) {
-        return 1;
-      }
-      const double root = k * std::sqrt(std::log1p(ratio * ratio));
-      *residual = sign * root;
-      return size / ((1 + ratio * ratio) * root);
-    }
-    case RobustKernel::kNone:
-      break;
-  }
-  return 1;
-}
 
 }  // namespace
 
@@ -68,11 +38,13 @@ FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const Frame
     if (!epoch.used.empty() && !epoch.used[static_cast<std::size_t>(i)]) {
       continue;
     }
-    double residual = row.residual / row.deviation;
-    const double slope = robust ? Robustify(context.config, &residual) : 1;
-    result.residual[i] = residual;
-    result.frame.row(i).noalias() = slope / row.deviation * (row.jacobian * carry);
-    result.clock.row(i) = slope / row.deviation * row.ClockJacobian();
+    RobustResidual residual{row.residual / row.deviation, 1};
+    if (robust) {
+      residual = Robustify(context.config.robust_kernel, context.config.robust_scale_sigma, residual.value);
+    }
+    result.residual[i] = residual.value;
+    result.frame.row(i).noalias() = residual.slope / row.deviation * (row.jacobian * carry);
+    result.clock.row(i) = residual.slope / row.deviation * row.ClockJacobian();
     result.clock(i, ClockState::kDrift) += dt_s * result.clock(i, ClockState::kClock);
   }
   return result;

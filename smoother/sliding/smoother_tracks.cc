@@ -16,8 +16,6 @@ constexpr double kParallaxSlack = 10;
 constexpr double kUnknownInverseDepth = 0.2;
 constexpr double kDepthPriorRelative = 1.0;
 constexpr size_t kMinKnownDepths = 10;
-// Fewer refusals are a matter of tracks, whatever their share.
-constexpr size_t kMinRefusedForConsensus = 8;
 
 }  // namespace
 
@@ -117,9 +115,9 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
       track->has_landmark = false;
     }
   }
-  const bool state_is_suspect = refused.size() >= kMinRefusedForConsensus &&
-                                static_cast<double>(refused.size()) >
-                                    config_.vision.max_gated_share * static_cast<double>(tracks.size());
+  const bool state_is_suspect =
+      StateIsSuspect(static_cast<int>(refused.size()), static_cast<int>(tracks.size()),
+                     config_.vision.max_gated_share, kLeastRefusedTracks);
   statistics_.suspect = state_is_suspect;
   for (WindowTrack* track : refused) {
     if (state_is_suspect) {

@@ -34,7 +34,7 @@ TEST(ProjectionTest, JacobianIsNumericAndTheScaleDoesNotMatter) {
     PointRows<2> jacobian = PointRows<2>::Constant(kNan);
     ASSERT_TRUE(ProjectToPlane(q, kMinPointDepth, &projected, &jacobian));
     const auto project = [&](const VectorXd& d) -> VectorXd {
-      Vector2d moved;
+      Vector2d moved = Vector2d::Zero();
       EXPECT_TRUE(ProjectToPlane(q + Vector3d(d), kMinPointDepth, &moved));
       return moved;
     };
@@ -74,7 +74,7 @@ TEST(ReprojectionTest, PointOfTheWorldIsNumericInEveryConvention) {
       MatrixXd analytic(2, 9);
       analytic << over_camera * ChartJacobian(convention, T_WC), over_point;
       const auto project = [&](const VectorXd& xi) -> VectorXd {
-        Vector2d moved;
+        Vector2d moved = Vector2d::Zero();
         const Pose camera = Moved(convention, T_WC, xi.head(6));
         EXPECT_TRUE(
             ProjectToPlane(PointInCamera(camera, p_W + Vector3d(xi.tail<3>())).q, kMinPointDepth, &moved));

@@ -74,7 +74,7 @@ TEST_P(GnssStateTest, AlignCarriesTheCovariance) {
   const MatrixXd expected = jacobian * joint * jacobian.transpose();
 
   const Matrix6d clock = 9 * Matrix6d::Identity();
-  state.Align(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix(), shift, covariance, clock);
+  state.Align({yaw, shift}, covariance, clock);
   const MatrixXd after = state.covariance().Covariance();
   ASSERT_EQ(after.rows(), 33);
   EXPECT_TRUE(after.topLeftCorner(6, 6).isApprox(clock, 1e-12));
@@ -88,8 +88,7 @@ TEST_P(GnssStateTest, AlignCarriesTheCovariance) {
 TEST_P(GnssStateTest, ClockPropagatesAsTheDenseCovariance) {
   RandomStates random(9);
   FilterState state = MakeState(GetParam(), &random);
-  state.Align(Eigen::Matrix3d::Identity(), Vector3d::Zero(), Eigen::Matrix4d::Identity(),
-              4 * Matrix6d::Identity());
+  state.Align({}, Eigen::Matrix4d::Identity(), 4 * Matrix6d::Identity());
   SquareRootCovariance& covariance = state.covariance();
   // A landmark before it and an update correlate everything.
   covariance.AddLeading(0.5 * Eigen::Matrix3d::Identity(), MatrixXd::Random(3, covariance.dimension() - 6));
