@@ -22,6 +22,10 @@ class ChiSquareGate {
   std::vector<double> thresholds_;
 };
 
+/// Cost rho(s) of a whitened residual with squared norm s, whose slope is RobustWeight:
+/// Huber s up to k^2, then 2 k |r| - k^2; Cauchy k^2 log(1 + s / k^2).
+[[nodiscard]] double RobustCost(RobustKernel kernel, double scale_sigma, double squared_norm);
+
 /// IRLS weight in (0, 1] of a whitened residual with squared norm s:
 /// Huber min(1, k / |r|), Cauchy 1 / (1 + s / k^2).
 [[nodiscard]] double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm);

@@ -24,10 +24,6 @@ constexpr int kLandmarkIterations = 3;
 // Cost of an observation whose landmark lies behind its view: far outside the kernel.
 constexpr double kBehindSquared = 400.0;
 
-double CauchyCost(double squared) {
-  return kCauchyScale * kCauchyScale * std::log1p(squared / (kCauchyScale * kCauchyScale));
-}
-
 }  // namespace
 
 AlignmentProblem::AlignmentProblem(const DynamicWindow& window, const std::vector<bool>& inlier,
@@ -43,10 +39,9 @@ AlignmentProblem::AlignmentProblem(const DynamicWindow& window, const std::vecto
   current_.biases.assign(states.size(), bias);
   current_.landmarks.assign(window.tracks.size(), Vector3d::Zero());
   for (const Preintegration& step : preintegrations) {
-    // The floor keeps a sensor sheet with zero noise solvable.
-    const Matrix15d covariance = step.covariance() + 1e-14 * Matrix15d::Identity();
-    const Eigen::LLT<Matrix15d> factor(covariance);
-    sqrt_information_.emplace_back(factor.matrixL().solve(Matrix15d::Identity()));
+    Matrix15d whitening;
+    valid_ = step.Whitening(&whitening) && valid_;
+    sqrt_information_.push_back(whitening);
   }
   InitializeLandmarks();
 }
@@ -105,7 +100,7 @@ double AlignmentProblem::TrackCost(const Variables& variables, size_t t) const {
   TrackResiduals(variables, t, &squared);
   double cost = 0;
   for (const double value : squared) {
-    cost += CauchyCost(value);
+    cost += RobustCost(RobustKernel::kCauchy, kCauchyScale, value);
   }
   return cost;
 }

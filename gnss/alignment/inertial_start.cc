@@ -9,7 +9,6 @@
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
 #include "core/robust.h"
-#include "gnss/alignment/carried_state.h"
 #include "gnss/model/receiver_clock.h"
 
 namespace alidade {
@@ -140,7 +139,7 @@ GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
   std::vector<Vector3d> sensed;
   std::vector<Vector3d> seen;
   for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
-    sensed.push_back(fit.intervals[k].beta());
+    sensed.push_back(fit.intervals[k].motion().beta);
     seen.push_back(fixes_[k + 1].velocity_N - first.velocity_N - fit.intervals[k].duration_s() * gravity_W_);
   }
   fit.nav.R_WB = RotationBetween(sensed, seen);

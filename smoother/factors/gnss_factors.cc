@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "gnss/alignment/carried_state.h"
+#include "core/imu_propagation.h"
 #include "smoother/factors/imu_factor.h"
 
 namespace alidade {
