@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/check.h"
+#include "core/format.h"
 
 namespace alidade {
 namespace {
@@ -28,6 +29,14 @@ Status ImuBuffer::Add(const ImuSample& sample) {
   if (!sample.gyro.allFinite() || !sample.accel.allFinite()) {
     ++statistics_.rejected;
     return Status::Input("imu sample at " + FormatSeconds(sample.stamp_ns) + " s is not finite");
+  }
+  const double rate = sample.gyro.stableNorm();
+  const double force = sample.accel.stableNorm();
+  if (rate > kMaxGyroRadps || force > kMaxAccelMps2) {
+    ++statistics_.rejected;
+    return Status::Input(
+        Format("imu sample at %s s measures %.3g rad/s and %.3g m/s^2, expected at most %g and %g",
+               FormatSeconds(sample.stamp_ns).c_str(), rate, force, kMaxGyroRadps, kMaxAccelMps2));
   }
   if (sample.stamp_ns < consumed_before_ns_) {
     ++statistics_.rejected;

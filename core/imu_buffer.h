@@ -14,18 +14,23 @@ struct ImuBufferStatistics {
   int accepted = 0;
   int duplicates = 0;    ///< same stamp twice; the first is kept
   int out_of_order = 0;  ///< arrived late and sorted in
-  int rejected = 0;      ///< not finite, or older than what was already consumed
+  int rejected = 0;      ///< not finite, beyond any sensor, or older than what was already consumed
   int gaps = 0;          ///< silences longer than the limit inside a consumed interval
   double longest_gap_s = 0;
 };
+
+/// Magnitudes beyond any inertial sensor (the fastest gyroscopes measure 2e3 rad/s, shock accelerometers 2e6
+/// m/s^2): such a sample is a fault of the transmission or of the units.
+constexpr double kMaxGyroRadps = 1e4;
+constexpr double kMaxAccelMps2 = 1e7;
 
 /// Inertial samples sorted by stamp, cut to the intervals that measurements ask for.
 class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s) : max_gap_s_(max_gap_s) {}
 
-  /// Sorts the sample in. kInput: a component is not finite, or the sample is older than the last consumed
-  /// interval.
+  /// Sorts the sample in. kInput: a component is not finite, a magnitude is beyond any sensor, or the sample
+  /// is older than the last consumed interval.
   Status Add(const ImuSample& sample);
 
   /// Samples that cover [from, to]: linearly interpolated at both ends, all measured ones between. kInput: to

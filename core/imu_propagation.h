@@ -4,33 +4,38 @@
 
 #include "core/imu_sample.h"
 #include "core/navigation_state.h"
+#include "core/preintegration.h"
 
 namespace alidade {
 
-/// State transition of the error and covariance of its driving noise over an interval, both in the canonical
-/// chart (phi, dp, dv, dbg, dba): zeta(t1) = phi zeta(t0) + w, w ~ N(0, q).
+/// The error over an interval in the canonical chart (phi, dp, dv, dbg, dba): zeta(t1) = phi zeta(t0) +
+/// noise_root n, n ~ N(0, I_15).
 struct ImuTransition {
   Matrix15d phi = Matrix15d::Identity();
-  Matrix15d q = Matrix15d::Zero();
+  Matrix15d noise_root = Matrix15d::Zero();
+
+  /// Covariance of the noise over the interval.
+  [[nodiscard]] Matrix15d q() const { return noise_root * noise_root.transpose(); }
 };
 
-/// One step of length dt with constant angular rate `omega` [rad/s] and specific force `accel` [m/s^2],
-/// biases removed. Closed form with Gamma_m of core/lie.h (Hartley et al. 2020):
+/// The state at the end of a preintegrated interval that begins at `nav` with `bias`:
 ///
-///   R+ = R Exp(w dt)
-///   v+ = v + g dt + R Gamma_1(w dt) a dt
-///   p+ = p + v dt + g dt^2/2 + R Gamma_2(w dt) a dt^2
+///   R' = R gamma(b),  p' = p + v T + g T^2 / 2 + R alpha(b),  v' = v + g T + R beta(b)
 ///
-/// `transition`, when given, is advanced over the step: exact phi, and q with the rotation held at the step's
-/// middle (relative error of order (|w| dt)^2).
-void PropagateStep(const Eigen::Vector3d& omega, const Eigen::Vector3d& accel, double dt_s,
-                   const ImuNoise& noise, const Eigen::Vector3d& gravity_W, NavState* state,
-                   ImuTransition* transition);
+/// `phi`: 15x15 over (phi, dp, dv, dbg, dba) of both, exact; may be null.
+[[nodiscard]] NavState CarryState(const Preintegration& preintegration, const NavState& nav,
+                                  const ImuBias& bias, const Eigen::Vector3d& gravity_W, Matrix15d* phi);
 
-/// Propagates over consecutive samples; each step uses the mean of its two end samples less the bias. Needs
-/// at least two samples; stamps strictly increasing.
-void PropagateImu(std::span<const ImuSample> samples, const ImuBias& bias, const ImuNoise& noise,
-                  const Eigen::Vector3d& gravity_W, NavState* state, ImuTransition* transition);
+/// The transition over a preintegrated interval that begins at `nav` with the bias it was integrated with.
+/// kDiverged, with nothing changed: the noise covariance or the state at the end is not finite, as after a
+/// sample beyond all physical sizes.
+Status PropagateState(const Preintegration& preintegration, const Eigen::Vector3d& gravity_W, NavState* nav,
+                      ImuTransition* transition);
+
+/// The same for a state with covariance and bias: carries `estimate` over consecutive samples (at least two;
+/// stamps strictly increasing) and sets its stamp.
+Status PropagateEstimate(std::span<const ImuSample> samples, const ImuNoise& noise,
+                         const Eigen::Vector3d& gravity_W, NavEstimate* estimate);
 
 /// Gravity in W, z up.
 [[nodiscard]] inline Eigen::Vector3d GravityInWorld(double magnitude_mps2) {

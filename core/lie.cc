@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 // Below this angle the closed forms of Gamma_2 and Gamma_3 cancel; ten Taylor terms are exact to 1e-16 there.
 constexpr double kSeriesAngle = 0.3;
 
-/// a(theta) and b(theta) of Gamma_m = I/m! + a [phi]x + b [phi]x^2.
+/// a(theta) and b(theta) of Gamma_m = I/m! + a [phi]x + b [phi]x^2, m in 0..4.
 std::array<double, 2> GammaCoefficients(double theta, int m) {
   if (theta < kSeriesAngle) {
     // a = sum_j (-1)^j theta^2j / (2j + 1 + m)!,  b = sum_j (-1)^j theta^2j / (2j + 2 + m)!
@@ -39,8 +39,11 @@ std::array<double, 2> GammaCoefficients(double theta, int m) {
       return {(1 - c) / t2, (theta - s) / (t2 * theta)};
     case 2:
       return {(theta - s) / (t2 * theta), (t2 / 2 - 1 + c) / (t2 * t2)};
-    default:
+    case 3:
       return {(t2 / 2 - 1 + c) / (t2 * t2), (t2 * theta / 6 - theta + s) / (t2 * t2 * theta)};
+    default:
+      return {(t2 * theta / 6 - theta + s) / (t2 * t2 * theta),
+              (t2 * t2 / 24 - t2 / 2 + 1 - c) / (t2 * t2 * t2)};
   }
 }
 
@@ -89,6 +92,19 @@ Matrix3d Gamma(const Vector3d& phi, int m) {
   const std::array<double, 2> ab = GammaCoefficients(phi.norm(), m);
   const Matrix3d p = Skew(phi);
   return Matrix3d::Identity() / std::tgamma(m + 1.0) + ab[0] * p + ab[1] * (p * p);
+}
+
+Matrix3d GammaDerivative(const Vector3d& phi, const Vector3d& v, int m) {
+  // With c_k = sum_j (-1)^j theta^2j / (2j + k)!, a = c_m+1, b = c_m+2 and c_k' / theta = k c_k+2 - c_k+1.
+  const double theta = phi.norm();
+  const std::array<double, 2> ab = GammaCoefficients(theta, m);
+  const std::array<double, 2> next = GammaCoefficients(theta, m + 2);
+  const double a_slope = (m + 1) * next[0] - ab[1];
+  const double b_slope = (m + 2) * next[1] - next[0];
+  const Vector3d phi_v = phi.cross(v);
+  Matrix3d derivative = -ab[0] * Skew(v) - ab[1] * (Skew(phi_v) + Skew(phi) * Skew(v));
+  derivative += (a_slope * phi_v + b_slope * phi.cross(phi_v)) * phi.transpose();
+  return derivative;
 }
 
 Matrix3d Exp(const Vector3d& phi) {

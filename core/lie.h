@@ -39,6 +39,8 @@ namespace so3 {
 /// specific force over a constant rotation rate (Bloesch et al. 2012, Hartley et al. 2020 appendix). Shape
 /// 3x3, m in 0..3.
 [[nodiscard]] Eigen::Matrix3d Gamma(const Eigen::Vector3d& phi, int m);
+/// d (Gamma_m(phi) v) / d phi, m in 0..2.
+[[nodiscard]] Eigen::Matrix3d GammaDerivative(const Eigen::Vector3d& phi, const Eigen::Vector3d& v, int m);
 /// The rotation matrix nearest to `m` in the Frobenius norm.
 [[nodiscard]] Eigen::Matrix3d Normalize(const Eigen::Matrix3d& m);
 

@@ -2,63 +2,57 @@
 
 #include <span>
 
-#include "core/imu_sample.h"
+#include "core/imu_increment.h"
 #include "core/navigation_state.h"
 
 namespace alidade {
 
-/// IMU preintegration with the midpoint rule (Forster et al. 2017; discretisation of Qin et al. 2018):
-/// increments between two stamps, independent of the state except through the biases they were computed with.
+/// The IMU between two stamps, integrated with given biases: the one model of the IMU that the filter, the
+/// smoother, the batch solution and the initialisers consume. A step between two samples takes the mean of
+/// both, less the bias, as constant (StepIncrement).
 ///
-///   alpha = integral of integral of R(t0,t) (a - ba)
-///   beta  = integral of R(t0,t) (a - ba)
-///   gamma = R(t0,t1)
-///
-/// Errors in the order (alpha, beta, theta, bg, ba), gamma = gamma^ Exp(theta). White noise acts on each
-/// step's mean measurement with variance density^2/dt.
+/// Samples that are not finite, or so large that a number overflows, show in NoiseRoot and Whitening.
 class Preintegration {
  public:
   Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
 
   /// Appends one step between two samples; stamps strictly increasing.
   void Add(const ImuSample& from, const ImuSample& to);
-  /// Appends all steps of consecutive samples (at least two).
+  /// Appends all steps of consecutive samples; fewer than two add nothing.
   void Add(std::span<const ImuSample> samples);
 
-  /// Increments corrected to first order for a bias other than the one integrated with.
-  struct Increments {
-    Eigen::Vector3d alpha, beta;
-    Eigen::Matrix3d gamma;
-  };
-  [[nodiscard]] Increments Corrected(const ImuBias& bias) const;
+  /// The motion corrected to first order for a bias at t0 other than the one integrated with.
+  [[nodiscard]] ImuMotion Corrected(const ImuBias& bias) const;
+  /// The same with the derivative of its error (theta, alpha, beta) over (bg, ba) at that bias.
+  [[nodiscard]] ImuMotion Corrected(const ImuBias& bias, ImuIncrement::BiasJacobian* jacobian) const;
 
-  [[nodiscard]] double duration_s() const { return duration_s_; }
-  [[nodiscard]] const Eigen::Vector3d& alpha() const { return alpha_; }
-  [[nodiscard]] const Eigen::Vector3d& beta() const { return beta_; }
-  [[nodiscard]] const Eigen::Matrix3d& gamma() const { return gamma_; }
+  /// Lower triangular L, covariance = L L^T. False when the covariance is not finite or not positive
+  /// semi-definite.
+  [[nodiscard]] bool NoiseRoot(Matrix15d* root) const;
+  /// Lower triangular L^-1, which whitens the error. False when NoiseRoot fails or the covariance is
+  /// singular: all four noises must be positive, and the interval not empty.
+  [[nodiscard]] bool Whitening(Matrix15d* whitening) const;
+
+  [[nodiscard]] double duration_s() const { return increment_.motion.duration_s; }
+  [[nodiscard]] const ImuMotion& motion() const { return increment_.motion; }
+  [[nodiscard]] const ImuIncrement::BiasJacobian& bias_jacobian() const { return increment_.bias_jacobian; }
+  [[nodiscard]] const Matrix15d& covariance() const { return increment_.covariance; }
   [[nodiscard]] const ImuBias& bias() const { return bias_; }
   [[nodiscard]] const ImuNoise& noise() const { return noise_; }
-  [[nodiscard]] const Matrix15d& jacobian() const { return jacobian_; }  ///< d error(t1) / d error(t0)
-  [[nodiscard]] const Matrix15d& covariance() const { return covariance_; }
 
  private:
   ImuBias bias_;
   ImuNoise noise_;
-  double duration_s_ = 0;
-  Eigen::Vector3d alpha_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d beta_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d gamma_ = Eigen::Matrix3d::Identity();
-  Matrix15d jacobian_ = Matrix15d::Identity();
-  Matrix15d covariance_ = Matrix15d::Zero();
+  ImuIncrement increment_;
 };
 
-/// Residual of two navigation states against preintegrated increments; see core/model.h for the contract of a
+/// Residual of two navigation states against the IMU between them; see core/model.h for the contract of a
 /// model.
 ///
-///   r = [ R_i^T (p_j - p_i - v_i T - g T^2/2) - alpha(b_i) ;  R_i^T (v_j - v_i - g T) - beta(b_i) ;
-///         Log(gamma(b_i)^T R_i^T R_j) ;  bg_j - bg_i ;  ba_j - ba_i ]
+///   r = [ Log(gamma(b_i)^T R_i^T R_j) ;  R_i^T (p_j - p_i - v_i T - g T^2/2) - alpha(b_i) ;
+///         R_i^T (v_j - v_i - g T) - beta(b_i) ;  bg_j - bg_i ;  ba_j - ba_i ]
 ///
-/// Units m, m/s, rad, rad/s, m/s^2. Its covariance is preintegration.covariance().
+/// Units rad, m, m/s, rad/s, m/s^2. Its covariance is preintegration->covariance().
 struct PreintegrationModel {
   const Preintegration* preintegration;
   Eigen::Vector3d gravity_W;

@@ -71,7 +71,11 @@ Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
     return Status::Ok();  // where the filter was initialised, or the stamp of an epoch
   }
   ALIDADE_RETURN_IF_ERROR(imu_.Interval(state_.stamp_ns(), stamp_ns, &interval_));
-  state_.Propagate(interval_, noise_, gravity_W_);
+  const Status propagated = state_.Propagate(interval_, noise_, gravity_W_);
+  if (!propagated.ok()) {
+    initialized_ = false;
+    return Status::Diverged("filter: up to " + FormatSeconds(stamp_ns) + " s " + propagated.message());
+  }
   imu_.DropBefore(stamp_ns);
   rest_.AddImu(interval_);
   last_gyro_radps_ = interval_.back().gyro;

@@ -51,8 +51,9 @@ Status FilterState::Reset(const NavEstimate& initial) {
   return Status::Ok();
 }
 
-void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& noise,
-                            const Eigen::Vector3d& gravity_W) {
+Status FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& noise,
+                              const Eigen::Vector3d& gravity_W) {
+  CHECK_GE(samples.size(), 2u);
   Matrix15d from_error = ImuChartJacobian(convention_, nav_);
   if (first_estimates_) {
     // The right-invariant transition does not depend on the state; only the charts at its ends do.
@@ -60,17 +61,20 @@ void FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& 
     from_error = ImuChartJacobian(kInvariant, nav_) * InverseImuChartJacobian(kInvariant, nav_first_) *
                  ImuChartJacobian(convention_, nav_first_);
   }
+  Preintegration preintegration(bias_, noise);
+  preintegration.Add(samples);
   ImuTransition transition;
-  PropagateImu(samples, bias_, noise, gravity_W, &nav_, &transition);
+  ALIDADE_RETURN_IF_ERROR(PropagateState(preintegration, gravity_W, &nav_, &transition));
   const Matrix15d to_error = InverseImuChartJacobian(convention_, nav_);
   const Matrix15d phi = to_error * transition.phi * from_error;
-  const Matrix15d q = to_error * transition.q * to_error.transpose();
-  covariance_.Propagate(phi, q);
+  const Matrix15d noise_root = to_error * transition.noise_root;
+  covariance_.Propagate(phi, noise_root);
   if (observer_ != nullptr) {
-    observer_->OnPropagate(phi, q);
+    observer_->OnPropagate(phi, noise_root * noise_root.transpose());
   }
   stamp_ns_ = samples.back().stamp_ns;
   nav_first_ = nav_;
+  return Status::Ok();
 }
 
 void FilterState::AddClone(int serial, const Eigen::Vector3d& gyro_radps) {

@@ -76,8 +76,10 @@ class FilterState {
 
   /// `initial.covariance` is in the canonical chart. The calibration is the given one again.
   Status Reset(const NavEstimate& initial);
-  /// Propagates state and covariance over consecutive samples.
-  void Propagate(std::span<const ImuSample> samples, const ImuNoise& noise, const Eigen::Vector3d& gravity_W);
+  /// Propagates state and covariance over consecutive samples (at least two). kDiverged, with nothing
+  /// changed: see PropagateState.
+  Status Propagate(std::span<const ImuSample> samples, const ImuNoise& noise,
+                   const Eigen::Vector3d& gravity_W);
   /// Clones the pose at the current time t^. With an estimated time offset the clone's error is that of the
   /// pose when the frame was really exposed, at t^ + dt: theta and p of the clone have (omega, v) dt besides
   /// the current ones. gyro_radps: measured at t^.

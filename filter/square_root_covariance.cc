@@ -4,10 +4,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 
 #include "core/blas.h"
 #include "core/check.h"
+#include "core/semi_definite.h"
 #include "filter/triangularize.h"
 
 namespace alidade {
@@ -15,26 +15,6 @@ namespace alidade {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-bool SemiDefiniteCholesky(const Matrix15d& matrix, Matrix15d* lower) {
-  lower->setZero();
-  for (int j = 0; j < 15; ++j) {
-    const double pivot = matrix(j, j) - lower->row(j).head(j).squaredNorm();
-    const double rounding = 1e-13 * std::abs(matrix(j, j));
-    if (!std::isfinite(pivot) || pivot < -1e-6 * std::abs(matrix(j, j)) - 1e-300) {
-      return false;
-    }
-    if (pivot <= rounding) {
-      continue;
-    }
-    const double root = std::sqrt(pivot);
-    (*lower)(j, j) = root;
-    for (int i = j + 1; i < 15; ++i) {
-      (*lower)(i, j) = (matrix(i, j) - lower->row(i).head(j).dot(lower->row(j).head(j))) / root;
-    }
-  }
-  return true;
-}
 
 SquareRootCovariance::SquareRootCovariance(int capacity, int max_leading)
     : max_leading_(max_leading),

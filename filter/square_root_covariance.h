@@ -25,8 +25,8 @@ class SquareRootCovariance {
   /// Restarts with the core block alone. kInput: not symmetric positive semi-definite to rounding.
   Status Reset(const Matrix15d& covariance);
 
-  /// core <- phi core + w, w ~ N(0, q); cross terms follow.
-  void Propagate(const Matrix15d& phi, const Matrix15d& q);
+  /// core <- phi core + noise_root n, n ~ N(0, I_15); cross terms follow.
+  void Propagate(const Matrix15d& phi, const Matrix15d& noise_root);
 
   /// The six rows [first, first + 6) of a leading block <- phi times them + w, w ~ N(0, q).
   void PropagateLeading(int first, const Matrix6d& phi, const Matrix6d& q);
@@ -67,8 +67,8 @@ class SquareRootCovariance {
   /// y^T (A A^T + I)^-1 y of the rows [first, first + count) alone; NaN when one is not finite.
   [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
-  /// y, the normalised innovation squared. False, with nothing changed, when a row is not finite: M is at
-  /// least the identity, so nothing else can stop its factorisation.
+  /// y, the normalised innovation squared. False, with nothing changed, when a row is not finite, or
+  /// so large that rounding leaves nothing of the identity in M.
   bool Apply(const PreparedRows& prepared, Eigen::Ref<Eigen::VectorXd> correction, double* nis);
 
   /// Kalman update with unit-noise rows that see the errors [first, first + rows.cols()) alone, as Prepare
@@ -130,9 +130,5 @@ class SquareRootCovariance {
   Eigen::MatrixXd gate_;  // scratch of NormalizedInnovationSquared
   Eigen::VectorXd gated_;
 };
-
-/// Lower factor L of a symmetric positive semi-definite matrix, M = L L^T; pivots below rounding give zero
-/// columns. False when a pivot is clearly negative or not finite.
-bool SemiDefiniteCholesky(const Matrix15d& matrix, Matrix15d* lower);
 
 }  // namespace alidade

@@ -31,10 +31,8 @@ void SquareRootCovariance::PropagateBlock(int first, const Eigen::Matrix<double,
   }
 }
 
-void SquareRootCovariance::Propagate(const Matrix15d& phi, const Matrix15d& q) {
-  Matrix15d root;
-  CHECK(SemiDefiniteCholesky(q, &root)) << "process noise is not positive semi-definite";
-  PropagateBlock<kCore>(leading_, phi, root);
+void SquareRootCovariance::Propagate(const Matrix15d& phi, const Matrix15d& noise_root) {
+  PropagateBlock<kCore>(leading_, phi, noise_root);
 }
 
 void SquareRootCovariance::PropagateLeading(int first, const Matrix6d& phi, const Matrix6d& q) {

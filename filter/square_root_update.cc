@@ -184,7 +184,9 @@ bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<Vector
   diagonal.array() += 1.0;
   int info = 0;
   LAPACK_dpotrf("U", &active, m, &ldm, &info);
-  CHECK_EQ(info, 0) << "I + A^T A of finite rows lost positivity";
+  if (info != 0) {
+    return false;
+  }
   auto b = projected_.head(active);
   cblas_dgemv(CblasColMajor, CblasTrans, rows, active, 1.0, a, lda, y.data(), 1, 0.0, b.data(), 1);
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasTrans, CblasNonUnit, active, m, ldm, b.data(), 1);

@@ -1,8 +1,22 @@
+#include <array>
+
 #include "core/imu_propagation.h"
 #include "core/preintegration.h"
 #include "eval/probe/probe_models.h"
 
 namespace alidade::probe {
+namespace {
+
+/// From the order (theta, alpha, beta, bg, ba) to (alpha, beta, theta, bg, ba).
+Matrix15d RotationLast(const Matrix15d& m) {
+  std::array<int, 15> order;
+  for (int i = 0; i < 15; ++i) {
+    order[static_cast<size_t>(i)] = i < 9 ? (i + 3) % 9 : i;
+  }
+  return m(order, order);
+}
+
+}  // namespace
 
 Json ImuPropagationAnswer(const Json& input, ErrorConvention convention) {
   const Json& state = Member(input, "state");
@@ -15,9 +29,13 @@ Json ImuPropagationAnswer(const Json& input, ErrorConvention convention) {
   const ImuNoise noise = Noise(input);
   const std::vector<ImuSample> samples = ImuSamples(input);
 
+  Preintegration preintegration(bias, noise);
+  preintegration.Add(samples);
   const Matrix15d C_before = ImuChartJacobian(convention, nav);
   ImuTransition transition;
-  PropagateImu(samples, bias, noise, gravity, &nav, &transition);
+  if (const Status status = PropagateState(preintegration, gravity, &nav, &transition); !status.ok()) {
+    throw CaseError{status.message()};
+  }
   const Matrix15d C_after_inverse = InverseImuChartJacobian(convention, nav);
 
   Json answer;
@@ -27,7 +45,7 @@ Json ImuPropagationAnswer(const Json& input, ErrorConvention convention) {
   answer["state"]["bg"] = VectorToJson(bias.gyro);
   answer["state"]["ba"] = VectorToJson(bias.accel);
   answer["Phi"] = ToJson(C_after_inverse * transition.phi * C_before);
-  answer["Q"] = ToJson(C_after_inverse * transition.q * C_after_inverse.transpose());
+  answer["Q"] = ToJson(C_after_inverse * transition.q() * C_after_inverse.transpose());
   return answer;
 }
 
@@ -37,12 +55,16 @@ Json PreintegrationAnswer(const Json& input,
   Preintegration preintegration(bias, Noise(input));
   preintegration.Add(ImuSamples(input));
 
+  // The increments' error over that at the start is the transition of a state at the origin without gravity.
+  Matrix15d jacobian;
+  static_cast<void>(CarryState(preintegration, NavState(), bias, Eigen::Vector3d::Zero(), &jacobian));
+
   Json answer;
-  answer["alpha"] = VectorToJson(preintegration.alpha());
-  answer["beta"] = VectorToJson(preintegration.beta());
-  answer["gamma_wxyz"] = QuaternionToJson(preintegration.gamma());
-  answer["J15"] = ToJson(preintegration.jacobian());
-  answer["cov15"] = ToJson(preintegration.covariance());
+  answer["alpha"] = VectorToJson(preintegration.motion().alpha);
+  answer["beta"] = VectorToJson(preintegration.motion().beta);
+  answer["gamma_wxyz"] = QuaternionToJson(preintegration.motion().gamma);
+  answer["J15"] = ToJson(RotationLast(jacobian));
+  answer["cov15"] = ToJson(RotationLast(preintegration.covariance()));
   return answer;
 }
 

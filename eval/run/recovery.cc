@@ -74,10 +74,9 @@ NavEstimate Recovery::Reckoned(TimeNs stamp_ns, size_t next_imu) const {
   }
   std::vector<ImuSample> samples;
   if (buffer.Interval(reckoned.stamp_ns, stamp_ns, &samples).ok()) {
-    ImuTransition transition;
-    PropagateImu(samples, reckoned.bias, config_.imu.Scaled(log_.rig.imu_noise),
-                 GravityInWorld(config_.imu.gravity_mps2), &reckoned.nav, &transition);
-    reckoned.covariance = transition.phi * reckoned.covariance * transition.phi.transpose() + transition.q;
+    // Where the IMU is not usable the state stays as it is, as in a gap.
+    static_cast<void>(PropagateEstimate(samples, config_.imu.Scaled(log_.rig.imu_noise),
+                                        GravityInWorld(config_.imu.gravity_mps2), &reckoned));
   }
   reckoned.stamp_ns = stamp_ns;
   return reckoned;

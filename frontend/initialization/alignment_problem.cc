@@ -41,10 +41,9 @@ AlignmentProblem::AlignmentProblem(const DynamicWindow& window, const std::vecto
   current_.biases.assign(states.size(), bias);
   current_.landmarks.assign(window.tracks.size(), Vector3d::Zero());
   for (const Preintegration& step : preintegrations) {
-    // The floor keeps a sensor sheet with zero noise solvable.
-    const Matrix15d covariance = step.covariance() + 1e-14 * Matrix15d::Identity();
-    const Eigen::LLT<Matrix15d> factor(covariance);
-    sqrt_information_.emplace_back(factor.matrixL().solve(Matrix15d::Identity()));
+    Matrix15d whitening;
+    valid_ = step.Whitening(&whitening) && valid_;
+    sqrt_information_.push_back(whitening);
   }
   InitializeLandmarks();
 }

@@ -15,6 +15,9 @@ class AlignmentProblem {
                    const std::vector<Preintegration>& preintegrations, const std::vector<NavState>& states,
                    const ImuBias& bias, const RefinementSettings& settings);
 
+  /// False when the noise of a preintegration is singular; nothing else may be called then.
+  [[nodiscard]] bool valid() const { return valid_; }
+
   /// Builds the normal equations at the current states and landmarks; returns the robust cost.
   double Linearize();
   /// Solves with Marquardt damping into a trial state with its landmarks; returns its robust cost (infinite:
@@ -59,6 +62,7 @@ class AlignmentProblem {
   RefinementSettings settings_;
   Eigen::Vector3d gravity_W_;
   std::vector<Matrix15d> sqrt_information_;  // of each preintegration
+  bool valid_ = true;
   std::vector<bool> active_;
   Variables current_, trial_;
   Eigen::MatrixXd information_;  // without the gauge prior; its lower triangle

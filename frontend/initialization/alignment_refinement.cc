@@ -73,6 +73,11 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
                                          const std::vector<NavState>& states, const ImuBias& bias,
                                          const RefinementSettings& settings) {
   AlignmentProblem problem(window, inlier, preintegrations, states, bias, settings);
+  if (!problem.valid()) {
+    return Status::Diverged(
+        "moving: the IMU's noise covariance is not positive definite; the four noise densities must be "
+        "positive");
+  }
   RefinedAlignment refined;
   bool settled = Minimize(&problem, &refined.iterations);
   for (int round = 0; settled && round < 2 && problem.DropAbove(kMaxSquaredResidual) > 0; ++round) {

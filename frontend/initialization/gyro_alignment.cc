@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/robust.h"
+
 namespace alidade {
 namespace {
 
@@ -20,6 +22,7 @@ constexpr double kConvergedRadps = 1e-5;
 constexpr std::array<int, 3> kSpacings = {1, 2, 4};
 constexpr int kMinPairTracks = 8;
 constexpr double kInlierSigma = 4.0;
+constexpr double kCauchyScale = 3.0;
 
 /// Rotation from frame j to frame i by the gyroscope and its derivative, both in the body.
 struct PairRotation {
@@ -34,7 +37,7 @@ PairRotation RotationOver(const std::vector<Preintegration>& preintegrations, in
     const Preintegration& step = preintegrations[static_cast<size_t>(k)];
     const Matrix3d gamma = step.Corrected({gyro_bias, step.bias().accel}).gamma;
     pair.R_ij = pair.R_ij * gamma;
-    pair.bias_jacobian = gamma.transpose() * pair.bias_jacobian + step.jacobian().block<3, 3>(6, 9);
+    pair.bias_jacobian = gamma.transpose() * pair.bias_jacobian + step.bias_jacobian().topLeftCorner<3, 3>();
   }
   return pair;
 }
@@ -102,7 +105,9 @@ Vector3d DirectionOf(const std::vector<PairRay>& rays, std::vector<double>* weig
     direction = Eigen::SelfAdjointEigenSolver<Matrix3d>(scatter).eigenvectors().col(0);
     for (size_t k = 0; k < rays.size(); ++k) {
       const double residual = direction.dot(rays[k].normal);
-      (*weights)[k] = 1.0 / (EpipolarVariance(rays[k], direction) + residual * residual / 9.0);
+      const double variance = EpipolarVariance(rays[k], direction);
+      (*weights)[k] =
+          RobustWeight(RobustKernel::kCauchy, kCauchyScale, residual * residual / variance) / variance;
     }
   }
   return direction;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/landmark_reduction.h"
+#include "core/robust.h"
 
 namespace alidade {
 namespace {
@@ -16,17 +17,17 @@ using Eigen::Vector3d;
 constexpr int kRounds = 6;
 constexpr int kMinTracks = 8;
 constexpr double kFirstDepthM = 4.0;  // only its being equal for all matters
+constexpr double kCauchyScale = 3.0;
 constexpr double kMinDepthM = 0.2;
 constexpr double kMaxDepthM = 50.0;
 
-/// Where the first body frame sees body frame k, as a function of (v, g).
+/// Where the first body frame sees body frame k, as a function of (v, g): R_0k = motion.gamma, p_0k = v t + g
+/// t^2 / 2 + motion.alpha.
 struct FramePrediction {
-  Matrix3d R_0k = Matrix3d::Identity();
-  double t_s = 0;
-  Vector3d alpha = Vector3d::Zero();
-  Vector3d beta = Vector3d::Zero();
+  ImuMotion motion;
 
   [[nodiscard]] Eigen::Matrix<double, 3, 6> PositionJacobian() const {
+    const double t_s = motion.duration_s;
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian << t_s * Matrix3d::Identity(), 0.5 * t_s * t_s * Matrix3d::Identity();
     return jacobian;
@@ -37,15 +38,7 @@ std::vector<FramePrediction> ChainFrames(const std::vector<Preintegration>& prei
                                          const ImuBias& bias) {
   std::vector<FramePrediction> frames(1);
   for (const Preintegration& step : preintegrations) {
-    const FramePrediction& last = frames.back();
-    const Preintegration::Increments increments = step.Corrected(bias);
-    const double dt = step.duration_s();
-    FramePrediction next;
-    next.t_s = last.t_s + dt;
-    next.alpha = last.alpha + dt * last.beta + last.R_0k * increments.alpha;
-    next.beta = last.beta + last.R_0k * increments.beta;
-    next.R_0k = last.R_0k * increments.gamma;
-    frames.push_back(next);
+    frames.push_back({frames.back().motion * step.Corrected(bias)});
   }
   return frames;
 }
@@ -76,7 +69,7 @@ std::vector<RayBundle> CollectBundles(const DynamicWindow& window, const std::ve
       const NormalizedObservation& observation = window.tracks[t].observations[k];
       Ray ray;
       ray.frame = window.tracks[t].frames[k];
-      ray.direction = frames[static_cast<size_t>(ray.frame)].R_0k * R_BC * BearingOf(observation);
+      ray.direction = frames[static_cast<size_t>(ray.frame)].motion.gamma * R_BC * BearingOf(observation);
       ray.across.col(0) = ray.direction.unitOrthogonal();
       ray.across.col(1) = ray.direction.cross(ray.across.col(0));
       ray.sigma = AngularDeviation(observation);
@@ -108,7 +101,7 @@ NormalEquations Assemble(const std::vector<RayBundle>& bundles, const std::vecto
           ray.across.transpose() * (std::sqrt(ray.weight) / (ray.sigma * ray.depth_m));
       point.middleRows<2>(2 * k) = weighted;
       jacobian.middleRows<2>(2 * k) = weighted * frame.PositionJacobian();
-      offset.segment<2>(2 * k) = weighted * (frame.alpha + frame.R_0k * p_BC);
+      offset.segment<2>(2 * k) = weighted * (frame.motion.alpha + frame.motion.gamma * p_BC);
     }
     EliminateLandmark(point, jacobian, offset);
     const Eigen::Index left = rows - 3;
@@ -159,7 +152,8 @@ void Reweigh(const std::vector<FramePrediction>& frames, const Vector6d& solutio
              std::vector<RayBundle>* bundles) {
   std::vector<Vector3d> cameras;
   for (const FramePrediction& frame : frames) {
-    cameras.emplace_back(frame.PositionJacobian() * solution + frame.alpha + frame.R_0k * p_BC);
+    cameras.emplace_back(frame.PositionJacobian() * solution + frame.motion.alpha +
+                         frame.motion.gamma * p_BC);
   }
   for (RayBundle& bundle : *bundles) {
     Matrix3d normal = 1e-9 * Matrix3d::Identity();
@@ -176,7 +170,7 @@ void Reweigh(const std::vector<FramePrediction>& frames, const Vector6d& solutio
       const double depth = offset.dot(ray.direction);
       ray.depth_m = std::clamp(depth, kMinDepthM, kMaxDepthM);
       const double residual = (ray.across.transpose() * offset).norm() / (ray.sigma * ray.depth_m);
-      ray.weight = depth > 0 ? 1 / (1 + residual * residual / 9) : 0.01;
+      ray.weight = depth > 0 ? RobustWeight(RobustKernel::kCauchy, kCauchyScale, residual * residual) : 0.01;
     }
   }
 }
@@ -191,9 +185,9 @@ LinearAlignment ToWorld(const std::vector<FramePrediction>& frames, const Vector
   alignment.bias = bias;
   for (const FramePrediction& frame : frames) {
     NavState state;
-    state.R_WB = R_W0 * frame.R_0k;
-    state.p_WB = R_W0 * (frame.PositionJacobian() * solution + frame.alpha);
-    state.v_WB = R_W0 * (v + g * frame.t_s + frame.beta);
+    state.R_WB = R_W0 * frame.motion.gamma;
+    state.p_WB = R_W0 * (frame.PositionJacobian() * solution + frame.motion.alpha);
+    state.v_WB = R_W0 * (v + g * frame.motion.duration_s + frame.motion.beta);
     alignment.states.push_back(state);
   }
   return alignment;

@@ -10,7 +10,6 @@
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
 #include "core/robust.h"
-#include "gnss/alignment/carried_state.h"
 #include "gnss/model/measurement_model.h"
 #include "gnss/model/receiver_clock.h"
 
@@ -164,7 +163,7 @@ NavState GnssInertialStart::FirstGuess(const Fit& fit) const {
   std::vector<Vector3d> sensed;
   std::vector<Vector3d> seen;
   for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
-    sensed.push_back(fit.intervals[k].beta());
+    sensed.push_back(fit.intervals[k].motion().beta);
     seen.push_back(R_NE * (fixes_[k + 1].velocity_E - first.velocity_E) -
                    fit.intervals[k].duration_s() * gravity_W_);
   }

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/imu_propagation.h"
 #include "core/robust.h"
-#include "gnss/alignment/carried_state.h"
 #include "smoother/factors/imu_factor.h"
 
 namespace alidade {

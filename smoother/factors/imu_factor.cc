@@ -1,7 +1,5 @@
 #include "smoother/factors/imu_factor.h"
 
-#include <Eigen/Cholesky>
-
 namespace alidade {
 namespace {
 
@@ -30,21 +28,12 @@ void Chain(const FirstEstimate* first, const NavState& now, Matrix15d* jacobian)
 }  // namespace
 
 ImuFactor::ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W,
-                     double mean_step_s, const FirstEstimate* first_i, const FirstEstimate* first_j)
+                     const FirstEstimate* first_i, const FirstEstimate* first_j)
     : model_{preintegration, gravity_W},
       sqrt_information_(Matrix15d::Zero()),
+      valid_(preintegration->Whitening(&sqrt_information_)),
       first_i_(first_i),
-      first_j_(first_j) {
-  Matrix15d covariance = preintegration->covariance();
-  const double density = preintegration->noise().accel_noise_density_mps2_sqrthz;
-  covariance.diagonal().head<3>().array() +=
-      density * density * preintegration->duration_s() * mean_step_s * mean_step_s / 12;
-  const Eigen::LLT<Matrix15d> factor(covariance);
-  if (factor.info() == Eigen::Success && covariance.allFinite()) {
-    sqrt_information_ = factor.matrixL().solve(Matrix15d::Identity());
-    valid_ = sqrt_information_.allFinite();
-  }
-}
+      first_j_(first_j) {}
 
 bool ImuFactor::Evaluate(const double* const* parameters, double* residual,
                          double* const* tangent_jacobians) const {

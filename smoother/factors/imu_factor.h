@@ -10,23 +10,19 @@
 namespace alidade {
 
 /// PreintegrationModel between two frames, whitened: blocks nav_i, bias_i, nav_j, bias_j; 15 rows.
-///
-/// The midpoint rule treats the accelerometer noise as constant within a step, which leaves the position of
-/// each step fully correlated with its velocity (a single step would even be singular). The missing part of
-/// the continuous-time covariance, density^2 dt^3 / 12 a step, is added here.
 class ImuFactor {
  public:
   static constexpr int kRows = 15;
 
-  /// `preintegration` must outlive the factor. mean_step_s: length of one IMU step. first_i, first_j: where
-  /// Jacobians over a frame are taken, if not at its present state; they must outlive it too.
-  ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W, double mean_step_s,
+  /// `preintegration` must outlive the factor. first_i, first_j: where Jacobians over a frame are taken, if
+  /// not at its present state; they must outlive it too.
+  ImuFactor(const Preintegration* preintegration, const Eigen::Vector3d& gravity_W,
             const FirstEstimate* first_i = nullptr, const FirstEstimate* first_j = nullptr);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
-  /// False when the covariance could not be inverted (not finite, or not positive definite).
+  /// False when the covariance could not be inverted (Preintegration::Whitening).
   [[nodiscard]] bool valid() const { return valid_; }
 
  private:

@@ -152,9 +152,11 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   if (!window_.newest().gyro_radps) {
     window_.newest().gyro_radps = interval_.front().gyro;  // of the frame it was initialised on
   }
-  NavState state = from.nav_state();
-  PropagateImu(interval_, from.imu_bias(), noise_, solve_options_.gravity_W, &state, nullptr);
-  PackNavState(state, frame->nav.data());
+  Preintegration preintegration(from.imu_bias(), noise_);
+  preintegration.Add(interval_);
+  PackNavState(
+      CarryState(preintegration, from.nav_state(), from.imu_bias(), solve_options_.gravity_W, nullptr),
+      frame->nav.data());
   gnss_.PredictClock(from, frame.get());
   if (dropped) {
     frame->preintegration = std::move(dropped->preintegration);
@@ -162,6 +164,7 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
     frame->imu = std::move(dropped->imu);
     frame->imu.insert(frame->imu.end(), interval_.begin() + 1, interval_.end());
   } else {
+    frame->preintegration = preintegration;
     frame->imu = interval_;
   }
   window_.AddFrame(std::move(frame));

@@ -7,8 +7,7 @@
 namespace alidade {
 
 ImuRows LinearizeImu(const WindowFrame& first, const WindowFrame& second, const Eigen::Vector3d& gravity_W) {
-  const ImuFactor factor(&*second.preintegration, gravity_W, second.mean_step_s(), first.first_estimate(),
-                         second.first_estimate());
+  const ImuFactor factor(&*second.preintegration, gravity_W, first.first_estimate(), second.first_estimate());
   Eigen::Matrix<double, 15, 9, Eigen::RowMajor> nav_first, nav_second;
   Eigen::Matrix<double, 15, 6, Eigen::RowMajor> bias_first, bias_second;
   const std::array<const double*, 4> parameters = {first.nav.data(), first.bias.data(), second.nav.data(),

@@ -106,11 +106,11 @@ void SolveStore::AddSlamPrior(const SlamPrior& prior, ceres::Problem* problem) {
 Status SolveStore::AddImu(const Eigen::Vector3d& gravity_W, ceres::Problem* problem) {
   for (size_t i = 0; i + 1 < frames_.size(); ++i) {
     const WindowFrame& next = *frames_[i + 1];
-    const ImuFactor factor(&*next.preintegration, gravity_W, next.mean_step_s(), frames_[i]->first_estimate(),
+    const ImuFactor factor(&*next.preintegration, gravity_W, frames_[i]->first_estimate(),
                            next.first_estimate());
     if (!factor.valid()) {
       return Status::Diverged("smoother: IMU covariance up to " + FormatSeconds(next.stamp_ns) +
-                              " s is not positive definite");
+                              " s is not positive definite; the four noise densities must be positive");
     }
     imu_.emplace_back(factor);
     const int from = static_cast<int>(i);

@@ -20,12 +20,6 @@ ImuBias WindowFrame::imu_bias() const {
   return UnpackBias(bias.data());
 }
 
-double WindowFrame::mean_step_s() const {
-  return imu.size() < 2 ? 0.0
-                        : SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns) /
-                              static_cast<double>(imu.size() - 1);
-}
-
 void WindowTrack::ScaleInformation(double factor) {
   for (WindowView& view : views) {
     view.observation.sqrt_information *= std::sqrt(factor);

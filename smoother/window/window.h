@@ -46,8 +46,6 @@ struct WindowFrame {
   [[nodiscard]] const FirstEstimate* first_estimate() const { return first ? &*first : nullptr; }
   /// Precondition: clock.
   [[nodiscard]] Vector6d clock_state() const { return Eigen::Map<const Vector6d>(clock->data()); }
-  /// Mean length of one IMU step [s].
-  [[nodiscard]] double mean_step_s() const;
 };
 
 /// One observation of a track inside the window.

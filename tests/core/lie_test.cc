@@ -48,6 +48,17 @@ TEST_P(So3AtAngle, GammaIsItsPowerSeries) {
   }
 }
 
+TEST_P(So3AtAngle, GammaDerivativeDifferentiatesGamma) {
+  const Vector3d v(0.3, -1.2, 0.7);
+  for (int m = 0; m <= 2; ++m) {
+    const auto f = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+      return so3::Gamma(phi_ + Vector3d(d), m) * v;
+    };
+    EXPECT_EQ(test::CompareJacobians(so3::GammaDerivative(phi_, v, m), test::NumericJacobian(f, 3), 1e-9), "")
+        << "m = " << m;
+  }
+}
+
 TEST_P(So3AtAngle, LeftAndRightJacobiansDifferentiateExp) {
   const auto left = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
     return so3::Log(so3::Exp(phi_ + Vector3d(d)) * so3::Exp(phi_).transpose());

@@ -47,7 +47,7 @@ struct Window {
       for (int i = 0; i <= 10; ++i) {
         samples.push_back({state.stamp_ns() + i * 10'000'000, gyro, accel});
       }
-      state.Propagate(samples, ImuNoise(), Vector3d(0, 0, -9.81));
+      EXPECT_TRUE(state.Propagate(samples, ImuNoise(), Vector3d(0, 0, -9.81)).ok());
       state.AddClone(clone);
     }
     for (int i = 0; i < kTracks; ++i) {

@@ -27,7 +27,7 @@ FilterState MakeState(ErrorConvention convention, RandomStates* random) {
     samples.push_back({k * 10'000'000LL, random->Vector(0.5), Vector3d(0, 0, 9.81) + random->Vector(1)});
   }
   state.AddClone(1);
-  state.Propagate(samples, ImuNoise(), GravityInWorld(9.81));
+  EXPECT_TRUE(state.Propagate(samples, ImuNoise(), GravityInWorld(9.81)).ok());
   state.AddClone(2);
   return state;
 }

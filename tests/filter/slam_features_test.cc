@@ -42,7 +42,7 @@ class Flight {
       samples.push_back({stamp(i), {0.1, 0.05, -0.08}, {0.2, 0.3, 9.9}});
     }
     const ImuNoise noise_model{3e-4, 1e-3, 3e-5, 2e-4};
-    state_.Propagate(samples, noise_model, kGravity);
+    EXPECT_TRUE(state_.Propagate(samples, noise_model, kGravity).ok());
     state_.AddClone(++serial_);
     TrackView view;
     view.serial = serial_;

@@ -33,12 +33,11 @@ class SquareRootCovarianceTest : public ::testing::Test {
   void Propagate() {
     const MatrixXd phi = MatrixXd::Identity(15, 15) + 0.1 * RandomMatrix(&random_, 15, 15);
     const MatrixXd b = 0.1 * RandomMatrix(&random_, 15, 15);
-    const MatrixXd q = b * b.transpose();
     MatrixXd f = MatrixXd::Identity(dense_.rows(), dense_.rows());
     f.block(leading_, leading_, 15, 15) = phi;
     dense_ = f * dense_ * f.transpose();
-    dense_.block(leading_, leading_, 15, 15) += q;
-    root_.Propagate(phi, q);
+    dense_.block(leading_, leading_, 15, 15) += b * b.transpose();
+    root_.Propagate(phi, b);
   }
 
   void Clone() {

@@ -33,7 +33,7 @@ FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention, 
     if (k > 0) {
       std::vector<ImuSample> interval;
       EXPECT_TRUE(imu.Interval(state.stamp_ns(), stamp_ns, &interval).ok());
-      state.Propagate(interval, dataset.rig.imu_noise, Vector3d(0, 0, -9.81));
+      EXPECT_TRUE(state.Propagate(interval, dataset.rig.imu_noise, Vector3d(0, 0, -9.81)).ok());
     }
     state.AddClone(k);
   }

@@ -35,7 +35,9 @@ class FakeEstimator final : public Estimator {
     if (stamp > latest_.stamp_ns) {
       std::vector<ImuSample> samples;
       ALIDADE_RETURN_IF_ERROR(imu_.Interval(latest_.stamp_ns, stamp, &samples));
-      PropagateImu(samples, latest_.bias, ImuNoise(), GravityInWorld(9.81), &latest_.nav, nullptr);
+      Preintegration preintegration(latest_.bias, ImuNoise());
+      preintegration.Add(samples);
+      latest_.nav = CarryState(preintegration, latest_.nav, latest_.bias, GravityInWorld(9.81), nullptr);
       latest_.stamp_ns = stamp;
     }
     statistics_ = {};

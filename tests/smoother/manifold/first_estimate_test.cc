@@ -217,7 +217,7 @@ TEST(FirstEstimateTest, FactorsKeepTheirResiduals) {
   const WindowFrame& first = *track.views.front().frame;
   const WindowFrame& last = *track.views.back().frame;
   const auto everything = [&] {
-    const ImuFactor imu(&*sliding.window.frame(1).preintegration, sliding.gravity_W, 0.01,
+    const ImuFactor imu(&*sliding.window.frame(1).preintegration, sliding.gravity_W,
                         sliding.window.frame(0).first_estimate(), sliding.window.frame(1).first_estimate());
     const InverseDepthFactor depth(&first, &track.views.back(), &sliding.T_BC);
     const PoseOnlyFactor pose_only(sliding.window, sliding.tracks(), sliding.T_BC, {});

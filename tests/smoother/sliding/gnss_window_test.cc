@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "gnss/alignment/carried_state.h"
 #include "smoother/solve/marginalization.h"
 #include "smoother/solve/window_system.h"
 #include "tests/gnss/model/synthetic_sky.h"
@@ -56,23 +55,6 @@ struct GnssFixture : WindowFixture {
   }
   GnssFactorContext context;
 };
-
-TEST(CarryStateTest, JacobianAgainstDifferences) {
-  GnssFixture fixture(3);
-  const WindowFrame& frame = fixture.window.frame(0);
-  const Preintegration& interval = *frame.epochs[0].preintegration;
-  const NavState nav = frame.nav_state();
-  const ImuBias bias = frame.imu_bias();
-  Matrix15d jacobian;
-  const NavState end = CarryState(interval, nav, bias, fixture.gravity_W, &jacobian);
-  const auto carried = [&](const Eigen::VectorXd& zeta) -> Eigen::VectorXd {
-    const ImuBias moved{bias.gyro + zeta.segment<3>(9), bias.accel + zeta.segment<3>(12)};
-    const NavState from = Retract(ErrorConvention::kSo3xRn, nav, Vector9d(zeta.head<9>()));
-    return Local(ErrorConvention::kSo3xRn, end,
-                 CarryState(interval, from, moved, fixture.gravity_W, nullptr));
-  };
-  EXPECT_EQ(CompareJacobians(jacobian.topRows<9>(), NumericJacobian(carried, 15), 1e-5), "");
-}
 
 // GIVEN an epoch with large residuals, THEN the factor's Jacobians are those of its robust residual.
 TEST(GnssEpochFactorTest, JacobiansAgainstDifferences) {

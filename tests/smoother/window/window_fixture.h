@@ -33,7 +33,9 @@ struct WindowFixture {
       }
       if (i > 0) {
         stamp = frame->imu.back().stamp_ns;
-        PropagateImu(frame->imu, bias, noise, gravity_W, &state, nullptr);
+        Preintegration preintegration(bias, noise);
+        preintegration.Add(frame->imu);
+        state = CarryState(preintegration, state, bias, gravity_W, nullptr);
       }
       frame->stamp_ns = stamp;
       PackNavState(state, frame->nav.data());
