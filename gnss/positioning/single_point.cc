@@ -130,8 +130,8 @@ Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, State* state) 
   if (active < 4) {
     const MeasurementCounts& c = epoch.left_out;
     return Status::Input(
-        Format("%d satellites can be used, expected 4 (%d without ephemeris, %d unhealthy, "
-               "%d without signal, %zu below the mask or refused)",
+        Format("%d satellites can be used, expected 4 (%d without ephemeris, %d unhealthy, %d without "
+               "signal, %zu below the mask or rejected)",
                active, c.no_ephemeris, c.unhealthy, c.no_signal,
                epoch.satellites.size() - static_cast<std::size_t>(active)));
   }
