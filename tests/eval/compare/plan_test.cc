@@ -200,7 +200,7 @@ TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
   EXPECT_EQ(plan->absent[0].second, folder_.File("data/gone"));
   const Result<Plan> none = Read(rest + "skip_missing: true\n", folder_.File("nowhere"));
   EXPECT_EQ(none.code(), StatusCode::kInput);
-  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is there"));
+  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is present"));
 }
 
 // The shipped plans of published data read without any of it, and say what they would need.
