@@ -211,7 +211,7 @@ TEST(PublishedPlans, SayWhatDataTheyNeed) {
     EXPECT_EQ(ReadPlan(path, "").code(), StatusCode::kConfig) << name;
     const Result<Plan> none = ReadPlan(path, folder.path());
     EXPECT_EQ(none.code(), StatusCode::kInput) << name << ": " << none.message();
-    EXPECT_THAT(none.message(), HasSubstr("is there; the first, ")) << name;
+    EXPECT_THAT(none.message(), HasSubstr("is present; the first, ")) << name;
   }
   folder.Write("V1_02_medium/mav0/x", "");
   const Result<Plan> one =
