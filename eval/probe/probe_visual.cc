@@ -40,7 +40,7 @@ void RowsWithoutLandmark(const std::vector<Pose>& views, const std::vector<Eigen
   }
   TrackLinearization linearization;
   if (!LinearizeTrack(views, observations, p_W, &linearization)) {
-    throw CaseError{"the landmark is behind a view"};
+    throw CaseError{"landmark lies behind a view"};
   }
   EliminateLandmark(linearization.point_jacobian, *jacobian, *residual);
   const Eigen::Index rows = residual->size() - kLandmarkRows;
@@ -62,7 +62,7 @@ Json PoseOnlyAnswer(const Json& input, ErrorConvention convention) {
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian, noise_jacobian;
   if (!model.Evaluate(views, z, &depth, &residual, &jacobian, &noise_jacobian)) {
-    throw CaseError{"no parallax between the views, or the landmark is behind one of them"};
+    throw CaseError{"no parallax between the views, or the landmark lies behind one of them"};
   }
   ToErrorCoordinates(views, convention, &jacobian);
   const Eigen::VectorXd observed_minus_predicted = -residual;
@@ -106,7 +106,7 @@ Json InverseDepthAnswer(const Json& input, ErrorConvention convention) {
     InverseDepthModel::PoseJacobian base_block, view_block;
     if (!model.Evaluate(views[static_cast<size_t>(base)], views[static_cast<size_t>(k)], inverse_depth,
                         &view_residual, &base_block, &view_block, &view_rho)) {
-      throw CaseError{"the landmark is behind views[" + std::to_string(k) + "]"};
+      throw CaseError{"landmark lies behind views[" + std::to_string(k) + "]"};
     }
     residual.segment<2>(2 * k) = -view_residual;
     jacobian.block<2, 6>(2 * k, 6 * base) = base_block;
