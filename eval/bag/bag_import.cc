@@ -55,7 +55,7 @@ class Importer {
     });
     ALIDADE_RETURN_IF_ERROR(scan.status());
     total_ = scan->messages;
-    return scan->messages > 0 ? Status::Ok() : Status::Input(path_ + ": holds no message that is whole");
+    return scan->messages > 0 ? Status::Ok() : Status::Input(path_ + ": holds no complete message");
   }
 
   [[nodiscard]] Status Stopped() const {

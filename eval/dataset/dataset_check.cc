@@ -98,8 +98,9 @@ void CheckImuUnits(const std::vector<ImuSample>& imu, Findings* findings) {
         Format("imu0: mean specific force %.3f m/s^2, expected about %.2f: unit or gravity removed?", force,
                kStandardGravity));
   } else if (std::abs(force - kStandardGravity) > 0.5) {
-    findings->Warning(Format("imu0: mean specific force %.3f m/s^2 is off %.2f: bias, scale or hard motion",
-                             force, kStandardGravity));
+    findings->Warning(
+        Format("imu0: mean specific force %.3f m/s^2 differs from %.2f: bias, scale error or strong motion",
+               force, kStandardGravity));
   }
   if (rate_rms > 8 || fastest > 40) {
     findings->Error(Format(

@@ -116,7 +116,7 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
       {sequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
        "no such sequence; did you mean 'sim'"},
       {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
-      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` beside `config` only"},
+      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` only with `config`"},
       {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
       {estimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
       {estimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
