@@ -17,10 +17,10 @@ struct BagExportOptions {
   std::function<void(std::size_t done, std::size_t messages)> progress;
 };
 
-/// Writes a sequence as a ROS 1 bag: IMU, images as mono8, GNSS as gnss_comm says it (with the pulse of every
-/// second and its trigger, so that GVINS finds the time offset), and what has no standard message, tracks,
-/// truth and the sensor sheets, as alidade's own messages, so that reading it back loses nothing but what
-/// bags.md says. Messages come in the order of their stamps; those without one at the beginning. Errors: an
+/// Writes a sequence as a ROS 1 bag: IMU, images as mono8, GNSS as gnss_comm messages (with the pulse of
+/// every second and its trigger, from which GVINS computes the time offset). Tracks, truth and the sensor
+/// sheets have no standard message and become messages of type alidade/*. Reading back loses only what
+/// docs/bags.md lists. Messages are in the order of their stamps; those without a stamp are first. Errors: an
 /// image that does not decode; kDiverged: stopped.
 Status WriteBag(const Dataset& dataset, const BagExportOptions& options, const std::string& path);
 

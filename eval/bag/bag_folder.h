@@ -8,8 +8,8 @@
 namespace alidade {
 
 /// Reads a bag (ReadBag) and writes it as a folder in the extended ASL layout: raw images become grey PNG
-/// files, compressed ones keep their bytes. `options.take_image` is not looked at. The remarks of the import.
-/// Errors: those of ReadBag; kOutput.
+/// files, compressed ones keep their bytes. `options.take_image` is ignored. Returns the remarks of the
+/// import. Errors: those of ReadBag; kOutput.
 Result<std::vector<std::string>> ConvertBagToFolder(const std::string& bag, BagImportOptions options,
                                                     const std::string& folder);
 

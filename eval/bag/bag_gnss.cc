@@ -71,7 +71,7 @@ Status BagGnss::Assemble(const std::string& path, const std::string& sheet, Data
   NavigationData navigation;
   navigation.Merge(std::move(navigation_));
   if (navigation.ephemerides() == 0) {
-    remarks->push_back(path + ": has GNSS observations but no ephemeris; they are of no use and left out");
+    remarks->push_back(path + ": has GNSS observations but no ephemeris; the observations are not used");
   }
   navigation.leap_seconds = LeapSeconds(epochs_.front().stamp_ns);
   auto log = std::make_shared<GnssLog>();
@@ -100,14 +100,14 @@ Status BagGnss::AssembleReceiver(const std::string& path, const std::string& she
     return Status::Ok();
   }
   remarks->push_back(
-      path + ": the antenna's lever arm is not in it and taken as zero; set p_BA in gnss0/sensor.yaml");
+      path + ": does not contain the antenna's lever arm; zero is assumed; set p_BA in gnss0/sensor.yaml");
   if (const std::optional<double> offset = TimeOffset()) {
     dataset->rig.gnss.time_offset_s = *offset;
     remarks->push_back(
         path + Format(": IMU time is GPST %+.6f s, the median over %zu triggers", *offset, syncs_.size()));
   } else {
     remarks->push_back(path +
-                       ": no trigger follows a pulse; IMU time is taken for GPST: set time_offset_s in "
+                       ": no trigger follows a pulse; IMU time is assumed to be GPST: set time_offset_s in "
                        "gnss0/sensor.yaml");
   }
   return Status::Ok();

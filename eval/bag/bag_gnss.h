@@ -15,18 +15,17 @@ namespace alidade {
 /// Collects the GNSS messages of a bag.
 class BagGnss {
  public:
-  /// kInput: a message of one of its topics that does not decode. Other topics are not its business.
+  /// kInput: a message of one of its topics that does not decode. Messages of other topics are ignored.
   Status Take(const BagTopics& topics, const BagMessage& message);
 
-  /// Puts what was taken into the dataset: observations and navigation data, the receiver as `sheet` (a
-  /// sensor.yaml, may be empty) says, else the time offset from pulses and triggers and a lever arm of zero.
-  /// Where there is no other truth, it becomes that of the fixed solutions. kInput: a sheet that does not
-  /// parse.
+  /// Adds the collected messages to the dataset: observations and navigation data; the receiver from `sheet`
+  /// (a sensor.yaml, may be empty), else the time offset from pulses and triggers and a zero lever arm.
+  /// Without other truth the fixed solutions become the truth. kInput: a sheet that does not parse.
   Status Assemble(const std::string& path, const std::string& sheet, Dataset* dataset,
                   std::vector<std::string>* remarks);
 
  private:
-  /// A trigger with the pulse that was announced last.
+  /// A trigger with the last announced pulse.
   struct Sync {
     TimeNs local_ns = 0;
     TimeNs pulse_ns = 0;

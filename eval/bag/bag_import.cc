@@ -55,7 +55,7 @@ class Importer {
     });
     ALIDADE_RETURN_IF_ERROR(scan.status());
     total_ = scan->messages;
-    return scan->messages > 0 ? Status::Ok() : Status::Input(path_ + ": holds no message that is whole");
+    return scan->messages > 0 ? Status::Ok() : Status::Input(path_ + ": holds no complete message");
   }
 
   [[nodiscard]] Status Stopped() const {
@@ -100,7 +100,7 @@ class Importer {
 
   void Damage(const std::string& topic, const std::string& what) {
     if (damaged_[topic]++ == 0) {
-      Remark(topic + ": a message passed over: " + what);
+      Remark(topic + ": a message was skipped: " + what);
     }
   }
 
@@ -165,16 +165,16 @@ class Importer {
   void DescribeScan() {
     const BagScan& scan = import_.scan;
     if (scan.truncated) {
-      Remark("ends inside a record; what is whole was read");
+      Remark("ends inside a record; the complete records were read");
     } else if (!scan.indexed) {
       Remark("was never closed and has no index; it was read from front to back");
     }
     if (scan.damaged > 0) {
-      Remark(std::to_string(scan.damaged) + " damaged pieces passed over, the first: " + scan.first_damage);
+      Remark(std::to_string(scan.damaged) + " damaged parts skipped, the first: " + scan.first_damage);
     }
     for (const auto& [topic, count] : damaged_) {
       if (count > 1) {
-        Remark(topic + ": " + std::to_string(count) + " messages passed over in all");
+        Remark(topic + ": " + std::to_string(count) + " messages skipped in total");
       }
     }
   }
@@ -202,7 +202,7 @@ class Importer {
 
   void DescribeDropped(const std::string& topic, std::size_t dropped) {
     if (dropped > 0) {
-      Remark(topic + ": " + std::to_string(dropped) + " messages with a stamp that another has, passed over");
+      Remark(topic + ": " + std::to_string(dropped) + " messages with a duplicate stamp, skipped");
     }
   }
 
@@ -243,7 +243,7 @@ class Importer {
     for (auto& [k, frames] : extra_) {
       const std::string name = "cam" + std::to_string(k);
       if (sheets_.Text(name) == nullptr || frames.empty()) {
-        Remark("/" + name + "/tracks: no calibration beside it, passed over");
+        Remark("/" + name + "/tracks: no calibration for this camera, skipped");
         continue;
       }
       const Result<CameraSensor> sensor = sheets_.Camera(name, std::nullopt);

@@ -19,17 +19,18 @@ namespace alidade {
 struct BagImage {
   TimeNs stamp_ns = 0;
   GreyImage grey;              ///< no pixels when `file` is set
-  std::string_view file;       ///< lives as long as the call that hands it over
+  std::string_view file;       ///< valid during the call that receives it
   const char* extension = "";  ///< of `file`: png or jpg
 };
 
 struct BagImportOptions {
   BagTopics topics;
-  /// Calibration in place of the sheets in the bag.
+  /// Calibration instead of the sheets in the bag.
   std::optional<ImuSensor> imu;
   bool imu_is_per_sample = false;  ///< its noise becomes densities at the rate of the bag's samples
   std::optional<CameraSensor> camera;
-  /// Takes an image of the camera. Without it the dataset's entries say where in the bag the images lie.
+  /// Receives each image of the camera. Without it the dataset's entries hold the positions of the images in
+  /// the bag.
   std::function<Status(const BagImage&)> take_image;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(std::int64_t done, std::int64_t messages)> progress;
@@ -39,15 +40,14 @@ struct BagImportOptions {
 struct BagImport {
   Dataset dataset;  ///< without image entries where `take_image` took them
   BagScan scan;
-  std::vector<std::string> remarks;  ///< what was guessed, passed over or is missing, for a person
+  std::vector<std::string> remarks;  ///< assumptions, skipped messages and missing items, as text
 };
 
-/// Reads a ROS 1 bag: IMU, tracks or images, GNSS of gnss_comm, truth. What alidade wrote itself comes back
-/// equal. Of other bags: the truth is receiver_pvt with a fixed carrier solution (positions of the antenna in
-/// ENU at the first of them, no attitude); the GNSS time offset is the median over the triggers against the
-/// pulse announced last. Stamps out of order are sorted, double ones passed over, with a remark. Errors
-/// (kInput): no IMU, no calibration, a topic that is not there, two topics that could be meant; kDiverged:
-/// stopped.
+/// Reads a ROS 1 bag: IMU, tracks or images, GNSS of gnss_comm, truth. A bag written by alidade is read back
+/// equal. In other bags the truth is receiver_pvt with a fixed carrier solution (positions of the antenna in
+/// ENU at the first of them, no attitude); the GNSS time offset is the median over the triggers relative to
+/// the last announced pulse. Stamps out of order are sorted, duplicates skipped, with a remark. Errors
+/// (kInput): no IMU, no calibration, a missing topic, an ambiguous topic; kDiverged: stopped.
 Result<BagImport> ReadBag(const std::string& path, const BagImportOptions& options);
 
 /// Whether a path names a bag: a file, by its extension.

@@ -21,7 +21,7 @@ class BagSheets {
 
   /// The sheet of "imu0", "cam0", ...; null when there is none.
   [[nodiscard]] const std::string* Text(const std::string& sensor) const;
-  /// What is `given`, or else what the sheet says. Errors (kInput): neither is there, or the sheet is wrong.
+  /// `given` if set, else the values of the sheet. Errors (kInput): neither exists, or the sheet is invalid.
   [[nodiscard]] Result<ImuSensor> Imu(const std::optional<ImuSensor>& given) const;
   [[nodiscard]] Result<CameraSensor> Camera(const std::string& sensor,
                                             const std::optional<CameraSensor>& given) const;

@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// Names of topics. Reading, an empty one is found by its type: it must then be the only one of it.
+/// Names of topics. When reading, a topic with an empty name is found by its type, which must be unique.
 struct BagTopics {
   std::string imu = "/imu0";
   std::string camera = "/cam0/image_raw";
@@ -23,12 +23,12 @@ struct BagTopics {
   std::string trigger = "/external_trigger";
 
   /// Sets "imu=/imu/data,cam0=/left/image_raw": imu, cam0, tracks, truth, range, ephem, glo_ephem, iono, pvt,
-  /// pulse, trigger. kUsage: another word, or no name.
+  /// pulse, trigger. kUsage: an unknown sensor, or no name.
   Status Set(const std::string& list);
 
   /// Replaces a name that a bag does not have by that of the only topic of its types, or by nothing when
-  /// there is none. `found`: topic -> type. kInput: no IMU, a name that was set and is not there, two topics
-  /// that could be meant.
+  /// there is none. `found`: topic -> type. kInput: no IMU, a name that was set but does not exist, an
+  /// ambiguous topic.
   Status Resolve(const std::string& path, const std::map<std::string, std::string>& found);
 };
 

@@ -11,7 +11,7 @@ namespace alidade {
 /// Reads the images of a sequence, from files or from its bag.
 class DatasetImages {
  public:
-  /// Cheapest in the order of the stamps. kInput: missing, does not decode, or of another encoding than mono,
+  /// Fastest in the order of the stamps. kInput: missing, does not decode, or of another encoding than mono,
   /// rgb or bgr.
   Result<GreyImage> Read(const ImageEntry& image);
 

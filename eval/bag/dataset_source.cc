@@ -12,8 +12,8 @@ Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string
     return source.topics.empty() && source.calibration.empty()
                ? ReadDataset(source.path)
                : Status::Usage(source.path +
-                               ": is no bag; topics and calibration are those of a bag, a "
-                               "folder has its sensor.yaml");
+                               ": is not a bag; topics and calibration apply to bags, a folder has its "
+                               "own sensor.yaml");
   }
   BagImportOptions options;
   ALIDADE_RETURN_IF_ERROR(options.topics.Set(source.topics));

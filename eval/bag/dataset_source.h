@@ -9,17 +9,17 @@ namespace alidade {
 
 struct Dataset;
 
-/// Where a sequence comes from: a folder in the extended ASL layout, or a ROS bag and what that lacks.
+/// Where a sequence comes from: a folder in the extended ASL layout, or a ROS bag with the calibration that
+/// the bag lacks.
 struct DatasetSource {
   std::string path;
   std::string topics;                    ///< of a bag, as BagTopics::Set takes them
   std::vector<std::string> calibration;  ///< files of other programs, before the sheets in a bag
-  std::string camera = "cam0";           ///< which of several in those files
+  std::string camera = "cam0";           ///< camera to use in those files
 };
 
-/// ReadDataset; `remarks` takes what was guessed or passed over in a bag, for a person. kUsage: topics that
-/// are none, or topics or calibration beside a folder, which has its own; kInput: as ReadDataset and
-/// ImportCalibration.
+/// ReadDataset; `remarks` receives assumptions and skipped messages of a bag as text. kUsage: invalid topics,
+/// or topics or calibration for a folder, which has its own; kInput: as ReadDataset and ImportCalibration.
 Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string>* remarks);
 
 /// SHA-256 (hex) over everything that the sequence is read from.

@@ -164,7 +164,8 @@ std::string GeneralHelp() {
   for (const Command& command : Commands()) {
     text += "  " + Padded(command.name, 12) + command.summary + "\n";
   }
-  text += "  " + Padded("help", 12) + "this text; `alidade <command> --help` lists a command's flags\n";
+  text += "  " + Padded("help", 12) +
+          "print this text; `alidade <command> --help` lists the flags of a command\n";
   text += "\nExit codes:";
   size_t line_start = text.size();
   for (const ExitCode& exit : ExitCodes()) {

@@ -40,7 +40,7 @@ int RunCompare(const std::vector<std::string>&) {
     return Report(outcome.status());
   }
   if (outcome->interrupted) {
-    Say("interrupted: complete cells are kept, --resume goes on");
+    Say("interrupted: complete cells are kept, --resume continues");
     return kExitInterrupted;
   }
   std::fputs(FormatTable(outcome->comparison).c_str(), stdout);

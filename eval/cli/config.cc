@@ -84,7 +84,7 @@ int RunConfig(const std::vector<std::string>& words) {
   const bool plan_is_fine = FLAGS_check || FLAGS_list;
   if (!kind || (*kind == ConfigKind::kPlan && !plan_is_fine)) {
     return Report(Status::Usage("config: --kind: found '" + FLAGS_kind + "', expected estimator, simulator" +
-                                (plan_is_fine ? " or plan" : "; a plan has --check and --list alone")));
+                                (plan_is_fine ? " or plan" : "; a plan supports only --check and --list")));
   }
   if (FLAGS_list) {
     return Report(List(*kind));

@@ -59,8 +59,8 @@ int BagToFolder(const BagTopics& topics, const ImportedCalibration& calibration)
 int CalibrationToSheets(const ImportedCalibration& calibration) {
   if (calibration.imu && calibration.imu_is_per_sample) {
     return Report(Status::Input("convert: " + FLAGS_calibration +
-                                ": gives the IMU's noise a sample; with a bag "
-                                "(--dataset) its rate makes densities of it"));
+                                ": gives the IMU noise per sample; converting it to densities needs the IMU "
+                                "rate of a bag (--dataset)"));
   }
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
@@ -116,9 +116,9 @@ int RunConvert(const std::vector<std::string>&) {
     return CalibrationToSheets(*calibration);
   }
   if (!FLAGS_output.ends_with(".bag")) {
-    return Report(
-        Status::Usage("convert: --output: found '" + FLAGS_output +
-                      "', expected a name that ends in .bag (a folder becomes a bag, a bag a folder)"));
+    return Report(Status::Usage(
+        "convert: --output: found '" + FLAGS_output +
+        "', expected a name that ends in .bag (convert turns a folder into a bag, or a bag into a folder)"));
   }
   return FolderToBag(topics, *compression);
 }

@@ -85,13 +85,13 @@ std::string ExitStatus() {
 std::string Files() {
   return Item(Bold("configs/"),
               Escaped("The shipped configurations: base.yaml with every key, its unit, range and reason; "
-                      "estimators/, datasets/ and plans/. They lie in share/alidade of the tree in which the "
-                      "program is installed. A CONFIG is a file, or the name of a shipped one, as "
-                      "alidade_filter or demo; alidade config --list names them."));
+                      "estimators/, datasets/ and plans/. They are in share/alidade of the installation. A "
+                      "CONFIG is a file, or the name of a shipped configuration, such as alidade_filter or "
+                      "demo; alidade config --list lists them."));
 }
 
 std::string Examples() {
-  return Escaped("Ten estimators on the same simulated input, tables and a page for people:") +
+  return Escaped("Ten estimators on the same simulated input, with tables and an HTML report:") +
          "\n.PP\n.nf\n.RS\n" + Escaped("alidade compare --plan=demo --output=out/demo --jobs=2") +
          "\n.RE\n.fi\n.PP\n" + Escaped("One estimator on a EuRoC folder, and its errors:") +
          "\n.PP\n.nf\n.RS\n" +
@@ -109,9 +109,9 @@ std::string Manual() {
          Bold("alidade help") + " [\\fIcommand\\fR]\n.br\n" + Bold("alidade --version") +
          "\n.SH DESCRIPTION\n" +
          Escaped(
-             "Runs and compares visual-inertial odometry estimators, with raw GNSS or without, on "
-             "identical input, and simulates such input. A flag may be written with its value behind a "
-             "blank; a switch is turned off by --noswitch.") +
+             "Runs and compares visual-inertial odometry estimators, with or without raw GNSS, on identical "
+             "input, and simulates such input. The value of a flag follows '=' or a blank; --noNAME turns a "
+             "boolean flag off.") +
          "\n.SH COMMANDS\n" + CommandSections() + ".SH EXIT STATUS\n" + ExitStatus() + ".SH ENVIRONMENT\n" +
          Item(Bold("ALIDADE_DATA_DIR"), Escaped("Folder that holds configs/ instead of the installed one.")) +
          ".SH FILES\n" + Files() + ".SH EXAMPLES\n" + Examples();

@@ -73,7 +73,7 @@ Result<std::string> ShippedConfigsFolder() {
     tried += (tried.empty() ? "" : " or ") + folder.string();
   }
   return Status::Config("no configs/base.yaml in " + tried + ", expected the shipped configurations there" +
-                        (is_named ? " (ALIDADE_DATA_DIR)" : " or where ALIDADE_DATA_DIR says"));
+                        (is_named ? " (ALIDADE_DATA_DIR)" : " or in ALIDADE_DATA_DIR"));
 }
 
 Result<std::vector<std::string>> ShippedConfigs(ConfigKind kind) {

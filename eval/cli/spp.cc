@@ -37,7 +37,7 @@ Result<SppConfig> ConfigFromFlags() {
 
 void SayWarnings(const ReaderWarnings& warnings) {
   for (const std::string& text : warnings.first) {
-    Say("passed over: " + text);
+    Say("skipped: " + text);
   }
   if (const auto more = warnings.count - static_cast<std::int64_t>(warnings.first.size()); more > 0) {
     Say(Format("and %lld more", static_cast<long long>(more)));

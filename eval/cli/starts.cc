@@ -41,7 +41,7 @@ Result<std::vector<StartOutcome>> StudySequence(const Plan& plan, const PlanSequ
   }
   if (!data->truth.has_value()) {
     return Status::Input("sequence " + sequence.name +
-                         ": has no ground truth, so its starts cannot be judged");
+                         ": has no ground truth, so its starts cannot be evaluated");
   }
   return StartOften(*config, data->log, *data->truth, sequence.name, count, FLAGS_limit, seed);
 }

@@ -69,7 +69,7 @@ Status PrepareOutputFolder(const std::string& path, bool allowed) {
     return Status::Usage("--output: found an empty path, expected a folder");
   }
   if (fs::exists(path, error) && !fs::is_directory(path, error)) {
-    return Status::Output(path + ": exists and is no folder, expected a folder for the output");
+    return Status::Output(path + ": exists and is not a folder, expected a folder for the output");
   }
   if (!allowed && fs::exists(path, error) && !fs::is_empty(path, error)) {
     return Status::Output(path + ": exists and is not empty, expected a new folder or --overwrite");

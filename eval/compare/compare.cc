@@ -102,7 +102,7 @@ class Comparer {
   void RunAll() {
     int jobs = options_.jobs;
     if (jobs > 1 && !BlasIsThreadSafe()) {
-      Say("one job at a time: this OpenBLAS was built without locks; install libopenblas0-pthread");
+      Say("using one job: this OpenBLAS was built without locks; install libopenblas0-pthread");
       jobs = 1;
     }
     std::vector<std::thread> threads;
@@ -190,12 +190,12 @@ class Comparer {
   [[nodiscard]] std::vector<std::string> NotesOfAbsent() const {
     std::vector<std::string> notes;
     for (const auto& [name, path] : plan_.absent) {
-      notes.push_back(name + ": its data is not there, expected " + path);
+      notes.push_back(name + ": its data is missing, expected " + path);
     }
     for (const PlanEstimator& estimator : plan_.estimators) {
       if (std::none_of(cells_.begin(), cells_.end(),
                        [&](const CompareCell& cell) { return cell.estimator == &estimator; })) {
-        notes.push_back(estimator.name + ": none of the sequences it runs on is there");
+        notes.push_back(estimator.name + ": all its sequences are missing");
       }
     }
     return notes;

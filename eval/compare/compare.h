@@ -16,7 +16,7 @@ struct CompareOptions {
   /// Keep the cells that are complete and were made from the same input and configuration.
   bool resume = false;
   FigureFormats figures;  ///< for papers, into figures/
-  std::string command;    ///< how to repeat it, for the report
+  std::string command;    ///< command line that repeats it, for the report
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& line)> progress;  ///< called by one thread at a time
 };
@@ -29,7 +29,7 @@ struct CompareOutcome {
 };
 
 /// Runs every estimator on every sequence and seed. All estimators read one measurement log a sequence and
-/// seed (the front end runs once); its digest is taken again for each cell. Writes
+/// seed (the front end runs once); its digest is computed again for each cell. Writes
 /// cells/<estimator>/<sequence>/<seed>/ and the tables and the report of eval/comparison/comparison.h. A cell
 /// that fails does not stop the others. Errors: kConfig of an estimator's or a simulation's configuration,
 /// before anything runs; kOutput.

@@ -19,9 +19,9 @@ struct CompareCell {
   CellResult result;
 };
 
-/// Gets the input, runs (or, to resume, keeps) the estimator, writes its folder and fills `cell->result`,
-/// whose status tells what went wrong; an exception of a library is a failed cell. `on_input` gets what the
-/// cell reads. True: what was there already was kept.
+/// Gets the input, runs the estimator (or keeps the existing result when resuming), writes its folder and
+/// fills `cell->result`, whose status and message describe a failure; an exception of a library is a failed
+/// cell. `on_input` receives the cell's input. Returns true when the existing result was kept.
 bool RunCompareCell(const Plan& plan, const CompareOptions& options, const PipelineOptions& pipeline,
                     const std::function<void(const CompareInput::Data&)>& on_input, CompareCell* cell);
 

@@ -9,8 +9,8 @@
 
 namespace alidade {
 
-/// The resolved configuration of every estimator on every sequence of a plan: a sequence may say what holds
-/// on it alone, such as its pixel noise.
+/// The resolved configuration of every estimator on every sequence of a plan: a sequence may override
+/// settings for itself, such as its pixel noise.
 class CompareConfigs {
  public:
   /// Reads them all. Keeps pointers into `plan`. Errors (kConfig) name estimator and sequence.
@@ -21,8 +21,8 @@ class CompareConfigs {
     return configs_.at(&sequence)[estimator].get();
   }
 
-  /// The front end runs once a sequence: where it runs, all estimators must agree on its settings. Error
-  /// (kConfig): they do not.
+  /// The front end runs once a sequence: where it runs, its settings must be equal for all estimators. Error
+  /// (kConfig): they differ.
   Status CommonFrontend(const PlanSequence& sequence, FrontendConfig* common) const;
 
  private:

@@ -13,14 +13,13 @@
 
 namespace alidade {
 
-/// Where the runs of the front end are kept, and whether those found there are used.
+/// Where front-end results are stored, and whether stored results are used.
 struct FrontendCache {
   std::string folder = {};  ///< empty: not kept
   bool reuse = false;
 };
 
-/// What all estimators of one sequence and seed read. Loaded when the first cell asks, dropped after the
-/// last.
+/// The input of all estimators of one sequence and seed. Loaded for the first cell, released after the last.
 class CompareInput {
  public:
   struct Data {
@@ -31,7 +30,7 @@ class CompareInput {
     std::optional<FrontendSummary>
         frontend;  ///< where the front end ran here, now or in an earlier comparison
     std::optional<RigCalibration> true_rig = {};  ///< Dataset::true_rig
-    std::vector<std::string> remarks = {};        ///< of the reader, for a person
+    std::vector<std::string> remarks = {};        ///< remarks of the reader, as text
   };
 
   /// A dataset folder. `frontend` is used when it has images but no tracks.
@@ -46,9 +45,9 @@ class CompareInput {
         simulation_(std::move(simulation)),
         seed_(seed) {}
 
-  /// One more cell will ask for the data.
+  /// Registers one more cell that will use the data.
   void AddUser() { ++users_; }
-  /// The data, or why there is none; valid until Release. The first caller loads, others wait.
+  /// The data, or the reason why there is none; valid until Release. The first caller loads, others wait.
   const Result<Data>& Acquire(const PipelineOptions& options);
   /// Called once by every user.
   void Release();

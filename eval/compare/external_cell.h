@@ -24,14 +24,14 @@ struct ExternalCell {
 struct ExternalOutcome {
   Trajectory trajectory;
   std::optional<ExternalRun> run;  ///< of a command
-  bool reused = false;             ///< it had run before
+  bool reused = false;             ///< kept from an earlier run
 };
 
-/// Reads the cell's trajectory file, or runs its command and reads what it left. A command finds {dataset}
-/// (the sequence's folder; that of a simulation is written), {bag} (the same as a bag, written when it is
-/// asked for), {output}, {sequence} and {seed}. external.json beside the result says what ran on what and how
-/// long; with `resume`, and unless either changed, it is not run again. Errors: those of RunExternal,
-/// WriteBag and ReadExternalTrajectory; kOutput.
+/// Reads the cell's trajectory file, or runs its command and reads the result. Placeholders of a command:
+/// {dataset} (the sequence's folder; for a simulation it is written), {bag} (the same as a bag, written on
+/// request), {output}, {sequence} and {seed}. external.json beside the result records command, input and
+/// times; with `resume` an unchanged command on unchanged input is not run again. Errors: those of
+/// RunExternal, WriteBag and ReadExternalTrajectory; kOutput.
 Result<ExternalOutcome> TrajectoryOfExternal(const ExternalCell& cell, bool resume,
                                              const std::atomic<bool>* stop);
 

@@ -86,7 +86,7 @@ Result<std::string> FillCommand(const std::string& text, const std::map<std::str
     }
     const auto value = values.find(word);
     if (value == values.end()) {
-      return Status::Config("command: unknown word {" + word + "}" + Suggestion(word, known));
+      return Status::Config("command: unknown placeholder {" + word + "}" + Suggestion(word, known));
     }
     filled += ShellQuoted(value->second);
     i = end + 1;

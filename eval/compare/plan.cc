@@ -163,15 +163,15 @@ class PlanParser {
       return reader_.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
     }
     if (!sequence.dataset.path.empty() && !sequence.settings.empty()) {
-      return reader_.Fault(node, "sequences", "`set` beside `config` only: a dataset has no settings");
+      return reader_.Fault(node, "sequences", "`set` only with `config`: a dataset has no settings");
     }
     if (sequence.dataset.path.empty() && !sequence.truth.empty()) {
-      return reader_.Fault(node, "sequences", "`truth` beside `path` only: a simulation has its own");
+      return reader_.Fault(node, "sequences", "`truth` only with `path`: a simulation has its own");
     }
     const bool is_bag = sequence.dataset.path.ends_with(".bag");  // it may be absent
     if (!is_bag && (node["topics"] || node["calibration"] || node["camera"])) {
       return reader_.Fault(node, "sequences",
-                           "`topics`, `calibration` and `camera` beside the `path` of a bag only");
+                           "`topics`, `calibration` and `camera` only with the `path` of a bag");
     }
     if (sequence.name.empty()) {
       const std::filesystem::path source =

@@ -14,8 +14,8 @@
 
 namespace alidade {
 
-/// One row of a comparison: a configured estimator, trajectories that another program wrote, or a command
-/// that runs one.
+/// One row of a comparison: a configured estimator, trajectories of another program, or a command that runs
+/// one.
 struct PlanEstimator {
   std::string name;
   std::string config;                               ///< path; empty for an external one
@@ -23,7 +23,7 @@ struct PlanEstimator {
   std::map<std::string, std::string> trajectories;  ///< sequence name -> path; external only
   ExternalCommand command;                          ///< empty text: none; external only
   bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
-  std::vector<std::string> sequences;               ///< runs on these alone; empty: on all
+  std::vector<std::string> sequences;               ///< only these; empty: all
   std::optional<Alignment> alignment;               ///< its own instead of the plan's
   std::optional<double> align_share;
 
@@ -42,7 +42,7 @@ struct PlanSequence {
   std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws
 };
 
-/// What to compare, as a person wrote it (docs/plans.md lists the keys).
+/// The content of a plan (docs/plans.md lists the keys).
 struct Plan {
   std::string path;
   std::string title;
@@ -53,9 +53,9 @@ struct Plan {
   std::vector<std::string> pair_figures = Comparison().pair_figures;
   bool pair_across = false;
   std::string baseline;  ///< name of the sequence that RMSEs are also given relative to; may be empty
-  bool audit = false;    ///< every filter records what it claims to observe
+  bool audit = false;    ///< every filter writes its observability audit
   std::vector<ReferenceFigure> references;
-  /// skip_missing: a sequence whose folder is not there is left out and named in `absent` (name, path).
+  /// skip_missing: a sequence whose folder is missing is skipped and listed in `absent` (name, path).
   bool skip_missing = false;
   std::vector<std::pair<std::string, std::string>> absent;
 
@@ -64,8 +64,8 @@ struct Plan {
 
 /// Reads a plan. `${data}` in a path or in a setting becomes `data_root`; relative paths are relative to the
 /// plan's folder. Strict: an unknown, duplicate or ill-typed key, two estimators or sequences of one name, a
-/// name that is no folder name, or a file that does not exist is kConfig with file:line:column. kInput: with
-/// skip_missing, no sequence is there.
+/// name that is not a valid folder name, or a missing file is kConfig with file:line:column. kInput: with
+/// skip_missing, all sequences are missing.
 Result<Plan> ReadPlan(const std::string& path, const std::string& data_root);
 
 }  // namespace alidade

@@ -22,7 +22,7 @@ Status CheckAnyThere(const Plan& plan) {
   return !plan.sequences.empty()
              ? Status::Ok()
              : Status::Input(plan.path + ": none of its " + std::to_string(plan.absent.size()) +
-                             " sequences is there; the first, " + plan.absent.front().first +
+                             " sequences is present; the first, " + plan.absent.front().first +
                              ", was expected as the folder " + plan.absent.front().second);
 }
 

@@ -5,8 +5,8 @@
 
 namespace alidade {
 
-/// What of a plan shows only once all of it has been read; `root` is its file, for places in messages.
-/// Errors: a name that no sequence has (kConfig); none of the sequences is there (kInput).
+/// Checks of a plan that need the whole plan; `root` is its file, for positions in messages. Errors: a
+/// reference to an unknown sequence (kConfig); all sequences are missing (kInput).
 Status CheckPlan(const Plan& plan, const YAML::Node& root);
 
 }  // namespace alidade

@@ -9,10 +9,10 @@
 
 namespace alidade {
 
-/// Reads the values of one plan file; knows the file's name and folder, so that every fault names its place.
+/// Reads the values of one plan file; every fault names file and position.
 class PlanReader {
  public:
-  /// What to do with the value of one key.
+  /// Handler of the value of one key.
   struct Key {
     std::string name;
     std::function<Status(const YAML::Node&)> read;
@@ -30,7 +30,7 @@ class PlanReader {
   Status Each(const YAML::Node& node, const std::string& name,
               const std::function<Status(const YAML::Node&)>& read) const;
   Status Text(const YAML::Node& node, const std::string& name, std::string* value) const;
-  /// A name that may serve as a folder: letters, digits, '.', '_', '-', '+'; not starting with '.'.
+  /// A name that is valid as a folder name: letters, digits, '.', '_', '-', '+'; not starting with '.'.
   Status FolderName(const YAML::Node& node, const std::string& name, std::string* value) const;
   /// A path, resolved: ${data} replaced, relative to the plan's folder.
   Status Path(const YAML::Node& node, const std::string& name, std::string* value) const;

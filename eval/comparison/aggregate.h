@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-/// Which value of a figure is the better one.
+/// Which values of a figure are better.
 enum class Ideal {
   kNone,    ///< no value is better than another (features used, the shared front end's time)
   kLow,     ///< errors, times
@@ -21,11 +21,11 @@ enum class Ideal {
 /// A column of summary.csv that is a number and is averaged over seeds.
 struct Figure {
   std::string key;    ///< name of the column
-  std::string label;  ///< name for a person, without the unit
+  std::string label;  ///< display name, without the unit
   std::string unit;   ///< "m", "deg", "ms", "" when dimensionless
   Ideal ideal = Ideal::kNone;
   double target = 0;  ///< with Ideal::kTarget
-  int decimals = 3;   ///< that a person wants to read
+  int decimals = 3;   ///< in tables
   /// NaN where the cell has no such value: a failed run, or an external trajectory without covariance or
   /// times.
   std::function<double(const CellResult&)> value;
@@ -44,8 +44,8 @@ struct Statistic {
 };
 [[nodiscard]] Statistic ComputeStatistic(const std::vector<double>& values);
 
-/// One estimator on one sequence, over its seeds. Only cells with status ok enter the means: an estimator is
-/// not rewarded for a run it lost, so that `ok` of `cells` must be read beside every mean.
+/// One estimator on one sequence, over its seeds. Only cells with status ok enter the means: a lost run is in
+/// no mean, so every mean must be read together with `ok` of `cells`.
 struct AggregateRow {
   std::string estimator;
   std::string backend;

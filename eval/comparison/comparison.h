@@ -15,7 +15,7 @@ namespace alidade {
 /// Time series of one cell, thinned for plotting (eval/comparison/series_rows.h); all vectors have one entry
 /// a kept frame, or none at all.
 struct CellSeries {
-  std::vector<bool> regular;   ///< picked at even steps: these alone may enter means; empty: all of them
+  std::vector<bool> regular;   ///< evenly spaced rows, the only ones used in means; empty: all
   std::vector<double> time_s;  ///< since the first pair
   std::vector<Eigen::Vector3d> truth_position;
   std::vector<Eigen::Vector3d> position;  ///< aligned as the plan says
@@ -24,7 +24,7 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
-  std::vector<double> tracks_in;       ///< that the frame handed to the estimator
+  std::vector<double> tracks_in;       ///< passed to the estimator with the frame
   std::vector<double> nis_ratio;       ///< normalised innovation squared over its rows; NaN without rows
   std::vector<double> gnss_nis_ratio;  ///< of the newest epoch; NaN in outages, empty without GNSS
   // Of an audited filter, else empty (eval/audit/observability.h).
@@ -33,8 +33,8 @@ struct CellSeries {
   std::vector<double> position_leak;  ///< [1/m^2]
 };
 
-/// How well the innovations of a run fit their own covariance. A smoother tells what is left of its window's
-/// residuals after the fit. NaN when not known.
+/// Consistency of a run's innovations with their covariance; for a smoother, of the residuals of its window
+/// after the solve. NaN when unknown.
 struct InnovationSummary {
   double ratio = std::numeric_limits<double>::quiet_NaN();   ///< sum of the NIS over the sum of their rows
   double inside = std::numeric_limits<double>::quiet_NaN();  ///< share of frames in the 95 % chi-square band
@@ -43,12 +43,12 @@ struct InnovationSummary {
                                  std::numeric_limits<double>::quiet_NaN()};
 };
 
-/// How a GNSS satellite stood and fitted in a run (eval/comparison/sky_tracks.h).
+/// Directions and residuals of a GNSS satellite in a run (eval/comparison/sky_tracks.h).
 struct SkyTrack {
   std::string satellite;
   std::vector<double> time_s, azimuth_deg, elevation_deg;
   std::vector<double> residual_m;  ///< predicted - measured pseudorange
-  double used_share = 0;           ///< of the epochs it was seen in
+  double used_share = 0;           ///< of the epochs in which it was received
   double rms_m = 0;                ///< of the used residuals
 };
 
@@ -71,19 +71,19 @@ struct CellResult {
   double nees_pose = 0, nees_ori = 0, nees_pos = 0, coverage_3sigma = 0;
   double frontend_ms = 0, backend_ms = 0, backend_ms_p95 = 0;
   double features_per_frame = 0;
-  /// Stages of backend_ms, means a frame; the rest is neither. NaN when not known.
+  /// Stages of backend_ms, means a frame; other back-end time belongs to neither. NaN when unknown.
   double propagate_ms = std::numeric_limits<double>::quiet_NaN();
   double update_ms = std::numeric_limits<double>::quiet_NaN();
   InnovationSummary innovations;
   InnovationSummary gnss_innovations;
-  /// Of the tracks that met the chi-square gate, those it refused; NaN when none did. On data without
+  /// Share of tracks rejected by the chi-square gate; NaN when no track reached the gate. On data without
   /// outliers these are false rejections.
   double gated_share = std::numeric_limits<double>::quiet_NaN();
   /// Root mean square of the deviations that the run's own covariance predicts: square root of the mean trace
   /// of the covariance of phi and of dp. NaN without covariance.
   double sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
   double sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
-  /// The same given the data up to each frame alone; of an estimator that looks back and knows it.
+  /// The same given the data up to each frame alone; of the batch estimate.
   double filtering_sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
   double filtering_sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
   /// How far the last online calibration is from the truth; NaN when either is missing.
@@ -107,12 +107,12 @@ struct Comparison {
   std::string title;
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;
-  std::string command;                  ///< how to repeat it
-  std::vector<std::string> notes = {};  ///< said with the tables, such as what was not run
+  std::string command;                  ///< command line that repeats it
+  std::vector<std::string> notes = {};  ///< printed with the tables, such as sequences that were not run
   /// Figures whose paired differences the tables show; pairs.csv has all of them.
   std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
   bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each
-  /// Of each sequence and seed whose tracks the front end made here.
+  /// Of each sequence and seed whose images were tracked.
   std::vector<FrontendSummary> frontends = {};
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
 };
@@ -121,10 +121,10 @@ struct Comparison {
 /// into `folder` (docs/plans.md).
 Status WriteTables(const Comparison& comparison, const std::string& folder);
 
-/// Writes the page that people look at (docs/report.md): one self-contained offline file.
+/// Writes report.html (docs/report.md): one self-contained offline file.
 Status WriteReport(const Comparison& comparison, const std::string& path);
 
-/// The table that a person reads on the terminal.
+/// The table for the terminal.
 [[nodiscard]] std::string FormatTable(const Comparison& comparison);
 
 }  // namespace alidade

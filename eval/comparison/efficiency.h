@@ -9,20 +9,20 @@
 
 namespace alidade {
 
-/// A bound over what was achieved, 1 at the bound; NaN where either is unknown.
+/// Bound divided by the achieved value, 1 at the bound; NaN where either is unknown.
 struct Ratio {
   double ori = std::numeric_limits<double>::quiet_NaN();
   double pos = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// How near an estimator comes to what the data allow (docs/batch.md). All figures are root mean squares over
-/// the paired runs: those that it and the batch both finished on equal input. RMSE is unaligned.
+/// Efficiency of an estimator with respect to the batch estimate (docs/batch.md). All figures are root mean
+/// squares over the paired runs: those that it and the batch both finished on equal input. RMSE is unaligned.
 struct Efficiency {
   std::string label;
   std::string sequence;
   int pairs = 0;
   Ratio rmse;      ///< achieved: deg, m
-  Ratio achieved;  ///< RMSE of the batch over RMSE: what hindsight would have given
+  Ratio achieved;  ///< RMSE of the batch divided by RMSE (hindsight)
   Ratio smoothed;  ///< deviation that the batch predicts for itself over RMSE
   Ratio filtered;  ///< deviation given the data up to each frame over RMSE: the bound of online estimators
 };

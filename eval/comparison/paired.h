@@ -8,20 +8,20 @@
 
 namespace alidade {
 
-/// What a paired difference says at 95 %, about the first of the two.
+/// Verdict of a paired difference at 95 %, about the first of the two.
 enum class PairVerdict {
   kTooFew,        ///< fewer than two pairs: no interval
-  kNoDifference,  ///< the interval holds zero
+  kNoDifference,  ///< the interval contains zero
   kBetter,
   kWorse,
-  kLower,  ///< of a figure whose lower value is not the better one as such, such as the NEES
+  kLower,  ///< of a figure for which lower is not better, such as the NEES
   kHigher,
 };
 /// "significantly better", "no significant difference", ...
 [[nodiscard]] std::string ToString(PairVerdict verdict);
 
 /// Two-sided 95 % interval and p-value of the mean of differences by Student's t with n - 1 degrees of
-/// freedom; NaN with fewer than two. Differences that are all equal have an interval of no width.
+/// freedom; NaN with fewer than two. If all differences are equal, the interval has zero width.
 struct PairedT {
   int count = 0;
   double mean = 0;
@@ -32,7 +32,7 @@ struct PairedT {
 [[nodiscard]] PairedT TestPairs(const std::vector<double>& differences);
 
 /// Two-sided p-value of the sign test: chance of a split at least this uneven when either sign is as likely.
-/// 1 without any.
+/// 1 without any pair.
 [[nodiscard]] double SignTest(int lower, int higher);
 
 /// One figure of two estimators on the runs of one sequence that both finished on the same input.
@@ -43,24 +43,24 @@ struct PairedDifference {
   double first_mean = 0, second_mean = 0;
   PairedT difference;                     ///< of first - second
   int first_lower = 0, second_lower = 0;  ///< runs
-  double sign_p_value = 0;                ///< SignTest of these: a hint that no outlier can sway
+  double sign_p_value = 0;                ///< SignTest of these, robust against outliers
   int only_first = 0, only_second = 0;    ///< runs that only one of them has a value for
   int neither = 0;                        ///< runs of the sequence that none of them has a value for
   PairVerdict verdict = PairVerdict::kTooFew;
 };
 
-/// The name that stands for the sequence in pairs over all of them.
+/// The name used as sequence in pairs over all sequences.
 inline constexpr const char* kAllSequences = "all sequences";
 
-/// Measured times depend on what else the machine does: they are not compared in pairs.
+/// Measured times depend on the load of the machine and are not compared in pairs.
 [[nodiscard]] bool IsPaired(const Figure& figure);
 
 /// All pairs of rows of each sequence and each figure that IsPaired, by sequence, figure, first, second. A
-/// pair of runs has the same seed and input digest and both runs ended ok. Pairs of rows of which no run
-/// has the value are left out. With Comparison::pair_across rows over all sequences follow, one sample a
-/// sequence (its mean difference), so that the interval speaks of sequences like these; their counts of runs
-/// are sums, `pairs` and `lower` count sequences. The intervals are not corrected for the number of
-/// comparisons: of twenty pairs without a difference one will look significant.
+/// pair of runs has the same seed and input digest and both runs ended ok. Pairs of rows of which no run has
+/// the value are left out. With Comparison::pair_across rows over all sequences follow, one sample a sequence
+/// (its mean difference), so the interval generalises over sequences; their counts of runs are sums, `pairs`
+/// and `lower` count sequences. The intervals are not corrected for the number of comparisons: of twenty
+/// pairs without a difference one will look significant.
 [[nodiscard]] std::vector<PairedDifference> ComparePairs(const Comparison& comparison,
                                                          const std::vector<Figure>& figures);
 

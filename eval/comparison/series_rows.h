@@ -8,7 +8,7 @@
 namespace alidade {
 
 /// Rows of a series that a plot keeps: every k-th row (the regular ones, which alone may enter means), and
-/// others that hold what the regular ones would hide.
+/// additional rows with extremes that the regular ones would miss.
 struct SeriesRows {
   std::vector<size_t> kept;   ///< ascending
   std::vector<bool> regular;  ///< parallel to `kept`

@@ -33,7 +33,7 @@ class ConfigKeys final : public ConfigVisitor {
   [[nodiscard]] bool IsKey(const std::string& path) const { return keys_.count(path) > 0; }
   [[nodiscard]] bool IsSection(const std::string& path) const { return sections_.count(path) > 0; }
 
-  /// What a person may have meant by an unknown path, as the tail of a message; may be empty.
+  /// A suggestion for an unknown path, as the end of a message; may be empty.
   [[nodiscard]] std::string Hint(const std::string& path) const;
 
  private:

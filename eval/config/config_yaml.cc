@@ -188,7 +188,7 @@ Status ReadConfigLayer(const std::string& path, int depth, const ConfigKeys& sch
     }
     if (depth >= kMaxBaseDepth) {
       return Status::Config(YamlPlace(path, base) + ": base: " + Quoted(base.Scalar()) +
-                            " is the ninth base in a row, expected no circle");
+                            " is the ninth nested base file, expected no cycle");
     }
     const std::filesystem::path file = std::filesystem::path(path).parent_path() / base.Scalar();
     if (!std::filesystem::is_regular_file(file)) {

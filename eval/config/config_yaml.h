@@ -11,8 +11,8 @@
 
 namespace alidade {
 
-/// Reads a YAML mapping into whatever `describe` lists. A top-level key `base: FILE` (relative to the file)
-/// is read first. Strict: an unknown, duplicate, ill-typed or out-of-range key, an octal-looking or
+/// Reads a YAML mapping into the values that `describe` lists. A top-level key `base: FILE` (relative to the
+/// file) is read first. Strict: an unknown, duplicate, ill-typed or out-of-range key, an octal-looking or
 /// non-finite number is kConfig with file:line:column, the value, what was expected and the nearest known
 /// key.
 Status ReadConfigFile(const std::string& path, const std::function<void(ConfigVisitor&)>& describe);

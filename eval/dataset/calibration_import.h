@@ -30,8 +30,8 @@ struct ImportedCalibration {
 Result<ImportedCalibration> ImportCalibration(const std::vector<std::string>& paths,
                                               const std::string& camera = "cam0");
 
-/// Deviations of samples taken `rate_hz` times a second as densities: the walk of a bias over one sample is
-/// its deviation times the sample's duration there.
+/// Converts standard deviations of single samples at `rate_hz` to densities: sigma / sqrt(rate). VINS defines
+/// the step of a bias over one sample as its deviation times the sample's duration.
 [[nodiscard]] ImuNoise DensitiesOf(const ImuNoise& per_sample, double rate_hz);
 
 }  // namespace alidade

@@ -27,7 +27,7 @@ struct Dataset {
   std::string path;
   std::string name;  ///< last folder of the path
   RigCalibration rig;
-  /// The rig as it really is, of a simulation that was told to give a wrong one.
+  /// The true rig, of a simulation that writes a wrong calibration (calibration_*_error).
   std::optional<RigCalibration> true_rig;
   double imu_rate_hz = 0;
   double camera_rate_hz = 0;
@@ -59,7 +59,7 @@ Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv
 /// estimator.
 [[nodiscard]] std::string DigestOf(const MeasurementLog& log);
 
-/// A finding of `check`: what is wrong or odd about a sequence, or a fact about it.
+/// A finding of `check`: an error, a warning or a fact about a sequence.
 struct DatasetFinding {
   enum class Severity { kFact, kWarning, kError } severity = Severity::kFact;
   std::string text;

@@ -24,7 +24,7 @@ Status CloseFrame(TrackFrame* frame, const std::string& place) {
   for (size_t i = 1; i < observations.size(); ++i) {
     if (observations[i].track_id == observations[i - 1].track_id) {
       return Status::Input(place + ": track_id " + std::to_string(observations[i].track_id) +
-                           " comes twice at stamp " + std::to_string(frame->stamp_ns) +
+                           " occurs twice at stamp " + std::to_string(frame->stamp_ns) +
                            ", expected each track at most once a frame");
     }
   }

@@ -71,7 +71,7 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
   }
   if (stated_rate_hz > 0 && std::abs(mean_rate / stated_rate_hz - 1) > 0.1) {
     findings->Warning(
-        Format("%s: sensor.yaml says %.2f Hz, the stamps say %.2f Hz", sensor, stated_rate_hz, mean_rate));
+        Format("%s: sensor.yaml states %.2f Hz, the stamps give %.2f Hz", sensor, stated_rate_hz, mean_rate));
   }
 }
 
@@ -98,8 +98,9 @@ void CheckImuUnits(const std::vector<ImuSample>& imu, Findings* findings) {
         Format("imu0: mean specific force %.3f m/s^2, expected about %.2f: unit or gravity removed?", force,
                kStandardGravity));
   } else if (std::abs(force - kStandardGravity) > 0.5) {
-    findings->Warning(Format("imu0: mean specific force %.3f m/s^2 is off %.2f: bias, scale or hard motion",
-                             force, kStandardGravity));
+    findings->Warning(
+        Format("imu0: mean specific force %.3f m/s^2 differs from %.2f: bias, scale error or strong motion",
+               force, kStandardGravity));
   }
   if (rate_rms > 8 || fastest > 40) {
     findings->Error(Format(
@@ -156,7 +157,7 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
              total, lives.size(), static_cast<double>(total) / static_cast<double>(dataset.tracks.size()),
              static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
   if (outside > 0) {
-    const std::string text = Format("cam0: %zu observations lie outside %d x %d px", outside,
+    const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
                                     dataset.rig.camera.width_px(), dataset.rig.camera.height_px());
     // A few per mille sit on the border; more means the resolution is not that of the tracks.
     if (outside * 20 > total) {
@@ -166,7 +167,8 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
     }
   }
   if (returned > 0) {
-    findings->Warning(Format("cam0: %zu times a track skips frames and comes back under its id", returned));
+    findings->Warning(
+        Format("cam0: %zu times a track is missing in some frames and reappears with the same id", returned));
   }
 }
 
@@ -185,7 +187,7 @@ void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dat
 
 void CheckTruth(const Dataset& dataset, Findings* findings) {
   if (!dataset.truth.has_value()) {
-    findings->Warning("truth: none; nothing can be scored");
+    findings->Warning("truth: none; estimates cannot be evaluated");
     return;
   }
   std::vector<TimeNs> stamps;
@@ -243,7 +245,7 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
   const std::vector<TimeNs> camera_stamps = CameraStamps(dataset);
   if (camera_stamps.empty()) {
     findings.Warning(dataset.gnss == nullptr ? "cam0: none; estimators need a camera or GNSS"
-                                             : "cam0: none; GNSS and IMU alone");
+                                             : "cam0: none; only GNSS and IMU");
   } else {
     CheckStamps("cam0", camera_stamps, dataset.camera_rate_hz, &findings);
     CheckSpan("cam0", camera_stamps.front(), camera_stamps.back(), dataset, &findings);
@@ -253,7 +255,7 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
   } else if (!dataset.images.empty()) {
     findings.Fact(Format("cam0: %zu images, no tracks: the front end runs on them", dataset.images.size()));
   } else if (!camera_stamps.empty()) {
-    findings.Warning("cam0: stamps alone, neither images nor tracks: nothing to see in them");
+    findings.Warning("cam0: only stamps, neither images nor tracks");
   }
   if (dataset.gnss != nullptr) {
     size_t satellites = 0;
@@ -268,7 +270,7 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
         dataset.gnss->catalog->navigation().ephemerides()));
   }
   if (!dataset.extra_cameras.empty()) {
-    findings.Fact(Format("%zu more cameras with tracks: recorded, but estimators read cam0 alone",
+    findings.Fact(Format("%zu more cameras with tracks: recorded, but estimators read only cam0",
                          dataset.extra_cameras.size()));
   }
   CheckTruth(dataset, &findings);

@@ -19,14 +19,14 @@ namespace alidade {
 /// Other keys are remarks. Errors (kInput): a key's value, a file that cannot be read.
 Status ReadGnssFolder(const std::string& folder, Dataset* dataset);
 
-/// Writes sensor.yaml, obs.rnx and nav.rnx. The navigation file holds broadcast ephemerides alone.
+/// Writes sensor.yaml, obs.rnx and nav.rnx. The navigation file holds broadcast ephemerides only.
 Status WriteGnssFolder(const Dataset& dataset, const std::string& folder);
 
-/// The text of sensor.yaml with the names of RINEX files that WriteGnssFolder gives them.
+/// The text of sensor.yaml with the file names that WriteGnssFolder uses.
 [[nodiscard]] std::string GnssSensorYaml(const GnssReceiver& receiver,
                                          const std::optional<Eigen::Vector3d>& approximate_position_E);
 
-/// What a sensor.yaml says about the receiver; the files it names do not matter.
+/// The receiver's keys of a sensor.yaml, without reading the files it names.
 struct GnssSheet {
   GnssReceiver receiver;
   std::optional<Eigen::Vector3d> approximate_position_E;

@@ -70,7 +70,7 @@ Status CheckFolders(const std::string& path, const fs::path& mav) {
   if (!fs::is_directory(mav)) {
     const bool inside = fs::is_directory(fs::path(path) / "imu0");
     return Status::Input(path + ": expected a folder mav0 in it" +
-                         (inside ? " (this looks like mav0 itself: give the folder that holds it)" : ""));
+                         (inside ? " (this seems to be mav0 itself: give the folder that contains it)" : ""));
   }
   if (!fs::is_directory(mav / "cam0") && !fs::is_directory(mav / "gnss0")) {
     return Status::Input((mav / "cam0").string() +

@@ -7,8 +7,8 @@
 
 namespace alidade {
 
-/// Writes an 8-bit grey PNG, atomically. Fast rather than small: noise does not compress. kOutput: cannot be
-/// written.
+/// Writes an 8-bit grey PNG, atomically. Low compression for speed: noise does not compress. kOutput: the
+/// file cannot be written.
 Status WritePng(const GreyImage& image, const std::string& path);
 
 }  // namespace alidade

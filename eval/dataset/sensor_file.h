@@ -12,10 +12,10 @@
 namespace alidade {
 
 /// The keys of one sensor.yaml, with its path for messages. Errors (kInput) name file:line:column, key, value
-/// and expectation; of a key that is missing the nearest one that is there.
+/// and expectation; for a missing key also the nearest existing key.
 class SensorFile {
  public:
-  /// Error: `root`'s own; a key sensor_type of another word.
+  /// Errors: that of `root`; a key sensor_type with another value.
   static Result<SensorFile> Make(const Result<YAML::Node>& root, const std::string& path,
                                  const std::string& sensor_type);
 
@@ -26,7 +26,7 @@ class SensorFile {
   Status ReadReal(const char* key, double min, double* value) const;
   /// `count` numbers, or any number of them when it is 0.
   Status ReadReals(const char* key, size_t count, std::vector<double>* values) const;
-  /// Key rate_hz [Hz]: positive, or not there.
+  /// Key rate_hz [Hz]: positive, or absent.
   Status ReadRate(std::optional<double>* rate_hz) const;
   /// The sixteen row-major numbers of a 4x4: {cols, rows, data} as EuRoC and OpenCV write it, or a list of
   /// four rows, or a flat list.

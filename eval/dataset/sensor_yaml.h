@@ -25,7 +25,7 @@ struct CameraSensor {
 Result<ImuSensor> ReadImuSensor(const std::string& path);
 
 /// Reads cam0/sensor.yaml: T_BS (camera to body, row-major 4x4), resolution, intrinsics (fu fv cu cv),
-/// distortion_model, distortion_coefficients. In place of T_BS the extrinsics may bear the name of another
+/// distortion_model, distortion_coefficients. Instead of T_BS the extrinsics may have the name of another
 /// convention: T_imu_cam and body_T_cam0 mean the same transform, T_cam_imu its inverse. A rotation off by
 /// rounding (1e-3) is made orthonormal; beyond that it is an error. Errors (kInput) as above.
 Result<CameraSensor> ReadCameraSensor(const std::string& path);
@@ -34,7 +34,7 @@ Result<CameraSensor> ReadCameraSensor(const std::string& path);
 Result<ImuSensor> ParseImuSensor(const std::string& text, const std::string& where);
 Result<CameraSensor> ParseCameraSensor(const std::string& text, const std::string& where);
 
-/// The text of both files; reading it back gives equal values. A rate of 0 is left out.
+/// The text of both files; reading it back gives equal values. A rate of 0 is omitted.
 [[nodiscard]] std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz);
 [[nodiscard]] std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz);
 

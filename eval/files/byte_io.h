@@ -12,8 +12,8 @@ namespace alidade {
 
 static_assert(std::endian::native == std::endian::little, "bags are little-endian and copied as they are");
 
-/// Takes little-endian values off the front of bytes from an untrusted file. Reading past the end gives zeros
-/// and makes ok() false for good; lengths found in the bytes are checked against what is left before anything
+/// Reads little-endian values from the front of untrusted bytes. Reading past the end gives zeros and makes
+/// ok() false permanently. Lengths found in the bytes are checked against the remaining size before anything
 /// is allocated.
 class ByteReader {
  public:
@@ -62,7 +62,7 @@ class ByteReader {
   bool ok_ = true;
 };
 
-/// Puts little-endian values behind one another.
+/// Appends little-endian values.
 class ByteWriter {
  public:
   template <typename Value>

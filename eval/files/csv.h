@@ -54,7 +54,7 @@ class CsvReader {
   char separator_ = ',';
   size_t position_ = 0;
   int line_ = 0;
-  std::vector<std::string_view> fields_;  ///< views into content_: valid until the reader moves or dies
+  std::vector<std::string_view> fields_;  ///< views into content_, valid while the reader is not moved
 };
 
 /// `text` in quotes, shortened for messages.

@@ -5,7 +5,7 @@
 
 namespace alidade {
 
-/// A field of a CSV file, quoted where RFC 4180 wants it.
+/// A field of a CSV file, quoted where RFC 4180 requires it.
 [[nodiscard]] std::string CsvText(const std::string& text);
 /// The shortest text that reads back equal; empty where there is no value (not finite).
 [[nodiscard]] std::string CsvNumber(double value);

@@ -4,7 +4,7 @@
 
 namespace alidade {
 
-/// The text as it may stand in an element or a quoted attribute of HTML or XML.
+/// The text, escaped for an element or a quoted attribute of HTML or XML.
 [[nodiscard]] std::string EscapeHtml(const std::string& text);
 
 }  // namespace alidade

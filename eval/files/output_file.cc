@@ -39,7 +39,7 @@ Status WriteFileAtomically(const std::string& path, std::string_view content) {
     std::error_code error;
     std::filesystem::create_directories(parent, error);
     if (error) {
-      return Status::Output(parent.string() + ": folder cannot be made: " + error.message());
+      return Status::Output(parent.string() + ": folder cannot be created: " + error.message());
     }
   }
   // Process and thread in the name: two cells of a comparison never share a temporary file.

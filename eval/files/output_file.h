@@ -7,8 +7,8 @@
 
 namespace alidade {
 
-/// Writes the whole of `content` to a temporary name beside `path` and renames it: a reader sees a whole file
-/// or none. Creates missing folders. Errors: kOutput naming the path and the system's reason.
+/// Writes the whole of `content` to a temporary name beside `path` and renames it: a reader finds either the
+/// complete file or none. Creates missing folders. Errors: kOutput naming the path and the system's reason.
 Status WriteFileAtomically(const std::string& path, std::string_view content);
 
 /// Shortest decimal text that reads back to the same double.

@@ -12,7 +12,7 @@
 namespace alidade {
 
 /// Calls work(i) for i in [0, count) on `jobs` threads, each i once, in no particular order. After a failure
-/// no further i is begun; of the failures that happened the one with the smallest i is returned.
+/// no further i is started; of several failures the one with the smallest i is returned.
 template <typename Work>
 Status ParallelFor(std::size_t count, int jobs, const Work& work) {
   std::atomic<std::size_t> next{0};

@@ -25,7 +25,7 @@ Status CheckKeys(const YAML::Node& node, const std::string& where, StatusCode co
     const YAML::Node& key = entry.first;
     const YAML::Node& value = entry.second;
     if (!key.IsScalar()) {
-      return Status(code, YamlPlace(where, key) + ": found a key that is no text, expected a name");
+      return Status(code, YamlPlace(where, key) + ": found a key that is not text, expected a name");
     }
     if (!seen.insert(key.Scalar()).second) {
       return Status(code, YamlPlace(where, key) + ": " + key.Scalar() + ": duplicate key, expected it once");

@@ -10,21 +10,21 @@
 
 namespace alidade {
 
-/// Parses text of one YAML document (OpenCV's first line "%YAML:1.0" is tolerated) and refuses what yaml-cpp
-/// lets pass: duplicate keys, keys that are no scalars, several documents. Errors (`code`):
+/// Parses text of one YAML document (OpenCV's first line "%YAML:1.0" is tolerated) and rejects input that
+/// yaml-cpp accepts: duplicate keys, keys that are not scalars, several documents. Errors (`code`):
 /// "where:line:column: ...".
 Result<YAML::Node> ParseYaml(const std::string& text, const std::string& where, StatusCode code);
 /// ParseYaml of a file's content.
 Result<YAML::Node> ParseYamlFile(const std::string& path, StatusCode code);
 
-/// "where:line:column" of a node, or `where` alone when the node has no place.
+/// "where:line:column" of a node, or `where` alone when the position of the node is unknown.
 [[nodiscard]] std::string YamlPlace(const std::string& where, const YAML::Node& node);
-/// The node as a person wrote it, shortened and in quotes.
+/// The text of the node, shortened and in quotes.
 [[nodiscard]] std::string YamlText(const YAML::Node& node);
 
 /// Strict scalars. Each reads an unquoted decimal number (no octal-looking leading zero, no hexadecimal, no
-/// .nan or .inf) or true/false; the Status's message says only what was expected, and the caller puts place
-/// and key before it.
+/// .nan or .inf) or true/false; the Status's message contains only the expectation; the caller adds place and
+/// key.
 Status ParseYamlReal(const YAML::Node& node, double* value);
 Status ParseYamlInteger(const YAML::Node& node, long long* value);
 Status ParseYamlBoolean(const YAML::Node& node, bool* value);

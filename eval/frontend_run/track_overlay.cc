@@ -59,7 +59,7 @@ Status WriteTrackOverlay(const GreyImage& image, const std::vector<TrackFrame>& 
   }
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6})) {
-    return Status::Output(path + ": the picture cannot be encoded as PNG");
+    return Status::Output(path + ": the image cannot be encoded as PNG");
   }
   return WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }

@@ -170,7 +170,7 @@ std::string GapHint(const Trajectory& truth, const Trajectory& estimate) {
     }
   }
   if (gaps.size() < kMinimumPairs) {
-    return "only " + std::to_string(gaps.size()) + " estimate stamps lie between truth rows";
+    return "only " + std::to_string(gaps.size()) + " estimate stamps are between truth rows";
   }
   std::sort(gaps.begin(), gaps.end());
   return "the truth rows around the estimate's stamps are " +

@@ -42,7 +42,7 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
   }
   const bool oriented = truth.has_orientation && estimate.has_orientation;
   if (options.anchor_at_first && !oriented) {
-    return Status::Usage("anchor_at_first: needs attitudes, and one of the trajectories has none");
+    return Status::Usage("anchor_at_first: needs orientations, but one of the trajectories has none");
   }
   Evaluation evaluation;
   evaluation.options = options;

@@ -120,7 +120,7 @@ std::string FormatEvaluationText(const Evaluation& evaluation) {
   }
 
   if (evaluation.nees) {
-    text += Format("\n%-22s%14s%14s   95 %% band, were the pairs independent\n", "NEES (unaligned)", "mean",
+    text += Format("\n%-22s%14s%14s   95 %% band for independent pairs\n", "NEES (unaligned)", "mean",
                    "expected");
     for (const NeesLine& line : NeesLines(*evaluation.nees)) {
       text += Format("%-22s%14.4f%14d   %.4f to %.4f (%zu pairs)\n", line.name, line.mean, line.dof,

@@ -14,25 +14,25 @@ enum class Alignment { kNone, kPos, kPosYaw, kSe3, kSim3 };
 [[nodiscard]] std::optional<Alignment> ParseAlignment(std::string_view name);  // none|pos|posyaw|se3|sim3
 [[nodiscard]] std::string_view ToString(Alignment alignment);
 
-/// A truth row (or truth interpolated to the estimate's stamp) and the estimate row it judges.
+/// A truth row (or truth interpolated to the estimate's stamp) and the estimate row compared with it.
 struct StatePair {
   TrajectoryPoint truth;
   TrajectoryPoint estimate;
 };
 
-/// How truth and estimate rows become pairs.
-/// Nearest: pairs within max_dt_s (stamps that differ by just that are compared as doubles of seconds, like
-/// evo and the rpg tools do), nearest first, one to one, never crossing in time. Interpolated: truth at each
-/// estimate stamp (position, velocity, biases linear, rotation geodesic) between rows at most max_gap_s
-/// apart, never over longer gaps nor past the ends; max_dt_s is not used.
+/// How truth and estimate rows become pairs. Nearest: pairs within max_dt_s (stamps that differ by exactly
+/// that are compared as doubles of seconds, as evo and the rpg tools do), nearest first, one to one, never
+/// crossing in time. Interpolated: truth at each estimate stamp (position, velocity, biases linear, rotation
+/// geodesic) between rows at most max_gap_s apart, never over longer gaps nor past the ends; max_dt_s is not
+/// used.
 struct AssociationOptions {
   double max_dt_s = 0.01;
   bool interpolate = false;
   double max_gap_s = 0.1;
 };
 /// Pairs in time order. Errors: fewer than 3 pairs are kInput, with both time ranges [s], the match count and
-/// a hint (time units mixed up, a constant offset, the tolerance that would match); a tolerance that is
-/// negative, not finite or above 1e9 s is kUsage.
+/// a hint (wrong time unit, a constant offset, the tolerance that would match); a tolerance that is negative,
+/// not finite or above 1e9 s is kUsage.
 Result<std::vector<StatePair>> Associate(const Trajectory& truth, const Trajectory& estimate,
                                          const AssociationOptions& options);
 
@@ -43,12 +43,11 @@ struct AlignmentTransform {
   double scale = 1;
 };
 /// Least squares over the positions of all pairs: none (identity), pos (mean offset), posyaw (yaw about z and
-/// offset: what a visual-inertial estimator cannot observe), se3 and sim3 (Umeyama 1991). A degenerate cloud
-/// (one point, a line) gives one of its minimisers, always finite.
+/// offset: the unobservable directions of visual-inertial odometry), se3 and sim3 (Umeyama 1991). A
+/// degenerate cloud (one point, a line) gives one of its minimisers, always finite.
 [[nodiscard]] AlignmentTransform Align(const std::vector<StatePair>& pairs, Alignment alignment);
-/// Yaw about z and offset that put the first estimate where the truth is, its tilt aside: for an estimate in
-/// a world of its own, whose yaw and position mean nothing at the start and only drift afterwards. Needs a
-/// pair.
+/// Yaw about z and offset that move the first estimate to the truth, except for its tilt: for an estimate
+/// with an arbitrary yaw and origin. Needs at least one pair.
 [[nodiscard]] AlignmentTransform AnchorAtFirst(const std::vector<StatePair>& pairs);
 /// The pairs with their estimates moved to the truth's world: position, rotation, velocity and covariance.
 [[nodiscard]] std::vector<StatePair> ApplyAlignment(const std::vector<StatePair>& pairs,
@@ -85,8 +84,7 @@ struct NeesResult {
 [[nodiscard]] NeesResult ComputeNees(const std::vector<StatePair>& pairs);
 
 /// Two-sided chi-square band of the mean of `samples` independent NEES values with `dof` degrees of freedom.
-/// Successive frames are correlated: count runs, not frames, for an honest band. NaN when the arguments make
-/// no sense.
+/// Successive frames are correlated: count runs, not frames. NaN for invalid arguments.
 [[nodiscard]] std::pair<double, double> NeesBand(int dof, double samples, double probability = 0.95);
 
 /// Path length of the truth through the pairs, first to last [m].

@@ -6,7 +6,7 @@
 
 namespace alidade {
 
-/// What the titles of these tables start with.
+/// Prefix of the titles of these tables.
 inline constexpr const char* kEfficiencyTitle = "Efficiency: ";
 
 /// ComputeEfficiency as tables, one a sequence; none without a batch.

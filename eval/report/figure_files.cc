@@ -75,7 +75,7 @@ Result<FigureFormats> ParseFigureFormats(const std::string& text) {
   if (formats.pdf && !ConverterIsThere()) {
     return Status::Usage(
         std::string("--figures: pdf is made by ") + kConverter +
-        ", which is not in PATH: install the Debian package librsvg2-bin, or ask for svg alone");
+        ", which is not in PATH: install the Debian package librsvg2-bin, or request only svg");
   }
   return formats;
 }

@@ -6,14 +6,14 @@
 
 namespace alidade {
 
-/// In which formats `compare` writes figures for papers.
+/// Formats in which `compare` writes figures for papers.
 struct FigureFormats {
   bool svg = false;
   bool pdf = false;  ///< made of the SVG by rsvg-convert
 };
 
-/// "svg", "pdf" or both, separated by a comma; empty: none. kUsage: another word, or pdf where the program
-/// rsvg-convert (Debian package librsvg2-bin) is not found: said before anything runs.
+/// "svg", "pdf" or both, separated by a comma; empty: none. kUsage, before anything runs: another word, or
+/// pdf when the program rsvg-convert (Debian package librsvg2-bin) is not found.
 Result<FigureFormats> ParseFigureFormats(const std::string& text);
 
 /// Writes the figures of eval/report/paper_figures.h into `folder`/figures. Equal comparisons give equal

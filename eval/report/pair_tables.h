@@ -8,12 +8,12 @@
 
 namespace alidade {
 
-/// What the titles of these tables start with.
+/// Prefix of the titles of these tables.
 inline constexpr const char* kPairTitle = "Pairs: ";
 
 /// One matrix a sequence and figure of Comparison::pair_figures: estimators down and across, row minus column
 /// with half of the 95 % interval and the verdict on the row. With Comparison::pair_across one matrix a
-/// figure, over the sequences. A sequence whose pairs are too few to judge gets none.
+/// figure, over the sequences. A sequence with too few pairs gets none.
 [[nodiscard]] std::vector<TextTable> LayOutPairTables(const Comparison& comparison,
                                                       const std::vector<Figure>& figures,
                                                       const std::string& plus_minus);

@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// A picture of a comparison for a paper, 252 points (a column of a two-column page) wide.
+/// A figure of a comparison for a paper, 252 points (a column of a two-column page) wide.
 struct PaperFigure {
   std::string name;  ///< of its file, without extension
   std::string svg;

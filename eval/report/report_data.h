@@ -6,7 +6,7 @@
 
 namespace alidade {
 
-/// The page's data: JSON without a '<', so that nothing in it can end the script element that holds it.
+/// The page's data: JSON without '<', so its content cannot end the enclosing script element.
 [[nodiscard]] std::string ReportData(const Comparison& comparison);
 
 /// report.json: the same for programs, without the series (docs/report.md lists the members).

@@ -8,10 +8,10 @@ namespace alidade {
 /// A number that JSON can hold, rounded to significant digits; null where it is not finite.
 [[nodiscard]] nlohmann::ordered_json RoundedJson(double value, int digits);
 
-/// All of them; empty without any.
+/// The numbers of a vector likewise; empty for an empty vector.
 [[nodiscard]] nlohmann::ordered_json RoundedJson(const std::vector<double>& values, int digits);
 
-/// Quantiles at 5, 25, 50, 75 and 95 % of the finite values, interpolated; empty without any.
+/// Quantiles at 5, 25, 50, 75 and 95 % of the finite values, interpolated; empty without finite values.
 [[nodiscard]] std::vector<double> BoxQuantiles(std::vector<double> values);
 
 }  // namespace alidade

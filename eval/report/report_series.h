@@ -28,7 +28,7 @@ struct PackedColumn {
 /// that keep every curve's extremes.
 [[nodiscard]] nlohmann::ordered_json SeriesJson(const CellSeries& series, int most);
 
-/// Directions as points of the disc that has the zenith in its middle: x east, y north, 90 the horizon.
+/// Directions as points of a sky plot: zenith at the centre, x east, y north, radius 90 at the horizon.
 [[nodiscard]] nlohmann::ordered_json SkyJson(const std::vector<SkyTrack>& tracks);
 
 }  // namespace alidade

@@ -6,7 +6,7 @@
 
 namespace alidade {
 
-/// How a line looks. Lengths of a canvas are in its units, points of 1/72 inch.
+/// Style of a line. Lengths are in points of 1/72 inch.
 struct SvgStroke {
   std::string colour = "#1b2430";
   double width = 1;
@@ -22,8 +22,8 @@ struct SvgText {
   bool bold = false;
 };
 
-/// A picture in the SVG format, for files: complete in itself, texts escaped, equal calls give equal bytes.
-/// x goes right and y down, from the upper left corner.
+/// An SVG image for files: self-contained, texts escaped, equal calls give equal bytes. x goes right and y
+/// down, from the upper left corner.
 class SvgCanvas {
  public:
   using Points = std::vector<std::pair<double, double>>;
@@ -38,7 +38,7 @@ class SvgCanvas {
   void Circle(double x, double y, double radius, const std::string& fill, const SvgStroke& stroke);
   void Text(double x, double y, const std::string& text, const SvgText& style = {});
 
-  /// What is drawn until EndClip is cut at the rectangle.
+  /// Elements drawn until EndClip are clipped to the rectangle.
   void BeginClip(double x, double y, double width, double height);
   void EndClip();
 
@@ -52,7 +52,7 @@ class SvgCanvas {
   std::string body_;
 };
 
-/// Rough width of a text in a sans-serif face: an SVG file does not know its fonts.
+/// Approximate width of a text in a sans-serif font; the font is unknown until the file is displayed.
 [[nodiscard]] double SvgTextWidth(const std::string& text, double size);
 
 }  // namespace alidade

@@ -8,10 +8,10 @@
 
 namespace alidade {
 
-/// One axis: values to places on the canvas.
+/// One axis: maps values to positions on the canvas.
 class SvgAxis {
  public:
-  /// `from` is the place of `low`; a logarithmic axis needs low > 0.
+  /// `from` is the position of `low`; a logarithmic axis needs low > 0.
   SvgAxis(double low, double high, double from, double to, bool log);
   [[nodiscard]] double At(double value) const;
   [[nodiscard]] double low() const { return low_; }
@@ -24,13 +24,13 @@ class SvgAxis {
   bool log_;
 };
 
-/// Where a value was drawn against another; rows whose x or y is not finite are gaps.
+/// Points of a curve; rows whose x or y is not finite are gaps.
 struct SvgCurve {
   SvgStroke stroke;
   std::vector<double> x, y;
 };
 
-/// What lies between two curves.
+/// The area between two curves.
 struct SvgBand {
   std::string colour;
   double opacity = 0.12;
@@ -40,9 +40,9 @@ struct SvgBand {
 /// A plot of curves in a rectangle of a canvas.
 struct SvgPlot {
   std::string x_label, y_label;
-  bool log_y = false;       ///< what is not positive is a gap
+  bool log_y = false;       ///< values that are not positive are gaps
   bool equal_axes = false;  ///< a metre is as long in x as in y
-  bool with_zero = false;   ///< y = 0 is in view and drawn
+  bool with_zero = false;   ///< y = 0 is included and drawn
   std::vector<SvgCurve> curves = {};
   std::vector<SvgBand> bands = {};                        ///< cut at three times the curves' range
   std::vector<std::pair<double, double>> y_regions = {};  ///< shaded over the whole width
@@ -62,15 +62,15 @@ struct SvgFrame {
   double left = 0, top = 0, width = 0, height = 0;  ///< of the axes, labels outside
 };
 
-/// Draws axes, grid, bands and curves; "no data" where there is nothing.
+/// Draws axes, grid, bands and curves; "no data" when there are no curves.
 void DrawPlot(const SvgPlot& plot, const SvgFrame& frame, SvgCanvas* canvas);
 
 /// Draws boxes in groups side by side, from zero or on a logarithmic axis.
 void DrawBoxes(const std::vector<SvgBoxGroup>& groups, const std::string& x_label, const std::string& y_label,
                bool log_y, const SvgFrame& frame, SvgCanvas* canvas);
 
-/// Lines with their names in rows of the given width; returns the height they take. `canvas` null: measures
-/// alone.
+/// Lines with their names in rows of the given width; returns the height they take. `canvas` null: only
+/// measures.
 double DrawLegend(const std::vector<std::pair<std::string, SvgStroke>>& entries, double left, double top,
                   double width, SvgCanvas* canvas);
 

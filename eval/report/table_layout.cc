@@ -211,7 +211,7 @@ TextTable OverviewTable(size_t index, const std::vector<AggregateRow>& rows, con
 /// What the front end made of the images, where it ran in this comparison.
 TextTable FrontendTable(const std::vector<FrontendSummary>& frontends) {
   TextTable table;
-  table.title = "Front end: tracks an image, their lives, what ended them, and time";
+  table.title = "Front end: tracks an image, their length, their end, and time";
   table.header = {"sequence",           "seed",        "images",        "features a frame",
                   "mean life (frames)", "median life", "lost (%)",      "rejected (%)",
                   "thinned (%)",        "ms a frame",  "95 % of frames"};

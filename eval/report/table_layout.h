@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-/// A cell of a table for people; how it is marked is up to the renderer.
+/// A cell of a table; the renderer decides how it is marked.
 struct TextCell {
   std::string text;
   bool best = false;
@@ -16,7 +16,7 @@ struct TextCell {
 
 struct TextRow {
   std::vector<TextCell> cells;
-  bool reference = false;  ///< a published figure, not one of ours
+  bool reference = false;  ///< a published figure, not a measured one
 };
 
 /// First column left-aligned, the others right-aligned. All rows are as long as the header.
@@ -26,11 +26,11 @@ struct TextTable {
   std::vector<TextRow> rows;
 };
 
-/// Rounds to `decimals`; small values keep two significant digits, huge ones turn to exponents; NaN gives a
+/// Rounds to `decimals`; small values keep two significant digits, very large ones use exponents; NaN gives a
 /// dash.
 [[nodiscard]] std::string FormatValue(double value, int decimals);
 
-/// "mean +- standard error"; the error only when there is one.
+/// "mean +- standard error"; the error only when it is known.
 [[nodiscard]] std::string FormatStatistic(const Statistic& statistic, int decimals,
                                           const std::string& plus_minus);
 

@@ -90,18 +90,16 @@ std::string LatexTable(const TextTable& table) {
 
 const char* const kReading =
     "Means over the runs that ended ok, with the standard error of the mean where there are several. RMSE is "
-    "unaligned, ATE aligned as summary.csv says. The best value of a column is bold (NEES: nearest to its "
-    "degrees of freedom, 6, 3 and 3), among the estimators with the most runs ok; \u2248 marks those whose "
-    "paired difference to it is not "
-    "significant. Published figures are in "
-    "italics. NEES in band: share of the instants at which the NEES averaged over the runs lies in its 95 % "
-    "chi-square band; the verdict is of the mean NEES against the band of that many independent runs. Pairs: "
-    "differences on equal input and seed, with half of their 95 % interval (Student's t); significant when "
-    "it "
-    "leaves out zero, not corrected for the number of pairs; bold when significantly better. pairs.csv has "
-    "them all. Efficiency: bound over achieved RMSE on the runs that both finished; hindsight is the batch "
+    "unaligned; the alignment of ATE is in summary.csv. The best value of a column is bold (NEES: nearest to "
+    "its degrees of freedom, 6, 3 and 3), among the estimators with the most runs ok; \u2248 marks values "
+    "whose paired difference to it is not significant. Published figures are in italics. NEES in band: share "
+    "of the instants at which the NEES averaged over the runs is in its 95 % chi-square band; the verdict "
+    "compares the mean NEES with the band of that many independent runs. Pairs: differences on equal input "
+    "and seed, with half of their 95 % interval (Student's t); significant when the interval excludes zero, "
+    "not corrected for the number of pairs; bold when significantly better. pairs.csv has all pairs. "
+    "Efficiency: bound divided by achieved RMSE on the runs that both finished; hindsight is the batch "
     "estimate's own RMSE, smoothing the deviation it predicts for itself, filtering the deviation given only "
-    "the data up to each frame, the bound of an online estimator.";
+    "the data up to each frame, the bound of online estimators.";
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-/// A line for every run that did not end ok, with the reason, so that no mean hides one.
+/// A line for every run that did not end ok, with the reason.
 [[nodiscard]] std::vector<std::string> LostRuns(const Comparison& comparison);
 
 /// tables.md: GitHub tables; the best of a column in bold, published figures in italics. Names are escaped.

@@ -8,7 +8,7 @@ namespace alidade {
 
 /// GnssTimeMsg: week and seconds of week of GPST.
 void PutGnssTime(TimeNs gpst_ns, ByteWriter* out);
-/// kInput: a week or second that no clock shows. A torn message is told by the reader's ok().
+/// kInput: an invalid week or second. A torn message makes the reader's ok() false.
 Result<TimeNs> TakeGnssTime(ByteReader* in);
 
 /// kInput when more was read than there was.

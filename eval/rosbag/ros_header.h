@@ -16,7 +16,7 @@ inline void PutRosTime(TimeNs stamp_ns, ByteWriter* out) {
   return seconds * 1'000'000'000 + in->Read<std::uint32_t>();
 }
 
-/// std_msgs/Header; its sequence number and frame mean nothing here.
+/// std_msgs/Header; its sequence number and frame are not used.
 inline void PutRosHeader(TimeNs stamp_ns, ByteWriter* out) {
   out->Write(std::uint32_t{0});
   PutRosTime(stamp_ns, out);

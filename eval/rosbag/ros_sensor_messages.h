@@ -12,8 +12,8 @@
 
 namespace alidade {
 
-// Serialised ROS messages as they lie in a bag, and back. A decoder gives nothing when the bytes are torn or
-// make no sense; it allocates no more than the bytes hold. Stamps are those of the header.
+// Conversion of serialised ROS messages of a bag, in both directions. A decoder returns nothing when the
+// bytes are torn or invalid; it allocates no more than the size of the bytes. Stamps are those of the header.
 
 [[nodiscard]] std::string EncodeImu(const ImuSample& sample);
 [[nodiscard]] std::optional<ImuSample> DecodeImu(std::string_view bytes);
@@ -31,7 +31,7 @@ struct RawImage {
 /// An 8-bit grey image, row-major without gaps.
 [[nodiscard]] std::string EncodeImage(TimeNs stamp_ns, int width_px, int height_px, std::string_view grey);
 [[nodiscard]] std::optional<RawImage> DecodeImage(std::string_view bytes);
-/// 8-bit grey pixels of a raw image: 16-bit samples are scaled, colours weighted by ITU-R BT.601. Nothing for
+/// 8-bit grey pixels of a raw image: 16-bit samples are scaled, colours weighted by ITU-R BT.601. Empty for
 /// other encodings (Bayer, float).
 [[nodiscard]] std::optional<GreyImage> GreyOf(const RawImage& image);
 
@@ -46,8 +46,7 @@ struct CompressedImage {
 [[nodiscard]] std::string EncodeTracks(const TrackFrame& frame);
 [[nodiscard]] std::optional<TrackFrame> DecodeTracks(std::string_view bytes);
 
-/// alidade/State: a row of the ground truth, its rotation as the matrix that is used, so that nothing is
-/// rounded.
+/// alidade/State: a row of the ground truth, its rotation as a matrix, to avoid rounding.
 [[nodiscard]] std::string EncodeState(const TrajectoryPoint& point, bool has_velocity);
 struct DecodedState {
   TrajectoryPoint point;

@@ -153,7 +153,7 @@ Result<std::string> UnpackChunk(BagCompression compression, std::string_view pac
                                   : Result<std::string>(std::string(packed));
   if (bytes.ok() && bytes->size() != size) {
     return Status::Input("a chunk unpacks to another size than the " + std::to_string(size) +
-                         " bytes that its header says");
+                         " bytes that its header states");
   }
   return bytes;
 }

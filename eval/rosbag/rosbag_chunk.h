@@ -8,20 +8,20 @@
 
 namespace alidade {
 
-/// How the chunks of a bag are packed, by the name that stands in a chunk's header. kLz4 is the LZ4 frame
-/// format.
+/// Compression of the chunks of a bag, by the name in a chunk's header. kLz4 is the LZ4 frame format.
 enum class BagCompression { kNone, kBz2, kLz4 };
 [[nodiscard]] std::optional<BagCompression> ParseBagCompression(std::string_view name);  // none|bz2|lz4
 [[nodiscard]] std::string_view ToString(BagCompression compression);
 
-/// Largest chunk that is unpacked [bytes]; rosbag writes chunks of 768 KiB plus one message.
+/// Largest chunk that is decompressed [bytes]; rosbag writes chunks of 768 KiB plus one message.
 inline constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 28;
 
-/// Packs a chunk. kOutput: the library refuses.
+/// Compresses a chunk. kOutput: the library fails.
 Result<std::string> PackChunk(BagCompression compression, std::string_view bytes);
 
-/// Unpacks a chunk that says it holds `size` bytes. kInput: it says more than kMaxChunkBytes, does not
-/// unpack, or to another size. Allocates no more than that and what the packed bytes warrant.
+/// Decompresses a chunk whose stated size is `size` bytes. kInput: the stated size exceeds kMaxChunkBytes, or
+/// decompression fails or gives another size. Allocates no more than the stated size and what the compressed
+/// bytes can yield.
 Result<std::string> UnpackChunk(BagCompression compression, std::string_view packed, std::size_t size);
 
 }  // namespace alidade

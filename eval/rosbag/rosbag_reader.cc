@@ -139,7 +139,7 @@ Result<BagScan> RosbagReader::Scan(const std::function<Status(const BagMessage&)
          (next = ReadRecord(&record)) == Next::kRecord) {
     const std::optional<BagFields> fields = BagFields::Parse(record.header);
     if (!fields) {
-      Damage("a record's header that is no list of fields");
+      Damage("a record header that is not a list of fields");
       continue;
     }
     ALIDADE_RETURN_IF_ERROR(TakeRecord(*fields, record.data, 0, take));

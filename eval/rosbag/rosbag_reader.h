@@ -22,7 +22,7 @@ struct BagConnection {
   std::string definition;
 };
 
-/// One message as it lies in the bag; the views live as long as the call that hands it over.
+/// One message of a bag; the views are valid during the call that receives it.
 struct BagMessage {
   const BagConnection* connection = nullptr;
   TimeNs received_ns = 0;  ///< when it was recorded
@@ -30,30 +30,30 @@ struct BagMessage {
   BagPlace place;
 };
 
-/// What a scan met.
+/// Result of a scan.
 struct BagScan {
   std::int64_t messages = 0;
   std::int64_t chunks = 0;
-  std::int64_t damaged = 0;  ///< chunks and records that were passed over
+  std::int64_t damaged = 0;  ///< skipped chunks and records
   bool truncated = false;    ///< the file ends inside a record
   bool indexed = true;       ///< the bag was closed properly
-  std::string first_damage;  ///< what was wrong with the first of them
+  std::string first_damage;  ///< fault of the first of them
 };
 
-/// Reads a ROS 1 bag (format 2.0) front to back without its index, so that a bag that was never closed, or
-/// was cut off, gives all messages that are whole. Only one chunk is in memory. Nothing in the file is
-/// believed: lengths are held against the file's size and the limits in rosbag_chunk.h and rosbag_record.h.
+/// Reads a ROS 1 bag (format 2.0) front to back without its index, so an unclosed or truncated bag gives all
+/// its complete messages. Only one chunk is in memory. The file is not trusted: lengths are checked against
+/// the file's size and the limits in rosbag_chunk.h and rosbag_record.h.
 class RosbagReader {
  public:
-  /// kInput: cannot be read, or is no bag of format 2.0 (a bag of 1.2 is named as such).
+  /// kInput: cannot be read, or is not a bag of format 2.0 (the message mentions format 1.2).
   static Result<RosbagReader> Open(const std::string& path);
 
   /// Calls `take` for every message in the order of the file; an error of `take` ends the scan and is
   /// returned.
   Result<BagScan> Scan(const std::function<Status(const BagMessage&)>& take);
 
-  /// The message that a scan found at `place`; it lives until the next call. One record is kept, so that
-  /// neighbours come cheaply. kInput: no such record any more.
+  /// The message that a scan found at `place`; valid until the next call. One record is cached, so reading
+  /// neighbours is cheap. kInput: the record no longer exists.
   Result<std::string_view> ReadAgain(const BagPlace& place);
 
   [[nodiscard]] const std::string& path() const { return path_; }

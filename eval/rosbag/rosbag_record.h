@@ -15,7 +15,7 @@ namespace alidade {
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 /// The record of the bag header, data padded with blanks, takes this many bytes [bytes].
 inline constexpr std::size_t kBagHeaderBytes = 4096;
-/// Longest header of a record that is believed [bytes].
+/// Longest accepted header of a record [bytes].
 inline constexpr std::size_t kMaxRecordHeaderBytes = std::size_t{1} << 20;
 
 enum class BagOp : std::uint8_t {
@@ -27,7 +27,7 @@ enum class BagOp : std::uint8_t {
   kConnection = 7,
 };
 
-/// Where a message lies in its file, to read it again.
+/// Position of a message in its file, to read it again.
 struct BagPlace {
   std::uint64_t record = 0;  ///< byte at which its record, or that of its chunk, begins
   std::size_t offset = 0;    ///< in the bytes of the record, those of a chunk unpacked
@@ -37,7 +37,7 @@ struct BagPlace {
 /// Fields of a record's header; the values are views into the header's bytes.
 class BagFields {
  public:
-  /// Nothing when a field runs over the end or has no '='.
+  /// Empty when a field exceeds the header or has no '='.
   static std::optional<BagFields> Parse(std::string_view header);
 
   [[nodiscard]] std::optional<BagOp> op() const;

@@ -94,7 +94,7 @@ std::uint32_t RosbagWriter::AddTopic(const std::string& topic, const std::string
 Status RosbagWriter::Write(std::uint32_t topic, TimeNs received_ns, std::string_view data) {
   if (received_ns < 0 || received_ns >= kEndOfRosTime) {
     return Status::Input(path_ + ": stamp " + std::to_string(received_ns) +
-                         " ns, expected one from 1970 to 2106: a ROS time holds no other");
+                         " ns, expected a stamp from 1970 to 2106, the range of a ROS time");
   }
   Connection& connection = connections_[topic];
   if (!connection.written) {

@@ -13,11 +13,11 @@
 
 namespace alidade {
 
-/// Writes an indexed ROS 1 bag (format 2.0) that rosbag plays. The file has a temporary name until Close.
+/// Writes an indexed ROS 1 bag (format 2.0) that rosbag can play. The file has a temporary name until Close.
 /// Equal calls write equal bytes.
 class RosbagWriter {
  public:
-  /// kOutput: cannot be made.
+  /// kOutput: the file cannot be created.
   static Result<RosbagWriter> Create(const std::string& path, BagCompression compression);
   RosbagWriter(RosbagWriter&& other) noexcept;
   RosbagWriter& operator=(RosbagWriter&&) = delete;
@@ -27,10 +27,10 @@ class RosbagWriter {
   /// Number of a new topic; `type` is one that ros_message.h knows. `latched`: late subscribers get the last
   /// one.
   std::uint32_t AddTopic(const std::string& topic, const std::string& type, bool latched = false);
-  /// kOutput: the disk is full or the like. kInput: a stamp before 1970 or after 2106, which ROS cannot
-  /// write.
+  /// kOutput: the file cannot be written. kInput: a stamp before 1970 or after 2106, which ROS cannot
+  /// represent.
   Status Write(std::uint32_t topic, TimeNs received_ns, std::string_view data);
-  /// Writes the index and gives the file its name. Call once, last.
+  /// Writes the index and gives the file its final name. Call once, last.
   Status Close();
 
  private:
@@ -46,7 +46,7 @@ class RosbagWriter {
   };
   struct Connection {
     std::string record;
-    bool written = false;  ///< its record stands in a chunk
+    bool written = false;  ///< its record has been written to a chunk
   };
 
   RosbagWriter(std::string path, BagCompression compression)

@@ -57,8 +57,8 @@ RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
   if (options.audit && config.calibration.any()) {
     RunResult refused;
     refused.status = Status::Config(
-        "calibration: the audit knows no camera parameters; expected extrinsics, time_offset and intrinsics "
-        "false");
+        "calibration: the audit does not support camera parameters; expected extrinsics, time_offset and "
+        "intrinsics false");
     return refused;
   }
   if (options.audit && config.backend == Backend::kFilter) {

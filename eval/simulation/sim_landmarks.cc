@@ -149,7 +149,7 @@ Result<std::vector<Eigen::Vector3d>> FillVolume(const SimulatorConfig& config,
   }
   if (landmarks.empty()) {
     return Status::Config("landmark_density_per_m3: " + std::to_string(config.landmark_density_per_m3) +
-                          " leaves the space around this path empty; expected more");
+                          " gives no landmark around this path; expected more");
   }
   return landmarks;
 }

@@ -9,15 +9,16 @@ namespace {
 void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Enumeration(
       {"trajectory", "-",
-       "figure8 turns both ways, ellipse one way only; wander never repeats; file is a recorded one"},
+       "figure8 turns both ways, ellipse one way; wander does not repeat; file is a recorded trajectory"},
       &config->trajectory,
       {{"figure8", SimTrajectory::kFigureEight},
        {"ellipse", SimTrajectory::kEllipse},
        {"wander", SimTrajectory::kWander},
        {"file", SimTrajectory::kFile}});
-  visitor.Real({"duration_s", "s",
-                "200 s is the length of the paper's simulation; of a recorded trajectory at most this much"},
-               &config->duration_s, 1, 1e5);
+  visitor.Real(
+      {"duration_s", "s",
+       "200 s is the duration of the paper's simulation; largest duration taken from a recorded trajectory"},
+      &config->duration_s, 1, 1e5);
   visitor.Real({"length_m", "m", "extent of the path along x"}, &config->length_m, 0.1, 1e5);
   visitor.Real({"width_m", "m", "extent of the path along y"}, &config->width_m, 0.1, 1e5);
   visitor.Real({"height_m", "m", "amplitude of the vertical motion, three periods a lap; 0 is planar"},
@@ -27,9 +28,10 @@ void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real(
       {"rest_s", "s", "at rest before the motion starts, for static initialisation; 0 starts in motion"},
       &config->rest_s, 0, 1e4);
-  visitor.Real({"rest_ramp_s", "s",
-                "from rest to full speed, four times continuously differentiable; unused without rest"},
-               &config->rest_ramp_s, 0.1, 100);
+  visitor.Real(
+      {"rest_ramp_s", "s",
+       "duration from rest to full speed, four times continuously differentiable; unused without rest"},
+      &config->rest_ramp_s, 0.1, 100);
   visitor.Real({"wobble_rad", "rad",
                 "amplitude of roll, pitch and half of it in yaw about the path's tangent; excites all axes"},
                &config->wobble_rad, 0, 0.5);
@@ -39,7 +41,8 @@ void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
 
 void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Text({"trajectory_file", "-",
-                "for trajectory: file; EuRoC, TUM or our own, or a dataset folder; relative to this file"},
+                "for trajectory: file; a file of EuRoC, TUM or Alidade format, or a dataset folder; relative "
+                "to this file"},
                &config->trajectory_file);
   visitor.Text(
       {"hybrid_dataset", "-",
@@ -48,13 +51,15 @@ void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
       &config->hybrid_dataset);
   visitor.Text(
       {"truth_file", "-",
-       "which truth of a dataset folder; auto: data_recomputed.csv, else data.csv, else data_pose.csv"},
+       "truth file of a dataset folder; auto: data_recomputed.csv, else data.csv, else data_pose.csv"},
       &config->truth_file);
   visitor.Real({"knot_spacing_s", "s",
-                "of the spline through a recorded trajectory; shorter follows faster motion and more noise"},
+                "knot spacing of the spline through a recorded trajectory; a shorter one follows faster "
+                "motion and more noise"},
                &config->knot_spacing_s, 0.01, 10);
   visitor.Real(
-      {"max_gap_s", "s", "a longer silence of a recorded trajectory is a gap: nobody knows the motion"},
+      {"max_gap_s", "s",
+       "a longer interval without poses of a recorded trajectory is a gap, in which the motion is unknown"},
       &config->max_gap_s, 0.001, 100);
   visitor.Enumeration(
       {"truth_gaps", "-", "longest_span uses the longest stretch without a gap, refuse makes gaps an error"},
@@ -63,47 +68,51 @@ void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
 
 void DescribeImu(SimulatorConfig* config, ConfigVisitor& visitor) {
   ImuNoise* noise = &config->imu_noise;
-  visitor.Real({"imu_rate_hz", "Hz", "of the paper's simulation"}, &config->imu_rate_hz, 1, 1e4);
-  visitor.Real({"gyro_noise_density", "rad/s/sqrt(Hz)", "white noise; of the paper's simulation"},
+  visitor.Real({"imu_rate_hz", "Hz", "value of the paper's simulation"}, &config->imu_rate_hz, 1, 1e4);
+  visitor.Real({"gyro_noise_density", "rad/s/sqrt(Hz)", "white noise; value of the paper's simulation"},
                &noise->gyro_noise_density_radps_sqrthz, 0, 1);
-  visitor.Real({"accel_noise_density", "m/s^2/sqrt(Hz)", "white noise; of the paper's simulation"},
+  visitor.Real({"accel_noise_density", "m/s^2/sqrt(Hz)", "white noise; value of the paper's simulation"},
                &noise->accel_noise_density_mps2_sqrthz, 0, 10);
-  visitor.Real({"gyro_random_walk", "rad/s^2/sqrt(Hz)", "walk of the bias; of the paper's simulation"},
-               &noise->gyro_random_walk_radps2_sqrthz, 0, 1);
-  visitor.Real({"accel_random_walk", "m/s^3/sqrt(Hz)", "walk of the bias; of the paper's simulation"},
-               &noise->accel_random_walk_mps3_sqrthz, 0, 10);
+  visitor.Real(
+      {"gyro_random_walk", "rad/s^2/sqrt(Hz)", "random walk of the bias; value of the paper's simulation"},
+      &noise->gyro_random_walk_radps2_sqrthz, 0, 1);
+  visitor.Real(
+      {"accel_random_walk", "m/s^3/sqrt(Hz)", "random walk of the bias; value of the paper's simulation"},
+      &noise->accel_random_walk_mps3_sqrthz, 0, 10);
   visitor.Real({"gravity_mps2", "m/s^2", "magnitude; W has z up"}, &config->gravity_mps2, 0, 30);
   visitor.Real({"gyro_bias_radps", "rad/s", "standard deviation of the turn-on bias, each axis"},
                &config->gyro_bias_radps, 0, 1);
   visitor.Real({"accel_bias_mps2", "m/s^2", "standard deviation of the turn-on bias, each axis"},
                &config->accel_bias_mps2, 0, 10);
-  visitor.Real(
-      {"gyro_scale_std", "-",
-       "of each axis' scale factor less 1, constant in a run; no estimator models it (MEMS: 0.001 to 0.01)"},
-      &config->gyro_scale_std, 0, 0.2);
-  visitor.Real({"accel_scale_std", "-", "likewise, accelerometer"}, &config->accel_scale_std, 0, 0.2);
+  visitor.Real({"gyro_scale_std", "-",
+                "standard deviation of the scale error of each axis, constant in a run; not modelled by the "
+                "estimators (MEMS: 0.001 to 0.01)"},
+               &config->gyro_scale_std, 0, 0.2);
+  visitor.Real({"accel_scale_std", "-", "the same for the accelerometer"}, &config->accel_scale_std, 0, 0.2);
   visitor.Real({"misalignment_std_rad", "rad",
-                "of each small angle between true and sensed axes, six a sensor, constant in a run"},
+                "standard deviation of the small angles between true and sensed axes, six a sensor, constant "
+                "in a run"},
                &config->misalignment_std_rad, 0, 0.2);
 }
 
 void DescribeCamera(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Real({"camera_rate_hz", "Hz", "of the paper's simulation"}, &config->camera_rate_hz, 0.1, 1e3);
-  visitor.Enumeration(
-      {"camera_view", "-",
-       "forward looks along body x: little parallax ahead; sideways along body y; dataset has the "
-       "calibrated camera of the folder in trajectory_file"},
-      &config->camera_view,
-      {{"forward", SimCameraView::kForward},
-       {"sideways", SimCameraView::kSideways},
-       {"dataset", SimCameraView::kDataset}});
+  visitor.Real({"camera_rate_hz", "Hz", "value of the paper's simulation"}, &config->camera_rate_hz, 0.1,
+               1e3);
+  visitor.Enumeration({"camera_view", "-",
+                       "forward: along body x, little parallax ahead; sideways: along body y; dataset: the "
+                       "calibrated camera of the folder in trajectory_file"},
+                      &config->camera_view,
+                      {{"forward", SimCameraView::kForward},
+                       {"sideways", SimCameraView::kSideways},
+                       {"dataset", SimCameraView::kDataset}});
   visitor.Vector3(
       {"camera_lever_arm_m", "m", "position of the camera in the body frame, x forward y left z up"},
       &config->camera_lever_arm_m, -10, 10);
-  visitor.Real({"camera_time_offset_s", "s", "t_imu = t_camera + offset; the written calibration knows it"},
-               &config->camera_time_offset_s, -1, 1);
-  visitor.Integer({"width_px", "px", "of the paper's simulation"}, &config->width_px, 16, 20000);
-  visitor.Integer({"height_px", "px", "of the paper's simulation"}, &config->height_px, 16, 20000);
+  visitor.Real(
+      {"camera_time_offset_s", "s", "t_imu = t_camera + offset; the written calibration contains it"},
+      &config->camera_time_offset_s, -1, 1);
+  visitor.Integer({"width_px", "px", "value of the paper's simulation"}, &config->width_px, 16, 20000);
+  visitor.Integer({"height_px", "px", "value of the paper's simulation"}, &config->height_px, 16, 20000);
   visitor.Real({"focal_px", "px", "both axes; the principal point is the image centre"}, &config->focal_px, 1,
                1e5);
   visitor.Enumeration({"distortion", "-", "lens model of the written pixels"}, &config->distortion,
@@ -120,39 +129,39 @@ void DescribeCamera(SimulatorConfig* config, ConfigVisitor& visitor) {
 }
 
 void DescribeMoreCameras(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Integer(
-      {"camera_count", "-",
-       "2 is stereo; cam1 and on are written and part of the digest, but estimators read cam0 alone"},
-      &config->camera_count, 1, 8);
+  visitor.Integer({"camera_count", "-",
+                   "2 is stereo; cam1 and further cameras are written and part of the digest, but estimators "
+                   "read cam0 alone"},
+                  &config->camera_count, 1, 8);
   visitor.Vector3({"camera_spacing_m", "m",
-                   "from each camera to the next, in the former's frame: x right, y down, z forward; EuRoC's "
-                   "baseline"},
+                   "from each camera to the next, in the frame of the first of the two: x right, y down, z "
+                   "forward; EuRoC's baseline"},
                   &config->camera_spacing_m, -10, 10);
   visitor.Real(
-      {"camera_turn_rad", "rad", "each camera is turned right by this against the former; 0 is stereo"},
+      {"camera_turn_rad", "rad", "rotation of each camera to the right of the previous one; 0 is stereo"},
       &config->camera_turn_rad, -3.2, 3.2);
 }
 
 void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"pixel_noise_px", "px", "standard deviation of each image coordinate of an observation"},
                &config->pixel_noise_px, 0, 100);
-  visitor.Integer({"max_features", "-", "tracks alive in a frame, at most"}, &config->max_features, 1, 10000);
-  visitor.Real(
-      {"mean_track_loss", "-",
-       "probability that a visible track is lost from one frame to the next; p alone makes tracks of 1 / p "
-       "frames on average (0.125: 8)"},
-      &config->mean_track_loss, 0, 1);
+  visitor.Integer({"max_features", "-", "largest number of tracks in a frame"}, &config->max_features, 1,
+                  10000);
+  visitor.Real({"mean_track_loss", "-",
+                "probability that a visible track is lost from one frame to the next; p alone gives tracks "
+                "of 1 / p frames on average (0.125: 8)"},
+               &config->mean_track_loss, 0, 1);
   visitor.Real(
       {"border_px", "px",
-       "a landmark nearer to the image's edge is not seen; keeps the noise from being cut off there"},
+       "landmarks closer to the edge of the image are not visible, so the noise is not truncated there"},
       &config->border_px, 0, 1e3);
-  visitor.Real({"max_range_m", "m", "a landmark farther from the camera is not seen"}, &config->max_range_m,
-               0.1, 1e5);
+  visitor.Real({"max_range_m", "m", "landmarks farther from the camera are not visible"},
+               &config->max_range_m, 0.1, 1e5);
   visitor.Real({"outlier_rate", "-", "fraction of the observations or of the tracks that are wrong"},
                &config->outlier_rate, 0, 1);
   visitor.Enumeration({"outlier_kind", "-",
-                       "a jump is easy to gate, a drifting track or a moving object agrees with itself for a "
-                       "while; swap exchanges ids; mixed: any of them"},
+                       "jump: easy to gate; drift and moving: consistent for some time; swap: exchanges ids; "
+                       "mixed: any of them"},
                       &config->outlier_kind,
                       {{"jump", SimOutlierKind::kJump},
                        {"uniform", SimOutlierKind::kUniform},
@@ -160,69 +169,75 @@ void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
                        {"drift", SimOutlierKind::kDrift},
                        {"moving", SimOutlierKind::kMoving},
                        {"mixed", SimOutlierKind::kMixed}});
-  visitor.Enumeration({"outlier_unit", "-",
-                       "what is wrong at once; drift, moving and mixed are of tracks whatever this says"},
-                      &config->outlier_unit,
-                      {{"observation", SimOutlierUnit::kObservation}, {"track", SimOutlierUnit::kTrack}});
+  visitor.Enumeration(
+      {"outlier_unit", "-",
+       "whether single observations or whole tracks are wrong; drift, moving and mixed always affect tracks"},
+      &config->outlier_unit,
+      {{"observation", SimOutlierUnit::kObservation}, {"track", SimOutlierUnit::kTrack}});
   visitor.Real(
-      {"outlier_px", "px", "mean size of a jump, or mean drift in one second; half to one and a half of it"},
+      {"outlier_px", "px",
+       "mean size of a jump, or mean drift in one second; drawn between half and one and a half of it"},
       &config->outlier_px, 0, 1e4);
   visitor.Real({"outlier_speed_mps", "m/s",
-                "mean speed of a moving landmark, half to one and a half of it; 1 m/s is a walking person"},
+                "mean speed of a moving landmark; drawn between half and one and a half of it; 1 m/s is a "
+                "walking person"},
                &config->outlier_speed_mps, 0, 100);
 }
 
 void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Enumeration({"fault", "-",
-                       "what fails for a while: camera, IMU, the tracks' ids; for testing how estimators get "
-                       "lost and come back"},
-                      &config->fault,
-                      {{"none", SimFaultKind::kNone},
-                       {"blackout", SimFaultKind::kBlackout},
-                       {"imu", SimFaultKind::kImu},
-                       {"tracks", SimFaultKind::kTracks},
-                       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu}});
-  visitor.Real({"fault_start_s", "s", "after the first IMU sample"}, &config->fault_start_s, 0, 1e5);
-  visitor.Real({"fault_duration_s", "s", "how long it lasts"}, &config->fault_duration_s, 0, 1e5);
+  visitor.Enumeration(
+      {"fault", "-",
+       "simulated failure of camera, IMU or track ids, to test divergence and re-initialisation"},
+      &config->fault,
+      {{"none", SimFaultKind::kNone},
+       {"blackout", SimFaultKind::kBlackout},
+       {"imu", SimFaultKind::kImu},
+       {"tracks", SimFaultKind::kTracks},
+       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu}});
+  visitor.Real({"fault_start_s", "s", "start of the fault after the first IMU sample"},
+               &config->fault_start_s, 0, 1e5);
+  visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);
   visitor.Real({"calibration_rotation_error_rad", "rad",
-                "the given T_BC is turned by this about a random axis; for online calibration"},
+                "rotation error of the given T_BC about a random axis; for online calibration"},
                &config->calibration_rotation_error_rad, 0, 1);
-  visitor.Real({"calibration_translation_error_m", "m", "and moved by this in a random direction"},
-               &config->calibration_translation_error_m, 0, 10);
-  visitor.Real({"calibration_time_error_s", "s", "the given time offset is wrong by this, sign at random"},
+  visitor.Real(
+      {"calibration_translation_error_m", "m", "translation error of the given T_BC in a random direction"},
+      &config->calibration_translation_error_m, 0, 10);
+  visitor.Real({"calibration_time_error_s", "s", "error of the given time offset, random sign"},
                &config->calibration_time_error_s, 0, 1);
-  visitor.Real({"calibration_focal_error_px", "px", "each given focal length likewise"},
+  visitor.Real({"calibration_focal_error_px", "px", "error of each given focal length, random sign"},
                &config->calibration_focal_error_px, 0, 1000);
-  visitor.Real({"calibration_center_error_px", "px", "each coordinate of the given principal point likewise"},
+  visitor.Real({"calibration_center_error_px", "px",
+                "error of each coordinate of the given principal point, random sign"},
                &config->calibration_center_error_px, 0, 1000);
 }
 
 void DescribeLandmarks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Enumeration({"landmark_layout", "-",
                        "shell: between two distances around the path; room: on floor, ceiling and walls of a "
-                       "box around it; volume: evenly dense in the space around it"},
+                       "box around it; volume: uniform density in the space around it"},
                       &config->landmark_layout,
                       {{"shell", SimLandmarkLayout::kShell},
                        {"room", SimLandmarkLayout::kRoom},
                        {"volume", SimLandmarkLayout::kVolume}});
-  visitor.Real({"landmark_min_distance_m", "m", "of every landmark to the path"},
+  visitor.Real({"landmark_min_distance_m", "m", "smallest distance of a landmark to the path"},
                &config->landmark_min_distance_m, 0.1, 1e4);
-  visitor.Real({"landmark_max_distance_m", "m",
-                "of a landmark to the nearest point of the path; sets the tracks' length; shell and volume"},
-               &config->landmark_max_distance_m, 0.1, 1e4);
+  visitor.Real(
+      {"landmark_max_distance_m", "m",
+       "largest distance of a landmark to the path; determines the length of tracks; shell and volume"},
+      &config->landmark_max_distance_m, 0.1, 1e4);
   visitor.Integer({"landmark_count", "-",
-                   "fewer and longer tracks when few: 800 give about 115 tracks a frame of 24 frames each, "
-                   "1500 give 148 of 20; layouts shell and room"},
+                   "number of landmarks; with fewer landmarks tracks are fewer and longer: 800 give about "
+                   "115 tracks a frame of 24 frames each, 1500 give 148 of 20; layouts shell and room"},
                   &config->landmark_count, 1, 1000000);
   visitor.Real({"landmark_density_per_m3", "1/m^3",
                 "landmarks in a cubic metre of the space around the path; layout volume"},
                &config->landmark_density_per_m3, 1e-6, 1e3);
-  visitor.Vector3({"room_margin_m", "m", "from the path's bounding box to the walls; layout room"},
+  visitor.Vector3({"room_margin_m", "m", "distance from the path's bounding box to the walls; layout room"},
                   &config->room_margin_m, 0.1, 1e4);
-  visitor.Real(
-      {"room_depth_m", "m",
-       "landmarks stand out from their wall by up to this much, else a view may be of one plane; room"},
-      &config->room_depth_m, 0, 1e4);
+  visitor.Real({"room_depth_m", "m",
+                "largest distance of a landmark from its wall; with 0 a view may show a single plane; room"},
+               &config->room_depth_m, 0, 1e4);
 }
 
 /// Makes a path from a file in `folder` independent of the working folder.
@@ -241,8 +256,9 @@ bool SimulatorConfig::OutliersAreTracks() const {
 
 void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Text({"name", "-", "name of the sequence in tables and paths"}, &name);
-  visitor.Integer({"start_time_s", "s", "stamp of the first sample; not 0, so that a forgotten offset shows"},
-                  &start_time_s, 0, 2000000000);
+  visitor.Integer(
+      {"start_time_s", "s", "stamp of the first sample; not 0, so that a missing offset is detected"},
+      &start_time_s, 0, 2000000000);
   DescribeMotion(this, visitor);
   DescribeRecording(this, visitor);
   DescribeImu(this, visitor);
@@ -251,8 +267,8 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeTracks(this, visitor);
   DescribeFaults(this, visitor);
   DescribeLandmarks(this, visitor);
-  visitor.Section("gnss", "the receiver", [&] { gnss.Describe(visitor); });
-  visitor.Section("render", "images of the camera", [&] { render.Describe(visitor); });
+  visitor.Section("gnss", "simulated GNSS receiver", [&] { gnss.Describe(visitor); });
+  visitor.Section("render", "rendered images", [&] { render.Describe(visitor); });
 }
 
 Result<SimulatorConfig> LoadSimulatorConfig(const std::string& path,

@@ -287,8 +287,8 @@ Status SplineTrajectory::SolveRotation(const Trajectory& samples, NormalEquation
       return Status::Ok();
     }
   }
-  return Status::Input("spline: the rotation does not settle with knots every " + std::to_string(spacing_s_) +
-                       " s (last step " + std::to_string(largest_step_rad) +
+  return Status::Input("spline: the rotation does not converge with knots every " +
+                       std::to_string(spacing_s_) + " s (last step " + std::to_string(largest_step_rad) +
                        " rad); expected a shorter spacing");
 }
 

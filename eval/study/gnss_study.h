@@ -11,20 +11,20 @@
 
 namespace alidade {
 
-/// What happens to the receiver of a sequence; seconds from its first IMU sample, negative: never.
+/// Simulated events of the receiver of a sequence; seconds from its first IMU sample, negative: never.
 struct GnssScenario {
   double motion_start_s = 0;
   double outage_start_s = -1;
   double outage_end_s = -1;
-  int outage_satellites = 0;  ///< seen meanwhile
+  int outage_satellites = 0;  ///< received during the outage
   double clock_jump_s = -1;
 
   [[nodiscard]] bool HasOutage() const { return outage_start_s >= 0; }
 };
-/// That of a simulated receiver, cut to the sequence's `duration_s`.
+/// The events of a simulated receiver, limited to the sequence's `duration_s`.
 [[nodiscard]] GnssScenario ScenarioOf(const SimGnssConfig& config, double rest_s, double duration_s);
 
-/// What one run made of it. NaN: does not apply.
+/// Figures of one run. NaN: does not apply.
 struct GnssRunFigures {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -40,10 +40,10 @@ struct GnssRunFigures {
   double jump_step_m = kNone;     ///< largest change of the error between two frames, within 1 s of the jump
 };
 
-/// A run that hears GNSS: errors are global, as they stand. Without an alignment all figures are NaN.
+/// A run with GNSS: errors are global, unaligned. Without an alignment all figures are NaN.
 [[nodiscard]] GnssRunFigures JudgeGlobalRun(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
                                             const GnssScenario& scenario);
-/// A run that does not: the figures of the outage, as if yaw and position had been given at its start.
+/// A run without GNSS: the figures of the outage, as if yaw and position had been given at its start.
 [[nodiscard]] GnssRunFigures JudgeOdometry(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
                                            const GnssScenario& scenario);
 
@@ -67,9 +67,9 @@ struct GnssStudyRow {
   std::vector<GnssStudyRun> runs;
 };
 
-/// Markdown: what the runs came to, and a table each for outages and clock jumps where there are any. An
-/// outage that leaves satellites is compared with one of the same time that leaves none, if there is one. A
-/// row without runs is left out. Ratios are those of means, to the same estimator on the first sequence.
+/// Markdown: figures of the runs, and a table each for outages and clock jumps if there are any. An outage
+/// with remaining satellites is compared with an outage of the same time without satellites, if there is one.
+/// A row without runs is omitted. Ratios are those of means, to the same estimator on the first sequence.
 [[nodiscard]] std::string GnssStudyTables(const std::vector<GnssStudyRow>& rows);
 
 }  // namespace alidade

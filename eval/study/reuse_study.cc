@@ -54,7 +54,7 @@ Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
                                            const EstimatorConfig& estimator, const ReusePolicy& policy,
                                            int window, unsigned seed) {
   if (simulation.IsHybrid()) {
-    return Status::Config("hybrid_dataset: a recorded IMU has its noise; expected a simulated one");
+    return Status::Config("hybrid_dataset: the analysis needs a noise-free IMU; expected a simulated one");
   }
   EstimatorConfig config = Believing(estimator, simulation);
   config.filter.window = window;
@@ -79,12 +79,12 @@ Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
   ALIDADE_RETURN_IF_ERROR(run.status);
   if (analysis.unmodelled_reuse() > 0) {
     return Status::Config(
-        "filter.update: an observation other than a base served twice; the analysis holds for "
+        "filter.update: an observation other than a base was used twice; the analysis supports "
         "the timings immediate, at_l and delayed_all");
   }
   if (analysis.met_landmark()) {
     return Status::Config(
-        "filter: a landmark entered the state; the analysis holds for filters without them");
+        "filter: a landmark entered the state; the analysis supports only filters without SLAM features");
   }
   ReusePrediction mean;
   const std::vector<CovarianceRecord>& records = analysis.records();

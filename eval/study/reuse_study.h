@@ -27,9 +27,9 @@ struct ReusePrediction {
 };
 
 /// Runs the filter of `estimator`, without track memory, with `policy` on the simulation without any noise,
-/// from the true state, while a CovarianceAnalysis watches: the filter believes in the noise of `simulation`
+/// from the true state, with a CovarianceAnalysis as observer: the filter assumes the noise of `simulation`
 /// and linearises at the true states. Errors: those of Simulate and of the configuration; kDiverged when the
-/// run does not last.
+/// run ends early.
 Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
                                            const EstimatorConfig& estimator, const ReusePolicy& policy,
                                            int window, unsigned seed);

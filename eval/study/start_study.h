@@ -10,13 +10,13 @@
 
 namespace alidade {
 
-/// What came of one start from scratch somewhere in a sequence.
+/// Result of one initialisation within a sequence.
 struct StartOutcome {
   std::string sequence;
-  TimeNs start_ns = 0;  ///< first frame handed over
+  TimeNs start_ns = 0;  ///< first frame passed to the initialiser
   bool found = false;
   std::string method;   ///< static | dynamic
-  std::string message;  ///< the last refusal, or the report
+  std::string message;  ///< the last rejection, or the report
   double waited_s = 0;  ///< data used, from the first frame on
   // Against truth; NaN where there is none.
   double scale_error = 0;  ///< |size of the window / its true size - 1|; NaN after a static start
@@ -27,11 +27,11 @@ struct StartOutcome {
   double nees_all = 0;  ///< of tilt, velocity and biases: 11; NaN where truth has no biases
 };
 
-/// Error of an estimate in the canonical chart, with the truth turned about the vertical and moved onto it:
-/// those four are a choice of frame.
+/// Error of an estimate in the canonical chart, after moving the truth onto it in yaw and position, which are
+/// a choice of frame.
 [[nodiscard]] Vector15d GaugeFreeError(const NavEstimate& estimate, const TrajectoryPoint& truth);
 
-/// Hands the log to a new initializer from the first frame at or after `start_ns` on, until it finds a state
+/// Passes the log to a new initializer from the first frame at or after `start_ns` on, until it finds a state
 /// or `limit_s` of data have passed.
 StartOutcome StartAt(const EstimatorConfig& config, const MeasurementLog& log, const Trajectory& truth,
                      TimeNs start_ns, double limit_s);

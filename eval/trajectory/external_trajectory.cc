@@ -157,8 +157,8 @@ Result<Trajectory> ReadExternalTrajectory(const std::string& path, ExternalConte
   }
   if (trajectory.ok() && context->T_BC) {
     if (!trajectory->has_orientation) {
-      return Status::Input(path +
-                           ": holds no attitude, with which a camera's position could become the body's");
+      return Status::Input(
+          path + ": holds no orientation, which is needed to convert camera positions to body positions");
     }
     const Pose T_CB = context->T_BC->Inverse();
     for (TrajectoryPoint& point : trajectory->points) {

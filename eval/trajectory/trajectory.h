@@ -8,7 +8,8 @@
 
 namespace alidade {
 
-/// One row of a trajectory file. Fields the file does not carry stay zero; Trajectory says which are there.
+/// One row of a trajectory file. Fields that the file does not contain stay zero; the flags of Trajectory
+/// tell which it contains.
 struct TrajectoryPoint {
   TimeNs stamp_ns = 0;
   NavState nav;
@@ -19,7 +20,7 @@ struct TrajectoryPoint {
 /// A time-ordered trajectory of the body frame, from truth, an estimate or another program.
 struct Trajectory {
   std::vector<TrajectoryPoint> points;  ///< strictly increasing stamps
-  bool has_orientation = true;          ///< without it rotations are the identity and mean nothing
+  bool has_orientation = true;          ///< false: rotations are the identity and unused
   bool has_velocity = false;
   bool has_bias = false;
   bool has_covariance = false;

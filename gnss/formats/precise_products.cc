@@ -124,7 +124,7 @@ Status ReadClockHeader(LineReader* lines, TimeScale* scale) {
       }
       *scale = *parsed;
     } else if (line.find("END OF HEADER") != std::string_view::npos) {
-      return is_clock ? Status::Ok() : lines->Fault("this is no RINEX clock file");
+      return is_clock ? Status::Ok() : lines->Fault("not a RINEX clock file");
     }
     if (!is_clock) {
       return lines->Fault("found " + Excerpt(line) + ", expected a RINEX clock file");

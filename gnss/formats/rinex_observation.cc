@@ -56,7 +56,7 @@ class EpochReader {
     ++file_.events;
     for (int i = 0; i < event.count && lines_.Next(); ++i) {
       if (modern_ && lines_.line().starts_with('>')) {
-        Warn(lines_.Fault("an event record is shorter than it says"));
+        Warn(lines_.Fault("an event record is shorter than its stated number of lines"));
         lines_.PutBack();
         break;
       }
@@ -78,7 +78,7 @@ class EpochReader {
       return;
     }
     if (!file_.epochs.empty() && epoch.stamp_ns <= file_.epochs.back().stamp_ns) {
-      Warn(lines_.Fault("the epoch ending here is not after the one before; passed over"));
+      Warn(lines_.Fault("the epoch ending here is not later than the previous one; skipped"));
       return;
     }
     std::stable_sort(epoch.satellites.begin(), epoch.satellites.end(),
@@ -86,7 +86,7 @@ class EpochReader {
     const auto twin = std::unique(epoch.satellites.begin(), epoch.satellites.end(),
                                   [](const auto& a, const auto& b) { return a.satellite == b.satellite; });
     if (twin != epoch.satellites.end()) {
-      Warn(lines_.Fault("a satellite comes twice in the epoch ending here; the first is taken"));
+      Warn(lines_.Fault("a satellite occurs twice in the epoch ending here; the first is used"));
       epoch.satellites.erase(twin, epoch.satellites.end());
     }
     file_.epochs.push_back(std::move(epoch));
@@ -96,11 +96,12 @@ class EpochReader {
   bool ReadSatellites3(int count, ObservationEpoch* epoch) {
     for (int i = 0; i < count; ++i) {
       if (!lines_.Next()) {
-        Warn(lines_.Fault("the last epoch is torn; passed over"));
+        Warn(lines_.Fault("the last epoch is truncated; skipped"));
         return false;
       }
       if (lines_.line().starts_with('>')) {
-        Warn(lines_.Fault(Format("the epoch before holds %d satellites, its line says %d", i, count)));
+        Warn(lines_.Fault(
+            Format("the previous epoch holds %d satellites, its epoch line states %d", i, count)));
         lines_.PutBack();
         return true;
       }
@@ -152,7 +153,7 @@ class EpochReader {
   }
 
   bool Torn() {
-    Warn(lines_.Fault("the last epoch is torn; passed over"));
+    Warn(lines_.Fault("the last epoch is truncated; skipped"));
     return false;
   }
 

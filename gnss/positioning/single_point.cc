@@ -21,18 +21,21 @@ constexpr double kRelocateM = 1;        // the troposphere changes by 0.3 mm a m
 
 void SinglePointOptions::Describe(ConfigVisitor& visitor) {
   visitor.Enumeration(
-      {"kernel", "-", "how residuals lose weight"}, &kernel,
+      {"kernel", "-", "robust kernel of the residuals"}, &kernel,
       {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
-  visitor.Real({"kernel_scale_sigma", "sigma", "where a residual begins to count less"}, &kernel_scale_sigma,
-               0.1, 100);
+  visitor.Real({"kernel_scale_sigma", "sigma", "whitened residual above which the kernel reduces the weight"},
+               &kernel_scale_sigma, 0.1, 100);
   visitor.Real(
       {"gate_probability", "-", "chi-square gate of one satellite at the epoch's robust scale; 1 = no gate"},
       &gate_probability, 0.5, 1);
-  visitor.Real({"inter_system_walk", "m/sqrt(s)", "how fast a carried inter-system bias may wander"},
+  visitor.Real({"inter_system_walk", "m/sqrt(s)",
+                "random walk of the inter-system biases that are carried between epochs"},
                &inter_system_walk, 0, 1e6);
-  visitor.Real({"max_position_std_m", "m", "an epoch whose geometry is weaker has no solution"},
+  visitor.Real({"max_position_std_m", "m",
+                "largest position standard deviation of a solution; with weaker geometry an epoch has none"},
                &max_position_std_m, 1, 1e6);
-  visitor.Integer({"max_iterations", "-", "of the robust least squares"}, &max_iterations, 2, 1000);
+  visitor.Integer({"max_iterations", "-", "largest number of iterations of the robust least squares"},
+                  &max_iterations, 2, 1000);
 }
 
 SinglePointSolver::SinglePointSolver(MeasurementBuilder builder, SinglePointOptions options,
@@ -130,8 +133,8 @@ Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, State* state) 
   if (active < 4) {
     const MeasurementCounts& c = epoch.left_out;
     return Status::Input(
-        Format("%d satellites can be used, expected 4 (%d without ephemeris, %d unhealthy, "
-               "%d without signal, %zu below the mask or refused)",
+        Format("%d satellites can be used, expected 4 (%d without ephemeris, %d unhealthy, %d without "
+               "signal, %zu below the mask or rejected)",
                active, c.no_ephemeris, c.unhealthy, c.no_signal,
                epoch.satellites.size() - static_cast<std::size_t>(active)));
   }

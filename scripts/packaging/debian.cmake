@@ -14,9 +14,9 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
-set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "An invariant Kalman filter and a sliding-window smoother consume one
-library of measurement models; a simulator, readers of EuRoC, TUM-VI and
-ROS 1 bags, metrics and a report in one offline page stand around them.")
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "An invariant Kalman filter and a sliding-window smoother share one library
+of measurement models. Includes a simulator, readers of EuRoC, TUM-VI and
+ROS 1 bags, metrics and a self-contained HTML report.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME alidade)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)

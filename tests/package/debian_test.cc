@@ -31,10 +31,10 @@ TEST(DebianPackage, HoldsTheProgramAndWhatItNeedsAndRunsWhereverItIsUnpacked) {
   EXPECT_THAT(depends.output, AllOf(Not(HasSubstr("atlas")), Not(HasSubstr("-dev"))));
 
   const CommandResult content = Shell("dpkg-deb -c " + package);
-  for (const char* path :
-       {"./usr/bin/alidade\n", "./usr/share/alidade/configs/base.yaml\n",
-        "./usr/share/alidade/configs/plans/demo.yaml\n", "./usr/share/man/man1/alidade.1",
-        "./usr/share/bash-completion/completions/alidade\n", "./usr/share/doc/alidade/README.md\n"}) {
+  for (const char* path : {"./usr/bin/alidade\n", "./usr/share/alidade/configs/base.yaml\n",
+                           "./usr/share/alidade/configs/plans/demo.yaml\n", "./usr/share/man/man1/alidade.1",
+                           "./usr/share/bash-completion/completions/alidade\n",
+                           "./usr/share/doc/alidade/README.md\n", "./usr/share/doc/alidade/LICENSE\n"}) {
     EXPECT_THAT(content.output, HasSubstr(path));
   }
   EXPECT_THAT(content.output, AllOf(Not(HasSubstr(".a\n")), Not(HasSubstr(".h\n"))));

@@ -26,8 +26,8 @@
     report.view.plots = [];
     report.hideTooltip();
     const possible = chosen(), entries = possible.slice(0, MOST_PLOTTED);
-    element('crowd').textContent = possible.length > MOST_PLOTTED ? 'The plots draw the first ' + MOST_PLOTTED + ' of the ' + possible.length +
-      ' estimators that are switched on; the tables have all.' : '';
+    element('crowd').textContent = possible.length > MOST_PLOTTED ? 'The plots show the first ' + MOST_PLOTTED + ' of the ' + possible.length +
+      ' selected estimators; the tables show all.' : '';
     report.drawTrajectories(entries);
     report.drawErrors(entries, 'pos', 'Position error', 'm', ['Error in x', 'Error in y', 'Error in z'], ['x error', 'y error', 'z error']);
     report.drawErrors(entries, 'ori', 'Orientation error', 'deg', ['Error about body x', 'Error about body y',

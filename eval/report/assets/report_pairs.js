@@ -40,7 +40,7 @@
     document.getElementById('pairs-note').textContent = figure.label + (figure.unit ? ' [' + figure.unit + ']' : '') +
       ', row minus column on the same input and seed, with half of the 95 % interval of the mean (Student\u2019s t' +
       (here ? ', ' + sequence + ', ' + most.count + ' pairs' : '') +
-      '). Shaded where the interval leaves out zero; not corrected for the number of pairs. The figure is chosen in the overview; pairs.csv has all.';
+      '). Shaded where the interval excludes zero; not corrected for the number of pairs. The figure is selected in the overview; pairs.csv has all figures.';
     document.getElementById('pairs-table').innerHTML = here + (across ? '<p class="note">Over all ' + data.sequences.length +
       ' sequences, one sample a sequence:</p>' + across : '');
   };

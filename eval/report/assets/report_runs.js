@@ -28,10 +28,10 @@
     const withGnss = entries.filter(function (entry) {
       return entry.cells.some(function (cell) { return cell.gnss_nis[0] !== null; });
     });
-    const grid = group('Innovations and features', 'Normalised innovation squared of a frame over the number of its rows: 1 on average where the ' +
-      'noise is as assumed. Dotted: where 95 % of frames should lie, of a frame with the median number of rows. Gated measurements are left ' +
-      'out; a smoother tells what remains of its window after the fit. Mean and share of frames inside their own band: ' +
-      (innovationText(entries, 'nis') || 'not known') + (withGnss.length ? '; of GNSS: ' + innovationText(withGnss, 'gnss_nis') : '') + '.');
+    const grid = group('Innovations and features', 'Normalised innovation squared of a frame divided by the number of its rows: 1 on average if the ' +
+      'assumed noise is correct. Dotted: 95 % band of a frame with the median number of rows. Gated measurements are ' +
+      'excluded; for a smoother the residuals of its window after the solve. Mean and share of frames inside their own band: ' +
+      (innovationText(entries, 'nis') || 'unknown') + (withGnss.length ? '; of GNSS: ' + innovationText(withGnss, 'gnss_nis') : '') + '.');
     drawNis(grid, entries, 'nis', 'Innovations');
     if (withGnss.length) { drawNis(grid, withGnss, 'gnss_nis', 'Innovations of GNSS'); }
     report.timePlot(grid, spec('tracks', 'Tracks per frame', 'tracks [1/frame]', '', entries,
@@ -111,7 +111,7 @@
     const seen = d3.set(cell.sky.map(function (track) { return track.s.charAt(0); })).values();
     const legend = seen.map(function (letter) { return { name: systemOf(letter)[0], style: { colour: systemOf(letter)[1], dash: null } }; });
     const grid = group('Satellites', cell.estimator + ', seed ' + cell.seed + ': directions (zenith in the middle, north up, rings at 0, 30 ' +
-      'and 60\u00b0 of elevation, the name where a satellite was last seen) and pseudorange residuals, predicted less measured. Colours: ' +
+      'and 60\u00b0 of elevation, the name where a satellite was last received) and pseudorange residuals, predicted minus measured. Colours: ' +
       seen.map(function (letter) { return systemOf(letter)[0]; }).join(', ') + '.', true);
     d3.select(grid.parentNode).insert('p', 'div').attr('class', 'legend-line').html(legend.map(function (entry) {
       return '<span class="legend">' + report.swatch(entry.style) + entry.name + '</span>';

@@ -57,9 +57,9 @@
     const mean = allSeeds();
     const width = mean ? 1 : 3;
     const grid = group(title, mean ?
-      'Root mean square over the seeds (line) beside the root mean square of the deviation the estimator claims (1\u03c3, shaded). ' +
-      'An honest estimator\u2019s line follows its shade\u2019s edge.' :
-      'Truth minus estimate, not aligned (line), inside the \u00b13\u03c3 the estimator claims (shaded). Drag across a plot to zoom, double-click to undo; with the keyboard, arrows read values off.');
+      'Root mean square over the seeds (line) and root mean square of the claimed standard deviation (1\u03c3, shaded). ' +
+      'For a consistent estimator the line follows the edge of the shaded area.' :
+      'Truth minus estimate, not aligned (line), and the claimed \u00b13\u03c3 (shaded). Drag across a plot to zoom, double-click to reset; on the keyboard, arrows read values.');
     names.forEach(function (name, axis) {
       const bands = entries.filter(function (entry) { return entry.series[key + '_sigma'].length; }).map(function (entry) {
         const sigma = entry.series[key + '_sigma'][axis];
@@ -78,7 +78,7 @@
     const few = allSeeds() && entries.some(function (entry) { return entry.cells.length < runs; });
     const grid = group('Consistency', 'Normalised estimation error squared of the pose (6 degrees of freedom; ideal mean 6). Shaded: where ' +
       (runs > 1 ? 'the mean of ' + runs + ' independent runs' : 'a single run') + ' lies with 95 % probability (' + report.digits(band[0]) + ' to ' +
-      report.digits(band[1]) + '). Dashed: mean over time.' + (few ? ' An estimator that lost runs has a wider band than is drawn.' : '') +
+      report.digits(band[1]) + '). Dashed: mean over time.' + (few ? ' An estimator that lost runs has a wider band than the one shown.' : '') +
       (runs > 1 ? insideText(entries) : ''), true);
     const all = !allSeeds() ? lines(entries, function (series) { return series.nees; }) : entries.map(function (entry) {
       const average = report.neesOverTime(entry.name, state.sequence);
@@ -124,8 +124,8 @@
       return (entry.series.rank || []).some(function (rank) { return rank !== null; });
     });
     if (!audited.length) { return; }
-    const grid = group('Observability', 'What the Jacobians that the filter used say about the initial error along directions that nothing can ' +
-      'measure. A consistent filter stays at rounding (below 1e\u221212, drawn as that) and at rank 11 of 15; information above it is invented.');
+    const grid = group('Observability', 'Information in the filter\u2019s Jacobians about the unobservable directions of the initial error. ' +
+      'A consistent filter stays at rounding level (values below 1e\u221212 are drawn there) and at rank 11 of 15; information above it is spurious.');
     const leak = function (id, title, unit, key) {
       report.timePlot(grid, spec(id, title, 'information [' + unit + '], log scale', unit, audited,
         { log: true, lines: lines(audited, function (series) { return series[key]; }) }));

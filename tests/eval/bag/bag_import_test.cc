@@ -239,7 +239,7 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
   source.topics = "cam0=/none";
   EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("no topic /none"));
   source.path = folder_.path();
-  EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("is no bag"));
+  EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("is not a bag"));
 }
 
 TEST_F(ForeignBag, ObservationsWithoutEphemerisAreLeftOut) {

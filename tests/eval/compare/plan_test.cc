@@ -116,7 +116,7 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
       {sequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
        "no such sequence; did you mean 'sim'"},
       {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
-      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` beside `config` only"},
+      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` only with `config`"},
       {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
       {estimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
       {estimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
@@ -200,7 +200,7 @@ TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
   EXPECT_EQ(plan->absent[0].second, folder_.File("data/gone"));
   const Result<Plan> none = Read(rest + "skip_missing: true\n", folder_.File("nowhere"));
   EXPECT_EQ(none.code(), StatusCode::kInput);
-  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is there"));
+  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is present"));
 }
 
 // The shipped plans of published data read without any of it, and say what they would need.
@@ -211,7 +211,7 @@ TEST(PublishedPlans, SayWhatDataTheyNeed) {
     EXPECT_EQ(ReadPlan(path, "").code(), StatusCode::kConfig) << name;
     const Result<Plan> none = ReadPlan(path, folder.path());
     EXPECT_EQ(none.code(), StatusCode::kInput) << name << ": " << none.message();
-    EXPECT_THAT(none.message(), HasSubstr("is there; the first, ")) << name;
+    EXPECT_THAT(none.message(), HasSubstr("is present; the first, ")) << name;
   }
   folder.Write("V1_02_medium/mav0/x", "");
   const Result<Plan> one =

@@ -81,7 +81,7 @@ const ConfigCase kConfigCases[] = {
     {"merge key", "filter:\n  <<: {window: 20}\n", {":2:3", "filter.<<", "unknown key"}},
     {"tab", "filter:\n\twindow: 20\n", {"estimator.yaml:", "not valid YAML"}},
     {"base missing", "base: nowhere.yaml\n", {":1:7", "nowhere.yaml", "relative to this file"}},
-    {"base is itself", "base: estimator.yaml\n", {":1:7", "no circle"}},
+    {"base is itself", "base: estimator.yaml\n", {":1:7", "no cycle"}},
     {"base in a group", "filter:\n  base: estimator.yaml\n", {":2:3", "filter.base", "unknown key"}},
     {"keys that contradict",
      "filter:\n  window: 5\n  min_observations: 9\n",

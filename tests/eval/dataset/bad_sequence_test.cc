@@ -270,7 +270,7 @@ TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
   WriteGoodSequence(folder);
   const Result<Dataset> inside = ReadDataset(folder.File("mav0"));
   EXPECT_EQ(inside.code(), StatusCode::kInput);
-  EXPECT_THAT(inside.message(), HasSubstr("give the folder that holds it"));
+  EXPECT_THAT(inside.message(), HasSubstr("give the folder that contains it"));
   const Result<Dataset> missing = ReadDataset(folder.File("nowhere"));
   EXPECT_EQ(missing.code(), StatusCode::kInput);
   EXPECT_THAT(missing.message(), HasSubstr("nowhere: no such folder"));

@@ -94,13 +94,14 @@ TEST(DatasetCheck, GivenPixelsOutsideTheImageThenTheResolutionIsDoubted) {
   for (TrackFrame& frame : dataset.tracks) {
     frame.observations[1].pixel.x() += 200;
   }
-  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("101 observations lie outside 640 x 480 px"));
+  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("101 observations are outside 640 x 480 px"));
 }
 
 TEST(DatasetCheck, GivenATrackThatComesBackThenItIsNamed) {
   Dataset dataset = Healthy();
   dataset.tracks[50].observations.pop_back();
-  EXPECT_THAT(Complaints(dataset, Severity::kWarning), HasSubstr("1 times a track skips frames"));
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning),
+              HasSubstr("1 times a track is missing in some frames"));
 }
 
 TEST(DatasetCheck, GivenTruthOfHalfTheFlightThenItsCoverageIsWarnedOf) {

@@ -190,7 +190,7 @@ TEST_F(ReportInBrowser, GivenTenEstimatorsOnTenSequencesThenThePlotsStayReadable
   EXPECT_THAT(visit.console, IsEmpty());
   EXPECT_EQ(visit.Mark("errors"), "");
   EXPECT_EQ(visit.Mark("plots"), std::to_string(kPlots + 2));  // the sky and its residuals
-  EXPECT_THAT(visit.dom, HasSubstr("The plots draw the first 8 of the 10 estimators"));
+  EXPECT_THAT(visit.dom, HasSubstr("The plots show the first 8 of the 10 selected estimators"));
   EXPECT_EQ(visit.Mark("bands"), "48");
   const PageVisit phone = Open(InFrame("large.html", 390));
   EXPECT_LE(std::stoi("0" + phone.Mark("scroll")), 390);

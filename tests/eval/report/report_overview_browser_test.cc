@@ -51,12 +51,12 @@ TEST_F(ReportInBrowser, GivenAnEstimatorOrASequenceSwitchedOffThenItIsGoneFromTa
 
 TEST_F(ReportInBrowser, GivenRunsThatWereLostOrNotStartedThenTheOverviewNamesThem) {
   Comparison comparison = test::SyntheticComparison(60);
-  comparison.notes = {"MH_05: its data is not there, expected the folder /data/<MH_05> & more"};
+  comparison.notes = {"MH_05: its data is missing, expected the folder /data/<MH_05> & more"};
   ASSERT_TRUE(WriteReport(comparison, folder_.File("absent.html")).ok());
   const PageVisit visit = Open(ReadFile(folder_.File("absent.html")));
   EXPECT_THAT(
       visit.dom,
-      HasSubstr("<li>MH_05: its data is not there, expected the folder /data/&lt;MH_05&gt; &amp; more</li>"));
+      HasSubstr("<li>MH_05: its data is missing, expected the folder /data/&lt;MH_05&gt; &amp; more</li>"));
   EXPECT_THAT(visit.dom, HasSubstr("1 not ok</b>; <b class=\"bad\">not run: 1</b>"));
   EXPECT_THAT(visit.dom, HasSubstr("vins_mono_class on V1_01_easy, seed 2: failed</span>"));
 }

@@ -239,11 +239,11 @@ TEST(NeesOverTime, GivenRowsThatShowExtremesThenTheyAreInNoMean) {
 
 TEST(ReportJson, GivenAComparisonThenProgramsFindItsTables) {
   Comparison comparison = test::SyntheticComparison(50);
-  comparison.notes = {"MH_05: its data is not there"};
+  comparison.notes = {"MH_05: its data is missing"};
   const test::TemporaryFolder folder;
   ASSERT_TRUE(WriteTables(comparison, folder.path()).ok());
   const nlohmann::json json = nlohmann::json::parse(ReadFile(folder.File("report.json")));
-  EXPECT_EQ(json["not_run"], nlohmann::json({"MH_05: its data is not there"}));
+  EXPECT_EQ(json["not_run"], nlohmann::json({"MH_05: its data is missing"}));
   EXPECT_EQ(json["estimators"], nlohmann::json({"po_invio_multi", "invio_l5", "vins_mono_class"}));
   EXPECT_EQ(json["cells"].size(), 12U);
   EXPECT_EQ(json["cells"][11]["status"], "failed");

@@ -109,20 +109,20 @@ TEST(RinexObservationTest, DamageCostsOneRecordAndIsTold) {
   };
   const std::vector<Case> cases = {
       {"fewer satellites than announced", "> 2020 06 25 00 00 40.0000000  0  3\n" + Satellite("G07", 2.1e7),
-       "holds 1 satellites, its line says 3"},
+       "holds 1 satellites, its epoch line states 3"},
       {"more than announced", Satellite("G08", 2.1e7), "expected an epoch that begins with '>'"},
       {"date", "> 2020 06 31 00 00 40.0000000  0  1\n" + Satellite("G07", 2.1e7), "expected a date"},
       {"count", "> 2020 06 25 00 00 40.0000000  0 xx\n" + Satellite("G07", 2.1e7),
        "a flag of 0 to 6 and a count"},
       {"flag", "> 2020 06 25 00 00 40.0000000  9  1\n" + Satellite("G07", 2.1e7), "a flag of 0 to 6"},
-      {"back in time", good, "not after the one before"},
+      {"back in time", good, "not later than the previous one"},
       {"satellite", "> 2020 06 25 00 00 40.0000000  0  1\n" + Satellite("Q07", 2.1e7),
        "satellite: found 'Q07'"},
       {"number", "> 2020 06 25 00 00 40.0000000  0  1\nG07  21x00000.000\n", "'21x00000.000'"},
       {"cut number", "> 2020 06 25 00 00 40.0000000  0  1\nG07  21000000.0\n",
        "expected a number of width 14"},
       {"twice", "> 2020 06 25 00 00 40.0000000  0  2\n" + Satellite("G07", 2.1e7) + Satellite("G07", 2.3e7),
-       "comes twice"}};
+       "occurs twice"}};
   for (const Case& damage : cases) {
     const ObservationFile file = Parse(kHeader3 + good + damage.between + later);
     EXPECT_EQ(file.warnings.count, 1) << damage.name;
@@ -135,7 +135,7 @@ TEST(RinexObservationTest, DamageCostsOneRecordAndIsTold) {
   const ObservationFile torn =
       Parse(kHeader3 + good + "> 2020 06 25 00 01 00.0000000  0  2\n" + Satellite("G07", 2.2e7));
   EXPECT_EQ(torn.epochs.size(), 1u);
-  EXPECT_THAT(torn.warnings.first.at(0), HasSubstr("torn"));
+  EXPECT_THAT(torn.warnings.first.at(0), HasSubstr("truncated"));
 }
 
 TEST(RinexObservationTest, HeadersThatCannotServeAreErrors) {
