@@ -5,9 +5,6 @@
 
 namespace alidade {
 
-/// A cell whose figures are all unknown (NaN), so that a table shows nothing instead of a zero.
-[[nodiscard]] CellResult UnscoredCell();
-
 /// Fills the figures and the series of `cell` from an estimate and the truth. `truth` null: figures stay
 /// unknown and the message says so. Too few common stamps: status "failed" with the reason.
 void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,

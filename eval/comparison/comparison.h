@@ -1,7 +1,7 @@
 #pragma once
 
-#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,13 +34,12 @@ struct CellSeries {
 };
 
 /// How well the innovations of a run fit their own covariance. A smoother tells what is left of its window's
-/// residuals after the fit. NaN when not known.
+/// residuals after the fit.
 struct InnovationSummary {
-  double ratio = std::numeric_limits<double>::quiet_NaN();   ///< sum of the NIS over the sum of their rows
-  double inside = std::numeric_limits<double>::quiet_NaN();  ///< share of frames in the 95 % chi-square band
+  std::optional<double> ratio;   ///< sum of the NIS over the sum of their rows
+  std::optional<double> inside;  ///< share of frames in the 95 % chi-square band
   /// That band over its rows, of a frame with the median number of rows.
-  std::pair<double, double> band{std::numeric_limits<double>::quiet_NaN(),
-                                 std::numeric_limits<double>::quiet_NaN()};
+  std::optional<std::pair<double, double>> band;
 };
 
 /// How a GNSS satellite stood and fitted in a run (eval/comparison/sky_tracks.h).
@@ -52,7 +51,8 @@ struct SkyTrack {
   double rms_m = 0;                ///< of the used residuals
 };
 
-/// One row of summary.csv: one estimator on one sequence with one seed.
+/// One row of summary.csv: one estimator on one sequence with one seed. A figure without a value is unknown:
+/// the run failed, there is no ground truth, or an external trajectory has no covariance or times.
 struct CellResult {
   std::string estimator;
   std::string backend;
@@ -62,34 +62,30 @@ struct CellResult {
   std::string message;
   std::string input_digest;
   int frames = 0;
-  double duration_s = 0;
-  double path_m = 0;
-  double rmse_pos_m = 0, rmse_ori_deg = 0;  ///< unaligned
-  double ate_pos_m = 0, ate_ori_deg = 0;
+  std::optional<double> duration_s;
+  std::optional<double> path_m;
+  std::optional<double> rmse_pos_m, rmse_ori_deg;  ///< unaligned
+  std::optional<double> ate_pos_m, ate_ori_deg;
   std::string align;
   std::vector<RpeResult> rpe;
-  double nees_pose = 0, nees_ori = 0, nees_pos = 0, coverage_3sigma = 0;
-  double frontend_ms = 0, backend_ms = 0, backend_ms_p95 = 0;
-  double features_per_frame = 0;
-  /// Stages of backend_ms, means a frame; the rest is neither. NaN when not known.
-  double propagate_ms = std::numeric_limits<double>::quiet_NaN();
-  double update_ms = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> nees_pose, nees_ori, nees_pos, coverage_3sigma;
+  std::optional<double> frontend_ms;  ///< also unknown where the tracks were read from a file
+  std::optional<double> backend_ms, backend_ms_p95;
+  std::optional<double> features_per_frame;
+  /// Stages of backend_ms, means a frame; the rest is neither.
+  std::optional<double> propagate_ms, update_ms;
   InnovationSummary innovations;
   InnovationSummary gnss_innovations;
-  /// Of the tracks that met the chi-square gate, those it refused; NaN when none did. On data without
+  /// Of the tracks that met the chi-square gate, those it refused; unknown when none did. On data without
   /// outliers these are false rejections.
-  double gated_share = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> gated_share;
   /// Root mean square of the deviations that the run's own covariance predicts: square root of the mean trace
-  /// of the covariance of phi and of dp. NaN without covariance.
-  double sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
-  double sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
+  /// of the covariance of phi and of dp.
+  std::optional<double> sigma_pos_m, sigma_ori_deg;
   /// The same given the data up to each frame alone; of an estimator that looks back and knows it.
-  double filtering_sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
-  double filtering_sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
-  /// How far the last online calibration is from the truth; NaN when either is missing.
-  double calibration_rotation_deg = std::numeric_limits<double>::quiet_NaN();
-  double calibration_translation_m = std::numeric_limits<double>::quiet_NaN();
-  double calibration_time_ms = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> filtering_sigma_pos_m, filtering_sigma_ori_deg;
+  /// How far the last online calibration is from the truth.
+  std::optional<double> calibration_rotation_deg, calibration_translation_m, calibration_time_ms;
   int restarts = 0;  ///< times the estimate was lost
   CellSeries series;
   std::vector<SkyTrack> sky;  ///< empty without GNSS
@@ -116,15 +112,5 @@ struct Comparison {
   std::vector<FrontendSummary> frontends = {};
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
 };
-
-/// Writes summary.csv, aggregate.csv, pairs.csv, nees_over_time.csv, tables.md, tables.tex and report.json
-/// into `folder` (docs/plans.md).
-Status WriteTables(const Comparison& comparison, const std::string& folder);
-
-/// Writes the page that people look at (docs/report.md): one self-contained offline file.
-Status WriteReport(const Comparison& comparison, const std::string& path);
-
-/// The table that a person reads on the terminal.
-[[nodiscard]] std::string FormatTable(const Comparison& comparison);
 
 }  // namespace alidade
