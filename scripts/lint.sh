@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Checks the form of our sources. Usage: scripts/lint.sh [format | fix | tidy [folder or file ...]]
+# Checks the form of our sources. Usage: scripts/lint.sh [format | fix | layers | tidy [folder or file ...]]
 #   format  (default) clang-format agrees with every file; seconds
 #   fix     makes it agree
+#   layers  no include runs against the order of scripts/layers.txt
 #   tidy    clang-tidy finds nothing, in the given folders (default: all); minutes a folder; wants a configured build/
 # Exit code 77: the tool is not installed.
 set -euo pipefail
@@ -40,6 +41,9 @@ case "$mode" in
     [[ "$mode" == fix ]] && options=(-i)
     sources "${folders[@]}" | xargs "$tool" "${options[@]}"
     ;;
+  layers)
+    scripts/check_layers.sh
+    ;;
   tidy)
     tool=$(find_tool clang-tidy)
     if [[ ! -f build/compile_commands.json ]]; then
@@ -51,7 +55,7 @@ case "$mode" in
       xargs -P "$(nproc)" -n 1 "$tool" -p build --quiet --extra-arg=-Wno-unknown-warning-option
     ;;
   *)
-    echo "usage: $0 [format | fix | tidy [folder or file ...]]" >&2
+    echo "usage: $0 [format | fix | layers | tidy [folder or file ...]]" >&2
     exit 2
     ;;
 esac

@@ -5,6 +5,7 @@
 #include "eval/cli/command.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
+#include "eval/report/tables.h"
 
 namespace alidade::cli {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -16,15 +17,19 @@
 #include "eval/compare/compare_configs.h"
 #include "eval/comparison/cell_score.h"
 #include "eval/config/config_yaml.h"
+#include "eval/report/report.h"
+#include "eval/report/tables.h"
 
 namespace alidade {
 namespace {
 
 std::string OneLine(const CellResult& cell) {
-  const std::string figures = std::isfinite(cell.ate_pos_m)
-                                  ? Format(", ATE %.3f m %.3f deg, %.2f ms a frame", cell.ate_pos_m,
-                                           cell.ate_ori_deg, cell.backend_ms)
-                                  : std::string();
+  std::string figures;
+  if (cell.ate_pos_m) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    figures = Format(", ATE %.3f m %.3f deg, %.2f ms a frame", *cell.ate_pos_m,
+                     cell.ate_ori_deg.value_or(kNan), cell.backend_ms.value_or(kNan));
+  }
   return cell.estimator + " / " + cell.sequence + " / " + std::to_string(cell.seed) + ": " + cell.status +
          figures + (cell.message.empty() ? "" : " (" + cell.message + ")");
 }
@@ -87,7 +92,7 @@ class Comparer {
         continue;
       }
       const EstimatorConfig* config = configs_.Of(sequence, i);
-      CompareCell cell{&estimator, config, &sequence, input, seed, "", UnscoredCell()};
+      CompareCell cell{&estimator, config, &sequence, input, seed, "", {}};
       cell.folder =
           options_.output + "/cells/" + estimator.name + "/" + sequence.name + "/" + std::to_string(seed);
       cell.result.estimator = estimator.name;

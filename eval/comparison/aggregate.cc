@@ -15,11 +15,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Share of a Gaussian inside +-3 standard deviations.
 constexpr double kGaussianInside3Sigma = 0.9973002039367398;
 
-/// Fields that stay zero when nobody filled them: zero means absent.
-double PositiveOrNan(double value) {
-  return value > 0 ? value : kNan;
-}
-
 bool HasTrajectory(const CellResult& cell) {
   return cell.frames > 0 && cell.status != "failed";
 }
@@ -35,13 +30,9 @@ const RpeResult* FindRpe(const CellResult& cell, double distance_m) {
 
 using Value = std::function<double(const CellResult&)>;
 
-/// An accuracy: zero is a value (an exact estimate) as long as there is a trajectory.
-Value Accuracy(double CellResult::*field) {
-  return [field](const CellResult& cell) { return HasTrajectory(cell) ? cell.*field : kNan; };
-}
-
-Value Positive(double CellResult::*field) {
-  return [field](const CellResult& cell) { return HasTrajectory(cell) ? PositiveOrNan(cell.*field) : kNan; };
+Value OfTrajectory(std::optional<double> CellResult::*field) {
+  return
+      [field](const CellResult& cell) { return HasTrajectory(cell) ? (cell.*field).value_or(kNan) : kNan; };
 }
 
 void AppendRpeFigures(const Comparison& comparison, std::vector<Figure>* figures) {
@@ -178,34 +169,30 @@ std::vector<std::string> Distinct(const Items& items, Project project) {
 
 std::vector<Figure> ListFigures(const Comparison& comparison) {
   std::vector<Figure> figures = {
-      {"rmse_pos_m", "RMSE pos.", "m", Ideal::kLow, 0, 3, Accuracy(&CellResult::rmse_pos_m)},
-      {"rmse_ori_deg", "RMSE ori.", "deg", Ideal::kLow, 0, 3, Accuracy(&CellResult::rmse_ori_deg)},
-      {"ate_pos_m", "ATE pos.", "m", Ideal::kLow, 0, 3, Accuracy(&CellResult::ate_pos_m)},
-      {"ate_ori_deg", "ATE ori.", "deg", Ideal::kLow, 0, 3, Accuracy(&CellResult::ate_ori_deg)}};
+      {"rmse_pos_m", "RMSE pos.", "m", Ideal::kLow, 0, 3, OfTrajectory(&CellResult::rmse_pos_m)},
+      {"rmse_ori_deg", "RMSE ori.", "deg", Ideal::kLow, 0, 3, OfTrajectory(&CellResult::rmse_ori_deg)},
+      {"ate_pos_m", "ATE pos.", "m", Ideal::kLow, 0, 3, OfTrajectory(&CellResult::ate_pos_m)},
+      {"ate_ori_deg", "ATE ori.", "deg", Ideal::kLow, 0, 3, OfTrajectory(&CellResult::ate_ori_deg)}};
   AppendRpeFigures(comparison, &figures);
   const std::vector<Figure> rest = {
-      {"nees_pose", "NEES pose", "", Ideal::kTarget, 6, 2, Positive(&CellResult::nees_pose)},
-      {"nees_ori", "NEES ori.", "", Ideal::kTarget, 3, 2, Positive(&CellResult::nees_ori)},
-      {"nees_pos", "NEES pos.", "", Ideal::kTarget, 3, 2, Positive(&CellResult::nees_pos)},
-      // A share of zero is real only where there is a covariance at all.
+      {"nees_pose", "NEES pose", "", Ideal::kTarget, 6, 2, OfTrajectory(&CellResult::nees_pose)},
+      {"nees_ori", "NEES ori.", "", Ideal::kTarget, 3, 2, OfTrajectory(&CellResult::nees_ori)},
+      {"nees_pos", "NEES pos.", "", Ideal::kTarget, 3, 2, OfTrajectory(&CellResult::nees_pos)},
       {"coverage_3sigma", "inside 3\u03c3", "", Ideal::kTarget, kGaussianInside3Sigma, 3,
-       [](const CellResult& cell) {
-         return HasTrajectory(cell) && cell.nees_pose > 0 ? cell.coverage_3sigma : kNan;
-       }},
-      {"frontend_ms", "front end", "ms", Ideal::kNone, 0, 2, Positive(&CellResult::frontend_ms)},
-      {"backend_ms", "back end", "ms", Ideal::kLow, 0, 2, Positive(&CellResult::backend_ms)},
-      {"backend_ms_p95", "back end p95", "ms", Ideal::kLow, 0, 2, Positive(&CellResult::backend_ms_p95)},
+       OfTrajectory(&CellResult::coverage_3sigma)},
+      {"frontend_ms", "front end", "ms", Ideal::kNone, 0, 2, OfTrajectory(&CellResult::frontend_ms)},
+      {"backend_ms", "back end", "ms", Ideal::kLow, 0, 2, OfTrajectory(&CellResult::backend_ms)},
+      {"backend_ms_p95", "back end p95", "ms", Ideal::kLow, 0, 2, OfTrajectory(&CellResult::backend_ms_p95)},
       {"features_per_frame", "features", "1/frame", Ideal::kNone, 0, 1,
-       Positive(&CellResult::features_per_frame)},
-      {"gated_share", "gated", "", Ideal::kNone, 0, 3,
-       [](const CellResult& cell) { return HasTrajectory(cell) ? cell.gated_share : kNan; }}};
+       OfTrajectory(&CellResult::features_per_frame)},
+      {"gated_share", "gated", "", Ideal::kNone, 0, 3, OfTrajectory(&CellResult::gated_share)}};
   figures.insert(figures.end(), rest.begin(), rest.end());
-  const auto known = [&comparison](double CellResult::*member) {
+  const auto known = [&comparison](std::optional<double> CellResult::*member) {
     return std::any_of(comparison.cells.begin(), comparison.cells.end(),
-                       [member](const CellResult& cell) { return !std::isnan(cell.*member); });
+                       [member](const CellResult& cell) { return (cell.*member).has_value(); });
   };
-  const auto plain = [](double CellResult::*member) {
-    return [member](const CellResult& cell) { return cell.*member; };
+  const auto plain = [](std::optional<double> CellResult::*member) {
+    return [member](const CellResult& cell) { return (cell.*member).value_or(kNan); };
   };
   if (known(&CellResult::calibration_rotation_deg)) {
     figures.push_back({"calibration_rotation_deg", "camera rotation", "deg", Ideal::kLow, 0, 3,

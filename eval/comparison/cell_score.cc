@@ -22,18 +22,23 @@ constexpr double kGnssSilenceS = 2;
 /// Regular points of a curve beyond these are not seen on a screen.
 constexpr size_t kMaxSeriesPoints = 600;
 
-double Mean(const std::vector<double>& values) {
+/// The value, unless it is NaN.
+std::optional<double> Known(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+std::optional<double> Mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) {
     sum += value;
   }
-  return values.empty() ? kUnknown : sum / static_cast<double>(values.size());
+  return values.empty() ? std::nullopt : std::optional(sum / static_cast<double>(values.size()));
 }
 
 /// Nearest-rank percentile.
-double Percentile(std::vector<double> values, double share) {
+std::optional<double> Percentile(std::vector<double> values, double share) {
   if (values.empty()) {
-    return kUnknown;
+    return std::nullopt;
   }
   const size_t rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
   const size_t index = std::min(values.size() - 1, rank == 0 ? 0 : rank - 1);
@@ -44,10 +49,10 @@ double Percentile(std::vector<double> values, double share) {
 void FillFigures(const Evaluation& evaluation, CellResult* cell) {
   cell->duration_s = evaluation.duration_s;
   cell->path_m = evaluation.path_m;
-  cell->rmse_pos_m = evaluation.unaligned.pos_m;
-  cell->rmse_ori_deg = evaluation.unaligned.ori_deg;
-  cell->ate_pos_m = evaluation.ate.pos_m;
-  cell->ate_ori_deg = evaluation.ate.ori_deg;
+  cell->rmse_pos_m = Known(evaluation.unaligned.pos_m);
+  cell->rmse_ori_deg = Known(evaluation.unaligned.ori_deg);
+  cell->ate_pos_m = Known(evaluation.ate.pos_m);
+  cell->ate_ori_deg = Known(evaluation.ate.ori_deg);
   cell->rpe = evaluation.rpe;
   if (evaluation.nees) {
     cell->nees_pose = evaluation.nees->mean_pose;
@@ -153,9 +158,9 @@ InnovationSummary Summarize(const std::vector<RunRecord>& records, const Innovat
   if (!rows.empty()) {
     summary.ratio = nis / dof;
     summary.inside = inside / static_cast<double>(rows.size());
-    const double median = Percentile(rows, 0.5);
+    const double median = *Percentile(rows, 0.5);
     const std::pair<double, double> band = bands.at(static_cast<int>(median));
-    summary.band = {band.first / median, band.second / median};
+    summary.band.emplace(band.first / median, band.second / median);
   }
   return summary;
 }
@@ -172,10 +177,10 @@ void FillPredicted(const RunResult& run, CellResult* cell) {
   }
   const double count = static_cast<double>(run.records.size());
   const double degrees = 180 / std::numbers::pi;
-  cell->sigma_ori_deg = degrees * std::sqrt(ori / count);
-  cell->sigma_pos_m = std::sqrt(pos / count);
-  cell->filtering_sigma_ori_deg = degrees * std::sqrt(filtering_ori / count);
-  cell->filtering_sigma_pos_m = std::sqrt(filtering_pos / count);
+  cell->sigma_ori_deg = Known(degrees * std::sqrt(ori / count));
+  cell->sigma_pos_m = Known(std::sqrt(pos / count));
+  cell->filtering_sigma_ori_deg = Known(degrees * std::sqrt(filtering_ori / count));
+  cell->filtering_sigma_pos_m = Known(std::sqrt(filtering_pos / count));
 }
 
 void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult* run,
@@ -207,17 +212,6 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
 
 }  // namespace
 
-CellResult UnscoredCell() {
-  CellResult cell;
-  for (double* figure :
-       {&cell.duration_s, &cell.path_m, &cell.rmse_pos_m, &cell.rmse_ori_deg, &cell.ate_pos_m,
-        &cell.ate_ori_deg, &cell.nees_pose, &cell.nees_ori, &cell.nees_pos, &cell.coverage_3sigma,
-        &cell.frontend_ms, &cell.backend_ms, &cell.backend_ms_p95, &cell.features_per_frame}) {
-    *figure = kUnknown;
-  }
-  return cell;
-}
-
 void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,
                      CellResult* cell) {
   cell->status = "ok";
@@ -240,6 +234,9 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
     gated += record.statistics.features_gated;
   }
   cell->frontend_ms = Mean(frontend_ms);
+  if (cell->frontend_ms == 0.0) {
+    cell->frontend_ms.reset();
+  }
   cell->backend_ms = Mean(backend_ms);
   cell->propagate_ms = Mean(propagate_ms);
   cell->update_ms = Mean(update_ms);
@@ -247,7 +244,9 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   cell->gnss_innovations = Summarize(run.records, kGnss);
   cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
-  cell->gated_share = used + gated > 0 ? gated / (used + gated) : kUnknown;
+  if (used + gated > 0) {
+    cell->gated_share = gated / (used + gated);
+  }
   cell->restarts = static_cast<int>(run.restarts.size());
   if (run.calibration_error) {
     cell->calibration_rotation_deg = run.calibration_error->rotation_rad * 180 / std::numbers::pi;

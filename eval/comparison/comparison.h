@@ -1,7 +1,7 @@
 #pragma once
 
-#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +15,7 @@ namespace alidade {
 /// Time series of one cell, thinned for plotting (eval/comparison/series_rows.h); all vectors have one entry
 /// a kept frame, or none at all.
 struct CellSeries {
-  std::vector<bool> regular;   ///< evenly spaced rows, the only ones used in means; empty: all
+  std::vector<bool> regular;   ///< picked at even steps: these alone may enter means; empty: all of them
   std::vector<double> time_s;  ///< since the first pair
   std::vector<Eigen::Vector3d> truth_position;
   std::vector<Eigen::Vector3d> position;  ///< aligned as the plan says
@@ -24,7 +24,7 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
-  std::vector<double> tracks_in;       ///< passed to the estimator with the frame
+  std::vector<double> tracks_in;       ///< that the frame handed to the estimator
   std::vector<double> nis_ratio;       ///< normalised innovation squared over its rows; NaN without rows
   std::vector<double> gnss_nis_ratio;  ///< of the newest epoch; NaN in outages, empty without GNSS
   // Of an audited filter, else empty (eval/audit/observability.h).
@@ -34,13 +34,12 @@ struct CellSeries {
 };
 
 /// Consistency of a run's innovations with their covariance; for a smoother, of the residuals of its window
-/// after the solve. NaN when unknown.
+/// after the solve.
 struct InnovationSummary {
-  double ratio = std::numeric_limits<double>::quiet_NaN();   ///< sum of the NIS over the sum of their rows
-  double inside = std::numeric_limits<double>::quiet_NaN();  ///< share of frames in the 95 % chi-square band
+  std::optional<double> ratio;   ///< sum of the NIS over the sum of their rows
+  std::optional<double> inside;  ///< share of frames in the 95 % chi-square band
   /// That band over its rows, of a frame with the median number of rows.
-  std::pair<double, double> band{std::numeric_limits<double>::quiet_NaN(),
-                                 std::numeric_limits<double>::quiet_NaN()};
+  std::optional<std::pair<double, double>> band;
 };
 
 /// Directions and residuals of a GNSS satellite in a run (eval/comparison/sky_tracks.h).
@@ -48,11 +47,12 @@ struct SkyTrack {
   std::string satellite;
   std::vector<double> time_s, azimuth_deg, elevation_deg;
   std::vector<double> residual_m;  ///< predicted - measured pseudorange
-  double used_share = 0;           ///< of the epochs in which it was received
+  double used_share = 0;           ///< of the epochs it was seen in
   double rms_m = 0;                ///< of the used residuals
 };
 
-/// One row of summary.csv: one estimator on one sequence with one seed.
+/// One row of summary.csv: one estimator on one sequence with one seed. A figure without a value is unknown:
+/// the run failed, there is no ground truth, or an external trajectory has no covariance or times.
 struct CellResult {
   std::string estimator;
   std::string backend;
@@ -62,34 +62,30 @@ struct CellResult {
   std::string message;
   std::string input_digest;
   int frames = 0;
-  double duration_s = 0;
-  double path_m = 0;
-  double rmse_pos_m = 0, rmse_ori_deg = 0;  ///< unaligned
-  double ate_pos_m = 0, ate_ori_deg = 0;
+  std::optional<double> duration_s;
+  std::optional<double> path_m;
+  std::optional<double> rmse_pos_m, rmse_ori_deg;  ///< unaligned
+  std::optional<double> ate_pos_m, ate_ori_deg;
   std::string align;
   std::vector<RpeResult> rpe;
-  double nees_pose = 0, nees_ori = 0, nees_pos = 0, coverage_3sigma = 0;
-  double frontend_ms = 0, backend_ms = 0, backend_ms_p95 = 0;
-  double features_per_frame = 0;
-  /// Stages of backend_ms, means a frame; other back-end time belongs to neither. NaN when unknown.
-  double propagate_ms = std::numeric_limits<double>::quiet_NaN();
-  double update_ms = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> nees_pose, nees_ori, nees_pos, coverage_3sigma;
+  std::optional<double> frontend_ms;  ///< also unknown where the tracks were read from a file
+  std::optional<double> backend_ms, backend_ms_p95;
+  std::optional<double> features_per_frame;
+  /// Stages of backend_ms, means a frame; other back-end time belongs to neither.
+  std::optional<double> propagate_ms, update_ms;
   InnovationSummary innovations;
   InnovationSummary gnss_innovations;
-  /// Share of tracks rejected by the chi-square gate; NaN when no track reached the gate. On data without
+  /// Share of tracks rejected by the chi-square gate; unknown when no track reached it. On data without
   /// outliers these are false rejections.
-  double gated_share = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> gated_share;
   /// Root mean square of the deviations that the run's own covariance predicts: square root of the mean trace
-  /// of the covariance of phi and of dp. NaN without covariance.
-  double sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
-  double sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
+  /// of the covariance of phi and of dp.
+  std::optional<double> sigma_pos_m, sigma_ori_deg;
   /// The same given the data up to each frame alone; of the batch estimate.
-  double filtering_sigma_pos_m = std::numeric_limits<double>::quiet_NaN();
-  double filtering_sigma_ori_deg = std::numeric_limits<double>::quiet_NaN();
-  /// How far the last online calibration is from the truth; NaN when either is missing.
-  double calibration_rotation_deg = std::numeric_limits<double>::quiet_NaN();
-  double calibration_translation_m = std::numeric_limits<double>::quiet_NaN();
-  double calibration_time_ms = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> filtering_sigma_pos_m, filtering_sigma_ori_deg;
+  /// How far the last online calibration is from the truth.
+  std::optional<double> calibration_rotation_deg, calibration_translation_m, calibration_time_ms;
   int restarts = 0;  ///< times the estimate was lost
   CellSeries series;
   std::vector<SkyTrack> sky;  ///< empty without GNSS
@@ -107,24 +103,14 @@ struct Comparison {
   std::string title;
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;
-  std::string command;                  ///< command line that repeats it
-  std::vector<std::string> notes = {};  ///< printed with the tables, such as sequences that were not run
+  std::string command;                  ///< how to repeat it
+  std::vector<std::string> notes = {};  ///< said with the tables, such as what was not run
   /// Figures whose paired differences the tables show; pairs.csv has all of them.
   std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
   bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each
-  /// Of each sequence and seed whose images were tracked.
+  /// Of each sequence and seed whose tracks the front end made here.
   std::vector<FrontendSummary> frontends = {};
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
 };
-
-/// Writes summary.csv, aggregate.csv, pairs.csv, nees_over_time.csv, tables.md, tables.tex and report.json
-/// into `folder` (docs/plans.md).
-Status WriteTables(const Comparison& comparison, const std::string& folder);
-
-/// Writes report.html (docs/report.md): one self-contained offline file.
-Status WriteReport(const Comparison& comparison, const std::string& path);
-
-/// The table for the terminal.
-[[nodiscard]] std::string FormatTable(const Comparison& comparison);
 
 }  // namespace alidade

@@ -8,11 +8,12 @@
 namespace alidade {
 namespace {
 
-/// Root mean square of a figure over cells.
-double Pooled(const std::vector<const CellResult*>& cells, double CellResult::*figure) {
+/// Root mean square of a figure over cells; NaN when one of them does not have it.
+double Pooled(const std::vector<const CellResult*>& cells, std::optional<double> CellResult::*figure) {
   double squares = 0;
   for (const CellResult* cell : cells) {
-    squares += cell->*figure * (cell->*figure);
+    const double value = (cell->*figure).value_or(std::numeric_limits<double>::quiet_NaN());
+    squares += value * value;
   }
   return std::sqrt(squares / static_cast<double>(cells.size()));
 }
@@ -30,7 +31,7 @@ Efficiency Compare(const CellGroup& group, const CellGroup& bound) {
   std::vector<const CellResult*> own, best;
   for (const CellResult* cell : group.cells) {
     const CellResult* partner = cell->status == "ok" ? FindPartner(bound, *cell) : nullptr;
-    if (partner != nullptr && std::isfinite(cell->rmse_pos_m) && std::isfinite(partner->rmse_pos_m)) {
+    if (partner != nullptr && cell->rmse_pos_m && partner->rmse_pos_m) {
       own.push_back(cell);
       best.push_back(partner);
     }
@@ -43,7 +44,7 @@ Efficiency Compare(const CellGroup& group, const CellGroup& bound) {
     return entry;
   }
   entry.rmse = {Pooled(own, &CellResult::rmse_ori_deg), Pooled(own, &CellResult::rmse_pos_m)};
-  const auto relate = [&](double CellResult::*ori, double CellResult::*pos) {
+  const auto relate = [&](std::optional<double> CellResult::*ori, std::optional<double> CellResult::*pos) {
     return Ratio{Pooled(best, ori) / entry.rmse.ori, Pooled(best, pos) / entry.rmse.pos};
   };
   entry.achieved = relate(&CellResult::rmse_ori_deg, &CellResult::rmse_pos_m);

@@ -1,11 +1,13 @@
+#include "eval/report/report.h"
+
 #include <map>
 #include <string>
 
-#include "eval/comparison/comparison.h"
 #include "eval/files/escape_html.h"
 #include "eval/files/output_file.h"
 #include "eval/report/report_assets.h"
 #include "eval/report/report_data.h"
+#include "eval/report/tables.h"
 
 namespace alidade {
 namespace {

@@ -1,6 +1,7 @@
 #include "eval/report/report_data.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -44,8 +45,11 @@ std::set<const CellResult*> CellsWithSky(const Comparison& comparison) {
   return cells;
 }
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 Json InnovationJson(const InnovationSummary& of) {
-  return RoundedJson({of.ratio, of.inside, of.band.first, of.band.second}, 4);
+  const std::pair<double, double> band = of.band.value_or(std::pair(kNan, kNan));
+  return RoundedJson({of.ratio.value_or(kNan), of.inside.value_or(kNan), band.first, band.second}, 4);
 }
 
 /// What the tables and box plots need of a run.
@@ -63,11 +67,13 @@ Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, 
           {"message", cell.message},
           {"digest", cell.input_digest},
           {"frames", cell.frames},
-          {"duration", RoundedJson(cell.duration_s, 6)},
-          {"path", RoundedJson(cell.path_m, 6)},
+          {"duration", RoundedJson(cell.duration_s.value_or(kNan), 6)},
+          {"path", RoundedJson(cell.path_m.value_or(kNan), 6)},
           {"align", cell.align},
           {"figures", FigureValues(figures, cell)},
-          {"stages", RoundedJson({cell.frontend_ms, cell.propagate_ms, cell.update_ms, cell.backend_ms}, 4)},
+          {"stages", RoundedJson({cell.frontend_ms.value_or(kNan), cell.propagate_ms.value_or(kNan),
+                                  cell.update_ms.value_or(kNan), cell.backend_ms.value_or(kNan)},
+                                 4)},
           {"nis", InnovationJson(cell.innovations)},
           {"gnss_nis", InnovationJson(cell.gnss_innovations)},
           {"rpe", rpe}};

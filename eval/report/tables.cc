@@ -1,6 +1,8 @@
-#include <filesystem>
+#include "eval/report/tables.h"
 
-#include "eval/comparison/comparison.h"
+#include <filesystem>
+#include <limits>
+
 #include "eval/comparison/efficiency.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/csv_text.h"
@@ -12,6 +14,8 @@
 
 namespace alidade {
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string SummaryCsv(const Comparison& comparison, const std::vector<Figure>& figures) {
   std::vector<std::string> header = {"estimator",    "backend", "sequence",   "seed",  "status",
@@ -25,10 +29,15 @@ std::string SummaryCsv(const Comparison& comparison, const std::vector<Figure>& 
   header.push_back("message");
   std::string text = JoinCsv(header);
   for (const CellResult& cell : comparison.cells) {
-    std::vector<std::string> fields = {
-        CsvText(cell.estimator),     CsvText(cell.backend),      CsvText(cell.sequence),
-        std::to_string(cell.seed),   CsvText(cell.status),       CsvText(cell.input_digest),
-        std::to_string(cell.frames), CsvNumber(cell.duration_s), CsvNumber(cell.path_m)};
+    std::vector<std::string> fields = {CsvText(cell.estimator),
+                                       CsvText(cell.backend),
+                                       CsvText(cell.sequence),
+                                       std::to_string(cell.seed),
+                                       CsvText(cell.status),
+                                       CsvText(cell.input_digest),
+                                       std::to_string(cell.frames),
+                                       CsvNumber(cell.duration_s.value_or(kNan)),
+                                       CsvNumber(cell.path_m.value_or(kNan))};
     for (const Figure& figure : figures) {
       fields.push_back(CsvNumber(figure.value(cell)));
       if (figure.key == "ate_ori_deg") {

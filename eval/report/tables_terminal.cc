@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "eval/comparison/comparison.h"
 #include "eval/report/pair_tables.h"
 #include "eval/report/table_layout.h"
+#include "eval/report/tables.h"
 #include "eval/report/tables_text.h"
 
 namespace alidade {

@@ -57,17 +57,21 @@ TEST(CellScore, GivenInnovationsThenTheirMeanAndShareInsideAreThoseOfAHandCalcul
     run.records[i].statistics.gnss_nis = 2 * frames[i].first;
     run.records[i].statistics.gnss_nis_dof = i == 2 ? 0 : frames[i].second;
   }
-  CellResult cell = UnscoredCell();
+  CellResult cell;
   ScoreRun(nullptr, run, EvaluationOptions(), &cell);
-  EXPECT_DOUBLE_EQ(cell.innovations.ratio, 37.4 / 28);
+  EXPECT_DOUBLE_EQ(*cell.innovations.ratio, 37.4 / 28);
   // 95 % of chi-square: 3.2470 to 20.4832 with 10 degrees of freedom, 0.4844 to 11.1433 with 4.
-  EXPECT_DOUBLE_EQ(cell.innovations.inside, 0.5);
-  EXPECT_NEAR(cell.innovations.band.first, 0.4844 / 4, 1e-4);
-  EXPECT_NEAR(cell.innovations.band.second, 11.1433 / 4, 1e-4);
-  EXPECT_DOUBLE_EQ(cell.gnss_innovations.ratio, 2 * 31.4 / 24);
-  EXPECT_DOUBLE_EQ(cell.gnss_innovations.inside, 2.0 / 3) << "20, 42 and 0.8 of 10, 10 and 4";
-  EXPECT_DOUBLE_EQ(cell.propagate_ms, 2);
-  EXPECT_TRUE(std::isnan(UnscoredCell().innovations.ratio));
+  EXPECT_DOUBLE_EQ(*cell.innovations.inside, 0.5);
+  EXPECT_NEAR(cell.innovations.band->first, 0.4844 / 4, 1e-4);
+  EXPECT_NEAR(cell.innovations.band->second, 11.1433 / 4, 1e-4);
+  EXPECT_DOUBLE_EQ(*cell.gnss_innovations.ratio, 2 * 31.4 / 24);
+  EXPECT_DOUBLE_EQ(*cell.gnss_innovations.inside, 2.0 / 3) << "20, 42 and 0.8 of 10, 10 and 4";
+  EXPECT_DOUBLE_EQ(*cell.propagate_ms, 2);
+  EXPECT_FALSE(cell.frontend_ms) << "the tracks were read from a file";
+  EXPECT_FALSE(cell.gated_share) << "no track met the gate";
+  EXPECT_FALSE(cell.ate_pos_m) << "there is no truth";
+  EXPECT_EQ(cell.features_per_frame, 0.0) << "zero is a value";
+  EXPECT_FALSE(CellResult().innovations.ratio);
 }
 
 // GIVEN GNSS at half the camera's rate and an outage THEN every frame tells the newest epoch's, but in the
@@ -85,7 +89,7 @@ TEST(CellScore, GivenGnssSlowerThanTheCameraThenItsInnovationsAreHeldButNotThrou
       TrajectoryPoint& point = truth.points.emplace_back();
       point.stamp_ns = record.estimate.stamp_ns;
     }
-    CellResult cell = UnscoredCell();
+    CellResult cell;
     ScoreRun(&truth, run, EvaluationOptions(), &cell);
     return cell.series.gnss_nis_ratio;
   };

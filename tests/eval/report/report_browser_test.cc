@@ -102,7 +102,10 @@ TEST_F(ReportInBrowser, GivenAnExternalTrajectoryThenWhatItLacksIsLeftOut) {
   cell.backend.clear();
   cell.align.clear();
   cell.rpe.clear();
-  cell.nees_pose = cell.nees_ori = cell.nees_pos = cell.backend_ms = cell.backend_ms_p95 = 0;
+  for (std::optional<double>* figure : {&cell.nees_pose, &cell.nees_ori, &cell.nees_pos,
+                                        &cell.coverage_3sigma, &cell.backend_ms, &cell.backend_ms_p95}) {
+    figure->reset();
+  }
   cell.series.sigma.clear();
   cell.series.backend_ms.clear();
   cell.series.features_used.clear();

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "eval/report/report.h"
 #include "tests/eval/report/headless_browser.h"
 #include "tests/eval/report/synthetic_comparison.h"
 #include "tests/support/read_file.h"

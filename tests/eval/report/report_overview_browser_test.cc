@@ -69,7 +69,7 @@ TEST_F(ReportInBrowser, GivenGnssThenItsInnovationsHaveAPlotOfTheirOwn) {
   EXPECT_THAT(Open(ReadFile(folder_.File("without.html"))).dom, Not(HasSubstr("of GNSS: gvio")));
   CellResult& gvio = comparison.cells[0];
   gvio.series.gnss_nis_ratio = gvio.series.nis_ratio;
-  gvio.gnss_innovations = {0.97, 0.95, {0.5, 1.7}};
+  gvio.gnss_innovations = {0.97, 0.95, std::pair(0.5, 1.7)};
   ASSERT_TRUE(WriteReport(comparison, folder_.File("with.html")).ok());
   const PageVisit visit = Open(ReadFile(folder_.File("with.html")));
   EXPECT_THAT(visit.console, IsEmpty());

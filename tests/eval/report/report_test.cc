@@ -1,3 +1,5 @@
+#include "eval/report/report.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +14,7 @@
 #include "eval/report/report_data.h"
 #include "eval/report/report_series.h"
 #include "eval/report/table_layout.h"
+#include "eval/report/tables.h"
 #include "tests/eval/report/synthetic_comparison.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"

@@ -55,7 +55,7 @@ inline CellResult SyntheticCell(const std::string& estimator, const std::string&
   cell.input_digest = "5f1c" + std::to_string(seed) + std::string(sequence.size(), 'a') + "0b7e";
   cell.frames = frames;
   cell.duration_s = 0.1 * (frames - 1);
-  cell.path_m = 12.5 * cell.duration_s / 10;
+  cell.path_m = 12.5 * *cell.duration_s / 10;
   cell.align = "posyaw";
   cell.series = SyntheticSeries(frames, sigma_m, honesty, backend_ms, seed * 31 + estimator.size());
   double squares = 0;
@@ -65,9 +65,9 @@ inline CellResult SyntheticCell(const std::string& estimator, const std::string&
     nees += cell.series.nees_pose[i];
   }
   cell.rmse_pos_m = std::sqrt(squares / frames);
-  cell.rmse_ori_deg = cell.rmse_pos_m * 2.1;
-  cell.ate_pos_m = cell.rmse_pos_m * 0.6;
-  cell.ate_ori_deg = cell.rmse_ori_deg * 0.5;
+  cell.rmse_ori_deg = *cell.rmse_pos_m * 2.1;
+  cell.ate_pos_m = *cell.rmse_pos_m * 0.6;
+  cell.ate_ori_deg = *cell.rmse_ori_deg * 0.5;
   for (const double distance : {5.0, 10.0, 25.0}) {
     RpeResult rpe{distance, 40, 0.02 * sigma_m * distance, 0.05 * sigma_m * distance, {}};
     for (int i = 0; i < 40; ++i) {
@@ -76,7 +76,7 @@ inline CellResult SyntheticCell(const std::string& estimator, const std::string&
     cell.rpe.push_back(rpe);
   }
   cell.nees_pose = nees / frames;
-  cell.nees_ori = cell.nees_pos = cell.nees_pose / 2;
+  cell.nees_ori = cell.nees_pos = *cell.nees_pose / 2;
   cell.coverage_3sigma = honesty > 1.2 ? 0.91 : 0.997;
   cell.frontend_ms = 4.4;
   cell.backend_ms = backend_ms;
@@ -84,7 +84,7 @@ inline CellResult SyntheticCell(const std::string& estimator, const std::string&
   cell.features_per_frame = 40;
   cell.propagate_ms = 0.1 * backend_ms;
   cell.update_ms = 0.8 * backend_ms;
-  cell.innovations = {1.02, 0.94, {0.71, 1.34}};
+  cell.innovations = {1.02, 0.94, std::pair(0.71, 1.34)};
   return cell;
 }
 
