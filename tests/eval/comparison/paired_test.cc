@@ -24,6 +24,7 @@ CellResult Cell(const std::string& estimator, unsigned seed, double rmse_pos_m, 
   cell.status = "ok";
   cell.frames = 10;
   cell.rmse_pos_m = rmse_pos_m;
+  cell.rmse_ori_deg = 0;
   cell.nees_pose = nees_pose;
   cell.input_digest = "d" + std::to_string(seed);
   return cell;
