@@ -15,7 +15,7 @@ namespace alidade {
 /// Time series of one cell, thinned for plotting (eval/comparison/series_rows.h); all vectors have one entry
 /// a kept frame, or none at all.
 struct CellSeries {
-  std::vector<bool> regular;   ///< picked at even steps: these alone may enter means; empty: all of them
+  std::vector<bool> regular;   ///< evenly spaced rows, the only ones used in means; empty: all
   std::vector<double> time_s;  ///< since the first pair
   std::vector<Eigen::Vector3d> truth_position;
   std::vector<Eigen::Vector3d> position;  ///< aligned as the plan says
@@ -24,7 +24,7 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
-  std::vector<double> tracks_in;       ///< that the frame handed to the estimator
+  std::vector<double> tracks_in;       ///< passed to the estimator with the frame
   std::vector<double> nis_ratio;       ///< normalised innovation squared over its rows; NaN without rows
   std::vector<double> gnss_nis_ratio;  ///< of the newest epoch; NaN in outages, empty without GNSS
   // Of an audited filter, else empty (eval/audit/observability.h).
@@ -47,7 +47,7 @@ struct SkyTrack {
   std::string satellite;
   std::vector<double> time_s, azimuth_deg, elevation_deg;
   std::vector<double> residual_m;  ///< predicted - measured pseudorange
-  double used_share = 0;           ///< of the epochs it was seen in
+  double used_share = 0;           ///< of the epochs in which it was received
   double rms_m = 0;                ///< of the used residuals
 };
 
@@ -103,12 +103,12 @@ struct Comparison {
   std::string title;
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;
-  std::string command;                  ///< how to repeat it
-  std::vector<std::string> notes = {};  ///< said with the tables, such as what was not run
+  std::string command;                  ///< command line that repeats it
+  std::vector<std::string> notes = {};  ///< printed with the tables, such as sequences that were not run
   /// Figures whose paired differences the tables show; pairs.csv has all of them.
   std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
   bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each
-  /// Of each sequence and seed whose tracks the front end made here.
+  /// Of each sequence and seed whose images were tracked.
   std::vector<FrontendSummary> frontends = {};
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
 };
