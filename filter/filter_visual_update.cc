@@ -128,9 +128,8 @@ void FilterEstimator::GateBlocks() {
     accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
     refused += accepted_[i] ? 0 : 1;
   }
-  const bool state_is_suspect =
-      StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
-                     kLeastRefusedTracks);
+  const bool state_is_suspect = StateIsSuspect(refused, static_cast<int>(appended_.size()),
+                                               config_.vision.max_gated_share, kLeastRefusedTracks);
   statistics_.suspect = state_is_suspect;
   Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
   Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();
@@ -168,7 +167,7 @@ void FilterEstimator::RetireViews(Track* track, bool used) {
   const FilterConfig& filter = config_.filter;
   if (track->in_state) {
     track->views.clear();
-    SlamFeatures::Judge(used, *track, &state_);
+    SlamFeatures::CountRefusals(used, *track, &state_);
     return;
   }
   if (!used || filter.update != UpdateTiming::kImmediate || filter.track_memory != TrackMemoryPolicy::kNone) {
