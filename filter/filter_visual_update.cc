@@ -160,7 +160,7 @@ void FilterEstimator::RetireViews(Track* track, bool used) {
   const FilterConfig& filter = config_.filter;
   if (track->in_state) {
     track->views.clear();
-    SlamFeatures::Judge(used, *track, &state_);
+    SlamFeatures::CountRefusals(used, *track, &state_);
     return;
   }
   if (!used || filter.update != UpdateTiming::kImmediate || filter.track_memory != TrackMemoryPolicy::kNone) {

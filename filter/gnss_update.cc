@@ -49,8 +49,8 @@ void GnssUpdate::ResetClock(double step_m, FilterState* state) {
   for (GnssRow& row : rows_) {
     row.residual += row.is_rate ? 0 : step_m;
   }
-  for (SatelliteResidual& told : residuals_.satellites) {
-    told.residual_m += step_m;
+  for (SatelliteResidual& satellite : residuals_.satellites) {
+    satellite.residual_m += step_m;
   }
 }
 
@@ -74,13 +74,13 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
   }
   FillRows(*state);
   Weigh(*state, statistics);
-  const double silent = Compress();
-  Tell(*state);
+  const double discarded = Compress();
+  NotifyObserver(*state);
   if (!state->covariance().UpdateByBlock(state->ClockOffset(), jacobian_, innovation_, correction,
                                          &statistics->gnss_nis)) {
     return false;
   }
-  statistics->gnss_nis += silent;
+  statistics->gnss_nis += discarded;
   clock_ += correction.segment<6>(state->ClockOffset());
   return clock_.allFinite();
 }
@@ -112,12 +112,13 @@ void GnssUpdate::Weigh(const FilterState& state, FrameStatistics* statistics) {
     const double root = std::sqrt(result.weights[i]);
     jacobian_.row(k) *= root;
     innovation_[k] *= root;
-    SatelliteResidual& told = residuals_.satellites[rows_[i].satellite];
-    (rows_[i].is_rate ? told.range_rate_used : told.used) = root > 0;
+    SatelliteResidual& satellite = residuals_.satellites[rows_[i].satellite];
+    (rows_[i].is_rate ? satellite.range_rate_used : satellite.used) = root > 0;
   }
   statistics->gnss_nis_dof = result.used;
-  for (const SatelliteResidual& told : residuals_.satellites) {
-    ++(told.used || told.range_rate_used ? statistics->satellites_used : statistics->satellites_gated);
+  for (const SatelliteResidual& satellite : residuals_.satellites) {
+    ++(satellite.used || satellite.range_rate_used ? statistics->satellites_used
+                                                   : statistics->satellites_gated);
   }
 }
 
@@ -127,13 +128,13 @@ double GnssUpdate::Compress() {
   }
   Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian_);
   innovation_.applyOnTheLeft(qr.householderQ().adjoint());
-  const double silent = innovation_.tail(innovation_.size() - kSeen).squaredNorm();
+  const double discarded = innovation_.tail(innovation_.size() - kSeen).squaredNorm();
   innovation_.conservativeResize(kSeen);
   jacobian_ = qr.matrixQR().topRows(kSeen).triangularView<Eigen::Upper>();
-  return silent;
+  return discarded;
 }
 
-void GnssUpdate::Tell(const FilterState& state) const {
+void GnssUpdate::NotifyObserver(const FilterState& state) const {
   if (observer_ == nullptr) {
     return;
   }

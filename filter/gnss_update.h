@@ -43,9 +43,10 @@ class GnssUpdate {
   void ResetClock(double step_m, FilterState* state);
   void FillRows(const FilterState& state);
   void Weigh(const FilterState& state, FrameStatistics* statistics);
-  /// Rotates the rows into at most as many as they have columns; returns the square of what says nothing.
+  /// Rotates the rows into at most as many as they have columns; returns the squared norm of the innovations
+  /// that are left without a row.
   double Compress();
-  void Tell(const FilterState& state) const;
+  void NotifyObserver(const FilterState& state) const;
 
   GnssConfig config_;
   GnssReceiver receiver_;

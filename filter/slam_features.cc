@@ -128,7 +128,7 @@ void SlamFeatures::Enter(const Eigen::Ref<const Eigen::VectorXd>& correction,
   taken_ = 0;
 }
 
-void SlamFeatures::Judge(bool accepted, const Track& track, FilterState* state) {
+void SlamFeatures::CountRefusals(bool accepted, const Track& track, FilterState* state) {
   const int index = state->FindLandmark(track.id);
   CHECK_GE(index, 0) << "a track without its landmark";
   int& refusals = state->landmarks()[static_cast<size_t>(index)].refusals;

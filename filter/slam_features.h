@@ -42,8 +42,8 @@ class SlamFeatures {
   /// the block's. Tracks are marked as in_state.
   void Enter(const Eigen::Ref<const Eigen::VectorXd>& correction, const std::vector<double>& block_weights,
              FilterState* state, TrackStore* tracks);
-  /// What the gate said about the newest observation of a track in the state.
-  static void Judge(bool accepted, const Track& track, FilterState* state);
+  /// Counts the gate's refusals in a row of a track in the state.
+  static void CountRefusals(bool accepted, const Track& track, FilterState* state);
   /// Takes landmarks out of the state whose track was not seen in frame `serial`, or was refused twice in a
   /// row (such a track starts afresh).
   static void RemoveEnded(int serial, TrackStore* tracks, FilterState* state);

@@ -51,7 +51,7 @@ bool SameInput(const Runs& first, const Runs& second, unsigned seed) {
   return first.at(seed)->input_digest == second.at(seed)->input_digest;
 }
 
-PairVerdict Judge(const PairedT& test, Ideal ideal) {
+PairVerdict VerdictOf(const PairedT& test, Ideal ideal) {
   if (test.count < 2) {
     return PairVerdict::kTooFew;
   }
@@ -87,7 +87,7 @@ PairedDifference Compare(const Block& block, const Figure& figure, const Runs& f
   pair.second_mean = count > 0 ? pair.second_mean / count : kNan;
   pair.difference = TestPairs(differences);
   pair.sign_p_value = SignTest(pair.first_lower, pair.second_lower);
-  pair.verdict = Judge(pair.difference, figure.ideal);
+  pair.verdict = VerdictOf(pair.difference, figure.ideal);
   return pair;
 }
 
@@ -134,7 +134,7 @@ PairedDifference Pool(const std::vector<const PairedDifference*>& parts, Ideal i
   pool.second_mean = count > 0 ? pool.second_mean / count : kNan;
   pool.difference = TestPairs(differences);
   pool.sign_p_value = SignTest(pool.first_lower, pool.second_lower);
-  pool.verdict = Judge(pool.difference, ideal);
+  pool.verdict = VerdictOf(pool.difference, ideal);
   return pool;
 }
 

@@ -55,8 +55,9 @@ Status WriteDataset(const Dataset& dataset, const std::string& path);
 /// Writes cam0/tracks.csv (and its sensor.yaml) alone: the output of the `track` command.
 Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path);
 
-/// SHA-256 (hex) over the log's IMU, tracks and calibration: equal digests mean identical input to every
-/// estimator.
+/// SHA-256 (hex) over the log's calibration, IMU and tracks and, where it has GNSS, receiver, observations
+/// (pseudorange, Doppler, C/N0) and broadcast ephemerides: equal digests mean identical input to every
+/// estimator. Of GNSS it leaves out reported deviations, ionosphere parameters and precise products.
 [[nodiscard]] std::string DigestOf(const MeasurementLog& log);
 
 /// A finding of `check`: an error, a warning or a fact about a sequence.

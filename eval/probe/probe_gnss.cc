@@ -1,5 +1,5 @@
 #include "eval/probe/probe_models.h"
-#include "gnss/model/measurement_model.h"
+#include "gnss/model/epoch_rows.h"
 
 namespace alidade::probe {
 namespace {
@@ -37,13 +37,24 @@ GnssCase ReadCase(const Json& input) {
   return c;
 }
 
-/// Prediction and its Jacobian over the chosen error of (theta, p, v), (bg, ba), clock and drift.
-Json Answer(const GnssCase& c, double predicted, const GnssJacobian& jacobian, bool rate,
-            ErrorConvention convention) {
+/// Prediction and its Jacobian over the chosen error of (theta, p, v), (bg, ba), clock and drift: the row
+/// that the estimators linearise, of a measurement that reads zero.
+Json Answer(const GnssCase& c, const SatelliteMeasurement& measurement, ErrorConvention convention) {
+  GnssConfig config;
+  config.corrections.elevation_mask_deg = 0;  // no direction is given: it stays at the horizon
+  config.pseudorange = !measurement.range_rate_mps;
+  config.doppler = !config.pseudorange;
+  GnssPoint point{c.nav, c.bias, c.omega_radps};
+  point.clock[ClockState::kClock] = c.clock_m;
+  point.clock[ClockState::kDrift] = c.drift_mps;
+  GnssResiduals residuals;
+  const GnssRow linearized = LinearizeEpoch(config, c.mount, point, {0, {measurement}, {}}, &residuals).at(0);
+  const Vector6d clock = linearized.ClockJacobian();
   Eigen::Matrix<double, 1, 17> row;
-  row << jacobian * ImuChartJacobian(convention, c.nav), rate ? 0.0 : 1.0, rate ? 1.0 : 0.0;
+  row << linearized.jacobian * ImuChartJacobian(convention, c.nav), clock[ClockState::kClock],
+      clock[ClockState::kDrift];
   Json answer;
-  answer["predicted"] = predicted;
+  answer["predicted"] = linearized.residual;
   answer["H"] = ToJson(row);
   return answer;
 }
@@ -52,13 +63,11 @@ Json Answer(const GnssCase& c, double predicted, const GnssJacobian& jacobian, b
 
 Json PseudorangeAnswer(const Json& input, ErrorConvention convention) {
   const GnssCase c = ReadCase(input);
-  const double correction = -c.satellite.clock_m + Number(Member(input, "iono_m"), "iono_m") +
-                            Number(Member(input, "tropo_m"), "tropo_m");
-  double predicted = 0;
-  GnssJacobian jacobian;
-  EvaluatePseudorange({0, c.satellite.position_E, correction}, c.mount, c.nav, c.clock_m, &predicted,
-                      &jacobian);
-  return Answer(c, predicted, jacobian, false, convention);
+  SatelliteMeasurement measurement;
+  measurement.state = c.satellite;
+  measurement.ionosphere_m = Number(Member(input, "iono_m"), "iono_m");
+  measurement.troposphere_m = Number(Member(input, "tropo_m"), "tropo_m");
+  return Answer(c, measurement, convention);
 }
 
 Json DopplerAnswer(const Json& input, ErrorConvention convention) {
@@ -67,12 +76,11 @@ Json DopplerAnswer(const Json& input, ErrorConvention convention) {
   if (!(wavelength > 0)) {
     throw CaseError{"wavelength: expected a positive length in metres"};
   }
-  double predicted = 0;
-  GnssJacobian jacobian;
-  EvaluateRangeRate({0, c.satellite}, c.mount, c.nav, c.bias, c.omega_radps, c.drift_mps, &predicted,
-                    &jacobian);
-  Json answer = Answer(c, predicted, jacobian, true, convention);
-  answer["predicted_hz"] = -predicted / wavelength;
+  SatelliteMeasurement measurement;
+  measurement.state = c.satellite;
+  measurement.range_rate_mps = 0;
+  Json answer = Answer(c, measurement, convention);
+  answer["predicted_hz"] = -answer["predicted"].get<double>() / wavelength;
   return answer;
 }
 

@@ -34,16 +34,16 @@ const GnssEpoch* GnssFeed::Next() {
     return nullptr;
   }
   const ObservationEpoch& raw = log_.epochs[index_++];
-  Result<SinglePointSolution> solution = solver_.Solve(raw);
+  GnssEpoch epoch;
+  epoch.measurements = builder_->Prepare(raw);
+  Result<SinglePointSolution> solution = solver_.Solve(epoch.measurements);
   solution_.reset();
   if (solution.ok()) {
     solution_ = *std::move(solution);
     last_ = solution_;
     approximate_E_ = solution_->position_E;
   }
-  GnssEpoch epoch;
   epoch.stamp_ns = raw.stamp_ns - SecondsToNs(ClockAt(raw.stamp_ns) / kSpeedOfLight) + SecondsToNs(offset_s_);
-  epoch.measurements = builder_->Prepare(raw);
   epoch.builder = builder_;
   next_ = std::move(epoch);
   return &*next_;

@@ -187,10 +187,10 @@ std::optional<GnssAlignment> GnssAligner::TryAlign() {
     report_ = "the satellites do not determine the alignment";
     return std::nullopt;
   }
-  return Judge(*guess, step);
+  return AcceptFit(*guess, step);
 }
 
-std::optional<GnssAlignment> GnssAligner::Judge(const AlignmentGuess& guess, const AlignmentStep& fit) {
+std::optional<GnssAlignment> GnssAligner::AcceptFit(const AlignmentGuess& guess, const AlignmentStep& fit) {
   const TimeNs newest = samples_.back().state.stamp_ns;
   const double inflation = config_.align_inflation * config_.align_inflation * fit.scale * fit.scale;
   GnssAlignment alignment;

@@ -37,8 +37,9 @@ struct GnssAlignment {
 /// Every pseudorange and range rate counts, so that epochs with few satellites accumulate, at any rate, and
 /// the rates give the yaw from the first metres on. Yaw starts from the best of a ring of candidates.
 ///
-/// The estimate's velocity may be off by a constant, as its covariance says (gnss/alignment/alignment_fit.h).
-/// Its drift over the window is not modelled otherwise; align_inflation covers it, and what all epochs share.
+/// The estimate's velocity may have a constant error of the size of its covariance
+/// (gnss/alignment/alignment_fit.h). Its drift over the window is not modelled otherwise; align_inflation
+/// covers it, and what all epochs share.
 class GnssAligner {
  public:
   GnssAligner(const GnssConfig& config, const GnssReceiver& receiver);
@@ -61,8 +62,8 @@ class GnssAligner {
   void Locate();
   [[nodiscard]] std::vector<const AlignmentSample*> Choose() const;
   [[nodiscard]] std::optional<AlignmentGuess> FirstGuess(const AlignmentFit& fit) const;
-  /// The alignment, if its yaw is known well enough; says what came of it.
-  std::optional<GnssAlignment> Judge(const AlignmentGuess& guess, const AlignmentStep& fit);
+  /// The alignment, if its yaw is known well enough; sets the report.
+  std::optional<GnssAlignment> AcceptFit(const AlignmentGuess& guess, const AlignmentStep& fit);
 
   GnssConfig config_;
   GnssReceiver receiver_;

@@ -73,7 +73,8 @@ AlignmentFit::AlignmentFit(const GnssConfig& config, const AntennaMount& mount,
     : config_(config), mount_(mount), samples_(std::move(samples)) {}
 
 double AlignmentFit::EpochsOfOneError() const {
-  constexpr double kCorrelationS = 2;  // a young estimate's, until vision has told bias and tilt
+  constexpr double kCorrelationS =
+      2;  // of a new estimate's velocity error, until vision has observed bias and tilt
   const double window_s = SecondsBetween(samples_.front()->state.stamp_ns, samples_.back()->state.stamp_ns);
   return std::max(1.0,
                   kCorrelationS * static_cast<double>(samples_.size()) / std::max(window_s, kCorrelationS));

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Errors of single points are correlated in time: what they say of a start is not better than this.
+// Errors of single points are correlated in time: a start is known no better than this.
 constexpr double kPositionFloorM = 3;
 constexpr double kVelocityFloorMps = 0.15;  // lever arm, scale and quantisation of the IMU too
 constexpr double kMinSpacingS = 0.4;        // between the epochs that are used
@@ -156,7 +156,7 @@ bool GnssInertialStart::Integrate(double offset_s, Fit* fit) const {
   return !fit->intervals.empty();
 }
 
-/// Attitude by velocity matching; velocity and position as the first epoch says.
+/// Attitude by velocity matching; velocity and position of the first epoch.
 NavState GnssInertialStart::FirstGuess(const Fit& fit) const {
   const Matrix3d R_NE = enu_->R_EN.transpose();
   const Fix& first = fixes_.front();

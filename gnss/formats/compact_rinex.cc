@@ -55,7 +55,7 @@ class Decoder {
  private:
   bool Next() { return lines_.Next() && lines_.number() != torn_line_; }
 
-  /// The fault of a text that grows beyond its bound, told where it does.
+  /// The fault of a text that grows beyond its bound, reported where it does.
   Status CheckSize() const {
     return out_.size() <= max_bytes_ ? Status::Ok()
                                      : lines_.Fault(Format("unpacks to more than %zu bytes", max_bytes_));

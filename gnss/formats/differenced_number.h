@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// A number of Compact RINEX, told by its n-th differences in time, in units of its last decimal
+/// A number of Compact RINEX, given as n-th differences in time, in units of its last decimal
 /// (gnss/formats/compact_rinex.h names the source).
 class DifferencedNumber {
  public:
@@ -26,7 +26,7 @@ class DifferencedNumber {
   std::array<std::int64_t, kMaxOrder + 1> differences_{};
 };
 
-/// A text told by what changed: ' ' keeps a character, '&' blanks it.
+/// A text given by what changed: ' ' keeps a character, '&' blanks it.
 void ApplyTextDifference(std::string_view change, std::string* text);
 
 }  // namespace alidade

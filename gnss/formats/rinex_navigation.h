@@ -13,7 +13,7 @@ namespace alidade {
 /// Used are LNAV of GPS and QZSS, I/NAV and F/NAV of Galileo, D1 and D2 of BeiDou, FDMA of GLONASS, and
 /// ionosphere parameters of the header (to 3.xx) or of ION messages (4.xx). Other messages are counted in
 /// `passed_over`. A fault in the header is an error; a message that is torn or out of range is passed over
-/// and told in `warnings`. A file without one good ephemeris is an error.
+/// and reported in `warnings`. A file without one good ephemeris is an error.
 Result<NavigationData> ReadRinexNavigation(const std::string& path);
 
 /// The same from memory; `path` is used in messages.

@@ -11,7 +11,7 @@ namespace alidade {
 /// also as gzip. Sources: RINEX 2.11, 3.05 and 4.00.
 ///
 /// A fault in the header is an error that names file and line. Records that are torn or ill-formed are passed
-/// over up to the next epoch and told in `warnings`; so are epochs that do not come after the one before.
+/// over up to the next epoch and reported in `warnings`; so are epochs that do not come after the one before.
 /// Event records (flags 2 to 6) are counted and their header lines obeyed. A file without one good epoch is
 /// an error.
 Result<ObservationFile> ReadRinexObservation(const std::string& path);

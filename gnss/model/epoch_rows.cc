@@ -38,8 +38,8 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     if (m.direction.elevation_rad < mask) {
       continue;
     }
-    SatelliteResidual told{m.satellite, m.direction,  0,    std::sqrt(m.pseudorange_variance),
-                           false,       std::nullopt, false};
+    SatelliteResidual satellite{m.satellite, m.direction,  0,    std::sqrt(m.pseudorange_variance),
+                                false,       std::nullopt, false};
     GnssRow row;
     row.satellite = residuals->satellites.size();
     row.bias_index = ClockBiasIndex(m.satellite.system);
@@ -47,9 +47,9 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     const double clock =
         point.clock[ClockState::kClock] + (row.bias_index >= 0 ? point.clock[row.bias_index] : 0);
     PseudorangeModel::Of(m).Evaluate(antenna_E, clock, &row.residual, &line);
-    told.residual_m = row.residual;
+    satellite.residual_m = row.residual;
     if (config.pseudorange) {
-      row.deviation = told.deviation_m;
+      row.deviation = satellite.deviation_m;
       row.jacobian.noalias() = line * position_jacobian;
       rows.push_back(row);
     }
@@ -60,10 +60,10 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
       RangeRateModel::Of(m).Evaluate(antenna_E, velocity_E, point.clock[ClockState::kDrift], &row.residual,
                                      &line, &by_velocity);
       row.jacobian.noalias() = line * position_jacobian + by_velocity * velocity_jacobian;
-      told.range_rate_residual_mps = row.residual;
+      satellite.range_rate_residual_mps = row.residual;
       rates.push_back(row);
     }
-    residuals->satellites.push_back(told);
+    residuals->satellites.push_back(satellite);
   }
   rows.insert(rows.end(), rates.begin(), rates.end());
   return rows;

@@ -9,7 +9,8 @@
 
 namespace alidade {
 
-/// One pseudorange or range rate of an epoch, linearised.
+/// One pseudorange or range rate of an epoch, linearised: the models of gnss/model/measurement_model.h at the
+/// antenna of a state.
 struct GnssRow {
   std::size_t satellite = 0;  ///< in GnssResiduals::satellites
   bool is_rate = false;
@@ -40,11 +41,11 @@ void LocateEpoch(const MeasurementBuilder& builder, const AntennaMount& mount, c
                                                   const GnssPoint& point, const EpochMeasurements& epoch,
                                                   GnssResiduals* residuals);
 
-/// Median of measured - predicted over the pseudoranges: what the clock is off by, whatever a minority of
-/// them says. Zero without any.
+/// Median of measured - predicted over the pseudoranges: the clock's error, whatever a minority of them
+/// reads. Zero without any.
 [[nodiscard]] double CommonStep(const std::vector<GnssRow>& rows);
 
-/// Whether that step is the clock's: beyond clock_jump_m and six deviations `clock_std_m`, and told by at
+/// Whether that step is the clock's: beyond clock_jump_m and six deviations `clock_std_m`, and seen by at
 /// least three satellites.
 [[nodiscard]] bool IsClockJump(const GnssConfig& config, const std::vector<GnssRow>& rows, double step_m,
                                double clock_std_m);

@@ -81,34 +81,4 @@ Vector3d AntennaMount::Velocity(const NavState& state, const ImuBias& bias, cons
   return enu.R_EN * (state.v_WB + state.R_WB * swing);
 }
 
-void EvaluatePseudorange(const PseudorangeModel& model, const AntennaMount& mount, const NavState& state,
-                         double clock_m, double* residual, GnssJacobian* jacobian) {
-  if (jacobian == nullptr) {
-    model.Evaluate(mount.Position(state, nullptr), clock_m, residual, nullptr);
-    return;
-  }
-  Eigen::Matrix<double, 3, 15> antenna;
-  RowVector3d line;
-  model.Evaluate(mount.Position(state, &antenna), clock_m, residual, &line);
-  *jacobian = line * antenna;
-}
-
-void EvaluateRangeRate(const RangeRateModel& model, const AntennaMount& mount, const NavState& state,
-                       const ImuBias& bias, const Vector3d& gyro_radps, double drift_mps, double* residual,
-                       GnssJacobian* jacobian) {
-  if (jacobian == nullptr) {
-    model.Evaluate(mount.Position(state, nullptr), mount.Velocity(state, bias, gyro_radps, nullptr),
-                   drift_mps, residual, nullptr, nullptr);
-    return;
-  }
-  Eigen::Matrix<double, 3, 15> position;
-  Eigen::Matrix<double, 3, 15> velocity;
-  RowVector3d by_position;
-  RowVector3d by_velocity;
-  const Vector3d antenna_E = mount.Position(state, &position);
-  const Vector3d velocity_E = mount.Velocity(state, bias, gyro_radps, &velocity);
-  model.Evaluate(antenna_E, velocity_E, drift_mps, residual, &by_position, &by_velocity);
-  *jacobian = by_position * position + by_velocity * velocity;
-}
-
 }  // namespace alidade

@@ -63,15 +63,9 @@ struct AntennaMount {
                                          Eigen::Matrix<double, 3, 15>* jacobian) const;
 };
 
-/// d residual / d (phi, dp, dv, dbg, dba): the canonical chart of core/model.h. The clock's and the drift's
-/// Jacobians are 1. Other error conventions: times ImuChartJacobian (core/error_convention.h).
+/// d residual / d (phi, dp, dv, dbg, dba): the canonical chart of core/model.h, the models' Jacobians times
+/// AntennaMount's (LinearizeEpoch). Other error conventions: times ImuChartJacobian
+/// (core/error_convention.h).
 using GnssJacobian = Eigen::Matrix<double, 1, 15>;
-
-/// Both models as functions of the navigation state. A null Jacobian is not computed.
-void EvaluatePseudorange(const PseudorangeModel& model, const AntennaMount& mount, const NavState& state,
-                         double clock_m, double* residual, GnssJacobian* jacobian);
-void EvaluateRangeRate(const RangeRateModel& model, const AntennaMount& mount, const NavState& state,
-                       const ImuBias& bias, const Eigen::Vector3d& gyro_radps, double drift_mps,
-                       double* residual, GnssJacobian* jacobian);
 
 }  // namespace alidade

@@ -59,28 +59,27 @@ double SinglePointSolver::BiasVariance(GnssSystem system, TimeNs stamp_ns) const
          options_.inter_system_walk * options_.inter_system_walk * elapsed;
 }
 
-Result<SinglePointSolution> SinglePointSolver::Solve(const ObservationEpoch& epoch) {
-  EpochMeasurements measurements = builder_.Prepare(epoch);
-  if (measurements.satellites.empty()) {
-    const MeasurementCounts& c = measurements.left_out;
+Result<SinglePointSolution> SinglePointSolver::Solve(EpochMeasurements prepared) {
+  if (prepared.satellites.empty()) {
+    const MeasurementCounts& c = prepared.left_out;
     return Status::Input(
-        FormatGpsTime(epoch.stamp_ns, 3) +
+        FormatGpsTime(prepared.tag_ns, 3) +
         Format(": no satellite can be used (%d without ephemeris, %d unhealthy, %d without signal)",
                c.no_ephemeris, c.unhealthy, c.no_signal));
   }
   State state;
-  Status status = SolveFrom(last_E_.value_or(Eigen::Vector3d::Zero()), &measurements, &state);
-  if (!status.ok() && last_E_ && SolveFrom(Eigen::Vector3d::Zero(), &measurements, &state).ok()) {
+  Status status = SolveFrom(last_E_.value_or(Eigen::Vector3d::Zero()), &prepared, &state);
+  if (!status.ok() && last_E_ && SolveFrom(Eigen::Vector3d::Zero(), &prepared, &state).ok()) {
     status = Status::Ok();  // the start was wrong
   }
   if (!status.ok()) {
-    return Status::Input(FormatGpsTime(epoch.stamp_ns, 3) + ": " + status.message());
+    return Status::Input(FormatGpsTime(prepared.tag_ns, 3) + ": " + status.message());
   }
   last_E_ = state.position_E;
   datum_ = state.datum;
-  CarryBiases(state, epoch.stamp_ns);
-  SinglePointSolution solution = MakeSolution(measurements, state);
-  FitVelocity(measurements, ElevationMask(), options_, gate_, &solution);
+  CarryBiases(state, prepared.tag_ns);
+  SinglePointSolution solution = MakeSolution(prepared, state);
+  FitVelocity(prepared, ElevationMask(), options_, gate_, &solution);
   return solution;
 }
 

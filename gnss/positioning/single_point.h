@@ -50,8 +50,11 @@ class SinglePointSolver {
   SinglePointSolver(MeasurementBuilder builder, SinglePointOptions options,
                     std::optional<Eigen::Vector3d> initial_E = std::nullopt);
 
-  /// Errors (kInput): too few satellites with ephemerides above the mask, or a weak geometry, in words.
-  Result<SinglePointSolution> Solve(const ObservationEpoch& epoch);
+  /// `prepared`: by the solver's own builder (or an equal one). Errors (kInput): too few satellites with
+  /// ephemerides above the mask, or a weak geometry, in words.
+  Result<SinglePointSolution> Solve(EpochMeasurements prepared);
+  /// The same of an epoch that is not prepared yet.
+  Result<SinglePointSolution> Solve(const ObservationEpoch& epoch) { return Solve(builder_.Prepare(epoch)); }
 
  private:
   struct Bias {

@@ -106,7 +106,7 @@ TrackSelection BatchSequence::Select(bool gate) {
     }
     const bool was_selected = track.selected;
     const size_t views_before = track.used.views.size();
-    track.selected = Judge(geometry, gate, &selection, &track);
+    track.selected = SelectTrack(geometry, gate, &selection, &track);
     if (track.selected) {
       ++selection.tracks;
       selection.observations += static_cast<int>(track.used.views.size());
@@ -117,8 +117,8 @@ TrackSelection BatchSequence::Select(bool gate) {
   return selection;
 }
 
-bool BatchSequence::Judge(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
-                          BatchTrack* track) const {
+bool BatchSequence::SelectTrack(const std::vector<FrameGeometry>& geometry, bool gate,
+                                TrackSelection* selection, BatchTrack* track) const {
   WindowTrack& used = track->used;
   used.views = gate ? Inliers(geometry, *track) : track->views;
   selection->outliers += static_cast<int>(track->views.size() - used.views.size());

@@ -58,8 +58,8 @@ class BatchSequence {
 
  private:
   void AddObservations(const TrackFrame& frame, const WindowFrame& node);
-  bool Judge(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
-             BatchTrack* track) const;
+  bool SelectTrack(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
+                   BatchTrack* track) const;
   [[nodiscard]] std::vector<WindowView> Inliers(const std::vector<FrameGeometry>& geometry,
                                                 const BatchTrack& track) const;
 

@@ -64,34 +64,32 @@ void GnssWindow::Reattach(WindowFrame* dropped, WindowFrame* frame) const {
 
 bool GnssWindow::Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise,
                         WindowFrame* frame) {
-  FrameEpoch hung;
-  hung.stamp_ns = epoch.stamp_ns;
-  hung.measurements = epoch.measurements;
-  hung.imu = std::move(imu);
-  if (hung.imu.size() > 1) {
-    hung.preintegration.emplace(frame->imu_bias(), noise);
-    hung.preintegration->Add(hung.imu);
+  FrameEpoch attached;
+  attached.stamp_ns = epoch.stamp_ns;
+  attached.measurements = epoch.measurements;
+  attached.imu = std::move(imu);
+  if (attached.imu.size() > 1) {
+    attached.preintegration.emplace(frame->imu_bias(), noise);
+    attached.preintegration->Add(attached.imu);
   }
-  if (!hung.imu.empty()) {
-    hung.gyro_radps = hung.imu.back().gyro;
+  if (!attached.imu.empty()) {
+    attached.gyro_radps = attached.imu.back().gyro;
   }
-  LocateEpoch(*epoch.builder, context_->mount, frame->nav_state(), &hung.measurements);
-  for (SatelliteMeasurement& m : hung.measurements.satellites) {
+  LocateEpoch(*epoch.builder, context_->mount, frame->nav_state(), &attached.measurements);
+  for (SatelliteMeasurement& m : attached.measurements.satellites) {
     m.pseudorange_m -= removed_jumps_m_;
   }
   jumped_ = false;
-  if (!Judge(&hung, *frame)) {
+  if (!RemoveClockJump(&attached, *frame)) {
     return false;
   }
-  frame->epochs.push_back(std::move(hung));
+  frame->epochs.push_back(std::move(attached));
   return true;
 }
 
-/// Looks for a jump of the clock at the predicted state and takes whole milliseconds out; false when another
-/// jump lost the clock.
-bool GnssWindow::Judge(FrameEpoch* epoch, const WindowFrame& frame) {
+bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
   constexpr double kMillisecondM = 1e-3 * kSpeedOfLight;
-  constexpr double kSureM = 200;  // of a step that is said to be whole milliseconds
+  constexpr double kSureM = 200;  // within which a step counts as whole milliseconds
   GnssResiduals ignored;
   const double dt_s = epoch->SecondsAfter(frame.stamp_ns);
   GnssPoint point{frame.nav_state(), frame.imu_bias(), epoch->gyro_radps, frame.clock_state()};

@@ -40,7 +40,9 @@ class GnssWindow {
   [[nodiscard]] bool jumped() const { return jumped_; }
 
  private:
-  bool Judge(FrameEpoch* epoch, const WindowFrame& frame);
+  /// Looks for a jump of the clock at the predicted state and takes whole milliseconds out of the epoch;
+  /// false when the clock is lost, by this or an earlier jump of another size.
+  bool RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame);
 
   GnssConfig config_;
   GnssReceiver receiver_;

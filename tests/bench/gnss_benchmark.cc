@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "filter/gnss_update.h"
+#include "gnss/positioning/single_point.h"
 #include "tests/gnss/model/synthetic_sky.h"
 
 namespace alidade {
@@ -54,6 +55,40 @@ void GnssEpochUpdate(benchmark::State& state) {
   state.counters["rows"] = statistics.gnss_nis_dof;
 }
 BENCHMARK(GnssEpochUpdate)->Args({11, 25})->Args({26, 25})->Args({26, 10})->Unit(benchmark::kMicrosecond);
+
+/// What an epoch costs before an estimator sees it: its preparation (orbits, clocks, group delays), and the
+/// single-point solution of the prepared epoch.
+struct Epoch {
+  ObservationEpoch observed;
+  MeasurementBuilder builder;
+
+  static Epoch Make() {
+    constexpr TimeNs kStamp = 1'700'000'100 * kSecondNs;
+    const NavigationData sky = test::SyntheticSky(kStamp);
+    test::SyntheticReceiver receiver;
+    receiver.stamp_ns = kStamp;
+    return {test::Observe(sky, receiver), {std::make_shared<SatelliteCatalog>(sky), GnssCorrectionOptions()}};
+  }
+};
+
+void GnssPrepareEpoch(benchmark::State& state) {
+  const Epoch epoch = Epoch::Make();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(epoch.builder.Prepare(epoch.observed));
+  }
+  state.counters["satellites"] = static_cast<double>(epoch.observed.satellites.size());
+}
+BENCHMARK(GnssPrepareEpoch)->Unit(benchmark::kMicrosecond);
+
+void GnssSinglePoint(benchmark::State& state) {
+  const Epoch epoch = Epoch::Make();
+  const EpochMeasurements prepared = epoch.builder.Prepare(epoch.observed);
+  SinglePointSolver solver(epoch.builder, SinglePointOptions());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solver.Solve(prepared));
+  }
+}
+BENCHMARK(GnssSinglePoint)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace alidade

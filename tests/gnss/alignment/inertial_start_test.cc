@@ -176,8 +176,7 @@ TEST(GnssInertialStartTest, GIVEN_a_rate_that_changes_THEN_each_epoch_is_fitted_
   GnssInertialStart start = MakeStart(config, body);
   const auto found = Follow(body, 4, 0.5, &start);
   ASSERT_TRUE(found) << start.report();
-  const Vector9d error =
-      Local(ErrorConvention::kSo3xRn, found->estimate.nav, body.State(SecondsAt(*found)));
+  const Vector9d error = Local(ErrorConvention::kSo3xRn, found->estimate.nav, body.State(SecondsAt(*found)));
   EXPECT_LT(error.head<3>().norm(), 5e-3);
   EXPECT_LT(error.tail<3>().norm(), 0.02);
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "core/random.h"
@@ -12,8 +13,8 @@
 #include "tests/support/read_file.h"
 #include "tests/support/shared_data.h"
 
-// Readers must come back from any bytes, with data or with a message. What they do wrong shows as a crash, a
-// sanitizer's report or a time limit.
+// Readers must come back from any bytes: with data that keeps what its types promise, or with a message that
+// names the file. Anything else they do wrong shows as a crash, a sanitizer's report or a time limit.
 
 namespace alidade {
 namespace {
@@ -26,6 +27,7 @@ struct Target {
   std::string name;
   std::string text;
   std::function<std::string(const std::string&)> parse;  ///< the message, empty when data came back
+  bool differenced = false;                              ///< a line depends on those before it
 };
 
 std::string ParseObservation(const std::string& text) {
@@ -34,8 +36,18 @@ std::string ParseObservation(const std::string& text) {
     return file.message();
   }
   SinglePointSolver solver(MeasurementBuilder(std::make_shared<SatelliteCatalog>(NavigationData()), {}), {});
+  TimeNs last_ns = INT64_MIN;
   for (const ObservationEpoch& epoch : file->epochs) {
     EXPECT_FALSE(solver.Solve(epoch).ok());
+    EXPECT_GT(epoch.stamp_ns, last_ns) << "strictly rising";
+    last_ns = epoch.stamp_ns;
+    for (const SatelliteObservation& satellite : epoch.satellites) {
+      for (const SignalObservation& signal : satellite.signals) {
+        for (const auto& value : {signal.pseudorange_m, signal.doppler_hz, signal.cn0_dbhz}) {
+          EXPECT_TRUE(std::isfinite(value.value_or(0))) << ToString(satellite.satellite);
+        }
+      }
+    }
   }
   return "";
 }
@@ -88,7 +100,7 @@ std::vector<Target> Targets() {
       {"RINEX 3", Head("gnss/static_esbc/ESBC_4h.rnx", 30'000), ParseObservation},
       {"RINEX 3 phone", Head("gnss/phone_xiaomi/GEOP092I.24o", 20'000), ParseObservation},
       {"Compact RINEX", Head("gnss/rinex4_kms3/KMS300DNK_R_20221591000_01H_30S_MO.crx", 40'000),
-       ParseObservation},
+       ParseObservation, true},
       {"navigation 3", Head("gnss/urban_static_tst2/hksc155c.20b", 12'000), ParseNavigation},
       {"navigation 3 GLONASS", Head("gnss/urban_static_tst2/hksc155c.20g", 8'000), ParseNavigation},
       {"navigation 4", Head("gnss/rinex4_kms3/KMS300DNK_R_20221591000_01H_MN.rnx", 30'000), ParseNavigation},
@@ -97,15 +109,36 @@ std::vector<Target> Targets() {
       {"CLK", Head("gnss/precise_cod/COD21118_300.CLK", 10'000), clock}};
 }
 
+/// Damaged texts of a target: how many of them were read, and how many refused with a message.
+struct Outcome {
+  int read = 0;
+  int refused = 0;
+};
+
+/// A damaged record costs itself alone, so most texts are read. In a differenced text the damage would go on
+/// to the records behind it: most are refused.
+void ExpectDamageIsContained(const Target& target, const Outcome& outcome) {
+  EXPECT_GT(target.differenced ? outcome.refused : outcome.read,
+            target.differenced ? outcome.read : outcome.refused)
+      << target.name;
+}
+
+void Feed(const Target& target, const std::string& text, Outcome* outcome) {
+  const std::string message = target.parse(text);
+  ++(message.empty() ? outcome->read : outcome->refused);
+  EXPECT_TRUE(message.empty() || message.rfind("hostile", 0) == 0) << target.name << ": " << message;
+}
+
 TEST(HostileFilesTest, TruncationAtAnyPlaceIsSurvived) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   for (const Target& target : Targets()) {
     ASSERT_EQ(target.parse(target.text), "") << target.name;
-    std::size_t served = 0;
+    Outcome outcome;
     for (std::size_t size = 0; size < target.text.size(); size += 1 + target.text.size() / 200) {
-      served += target.parse(target.text.substr(0, size)).empty() ? 1 : 0;
+      Feed(target, target.text.substr(0, size), &outcome);
     }
-    EXPECT_GT(served, 0u) << target.name << ": a file that was cut short still serves up to there";
+    EXPECT_GT(outcome.read, 0) << target.name << ": a file that was cut short still serves up to there";
+    EXPECT_GT(outcome.refused, 0) << target.name << ": without its header it is an error";
   }
 }
 
@@ -113,6 +146,8 @@ TEST(HostileFilesTest, FlippedBytesAreSurvived) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   RandomStream random(11, "flips");
   for (const Target& target : Targets()) {
+    Outcome lightly_damaged;
+    Outcome heavily_damaged;
     for (int round = 0; round < 60; ++round) {
       std::string text = target.text;
       const int flips = 1 << (round % 10);
@@ -123,8 +158,11 @@ TEST(HostileFilesTest, FlippedBytesAreSurvived) {
         text[place] = round % 2 == 0 ? kBytes[static_cast<std::size_t>(random.Uniform(0, 19))]
                                      : static_cast<char>(random.Uniform(-128, 128));
       }
-      target.parse(text);
+      Feed(target, text, flips <= 4 ? &lightly_damaged : &heavily_damaged);
     }
+    EXPECT_EQ(lightly_damaged.read + lightly_damaged.refused, 18) << target.name;
+    EXPECT_EQ(heavily_damaged.read + heavily_damaged.refused, 42) << target.name;
+    ExpectDamageIsContained(target, lightly_damaged);
   }
 }
 
@@ -132,6 +170,7 @@ TEST(HostileFilesTest, RepeatedAndDroppedLinesAreSurvived) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   RandomStream random(12, "lines");
   for (const Target& target : Targets()) {
+    Outcome outcome;
     for (int round = 0; round < 20; ++round) {
       std::string text;
       std::string_view rest = target.text;
@@ -142,8 +181,9 @@ TEST(HostileFilesTest, RepeatedAndDroppedLinesAreSurvived) {
         text += fate > 0.97 ? line : "";
         rest.remove_prefix(line.size());
       }
-      target.parse(text);
+      Feed(target, text, &outcome);
     }
+    ExpectDamageIsContained(target, outcome);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gnss/model/epoch_rows.h"
 #include "tests/gnss/model/synthetic_sky.h"
 #include "tests/support/jacobian_checker.h"
 #include "tests/support/random_states.h"
@@ -89,34 +90,37 @@ NavCase RandomCase(test::RandomStates* random) {
   return c;
 }
 
+/// Pseudorange and range rate of one satellite as the estimators linearise them.
+std::vector<GnssRow> Linearize(const NavCase& c, const SatelliteMeasurement& m, const NavState& state,
+                               const ImuBias& bias) {
+  GnssConfig config;
+  config.corrections.elevation_mask_deg = 0;
+  GnssPoint point{state, bias, c.gyro};
+  point.clock[ClockState::kClock] = c.clock_m;
+  point.clock[ClockState::kDrift] = c.drift_mps;
+  GnssResiduals residuals;
+  std::vector<GnssRow> rows = LinearizeEpoch(config, c.mount, point, {kStamp, {m}, {}}, &residuals);
+  EXPECT_EQ(rows.size(), 2u);
+  EXPECT_FALSE(rows.front().is_rate);
+  EXPECT_TRUE(rows.back().is_rate);
+  return rows;
+}
+
 TEST(MeasurementModelTest, JacobiansAgreeWithCentralDifferencesInAllConventions) {
   const EpochMeasurements epoch = Measure(Moving());
   for (unsigned seed = 1; seed <= 24; ++seed) {
     test::RandomStates random(seed);
     const NavCase c = RandomCase(&random);
     const SatelliteMeasurement& m = epoch.satellites[seed % epoch.satellites.size()];
-    const PseudorangeModel range = PseudorangeModel::Of(m);
-    const RangeRateModel rate = RangeRateModel::Of(m);
-    Eigen::Vector2d residual;
+    const std::vector<GnssRow> rows = Linearize(c, m, c.state, c.bias);
     Eigen::Matrix<double, 2, 15> analytic;
-    GnssJacobian row;
-    EvaluatePseudorange(range, c.mount, c.state, c.clock_m, &residual[0], &row);
-    analytic.row(0) = row;
-    EvaluateRangeRate(rate, c.mount, c.state, c.bias, c.gyro, c.drift_mps, &residual[1], &row);
-    analytic.row(1) = row;
-    double alone = 0;
-    EvaluatePseudorange(range, c.mount, c.state, c.clock_m, &alone, nullptr);
-    EXPECT_EQ(alone, residual[0]);
-    EvaluateRangeRate(rate, c.mount, c.state, c.bias, c.gyro, c.drift_mps, &alone, nullptr);
-    EXPECT_EQ(alone, residual[1]);
+    analytic << rows[0].jacobian, rows[1].jacobian;
     for (const ErrorConvention convention : test::kAllConventions) {
       const auto displaced = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
         const NavState state = Retract(convention, c.state, xi.head<9>());
         const ImuBias bias{c.bias.gyro + xi.segment<3>(9), c.bias.accel + xi.segment<3>(12)};
-        Eigen::Vector2d r;
-        EvaluatePseudorange(range, c.mount, state, c.clock_m, &r[0], nullptr);
-        EvaluateRangeRate(rate, c.mount, state, bias, c.gyro, c.drift_mps, &r[1], nullptr);
-        return r;
+        const std::vector<GnssRow> moved = Linearize(c, m, state, bias);
+        return Eigen::Vector2d(moved[0].residual, moved[1].residual);
       };
       // Ranges of 2e7 m leave 4e-9 m of rounding: a step of 0.1 rad, m or m/s keeps 1e-7 of a derivative.
       const Eigen::MatrixXd numeric = test::NumericJacobian(displaced, 15, 2e-2);
@@ -127,6 +131,23 @@ TEST(MeasurementModelTest, JacobiansAgreeWithCentralDifferencesInAllConventions)
           << ToString(convention) << " " << seed;
     }
   }
+}
+
+TEST(MeasurementModelTest, ANullJacobianChangesNoResidual) {
+  test::RandomStates random(3);
+  const NavCase c = RandomCase(&random);
+  const SatelliteMeasurement m = Measure(Moving()).satellites[1];
+  Eigen::Matrix<double, 3, 15> mount_jacobian;
+  const Eigen::Vector3d position = c.mount.Position(c.state, nullptr);
+  EXPECT_EQ(c.mount.Position(c.state, &mount_jacobian), position);
+  const Eigen::Vector3d velocity = c.mount.Velocity(c.state, c.bias, c.gyro, nullptr);
+  EXPECT_EQ(c.mount.Velocity(c.state, c.bias, c.gyro, &mount_jacobian), velocity);
+  const std::vector<GnssRow> rows = Linearize(c, m, c.state, c.bias);
+  double alone = 0;
+  PseudorangeModel::Of(m).Evaluate(position, c.clock_m, &alone, nullptr);
+  EXPECT_EQ(alone, rows[0].residual);
+  RangeRateModel::Of(m).Evaluate(position, velocity, c.drift_mps, &alone, nullptr, nullptr);
+  EXPECT_EQ(alone, rows[1].residual);
 }
 
 TEST(MeasurementModelTest, ClockAndDriftHaveJacobianOne) {
@@ -156,14 +177,11 @@ TEST(MeasurementModelTest, RightInvariantJacobiansHaveTheirClosedForms) {
   const Eigen::Vector3d p_A = c.state.p_WB + c.state.R_WB * c.mount.p_BA;
   const Eigen::Vector3d v_A = c.state.v_WB + c.state.R_WB * (c.gyro - c.bias.gyro).cross(c.mount.p_BA);
   const Matrix15d chart = ImuChartJacobian(ErrorConvention::kRightInvariant, c.state);
-  double residual = 0;
-  GnssJacobian row;
-  EvaluatePseudorange(PseudorangeModel::Of(m), c.mount, c.state, 0, &residual, &row);
-  const GnssJacobian range = row * chart;
+  const std::vector<GnssRow> rows = Linearize(c, m, c.state, c.bias);
+  const GnssJacobian range = rows[0].jacobian * chart;
   EXPECT_LT((range.segment<3>(3) + e * C).norm(), 1e-5);
   EXPECT_LT((range.head<3>() - e * C * Skew(p_A)).norm(), 1e-5 * p_A.norm());
-  EvaluateRangeRate(RangeRateModel::Of(m), c.mount, c.state, c.bias, c.gyro, 0, &residual, &row);
-  const GnssJacobian rate = row * chart;
+  const GnssJacobian rate = rows[1].jacobian * chart;
   EXPECT_LT((rate.segment<3>(6) + e * C).norm(), 3e-5);
   EXPECT_LT((rate.head<3>() - e * C * Skew(v_A)).norm(), 3e-5 * v_A.norm() + 3e-4 * p_A.norm());
   EXPECT_LT((rate.segment<3>(9) + e * C * c.state.R_WB * Skew(c.mount.p_BA)).norm(), 1e-4);

@@ -64,6 +64,22 @@ TEST(SinglePointTest, NoiseFreeEpochGivesTheTruthFromAnyStart) {
   }
 }
 
+TEST(SinglePointTest, GIVEN_prepared_measurements_THEN_the_solution_is_that_of_the_epoch) {
+  const test::SyntheticReceiver receiver = Receiver();
+  const NavigationData sky = test::SyntheticSky(kStamp);
+  const ObservationEpoch epoch = test::Observe(sky, receiver);
+  const MeasurementBuilder builder(std::make_shared<SatelliteCatalog>(sky), NoIonosphere());
+  SinglePointSolver solver = MakeSolver(sky);
+  SinglePointSolver other = MakeSolver(sky);
+  const SinglePointSolution raw = solver.Solve(epoch).value();
+  const SinglePointSolution prepared = other.Solve(builder.Prepare(epoch)).value();
+  EXPECT_EQ(prepared.position_E, raw.position_E);
+  EXPECT_EQ(prepared.velocity_E, raw.velocity_E);
+  EXPECT_EQ(prepared.position_covariance_E, raw.position_covariance_E);
+  EXPECT_EQ(prepared.clock_m, raw.clock_m);
+  EXPECT_EQ(prepared.stamp_ns, raw.stamp_ns);
+}
+
 TEST(SinglePointTest, ReflectedSignalsAreRefusedAndNamed) {
   const test::SyntheticReceiver receiver = Receiver();
   const NavigationData sky = test::SyntheticSky(kStamp);
@@ -168,7 +184,7 @@ TEST(SinglePointTest, EpochsThatCannotBeSolvedSayWhy) {
   EXPECT_THAT(solver.Solve(Thin(sky, receiver, 3, 0)).message(),
               HasSubstr("3 satellites can be used, expected 4"));
   EXPECT_THAT(solver.Solve(Thin(sky, receiver, 3, 0)).message(), HasSubstr("2020/06/24 23:59:59.999: "));
-  EXPECT_THAT(solver.Solve({kStamp, {}}).message(), HasSubstr("no satellite can be used"));
+  EXPECT_THAT(solver.Solve(ObservationEpoch{kStamp, {}}).message(), HasSubstr("no satellite can be used"));
   for (auto& [id, list] : sky.kepler) {
     list[0].health = 63;
   }
