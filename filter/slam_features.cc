@@ -10,7 +10,7 @@ namespace alidade {
 namespace {
 
 // A landmark that the gate refuses this often in a row is taken for a mismatch.
-constexpr int kMaxRefusals = 2;
+constexpr int kMaxLandmarkRefusals = 2;
 
 }  // namespace
 
@@ -140,7 +140,7 @@ void SlamFeatures::RemoveEnded(int serial, TrackStore* tracks, FilterState* stat
     const Landmark& landmark = state->landmarks()[i];
     Track* track = tracks->Find(landmark.id);
     CHECK(track != nullptr) << "a landmark without its track";
-    const bool refused = landmark.refusals >= kMaxRefusals;
+    const bool refused = landmark.refusals >= kMaxLandmarkRefusals;
     if (!refused && track->last_serial == serial) {
       continue;
     }

@@ -14,7 +14,7 @@
 namespace alidade::cli {
 namespace {
 
-std::string FolderOf(const std::string& estimator, const std::string& sequence, unsigned seed) {
+std::string RunFolder(const std::string& estimator, const std::string& sequence, unsigned seed) {
   return FLAGS_input + "/cells/" + estimator + "/" + sequence + "/" + std::to_string(seed);
 }
 
@@ -70,7 +70,7 @@ class Study {
   Status AddSeed(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed) {
     std::vector<std::pair<GnssStudyRow*, RunResult>> runs;
     for (std::size_t i = first_row_; i < rows_.size(); ++i) {
-      const std::string folder = FolderOf(rows_[i].estimator, sequence.name, seed);
+      const std::string folder = RunFolder(rows_[i].estimator, sequence.name, seed);
       if (!std::filesystem::exists(folder + "/run.json")) {
         continue;
       }
@@ -118,7 +118,7 @@ class Study {
         if (config->gnss.enabled) {
           continue;
         }
-        const std::string folder = FolderOf(estimator.name, other.name, seed);
+        const std::string folder = RunFolder(estimator.name, other.name, seed);
         if (!std::filesystem::exists(folder + "/run.json")) {
           continue;
         }

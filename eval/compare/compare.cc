@@ -13,6 +13,7 @@
 
 #include "core/blas.h"
 #include "core/format.h"
+#include "core/numbers.h"
 #include "eval/compare/compare_cell.h"
 #include "eval/compare/compare_configs.h"
 #include "eval/comparison/cell_score.h"
@@ -26,7 +27,6 @@ namespace {
 std::string OneLine(const CellResult& cell) {
   std::string figures;
   if (cell.ate_pos_m) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     figures = Format(", ATE %.3f m %.3f deg, %.2f ms a frame", *cell.ate_pos_m,
                      cell.ate_ori_deg.value_or(kNan), cell.backend_ms.value_or(kNan));
   }

@@ -14,7 +14,7 @@
 namespace alidade {
 namespace {
 
-constexpr double kMaxSeconds = 1e6;
+constexpr double kMaxTimeoutS = 1e6;
 constexpr double kMaxFigure = 1e12;
 
 std::string Stem(const std::string& path) {
@@ -81,7 +81,7 @@ class PlanParser {
            {"result", [&](const Node& n) { return reader_.Text(n, "result", &estimator.command.result); }},
            {"timeout",
             [&](const Node& n) {
-              return reader_.Real(n, "timeout", 1, kMaxSeconds, &estimator.command.timeout_s);
+              return reader_.Real(n, "timeout", 1, kMaxTimeoutS, &estimator.command.timeout_s);
             }},
            {"frame", [&](const Node& n) { return ReadFrame(n, &estimator.camera_frame); }},
            {"sequences", [&](const Node& n) { return ReadNames(n, &estimator.sequences); }},

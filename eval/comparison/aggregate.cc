@@ -5,13 +5,13 @@
 #include <limits>
 #include <set>
 
+#include "core/numbers.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Share of a Gaussian inside +-3 standard deviations.
 constexpr double kGaussianInside3Sigma = 0.9973002039367398;
 

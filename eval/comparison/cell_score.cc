@@ -9,6 +9,7 @@
 
 #include "core/error_convention.h"
 #include "core/format.h"
+#include "core/numbers.h"
 #include "eval/comparison/series_rows.h"
 #include "eval/comparison/sky_tracks.h"
 #include "eval/metrics/metrics.h"
@@ -16,7 +17,6 @@
 namespace alidade {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// Longer without GNSS is an outage.
 constexpr double kGnssSilenceS = 2;
 /// Regular points of a curve beyond these are not seen on a screen.
@@ -74,7 +74,7 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
     series.position.push_back(aligned[i].estimate.nav.p_WB);
     series.error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
     series.sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
-    series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kUnknown);
+    series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kNan);
   }
   return series;
 }
@@ -85,7 +85,7 @@ struct Innovations {
   int FrameStatistics::*dof;
 
   [[nodiscard]] double Ratio(const FrameStatistics& frame) const {
-    return frame.*dof > 0 ? frame.*nis / frame.*dof : kUnknown;
+    return frame.*dof > 0 ? frame.*nis / frame.*dof : kNan;
   }
 };
 constexpr Innovations kVision = {&FrameStatistics::nis, &FrameStatistics::nis_dof};
@@ -102,15 +102,15 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
   for (const StatePair& pair : evaluation.pairs) {
     const auto record = by_stamp.find(pair.estimate.stamp_ns);
     const bool found = record != by_stamp.end();
-    series->backend_ms.push_back(found ? record->second->backend_ms : kUnknown);
-    series->features_used.push_back(found ? record->second->statistics.features_used : kUnknown);
-    series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kUnknown);
-    series->nis_ratio.push_back(found ? kVision.Ratio(record->second->statistics) : kUnknown);
+    series->backend_ms.push_back(found ? record->second->backend_ms : kNan);
+    series->features_used.push_back(found ? record->second->statistics.features_used : kNan);
+    series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kNan);
+    series->nis_ratio.push_back(found ? kVision.Ratio(record->second->statistics) : kNan);
     if (audited) {
       const bool has = found && record->second->observability.has_value();
-      series->rank.push_back(has ? record->second->observability->rank : kUnknown);
-      series->yaw_leak.push_back(has ? record->second->observability->yaw_leak : kUnknown);
-      series->position_leak.push_back(has ? record->second->observability->position_leak : kUnknown);
+      series->rank.push_back(has ? record->second->observability->rank : kNan);
+      series->yaw_leak.push_back(has ? record->second->observability->yaw_leak : kNan);
+      series->position_leak.push_back(has ? record->second->observability->position_leak : kNan);
     }
   }
 }
@@ -118,7 +118,7 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
 /// The newest GNSS innovations of each pair: GNSS is slower than the camera, and what is thinned would miss
 /// them.
 void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
-  double newest = kUnknown;
+  double newest = kNan;
   TimeNs newest_ns = 0;
   auto record = run.records.begin();
   for (const StatePair& pair : evaluation.pairs) {
@@ -129,8 +129,7 @@ void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, Cel
         newest_ns = record->estimate.stamp_ns;
       }
     }
-    series->gnss_nis_ratio.push_back(SecondsBetween(newest_ns, stamp_ns) <= kGnssSilenceS ? newest
-                                                                                          : kUnknown);
+    series->gnss_nis_ratio.push_back(SecondsBetween(newest_ns, stamp_ns) <= kGnssSilenceS ? newest : kNan);
   }
   if (std::isnan(newest)) {
     series->gnss_nis_ratio.clear();
@@ -171,7 +170,7 @@ void FillPredicted(const RunResult& run, CellResult* cell) {
   for (const RunRecord& record : run.records) {
     ori += record.estimate.covariance.diagonal().head<3>().sum();
     pos += record.estimate.covariance.diagonal().segment<3>(3).sum();
-    const Matrix6d filtering = record.filtering_covariance.value_or(Matrix6d::Constant(kUnknown));
+    const Matrix6d filtering = record.filtering_covariance.value_or(Matrix6d::Constant(kNan));
     filtering_ori += filtering.diagonal().head<3>().sum();
     filtering_pos += filtering.diagonal().tail<3>().sum();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers.h"
 #include "eval/files/csv_text.h"
 
 namespace alidade {
@@ -12,7 +13,7 @@ namespace {
 double Pooled(const std::vector<const CellResult*>& cells, std::optional<double> CellResult::*figure) {
   double squares = 0;
   for (const CellResult* cell : cells) {
-    const double value = (cell->*figure).value_or(std::numeric_limits<double>::quiet_NaN());
+    const double value = (cell->*figure).value_or(kNan);
     squares += value * value;
   }
   return std::sqrt(squares / static_cast<double>(cells.size()));
@@ -27,7 +28,7 @@ const CellResult* FindPartner(const CellGroup& bound, const CellResult& cell) {
   return nullptr;
 }
 
-Efficiency Compare(const CellGroup& group, const CellGroup& bound) {
+Efficiency CompareWithBound(const CellGroup& group, const CellGroup& bound) {
   std::vector<const CellResult*> own, best;
   for (const CellResult* cell : group.cells) {
     const CellResult* partner = cell->status == "ok" ? FindPartner(bound, *cell) : nullptr;
@@ -67,7 +68,7 @@ std::vector<Efficiency> ComputeEfficiency(const Comparison& comparison) {
   for (const CellGroup& group : groups) {
     for (const CellGroup& bound : groups) {
       if (bound.label == bound_label && bound.sequence == group.sequence) {
-        entries.push_back(Compare(group, bound));
+        entries.push_back(CompareWithBound(group, bound));
       }
     }
   }

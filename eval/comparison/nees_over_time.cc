@@ -5,13 +5,13 @@
 #include <limits>
 #include <map>
 
+#include "core/numbers.h"
 #include "eval/comparison/aggregate.h"
 #include "eval/metrics/metrics.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPoseFreedom = 6;
 
 /// The regular rows of a run.
@@ -20,7 +20,7 @@ struct Curve {
   std::vector<double> nees;
 };
 
-Curve RegularRows(const CellSeries& series) {
+Curve RegularCurve(const CellSeries& series) {
   Curve curve;
   for (size_t i = 0; i < series.time_s.size(); ++i) {
     if (series.regular.empty() || series.regular[i]) {
@@ -70,7 +70,7 @@ NeesOverTime AverageNees(const std::vector<const CellResult*>& cells) {
   std::vector<Curve> all;
   for (const CellResult* cell : cells) {
     if (cell->status == "ok" && !cell->series.time_s.empty()) {
-      all.push_back(RegularRows(cell->series));
+      all.push_back(RegularCurve(cell->series));
     }
   }
   NeesOverTime result;

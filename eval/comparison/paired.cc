@@ -9,10 +9,11 @@
 #include <set>
 #include <tuple>
 
+#include "core/numbers.h"
+
 namespace alidade {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTail = 0.025;  // of a two-sided 95 % interval
 
 /// The runs of one aggregate row by seed.

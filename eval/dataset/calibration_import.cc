@@ -34,7 +34,7 @@ bool IsMap(const Node& node) {
   return node.IsDefined() && node.IsMap();
 }
 
-std::string Line(const std::string& key, const std::string& value) {
+std::string YamlLine(const std::string& key, const std::string& value) {
   return key + ": " + value + "\n";
 }
 
@@ -152,15 +152,15 @@ class Importer {
       coefficients = intrinsics.substr(0, comma) + ", " + coefficients.substr(1);
       intrinsics = "[" + intrinsics.substr(comma + 2);
     }
-    camera_text_ = Line("resolution", Flow(camera["resolution"])) + Line("intrinsics", intrinsics) +
-                   Line("distortion_model", name) + Line("distortion_coefficients", coefficients);
+    camera_text_ = YamlLine("resolution", Flow(camera["resolution"])) + YamlLine("intrinsics", intrinsics) +
+                   YamlLine("distortion_model", name) + YamlLine("distortion_coefficients", coefficients);
     for (const char* key : {"T_cam_imu", "T_imu_cam"}) {
       if (camera[key].IsDefined()) {
-        extrinsics_ += Line(key, Flow(camera[key]));
+        extrinsics_ += YamlLine(key, Flow(camera[key]));
       }
     }
     if (camera["timeshift_cam_imu"].IsDefined()) {
-      offset_ = Line("time_offset_s", Flow(camera["timeshift_cam_imu"]));
+      offset_ = YamlLine("time_offset_s", Flow(camera["timeshift_cam_imu"]));
     }
     return Status::Ok();
   }
@@ -172,10 +172,10 @@ class Importer {
     imu_place_ = path;
     for (const char* key : {"gyroscope_noise_density", "gyroscope_random_walk", "accelerometer_noise_density",
                             "accelerometer_random_walk"}) {
-      imu_text_ += Line(key, Flow(imu[key]));
+      imu_text_ += YamlLine(key, Flow(imu[key]));
     }
     if (imu["update_rate"].IsDefined()) {
-      imu_text_ += Line("rate_hz", Flow(imu["update_rate"]));
+      imu_text_ += YamlLine("rate_hz", Flow(imu["update_rate"]));
     }
     return Status::Ok();
   }
@@ -186,10 +186,10 @@ class Importer {
     }
     imu_place_ = path;
     calibration_.imu_is_per_sample = true;
-    imu_text_ = Line("gyroscope_noise_density", Flow(root["gyr_n"])) +
-                Line("gyroscope_random_walk", Flow(root["gyr_w"])) +
-                Line("accelerometer_noise_density", Flow(root["acc_n"])) +
-                Line("accelerometer_random_walk", Flow(root["acc_w"]));
+    imu_text_ = YamlLine("gyroscope_noise_density", Flow(root["gyr_n"])) +
+                YamlLine("gyroscope_random_walk", Flow(root["gyr_w"])) +
+                YamlLine("accelerometer_noise_density", Flow(root["acc_n"])) +
+                YamlLine("accelerometer_random_walk", Flow(root["acc_w"]));
     return Status::Ok();
   }
 
@@ -228,8 +228,8 @@ class Importer {
     ALIDADE_RETURN_IF_ERROR(coefficients.status());
     const Result<std::string> resolution = ListOf(path, root, {"image_width", "image_height"});
     ALIDADE_RETURN_IF_ERROR(resolution.status());
-    camera_text_ = Line("resolution", *resolution) + Line("intrinsics", *intrinsics) +
-                   Line("distortion_model", model) + Line("distortion_coefficients", *coefficients);
+    camera_text_ = YamlLine("resolution", *resolution) + YamlLine("intrinsics", *intrinsics) +
+                   YamlLine("distortion_model", model) + YamlLine("distortion_coefficients", *coefficients);
     return Status::Ok();
   }
 
@@ -240,7 +240,7 @@ class Importer {
     const Node translation = root["extrinsicTranslation"];
     std::string text;
     if (root[body_key].IsDefined()) {
-      text = Line("body_T_cam0", Flow(root[body_key]));
+      text = YamlLine("body_T_cam0", Flow(root[body_key]));
     } else if (IsMap(rotation) && IsMap(translation) && rotation["data"].IsDefined() &&
                translation["data"].IsDefined() && rotation["data"].size() == 9 &&
                translation["data"].size() == 3) {
@@ -251,12 +251,12 @@ class Importer {
         }
         rows += Flow(translation["data"][row]) + ", ";
       }
-      text = Line("body_T_cam0", "[" + rows + "0, 0, 0, 1]");
+      text = YamlLine("body_T_cam0", "[" + rows + "0, 0, 0, 1]");
     }
     if (!text.empty() && extrinsics_.empty()) {
       extrinsics_ = text;
       if (root["td"].IsDefined()) {
-        offset_ = Line("time_offset_s", Flow(root["td"]));
+        offset_ = YamlLine("time_offset_s", Flow(root["td"]));
       }
     }
     return !text.empty();

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/numbers.h"
+
 namespace alidade {
 namespace {
 
@@ -25,10 +27,9 @@ std::vector<StatePair> FirstShare(const std::vector<StatePair>& pairs, double sh
 }
 
 void ForgetOrientation(Evaluation* evaluation) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  evaluation->unaligned.ori_deg = evaluation->ate.ori_deg = kUnknown;
+  evaluation->unaligned.ori_deg = evaluation->ate.ori_deg = kNan;
   for (RpeResult& rpe : evaluation->rpe) {
-    rpe.ori_rmse_deg = kUnknown;
+    rpe.ori_rmse_deg = kNan;
   }
 }
 

@@ -5,17 +5,18 @@
 #include <limits>
 #include <numbers>
 
+#include "core/numbers.h"
+
 namespace alidade {
 namespace {
 
 constexpr double kRadToDeg = 180 / std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// A sub-trajectory may miss the wanted length by this share of it: sparse pairs then count for nothing
 /// rather than for another distance.
 constexpr double kRpeLengthTolerance = 0.1;
 
 double RootMeanSquare(double sum_of_squares, std::size_t count) {
-  return count == 0 ? kNaN : std::sqrt(sum_of_squares / static_cast<double>(count));
+  return count == 0 ? kNan : std::sqrt(sum_of_squares / static_cast<double>(count));
 }
 
 /// Truth path travelled up to each pair [m]; the first is 0.
@@ -82,7 +83,7 @@ AteResult ComputeAte(const std::vector<StatePair>& aligned_pairs) {
   }
   result.pos_m = RootMeanSquare(pos_squares, aligned_pairs.size());
   result.ori_deg = RootMeanSquare(ori_squares, aligned_pairs.size()) * kRadToDeg;
-  result.pos_max_m = aligned_pairs.empty() ? kNaN : std::sqrt(pos_squares_max);
+  result.pos_max_m = aligned_pairs.empty() ? kNan : std::sqrt(pos_squares_max);
   return result;
 }
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.h"
 #include "eval/metrics/metrics.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Smallest pivot of a correlation matrix taken as regular; below it the inverse is rounding noise.
 constexpr double kMinimumPivot = 1e-12;
 
@@ -18,14 +18,14 @@ template <int N>
 double NormalizedSquare(const Eigen::Matrix<double, N, 1>& error,
                         const Eigen::Matrix<double, N, N>& covariance) {
   if (!covariance.allFinite() || !error.allFinite() || covariance.diagonal().minCoeff() <= 0) {
-    return kNaN;
+    return kNan;
   }
   const Eigen::Matrix<double, N, 1> sigma = covariance.diagonal().cwiseSqrt();
   const Eigen::Matrix<double, N, N> correlation =
       sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
   const Eigen::LDLT<Eigen::Matrix<double, N, N>> factor(correlation);
   if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < kMinimumPivot) {
-    return kNaN;
+    return kNan;
   }
   const Eigen::Matrix<double, N, 1> whitened = error.cwiseQuotient(sigma);
   return whitened.dot(factor.solve(whitened));
@@ -41,7 +41,7 @@ double MeanOfFinite(const std::vector<double>& values) {
       ++count;
     }
   }
-  return count == 0 ? kNaN : sum / static_cast<double>(count);
+  return count == 0 ? kNan : sum / static_cast<double>(count);
 }
 
 }  // namespace
@@ -68,14 +68,14 @@ NeesResult ComputeNees(const std::vector<StatePair>& pairs) {
   result.mean_orientation = MeanOfFinite(result.orientation);
   result.mean_position = MeanOfFinite(result.position);
   result.coverage_3sigma =
-      components == 0 ? kNaN : static_cast<double>(inside) / static_cast<double>(components);
+      components == 0 ? kNan : static_cast<double>(inside) / static_cast<double>(components);
   return result;
 }
 
 std::pair<double, double> NeesBand(int dof, double samples, double probability) {
   const double total_dof = dof * samples;
   if (!(total_dof > 0) || !std::isfinite(total_dof) || !(probability > 0 && probability < 1)) {
-    return {kNaN, kNaN};
+    return {kNan, kNan};
   }
   // The sum of the samples is chi-square with samples * dof degrees of freedom; the mean divides it.
   const boost::math::chi_squared sum(total_dof);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/numbers.h"
 #include "eval/comparison/aggregate.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/output_file.h"
@@ -18,7 +19,6 @@ namespace {
 
 constexpr double kWidth = 252;
 constexpr double kLeft = 40, kRight = 10, kBelow = 26;
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr size_t kMostEstimators = 8;
 /// The page's colours (assets/report_data.js): told apart with any colour vision.
 constexpr std::array<const char*, kMostEstimators> kColours = {"#0072b2", "#d55e00", "#009e73", "#b5558c",
@@ -222,7 +222,7 @@ std::vector<PaperFigure> DrawPaperFigures(const Comparison& comparison) {
     figures.push_back({sequence + "_position_error",
                        ErrorFigure(entries, 3, 1, {"x error [m]", "y error [m]", "z error [m]"})});
     figures.push_back({sequence + "_orientation_error",
-                       ErrorFigure(entries, 0, kDegrees,
+                       ErrorFigure(entries, 0, kDegreesPerRadian,
                                    {"\u03c6x error [deg]", "\u03c6y error [deg]", "\u03c6z error [deg]"})});
     figures.push_back({sequence + "_nees", NeesFigure(entries)});
     figures.push_back({sequence + "_rpe", RpeFigure(entries)});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/numbers.h"
 #include "eval/comparison/aggregate.h"
 #include "eval/comparison/efficiency.h"
 #include "eval/comparison/nees_over_time.h"
@@ -44,8 +45,6 @@ std::set<const CellResult*> CellsWithSky(const Comparison& comparison) {
   }
   return cells;
 }
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Json InnovationJson(const InnovationSummary& of) {
   const std::pair<double, double> band = of.band.value_or(std::pair(kNan, kNan));

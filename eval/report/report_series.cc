@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/numbers.h"
 #include "eval/comparison/series_rows.h"
 #include "eval/report/report_json.h"
 
@@ -12,8 +13,6 @@ namespace alidade {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Three components of a series of vectors, scaled; empty when the series is absent.
 template <typename Vectors>
@@ -98,8 +97,8 @@ Json SeriesJson(const CellSeries& whole, int most) {
           {"regular", RegularMask(series.regular)},
           {"truth", PackComponents(series.truth_position, 0, 1.0, 1e-3)},
           {"est", PackComponents(series.position, 0, 1.0, 1e-3)},
-          {"ori", PackComponents(series.error, 0, kDegrees, 1e-3)},
-          {"ori_sigma", PackComponents(series.sigma, 0, kDegrees, 1e-3)},
+          {"ori", PackComponents(series.error, 0, kDegreesPerRadian, 1e-3)},
+          {"ori_sigma", PackComponents(series.sigma, 0, kDegreesPerRadian, 1e-3)},
           {"pos", PackComponents(series.error, 3, 1.0, 1e-3)},
           {"pos_sigma", PackComponents(series.sigma, 3, 1.0, 1e-3)},
           {"nees", RoundedJson(series.nees_pose, 3)},
@@ -119,7 +118,7 @@ Json SkyJson(const std::vector<SkyTrack>& tracks) {
   for (const SkyTrack& track : tracks) {
     Json t = Json::array(), x = Json::array(), y = Json::array(), r = Json::array();
     for (size_t i = 0; i < track.time_s.size(); ++i) {
-      const double azimuth = track.azimuth_deg[i] / kDegrees;
+      const double azimuth = track.azimuth_deg[i] / kDegreesPerRadian;
       const double down = 90 - track.elevation_deg[i];
       t.push_back(RoundedJson(track.time_s[i], 5));
       x.push_back(RoundedJson(down * std::sin(azimuth), 4));

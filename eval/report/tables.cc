@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/numbers.h"
 #include "eval/comparison/efficiency.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/csv_text.h"
@@ -14,8 +15,6 @@
 
 namespace alidade {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string SummaryCsv(const Comparison& comparison, const std::vector<Figure>& figures) {
   std::vector<std::string> header = {"estimator",    "backend", "sequence",   "seed",  "status",

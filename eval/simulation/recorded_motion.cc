@@ -1,8 +1,9 @@
 #include "eval/simulation/recorded_motion.h"
 
 #include <filesystem>
-#include <sstream>
 #include <utility>
+
+#include "core/format.h"
 
 namespace alidade {
 namespace {
@@ -10,12 +11,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMinDurationSeconds = 1;
-
-std::string Print(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 double DurationOf(const Trajectory& trajectory) {
   return SecondsBetween(trajectory.points.front().stamp_ns, trajectory.points.back().stamp_ns);
@@ -68,7 +63,7 @@ Result<Trajectory> KeepGapFree(const Trajectory& recorded, double max_gap_s, Tru
     }
   }
   if (gaps > 0 && policy == TruthGaps::kRefuse) {
-    return Status::Input(std::to_string(gaps) + " gaps longer than max_gap_s " + Print(max_gap_s) +
+    return Status::Input(std::to_string(gaps) + " gaps longer than max_gap_s " + Format("%g", max_gap_s) +
                          " s; expected none, a larger max_gap_s or truth_gaps: longest_span");
   }
   Trajectory kept = recorded;
@@ -90,8 +85,8 @@ Result<RecordedMotion> LoadRecordedMotion(const std::string& source, const Simul
     samples->points.pop_back();
   }
   if (DurationOf(*samples) < kMinDurationSeconds) {
-    return Status::Input(*path + ": " + Print(DurationOf(*samples)) +
-                         " s without a gap longer than max_gap_s " + Print(config.max_gap_s) +
+    return Status::Input(*path + ": " + Format("%g", DurationOf(*samples)) +
+                         " s without a gap longer than max_gap_s " + Format("%g", config.max_gap_s) +
                          " s; expected a second or more");
   }
   const Result<SplineTrajectory> motion = SplineTrajectory::Fit(*samples, config.knot_spacing_s);

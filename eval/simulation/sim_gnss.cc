@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "core/numbers.h"
 #include "core/random.h"
 #include "eval/simulation/sim_constellation.h"
 #include "eval/simulation/sim_imu.h"
@@ -19,8 +20,6 @@ namespace alidade {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = M_PI / 180;
 
 double Round(double value) {
   return std::round(value * 1e3) / 1e3;
@@ -51,8 +50,9 @@ class Receiver {
         seed_(seed),
         catalog_(std::move(catalog)),
         clock_(config, seed),
-        enu_(EnuFrame::At(ToEcef({config.anchor_latitude_deg * kDegree, config.anchor_longitude_deg * kDegree,
-                                  config.anchor_height_m}))) {
+        enu_(
+            EnuFrame::At(ToEcef({config.anchor_latitude_deg * kRadiansPerDegree,
+                                 config.anchor_longitude_deg * kRadiansPerDegree, config.anchor_height_m}))) {
     RandomStream biases(seed, "gnss.inter_system");
     for (const GnssSystem system : {GnssSystem::kGalileo, GnssSystem::kBeidou, GnssSystem::kGlonass}) {
       system_bias_m_[system] = config.inter_system_bias_m * biases.Normal();
@@ -117,7 +117,7 @@ class Receiver {
   /// found by iteration, without the series in omega / c that the models use.
   std::optional<Sight> Look(SatelliteId id, SignalCode signal, TimeNs tag_ns, double clock_m,
                             const Vector3d& antenna_E) const {
-    constexpr double kSurelyBelow = -5 * kDegree;
+    constexpr double kSurelyBelow = -5 * kRadiansPerDegree;
     Sight sight;
     double range = 7e7 * 0.33 + clock_m;
     double before = 0;
@@ -209,7 +209,7 @@ class Receiver {
     const double code_noise = path.Noise();
     const double rate_noise = path.Noise();
     const std::optional<Sight> now = Look(id, signal, tag_ns, clock_.bias_m(), AntennaAt(time_s));
-    if (!now || now->direction.elevation_rad < config_.elevation_mask_deg * kDegree) {
+    if (!now || now->direction.elevation_rad < config_.elevation_mask_deg * kRadiansPerDegree) {
       return std::nullopt;
     }
     *elevation = now->direction.elevation_rad;

@@ -1,21 +1,15 @@
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
+#include "core/format.h"
 #include "eval/simulation/simulator.h"
 
 namespace alidade {
 namespace {
 
-std::string Print(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 Status Expect(bool holds, const char* key, double value, const std::string& expected) {
   return holds ? Status::Ok()
-               : Status::Config(std::string(key) + ": " + Print(value) + "; expected " + expected);
+               : Status::Config(std::string(key) + ": " + Format("%g", value) + "; expected " + expected);
 }
 
 Status ValidateRecording(const SimulatorConfig& config) {
@@ -51,7 +45,7 @@ Status SimulatorConfig::Validate() const {
   ALIDADE_RETURN_IF_ERROR(
       Expect(duration_s * imu_rate_hz < 1e8, "duration_s", duration_s, "less than 1e8 IMU samples"));
   ALIDADE_RETURN_IF_ERROR(Expect(rest_s == 0 || rest_s + rest_ramp_s < duration_s, "rest_s", rest_s,
-                                 "rest_s + rest_ramp_s less than duration_s " + Print(duration_s)));
+                                 "rest_s + rest_ramp_s less than duration_s " + Format("%g", duration_s)));
   // An open path is walked from end to end: this bounds the work.
   ALIDADE_RETURN_IF_ERROR(Expect(trajectory != SimTrajectory::kWander || path_m < 1e4 * (length_m + width_m),
                                  "path_m", path_m, "less than 1e4 times length_m + width_m"));
@@ -64,7 +58,7 @@ Status SimulatorConfig::Validate() const {
   ALIDADE_RETURN_IF_ERROR(
       Expect(landmark_layout == SimLandmarkLayout::kRoom || landmark_min_distance_m < landmark_max_distance_m,
              "landmark_min_distance_m", landmark_min_distance_m,
-             "less than landmark_max_distance_m " + Print(landmark_max_distance_m)));
+             "less than landmark_max_distance_m " + Format("%g", landmark_max_distance_m)));
   ALIDADE_RETURN_IF_ERROR(Expect(camera_lever_arm_m.norm() < landmark_min_distance_m, "camera_lever_arm_m",
                                  camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
   ALIDADE_RETURN_IF_ERROR(

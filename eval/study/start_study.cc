@@ -7,6 +7,7 @@
 
 #include "core/format.h"
 #include "core/lie.h"
+#include "core/numbers.h"
 #include "core/random.h"
 #include "eval/files/csv_text.h"
 #include "eval/trajectory/trajectory_interpolation.h"
@@ -15,7 +16,6 @@
 namespace alidade {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGoodScale = 0.05;
 
 double Nees(const NavEstimate& estimate, const Vector15d& error, Eigen::Index size) {
@@ -24,7 +24,7 @@ double Nees(const NavEstimate& estimate, const Vector15d& error, Eigen::Index si
 
 double ScaleError(const InitializerWindow& window, const Trajectory& truth) {
   if (window.states.empty()) {
-    return kNaN;
+    return kNan;
   }
   const Result<TrajectoryPoint> newest = InterpolateTruth(truth, window.stamps_ns.back());
   double estimated = 0;
@@ -36,7 +36,7 @@ double ScaleError(const InitializerWindow& window, const Trajectory& truth) {
       real += (point->nav.p_WB - newest->nav.p_WB).squaredNorm();
     }
   }
-  return real > 0 ? std::abs(std::sqrt(estimated / real) - 1) : kNaN;
+  return real > 0 ? std::abs(std::sqrt(estimated / real) - 1) : kNan;
 }
 
 void CompareWithTruth(const Initializer& initializer, const NavEstimate& estimate, const Trajectory& truth,
@@ -52,7 +52,7 @@ void CompareWithTruth(const Initializer& initializer, const NavEstimate& estimat
   if (truth.has_velocity) {
     outcome->velocity_error_mps = error.segment<3>(6).norm();
     outcome->nees = Nees(estimate, error, 9);
-    outcome->nees_all = truth.has_bias ? Nees(estimate, error, 15) : kNaN;
+    outcome->nees_all = truth.has_bias ? Nees(estimate, error, 15) : kNan;
   }
 }
 
@@ -64,7 +64,7 @@ double Mean(const std::vector<double>& values) {
     sum += std::isfinite(value) ? value : 0;
     count += std::isfinite(value) ? 1 : 0;
   }
-  return count > 0 ? sum / count : kNaN;
+  return count > 0 ? sum / count : kNan;
 }
 
 std::string TableRow(const std::string& name, const std::vector<const StartOutcome*>& outcomes) {
@@ -106,7 +106,7 @@ StartOutcome StartAt(const EstimatorConfig& config, const MeasurementLog& log, c
                      TimeNs start_ns, double limit_s) {
   Initializer initializer(config, log.rig);
   StartOutcome outcome;
-  outcome.tilt_error_rad = outcome.velocity_error_mps = outcome.nees = outcome.nees_all = kNaN;
+  outcome.tilt_error_rad = outcome.velocity_error_mps = outcome.nees = outcome.nees_all = kNan;
   const TimeNs offset_ns = SecondsToNs(log.rig.camera_time_offset_s);
   auto sample = std::lower_bound(log.imu.begin(), log.imu.end(), start_ns + offset_ns,
                                  [](const ImuSample& s, TimeNs stamp) { return s.stamp_ns < stamp; });

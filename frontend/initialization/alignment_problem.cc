@@ -11,6 +11,7 @@
 #include "core/landmark_solver.h"
 #include "core/reprojection.h"
 #include "core/robust.h"
+#include "frontend/initialization/dynamic_window.h"
 
 namespace alidade {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kCauchyScale = 3.0;
 constexpr double kStartDepthM = 5.0;
 constexpr double kMaxStartDepthM = 100.0;
 constexpr int kLandmarkIterations = 3;

@@ -14,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMaxIterations = 30;
-constexpr int kMinTracks = 8;
+constexpr int kMinRefinedTracks = 8;
 // Squared residual of an observation (2 rows) that a good one exceeds once in 1800 times.
 constexpr double kMaxSquaredResidual = 15.0;
 
@@ -88,8 +88,8 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
   }
   refined.tracks = problem.active_tracks();
   refined.rejected_tracks = static_cast<int>(window.tracks.size()) - refined.tracks;
-  if (refined.tracks < kMinTracks) {
-    return Status::Diverged(Format("moving: only %d tracks fit, need %d", refined.tracks, kMinTracks));
+  if (refined.tracks < kMinRefinedTracks) {
+    return Status::Diverged(Format("moving: only %d tracks fit, need %d", refined.tracks, kMinRefinedTracks));
   }
   problem.Linearize();
   refined.reprojection_chi2 = problem.ReprojectionChi2();

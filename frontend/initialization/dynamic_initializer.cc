@@ -14,7 +14,7 @@ namespace {
 
 // The gyroscope's turn-on bias is found from vision, whatever the configured prior: 0.08 rad/s on EuRoC.
 constexpr double kGyroBiasStdRadps = 0.1;
-constexpr int kMinTracks = 15;
+constexpr int kMinWindowTracks = 15;
 // The pixel noise is a setting, not a measurement: twice too low still passes.
 constexpr double kMaxReprojectionChi2 = 4.0;
 constexpr double kMaxInertialChi2 = 3.0;
@@ -93,9 +93,9 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
                                           ImuBuffer* imu) {
   DynamicWindow window;
   ALIDADE_RETURN_IF_ERROR(BuildDynamicWindow(config, rig.camera, frames, imu, &window));
-  if (static_cast<int>(window.tracks.size()) < kMinTracks) {
+  if (static_cast<int>(window.tracks.size()) < kMinWindowTracks) {
     return Status::Diverged(Format("moving: %zu tracks shared by frames of the window, need %d",
-                                   window.tracks.size(), kMinTracks));
+                                   window.tracks.size(), kMinWindowTracks));
   }
   const ImuNoise noise = NoiseInMotion(window, rig.imu_noise);
   std::vector<Preintegration> preintegrations = PreintegrateWindow(window, ImuBias(), noise);

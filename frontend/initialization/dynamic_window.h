@@ -11,6 +11,9 @@
 
 namespace alidade {
 
+/// Scale of the Cauchy kernel on every whitened residual of the dynamic start.
+inline constexpr double kCauchyScale = 3.0;
+
 /// One track over the frames of a window.
 struct SharedTrack {
   std::int64_t track_id = 0;

@@ -22,7 +22,6 @@ constexpr double kConvergedRadps = 1e-5;
 constexpr std::array<int, 3> kSpacings = {1, 2, 4};
 constexpr int kMinPairTracks = 8;
 constexpr double kInlierSigma = 4.0;
-constexpr double kCauchyScale = 3.0;
 
 /// Rotation from frame j to frame i by the gyroscope and its derivative, both in the body.
 struct PairRotation {

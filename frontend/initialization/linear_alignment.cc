@@ -15,10 +15,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kRounds = 6;
-constexpr int kMinTracks = 8;
+constexpr int kMinConsistentTracks = 8;
 constexpr double kFirstDepthM = 4.0;  // only its being equal for all matters
-constexpr double kCauchyScale = 3.0;
-constexpr double kMinDepthM = 0.2;
+constexpr double kMinRayDepthM = 0.2;
 constexpr double kMaxDepthM = 50.0;
 
 /// Where the first body frame sees body frame k, as a function of (v, g): R_0k = motion.gamma, p_0k = v t + g
@@ -168,7 +167,7 @@ void Reweigh(const std::vector<FramePrediction>& frames, const Vector6d& solutio
     for (Ray& ray : bundle.rays) {
       const Vector3d offset = landmark - cameras[static_cast<size_t>(ray.frame)];
       const double depth = offset.dot(ray.direction);
-      ray.depth_m = std::clamp(depth, kMinDepthM, kMaxDepthM);
+      ray.depth_m = std::clamp(depth, kMinRayDepthM, kMaxDepthM);
       const double residual = (ray.across.transpose() * offset).norm() / (ray.sigma * ray.depth_m);
       ray.weight = depth > 0 ? RobustWeight(RobustKernel::kCauchy, kCauchyScale, residual * residual) : 0.01;
     }
@@ -200,9 +199,9 @@ Result<LinearAlignment> AlignLinear(const DynamicWindow& window,
                                     const std::vector<bool>& inlier, const Pose& T_BC, double gravity_mps2) {
   const std::vector<FramePrediction> frames = ChainFrames(preintegrations, bias);
   std::vector<RayBundle> bundles = CollectBundles(window, frames, inlier, T_BC.rotation);
-  if (static_cast<int>(bundles.size()) < kMinTracks) {
+  if (static_cast<int>(bundles.size()) < kMinConsistentTracks) {
     return Status::Diverged("moving: only " + std::to_string(bundles.size()) + " consistent tracks, need " +
-                            std::to_string(kMinTracks));
+                            std::to_string(kMinConsistentTracks));
   }
   Vector6d solution;
   double free_gravity = 0;

@@ -8,7 +8,6 @@
 namespace alidade {
 namespace {
 
-constexpr std::size_t kLabelColumn = 60;
 constexpr std::size_t kMaxTypes = 999;  // the format's I3
 
 /// The signal a RINEX 2 code or phase of `band` belongs to; kind 'P' is the P(Y) code, 'C' the civil one.

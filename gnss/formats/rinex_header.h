@@ -8,6 +8,9 @@
 
 namespace alidade {
 
+/// Where the label of a header line begins.
+inline constexpr std::size_t kLabelColumn = 60;
+
 /// One column of a satellite's record: what is measured on which signal.
 struct ObservationType {
   char kind = 'X';  ///< C pseudorange, L phase, D Doppler, S strength, anything else is passed over

@@ -4,12 +4,12 @@
 
 #include "core/format.h"
 #include "gnss/formats/navigation_message.h"
+#include "gnss/formats/rinex_header.h"
 
 namespace alidade {
 namespace {
 
-constexpr std::size_t kLabelColumn = 60;
-constexpr std::size_t kNumberWidth = 19;
+constexpr std::size_t kRecordWidth = 19;
 constexpr std::size_t kMaxLines = 12;  // the longest message, BeiDou CNAV, has ten
 
 class NavigationReader {
@@ -200,7 +200,7 @@ class NavigationReader {
   void ReadNumbers(std::size_t start, int count, RawNavMessage* raw) {
     for (int i = 0; i < count; ++i) {
       const std::string_view field =
-          Field(lines_.line(), start + static_cast<std::size_t>(i) * kNumberWidth, kNumberWidth);
+          Field(lines_.line(), start + static_cast<std::size_t>(i) * kRecordWidth, kRecordWidth);
       const std::optional<double> value = ParseReal(field);
       if (!value && !field.empty() && bad_number_.ok()) {
         bad_number_ =

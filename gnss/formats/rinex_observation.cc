@@ -12,7 +12,7 @@ namespace alidade {
 namespace {
 
 constexpr std::size_t kFieldWidth = 16;  // F14.3, loss of lock, strength
-constexpr std::size_t kNumberWidth = 14;
+constexpr std::size_t kObservationWidth = 14;
 constexpr std::size_t kFieldsALine2 = 5;
 constexpr std::size_t kSatellitesALine2 = 12;
 
@@ -158,13 +158,13 @@ class EpochReader {
   }
 
   void ReadField(const ObservationType& type, std::size_t column, SatelliteObservation* satellite) {
-    const std::string_view field = Field(lines_.line(), column, kNumberWidth);
+    const std::string_view field = Field(lines_.line(), column, kObservationWidth);
     if (field.empty()) {
       return;
     }
     const std::optional<double> number = ParseReal(field);
     // Numbers are right-aligned: one that the line cuts short is torn.
-    if (!number || lines_.line().size() < column + kNumberWidth) {
+    if (!number || lines_.line().size() < column + kObservationWidth) {
       Warn(lines_.Fault(Format("column %zu: found ", column + 1) + Excerpt(field) +
                         ", expected a number of width 14"));
       return;
@@ -180,7 +180,7 @@ class EpochReader {
         break;
       case 'L': {
         signal.phase_cycles = value;
-        const std::optional<int> lock = ParseInteger(Field(lines_.line(), column + kNumberWidth, 1));
+        const std::optional<int> lock = ParseInteger(Field(lines_.line(), column + kObservationWidth, 1));
         signal.loss_of_lock = static_cast<std::uint8_t>(std::max(lock.value_or(0), 0));
         break;
       }

@@ -6,13 +6,17 @@ function(alidade_add_room folder room)
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(alidade::${folder}_${room} ALIAS ${target})
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:alidade_options> ${ARG_PRIVATE})
-  alidade_precompile(${target})
+  alidade_compile_fast(${target})
   alidade_install_library(${target} ${folder}_${room} INTERNAL ${ARG_INTERNAL})
 endfunction()
 
-# alidade_precompile(<target>): the target's sources start from the precompiled headers of core.
-function(alidade_precompile target)
-  target_precompile_headers(${target} REUSE_FROM alidade_core)
+# alidade_compile_fast(<target>): the target's sources start from the precompiled headers of core and are compiled in groups, so that
+# headers are read and templates instantiated once a group. Names in anonymous namespaces must therefore differ within a room.
+function(alidade_compile_fast target)
+  if(NOT target STREQUAL alidade_core)
+    target_precompile_headers(${target} REUSE_FROM alidade_core)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ALIDADE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
 # alidade_add_rooms(<folder> room ...): the rooms, lowest first, and alidade::<folder>, which is all of them.

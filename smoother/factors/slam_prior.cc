@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMaxLandmarkIterations = 15;
+constexpr int kMaxPriorIterations = 15;
 constexpr double kDecrementTolerance = 1e-9;  // of the cost
 constexpr double kMaxDamping = 1e8;
 // A landmark that only the prior knows may have no depth there: its block is made regular.
@@ -256,7 +256,7 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
   VectorXd pull = slope + landmark_gram * (*landmarks - origins_);
   *cost = total(*landmarks, pull, views);
   double damping = 0;
-  for (int k = 0; k < kMaxLandmarkIterations; ++k) {
+  for (int k = 0; k < kMaxPriorIterations; ++k) {
     MatrixXd hessian = landmark_gram;
     for (size_t i = 0; i < tracks_.size(); ++i) {
       const Index row = 3 * static_cast<Index>(i);
