@@ -232,6 +232,17 @@ TEST_F(SquareRootCovarianceTest, UpdateByBlockRefusesRowsThatAreNotFinite) {
   EXPECT_EQ(root_.Covariance(), before);
 }
 
+// GIVEN finite rows beside whose square the identity vanishes THEN the update is refused and nothing changes.
+TEST_F(SquareRootCovarianceTest, ApplyRefusesRowsThatLeaveNothingOfTheIdentity) {
+  Clone();
+  const MatrixXd before = root_.Covariance();
+  MatrixXd rows = 1e150 * MatrixXd::Ones(2, root_.dimension());
+  root_.Prepare(rows);
+  VectorXd correction(root_.dimension());
+  EXPECT_FALSE(root_.Apply(rows, VectorXd::Ones(2), correction, nullptr));
+  EXPECT_EQ(root_.Covariance(), before);
+}
+
 TEST_F(SquareRootCovarianceTest, UpdateByBlockStaysPositiveUnderRowsFarBetterThanThePrior) {
   Clone();
   for (int i = 0; i < 50; ++i) {

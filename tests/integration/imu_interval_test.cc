@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <array>
+#include <memory>
 
 #include "core/imu_propagation.h"
 #include "filter/filter.h"
@@ -42,6 +44,18 @@ double RelativeDifference(const Matrix15d& a, const Matrix15d& b) {
   return factor.matrixL().solve(half.transpose()).cwiseAbs().maxCoeff();
 }
 
+using Estimators = std::array<std::unique_ptr<Estimator>, 2>;
+
+Estimators MakeBoth(const EstimatorConfig& config, const RigCalibration& rig) {
+  return {MakeFilter(config, rig), MakeSmoother(config, rig)};
+}
+
+TrackFrame EmptyFrame(TimeNs stamp_ns) {
+  TrackFrame frame;
+  frame.stamp_ns = stamp_ns;
+  return frame;
+}
+
 // GIVEN equal starts and IMU samples WHEN no camera or GNSS says anything, over more frames than the smoother
 // keeps, THEN mean and covariance of both back ends are the same in every error convention, and those of the
 // samples carried at once.
@@ -54,22 +68,20 @@ TEST(ImuIntervalTest, FilterAndSmootherCarryTheSameState) {
     config.smoother.error = convention;
     config.smoother.window = 4;
     const RigCalibration rig;
-    const std::unique_ptr<Estimator> filter = MakeFilter(config, rig);
-    const std::unique_ptr<Estimator> smoother = MakeSmoother(config, rig);
+    const Estimators estimators = MakeBoth(config, rig);
     const NavEstimate start = RandomStart(&random);
-    ASSERT_TRUE(filter->Initialize(start).ok());
-    ASSERT_TRUE(smoother->Initialize(start).ok());
+    for (const std::unique_ptr<Estimator>& estimator : estimators) {
+      ASSERT_TRUE(estimator->Initialize(start).ok());
+    }
     std::vector<ImuSample> samples;
     const Vector3d turn = random.Vector(0.8);
     for (int k = 0; k <= 8 * kSamplesPerFrame; ++k) {
       const Vector3d gyro = turn + random.Vector(0.3);
       samples.push_back({SecondsToNs(k / kImuRateHz), gyro, Vector3d(0, 0, kGravity) + random.Vector(2)});
-      for (const std::unique_ptr<Estimator>* estimator : {&filter, &smoother}) {
-        ASSERT_TRUE((*estimator)->AddImu(samples.back()).ok());
+      for (const std::unique_ptr<Estimator>& estimator : estimators) {
+        ASSERT_TRUE(estimator->AddImu(samples.back()).ok());
         if (k % kSamplesPerFrame == 0) {
-          TrackFrame frame;
-          frame.stamp_ns = samples.back().stamp_ns;
-          const Status status = (*estimator)->AddFrame(frame);
+          const Status status = estimator->AddFrame(EmptyFrame(samples.back().stamp_ns));
           ASSERT_TRUE(status.ok()) << status.message();
         }
       }
@@ -78,16 +90,63 @@ TEST(ImuIntervalTest, FilterAndSmootherCarryTheSameState) {
       }
       NavEstimate carried = start;
       ASSERT_TRUE(PropagateEstimate(samples, rig.imu_noise, GravityInWorld(kGravity), &carried).ok());
-      for (const std::unique_ptr<Estimator>* estimator : {&filter, &smoother}) {
-        const NavEstimate latest = (*estimator)->Latest();
-        SCOPED_TRACE(std::string(ToString(convention)) + (estimator == &filter ? " filter " : " smoother ") +
-                     std::to_string(k));
+      for (const std::unique_ptr<Estimator>& estimator : estimators) {
+        const NavEstimate latest = estimator->Latest();
+        SCOPED_TRACE(std::string(ToString(convention)) +
+                     (estimator == estimators[0] ? " filter " : " smoother ") + std::to_string(k));
         EXPECT_EQ(latest.stamp_ns, carried.stamp_ns);
         EXPECT_LT(Local(ErrorConvention::kSo3xRn, carried.nav, latest.nav).norm(), 1e-9);
         EXPECT_LT((latest.bias.gyro - carried.bias.gyro).norm(), 1e-9);
         EXPECT_LT((latest.bias.accel - carried.bias.accel).norm(), 1e-9);
         EXPECT_LT(RelativeDifference(latest.covariance, carried.covariance), 1e-9);
       }
+    }
+  }
+}
+
+// GIVEN one sample that no sensor measures among good ones, THEN both back ends refuse it and go on.
+TEST(ImuIntervalTest, ASampleBeyondAnySensorIsRefused) {
+  const Vector3d gravity(0, 0, kGravity);
+  for (const ImuSample& hostile : {ImuSample{SecondsToNs(0.04), Vector3d::Zero(), Vector3d(1e200, 0, 0)},
+                                   ImuSample{SecondsToNs(0.04), Vector3d(0, 1e7, 0), gravity}}) {
+    for (const std::unique_ptr<Estimator>& estimator : MakeBoth(EstimatorConfig(), RigCalibration())) {
+      test::RandomStates random(12);
+      NavEstimate start = RandomStart(&random);
+      start.nav = NavState();
+      start.bias = ImuBias();
+      ASSERT_TRUE(estimator->Initialize(start).ok());
+      for (int k = 0; k <= kSamplesPerFrame; ++k) {
+        const TimeNs stamp_ns = SecondsToNs(k / kImuRateHz);
+        const bool bad = stamp_ns == hostile.stamp_ns;
+        EXPECT_EQ(estimator->AddImu(bad ? hostile : ImuSample{stamp_ns, Vector3d::Zero(), gravity}).code(),
+                  bad ? StatusCode::kInput : StatusCode::kOk);
+      }
+      EXPECT_TRUE(estimator->AddFrame(EmptyFrame(SecondsToNs(0.1))).ok());
+      EXPECT_LT(estimator->Latest().nav.p_WB.norm(), 0.01);
+    }
+  }
+}
+
+// GIVEN numbers that overflow in the integration, THEN both back ends are diverged, by Status.
+TEST(ImuIntervalTest, AnIntervalThatOverflowsIsADivergedStatus) {
+  for (const bool by_noise : {true, false}) {
+    RigCalibration rig;
+    rig.imu_noise.gyro_noise_density_radps_sqrthz = by_noise ? 1e300 : 1e-3;
+    for (const std::unique_ptr<Estimator>& estimator : MakeBoth(EstimatorConfig(), rig)) {
+      test::RandomStates random(13);
+      NavEstimate start = RandomStart(&random);
+      start.bias.accel.y() = by_noise ? 0 : 1e200;
+      ASSERT_TRUE(estimator->Initialize(start).ok());
+      Status status;
+      for (int k = 0; k <= 2 * kSamplesPerFrame; ++k) {
+        const TimeNs stamp_ns = SecondsToNs(k / kImuRateHz);
+        ASSERT_TRUE(estimator->AddImu({stamp_ns, Vector3d::Zero(), Vector3d(0, 0, kGravity)}).ok());
+        if (k % kSamplesPerFrame == 0 && status.ok()) {
+          status = estimator->AddFrame(EmptyFrame(stamp_ns));
+        }
+      }
+      EXPECT_EQ(status.code(), StatusCode::kDiverged) << status.message();
+      EXPECT_FALSE(estimator->initialized());
     }
   }
 }
