@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/robust.h"
@@ -55,6 +56,9 @@ class SinglePointSolver {
   Result<SinglePointSolution> Solve(EpochMeasurements prepared);
   /// The same of an epoch that is not prepared yet.
   Result<SinglePointSolution> Solve(const ObservationEpoch& epoch) { return Solve(builder_.Prepare(epoch)); }
+
+  /// Further epochs are prepared with this one, such as when newer ephemerides came in.
+  void SetBuilder(MeasurementBuilder builder) { builder_ = std::move(builder); }
 
  private:
   struct Bias {
