@@ -73,30 +73,19 @@ struct DepthRows {
 
 }  // namespace
 
-InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC)
-    : base_(base), view_(view), T_BC_(T_BC) {}
-
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
                                        const WindowCalibration* calibration)
     : base_(base), view_(view), calibration_(calibration) {}
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
-  WindowCalibration camera;
-  NormalizedObservation observation = view_->observation;
-  if (calibration_ != nullptr) {
-    camera.layout = calibration_->layout;
-    if (!calibration_->At(parameters[3], &camera.mean)) {
-      return false;
-    }
-    observation = Seen(camera, *view_);
+  WindowCalibration camera{calibration_->layout, {}};
+  if (!calibration_->At(calibration_->Block(parameters, 3), &camera.mean)) {
+    return false;
   }
-  const auto geometry = [&](const WindowFrame& frame, const NavState& state) {
-    return calibration_ == nullptr ? MakeGeometry(frame, state, *T_BC_)
-                                   : MakeGeometry(frame, state, camera.mean);
-  };
-  const FrameGeometry base = geometry(*base_, UnpackNavState(parameters[0]));
-  const FrameGeometry view = geometry(*view_->frame, UnpackNavState(parameters[1]));
+  const NormalizedObservation observation = Seen(camera, *view_);
+  const FrameGeometry base = MakeGeometry(*base_, UnpackNavState(parameters[0]), camera.mean);
+  const FrameGeometry view = MakeGeometry(*view_->frame, UnpackNavState(parameters[1]), camera.mean);
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   DepthRows rows;
   const bool in_front = rows.Linearize(base, view, landmark, observation, tangent_jacobians != nullptr);
@@ -112,7 +101,7 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
     out.leftCols<2>() = whitening * rows.bearing;
     out.col(2) = whitening * rows.rho;
   }
-  if (calibration_ == nullptr || tangent_jacobians[3] == nullptr) {
+  if (calibration_->size() == 0 || tangent_jacobians[3] == nullptr) {
     return true;
   }
   if (!in_front) {
@@ -127,20 +116,17 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
 }
 
 BaseBearingFactor::BaseBearingFactor(const WindowView* view, const WindowCalibration* calibration)
-    : observation_(view->observation), view_(view), calibration_(calibration) {}
+    : view_(view), calibration_(calibration) {}
 
 bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residual,
                                  double* const* tangent_jacobians) const {
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[0]);
-  WindowCalibration camera;
-  NormalizedObservation observation = observation_;
-  if (calibration_ != nullptr) {
-    camera.layout = calibration_->layout;
-    if (!calibration_->At(parameters[1], &camera.mean)) {
-      return false;
-    }
-    observation = Seen(camera, *view_);
+  const bool calibrates = blocks().size() > 1;
+  WindowCalibration camera = *calibration_;
+  if (calibrates && !calibration_->At(parameters[1], &camera.mean)) {
+    return false;
   }
+  const NormalizedObservation observation = Seen(camera, *view_);
   Eigen::Map<Vector2d> r(residual);
   r = observation.sqrt_information * (landmark.head<2>() - observation.z);
   if (tangent_jacobians != nullptr && tangent_jacobians[0] != nullptr) {
@@ -148,7 +134,7 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
     out.leftCols<2>() = observation.sqrt_information;
     out.col(2).setZero();
   }
-  if (calibration_ != nullptr && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
+  if (calibrates && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
     StoreCalibration(camera, *calibration_, Predicted(observation, r),
                      Eigen::Matrix2Xd::Zero(2, camera.size()), parameters[1], tangent_jacobians[1]);
   }

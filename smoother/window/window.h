@@ -49,6 +49,9 @@ struct WindowFrame {
   [[nodiscard]] double mean_step_s() const;
 };
 
+/// Frames in time order; the index of each is its place.
+using WindowFrames = std::vector<std::unique_ptr<WindowFrame>>;
+
 /// One observation of a track inside the window.
 struct WindowView {
   const WindowFrame* frame = nullptr;
@@ -114,7 +117,7 @@ class Window {
   /// Drops tracks that are not seen any more and have fewer than two views left; SLAM features stay.
   void Prune();
 
-  [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }
+  [[nodiscard]] const WindowFrames& frames() const { return frames_; }
   [[nodiscard]] WindowFrame& frame(int index) { return *frames_[static_cast<size_t>(index)]; }
   [[nodiscard]] const WindowFrame& frame(int index) const { return *frames_[static_cast<size_t>(index)]; }
   [[nodiscard]] WindowFrame& newest() { return *frames_.back(); }
@@ -126,7 +129,7 @@ class Window {
  private:
   void Renumber();
 
-  std::vector<std::unique_ptr<WindowFrame>> frames_;
+  WindowFrames frames_;
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
 

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "gnss/alignment/carried_state.h"
-#include "smoother/solve/marginalization.h"
-#include "smoother/solve/window_system.h"
 #include "tests/gnss/model/synthetic_sky.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/window_fixture.h"
 #include "tests/support/jacobian_checker.h"
 
@@ -128,20 +127,14 @@ TEST_P(GnssMarginalizationTest, NothingIsLostAndNothingInvented) {
     gnss.Align(alignment, &fixture.window.frame(0), &prior);
     fixture.window.frame(0).clock = clock;
     const PoseSystem none(4);
-    Matrix15d before;
-    Matrix6d clock_before;
-    ASSERT_TRUE(NewestCovariance(fixture.window, prior, none, fixture.gravity_W, &before, &fixture.context,
-                                 &clock_before));
-    const LinearPrior next =
-        MarginalizeOldest(fixture.window, prior, none, fixture.gravity_W, &fixture.context);
-    EXPECT_EQ(next.columns(), 15 + 6 + 6 + 6);
+    const SensorContext sensors{fixture.gravity_W, &fixture.context};
+    const NewestEstimate before = Newest(fixture.window, prior, none, sensors);
+    const LinearPrior next = Marginalize(fixture.window, prior, none, sensors);
+    EXPECT_EQ(next.columns().size(), 15 + 6 + 6 + 6);
     fixture.window.RemoveOldest();
-    Matrix15d after;
-    Matrix6d clock_after;
-    ASSERT_TRUE(NewestCovariance(fixture.window, next, PoseSystem(3), fixture.gravity_W, &after,
-                                 &fixture.context, &clock_after));
-    EXPECT_TRUE(after.isApprox(before, 1e-6)) << seed;
-    EXPECT_TRUE(clock_after.isApprox(clock_before, 1e-6)) << seed;
+    const NewestEstimate after = Newest(fixture.window, next, PoseSystem(3), sensors);
+    EXPECT_TRUE(after.covariance.isApprox(before.covariance, 1e-6)) << seed;
+    EXPECT_TRUE(after.clock_covariance.isApprox(before.clock_covariance, 1e-6)) << seed;
   }
 }
 
