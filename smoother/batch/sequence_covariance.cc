@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "core/check.h"
+#include "smoother/batch/sequence_order.h"
 
 namespace alidade {
 namespace {
@@ -52,15 +52,9 @@ class SequenceFactorization {
  public:
   SequenceFactorization(const SequenceProblem& problem, bool with_covariance, bool with_filtered)
       : problem_(problem),
+        order_(problem),
         with_covariance_(with_covariance),
-        with_filtered_(with_filtered),
-        at_(problem.frames.size()),
-        between_(problem.frames.size()),
-        begins_(problem.frames.size()) {
-    for (const std::unique_ptr<WindowTerm>& term : problem.terms) {
-      Sort(*term);
-    }
-  }
+        with_filtered_(with_filtered) {}
 
   Result<SequenceCovariance> Execute() {
     for (size_t k = 0; k < problem_.frames.size(); ++k) {
@@ -83,40 +77,6 @@ class SequenceFactorization {
   }
 
  private:
-  struct Life {
-    int first = -1;  ///< frame
-    int last = -1;
-  };
-
-  /// Files a term under the newest frame that it concerns.
-  void Sort(const WindowTerm& term) {
-    int oldest = static_cast<int>(problem_.frames.size());
-    int newest = -1;
-    for (const TermPart& part : term.parts()) {
-      if (part.of.kind == Unknown::Kind::kFrame || part.of.kind == Unknown::Kind::kClock) {
-        oldest = std::min(oldest, part.of.index);
-        newest = std::max(newest, part.of.index);
-      }
-    }
-    CHECK(newest >= 0 && newest <= oldest + 1) << "a term concerns one frame, or two that follow each other";
-    const auto k = static_cast<size_t>(newest);
-    (oldest == newest ? at_ : between_)[k].push_back(&term);
-    for (const TermPart& part : term.parts()) {
-      if (part.of.kind != Unknown::Kind::kLandmark) {
-        continue;
-      }
-      const auto landmark = static_cast<size_t>(part.of.index);
-      lives_.resize(std::max(lives_.size(), landmark + 1));
-      Life& life = lives_[landmark];
-      CHECK(newest >= life.last) << "the terms of a landmark come in time order";
-      if (life.first < 0) {
-        life.first = newest;
-        begins_[k].push_back(part.of.index);
-      }
-      life.last = newest;
-    }
-  }
-
   [[nodiscard]] Status Singular(size_t frame) const {
     return Status::Diverged("batch: information at " + FormatSeconds(problem_.frames[frame]->stamp_ns) +
                             " s is not positive definite");
@@ -162,7 +122,7 @@ class SequenceFactorization {
     const Index own = both.size() - before;
     MatrixXd link = MatrixXd::Zero(both.size(), both.size());
     VectorXd link_gradient = VectorXd::Zero(both.size());
-    ALIDADE_RETURN_IF_ERROR(Add(between_[k], both, &link, &link_gradient));
+    ALIDADE_RETURN_IF_ERROR(Add(order_.between[k], both, &link, &link_gradient));
 
     MatrixXd eliminated = Gather(front_.hessian, step.eliminated, step.eliminated);
     eliminated.topLeftCorner(before, before) += link.topLeftCorner(before, before);
@@ -209,7 +169,7 @@ class SequenceFactorization {
     }
     for (size_t slot = 0; slot < front_.landmarks.size(); ++slot) {
       const int landmark = front_.landmarks[slot];
-      const bool ended = lives_[static_cast<size_t>(landmark)].last == static_cast<int>(k);
+      const bool ended = order_.last_frame[static_cast<size_t>(landmark)] == static_cast<int>(k);
       for (Index i = 0; i < kPoint; ++i) {
         (ended ? step->eliminated : step->kept).push_back(kPoint * static_cast<Index>(slot) + i);
       }
@@ -224,7 +184,7 @@ class SequenceFactorization {
   void OpenLandmarks(size_t k) {
     const Index before = front_.own();
     const Index own = front_.hessian.rows() - before;
-    const Index added = kPoint * static_cast<Index>(begins_[k].size());
+    const Index added = kPoint * static_cast<Index>(order_.begins[k].size());
     if (added == 0) {
       return;
     }
@@ -236,7 +196,7 @@ class SequenceFactorization {
     gradient << front_.gradient.head(before), VectorXd::Zero(added), front_.gradient.tail(own);
     front_.hessian = std::move(hessian);
     front_.gradient = std::move(gradient);
-    front_.landmarks.insert(front_.landmarks.end(), begins_[k].begin(), begins_[k].end());
+    front_.landmarks.insert(front_.landmarks.end(), order_.begins[k].begin(), order_.begins[k].end());
   }
 
   Status AddMeasurements(size_t k) {
@@ -246,7 +206,7 @@ class SequenceFactorization {
       columns.AddLandmark(landmark);
     }
     AddOwn(k, &columns);
-    return Add(at_[k], columns, &front_.hessian, &front_.gradient);
+    return Add(order_.at[k], columns, &front_.hessian, &front_.gradient);
   }
 
   Status AddFilteredCovariance(size_t k) {
@@ -302,11 +262,8 @@ class SequenceFactorization {
   }
 
   const SequenceProblem& problem_;
+  SequenceOrder order_;
   bool with_covariance_, with_filtered_;
-  std::vector<std::vector<const WindowTerm*>> at_;       ///< terms by the frame that they concern alone
-  std::vector<std::vector<const WindowTerm*>> between_;  ///< those of a frame and the one before it
-  std::vector<std::vector<int>> begins_;                 ///< landmarks by their first frame
-  std::vector<Life> lives_;                              ///< by landmark
   Front front_;
   std::vector<Elimination> eliminations_;  ///< from frame k to k+1
   SequenceCovariance result_;

@@ -88,7 +88,9 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(leaving), calibration_, kernel_);
   const std::vector<const WindowTrack*> gone = vision->used();
   WindowTerms terms;
-  ALIDADE_RETURN_IF_ERROR(AddSensorTerms(Sensors(), window_.frames(), 2, &terms));
+  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), 2, &terms); !status.ok()) {
+    return Lost(status.message());
+  }
   terms.insert(terms.begin() + 1, std::move(vision));
   Result<LinearPrior> next = MarginalizeOldest(window_, prior_, calibration_, terms, slam);
   if (!next.ok()) {

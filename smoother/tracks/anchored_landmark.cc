@@ -81,7 +81,7 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
   rows->landmark.noalias() = weighted * transfer.landmark;
   rows->squared_norm = rows->residual.squaredNorm();
   rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
-  if (with_frames && calibration != nullptr) {
+  if (with_frames && calibration != nullptr && calibration->size() > 0) {
     const CalibrationLayout& layout = calibration->layout;
     Eigen::MatrixXd intrinsics(2,
                                layout.size());  // the ray's part; the cameras' places come from the transfer
