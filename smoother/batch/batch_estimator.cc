@@ -42,11 +42,7 @@ std::unique_ptr<Estimator> MakeBatch(const EstimatorConfig& config, const RigCal
 
 BatchEstimator::BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,
                                std::unique_ptr<Estimator> initial)
-    : config_(config),
-      rig_(rig),
-      initial_(std::move(initial)),
-      imu_(config.imu.max_gap_s),
-      sequence_(config, rig) {}
+    : config_(config), initial_(std::move(initial)), imu_(config.imu.max_gap_s), sequence_(config, rig) {}
 
 Status BatchEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(initial_->Initialize(initial));
@@ -87,7 +83,7 @@ Result<std::vector<FinalizedFrame>> BatchEstimator::TakeFinalized(const std::ato
     return finalized;  // the prior is all there is
   }
   const Stopwatch stopwatch;
-  const Result<BatchReport> report = SolveBatch(config_, rig_, stop, &sequence_);
+  const Result<BatchReport> report = SolveBatch(config_, stop, &sequence_);
   if (!report.ok()) {
     return report.status();
   }

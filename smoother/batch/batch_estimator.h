@@ -33,7 +33,6 @@ class BatchEstimator final : public Estimator {
 
  private:
   EstimatorConfig config_;
-  RigCalibration rig_;
   std::unique_ptr<Estimator> initial_;
   ImuBuffer imu_;
   BatchSequence sequence_;

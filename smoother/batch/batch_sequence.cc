@@ -34,7 +34,8 @@ BatchSequence::BatchSequence(const EstimatorConfig& config, const RigCalibration
       rig_(rig),
       kernel_{config.batch.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.batch.gate_probability),
-      rest_(config.vision, config.init, rig.camera) {}
+      rest_(config.vision, config.init, rig.camera),
+      calibration_{{}, {rig.camera, rig.T_BC, 0}} {}
 
 bool BatchSequence::Start(const NavEstimate& initial) {
   frames_.clear();

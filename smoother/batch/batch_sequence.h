@@ -49,9 +49,11 @@ class BatchSequence {
   /// Integrates the IMU of every interval anew at the present biases.
   void Preintegrate();
 
-  [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }
+  [[nodiscard]] const WindowFrames& frames() const { return frames_; }
   [[nodiscard]] const std::vector<BatchTrack>& tracks() const { return tracks_; }
   [[nodiscard]] const LinearPrior& prior() const { return prior_; }
+  /// The camera; the batch estimates nothing of it.
+  [[nodiscard]] const WindowCalibration& calibration() const { return calibration_; }
   /// The tracks that Select chose, in order of first observation.
   [[nodiscard]] std::vector<WindowTrack*> SelectedTracks();
   [[nodiscard]] int invalid_observations(int frame) const { return invalid_[static_cast<size_t>(frame)]; }
@@ -68,8 +70,9 @@ class BatchSequence {
   ObservationKernel kernel_;  ///< of the final estimate
   ChiSquareGate gate_;
   RestDetector rest_;
+  WindowCalibration calibration_;
   LinearPrior prior_;
-  std::vector<std::unique_ptr<WindowFrame>> frames_;
+  WindowFrames frames_;
   std::vector<int> invalid_;  ///< observations outside the camera model's domain, a frame
   std::vector<BatchTrack> tracks_;
   std::map<std::int64_t, size_t> track_of_id_;

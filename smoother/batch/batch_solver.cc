@@ -9,7 +9,9 @@
 #include "core/blas.h"
 #include "core/format.h"
 #include "core/imu_propagation.h"
-#include "smoother/solve/solve_store.h"
+#include "smoother/solve/prior_terms.h"
+#include "smoother/solve/sensor_terms.h"
+#include "smoother/solve/vision_terms.h"
 
 namespace alidade {
 namespace {
@@ -28,8 +30,7 @@ class StopCallback final : public ceres::IterationCallback {
   const std::atomic<bool>* stop_;
 };
 
-ceres::Solver::Options SolverOptions(const BatchConfig& config, int frames, size_t tracks,
-                                     SolveStore* store) {
+ceres::Solver::Options SolverOptions(const BatchConfig& config, ParameterBlocks* blocks) {
   ceres::Solver::Options solver;
   solver.max_num_iterations = config.max_iterations;
   solver.num_threads = 1;
@@ -45,12 +46,12 @@ ceres::Solver::Options SolverOptions(const BatchConfig& config, int frames, size
   solver.parameter_tolerance = 1e-14;
   solver.gradient_tolerance = 1e-14;
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (size_t i = 0; i < tracks; ++i) {
-    solver.linear_solver_ordering->AddElementToGroup(store->Landmark(i), 0);
+  for (int i = 0; i < blocks->landmarks(); ++i) {
+    solver.linear_solver_ordering->AddElementToGroup(blocks->Landmark(i), 0);
   }
-  for (int i = 0; i < frames; ++i) {
-    solver.linear_solver_ordering->AddElementToGroup(store->Nav(i), 1);
-    solver.linear_solver_ordering->AddElementToGroup(store->Bias(i), 1);
+  for (int i = 0; i < blocks->frames(); ++i) {
+    solver.linear_solver_ordering->AddElementToGroup(blocks->Nav(i), 1);
+    solver.linear_solver_ordering->AddElementToGroup(blocks->Bias(i), 1);
   }
   return solver;
 }
@@ -58,10 +59,8 @@ ceres::Solver::Options SolverOptions(const BatchConfig& config, int frames, size
 /// Steps 1 to 3 of SolveBatch.
 class BatchSolve {
  public:
-  BatchSolve(const EstimatorConfig& config, const RigCalibration& rig, const std::atomic<bool>* stop,
-             BatchSequence* sequence)
+  BatchSolve(const EstimatorConfig& config, const std::atomic<bool>* stop, BatchSequence* sequence)
       : config_(config),
-        rig_(rig),
         gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
         kernel_{config.batch.robust_kernel, config.vision.robust_scale_sigma},
         stop_(stop),
@@ -99,26 +98,35 @@ class BatchSolve {
   static double Square(double x) { return x * x; }
   [[nodiscard]] bool Stopped() const { return stop_ != nullptr && stop_->load(); }
 
+  Status AddTerms(const ObservationKernel& kernel, const std::vector<WindowTrack*>& tracks,
+                  WindowTerms* terms) const {
+    const WindowFrames& frames = sequence_.frames();
+    terms->push_back(MakePriorTerm(sequence_.prior(), sequence_.calibration()));
+    ALIDADE_RETURN_IF_ERROR(AddSensorTerms({gravity_W_}, frames, static_cast<int>(frames.size()), terms));
+    AddTrackTerms(frames, tracks, sequence_.calibration(), kernel, terms);
+    return Status::Ok();
+  }
+
   Status Solve(const ObservationKernel& kernel) {
     sequence_.Preintegrate();
     const std::vector<WindowTrack*> tracks = sequence_.SelectedTracks();
-    SolveStore store(config_.smoother.error, kernel, sequence_.frames(), tracks);
-    const std::unique_ptr<ceres::Problem> problem = store.MakeProblem();
-    store.AddPrior(sequence_.prior(), problem.get());
-    ALIDADE_RETURN_IF_ERROR(store.AddImu(gravity_W_, problem.get()));
-    store.AddRest(problem.get());
-    store.AddInverseDepth(rig_.T_BC, problem.get());
-    const int frames = static_cast<int>(sequence_.frames().size());
-    ceres::Solver::Options options = SolverOptions(config_.batch, frames, tracks.size(), &store);
+    WindowTerms terms;
+    ALIDADE_RETURN_IF_ERROR(AddTerms(kernel, tracks, &terms));
+    ParameterBlocks blocks(config_.smoother.error, sequence_.frames(), tracks, sequence_.calibration());
+    const std::unique_ptr<ceres::Problem> problem = blocks.MakeProblem();
+    for (const std::unique_ptr<WindowTerm>& term : terms) {
+      term->AddTo(&blocks, problem.get());
+    }
+    ceres::Solver::Options options = SolverOptions(config_.batch, &blocks);
     UseOneThreadPerBlasCall();  // CHOLMOD's supernodes
     StopCallback callback(stop_);
     options.callbacks.push_back(&callback);
     ceres::Solver::Summary summary;
     ceres::Solve(options, problem.get(), &summary);
-    if (summary.termination_type == ceres::FAILURE || !store.IsFinite()) {
+    if (summary.termination_type == ceres::FAILURE || !blocks.IsFinite()) {
       return Status::Diverged("batch: solver failed: " + summary.message);
     }
-    store.WriteBack();
+    blocks.WriteBack();
     ++report_.solves;
     report_.iterations += static_cast<int>(summary.iterations.size()) - 1;
     report_.final_cost = summary.final_cost;
@@ -128,16 +136,10 @@ class BatchSolve {
   Status Factorize(bool with_covariance) {
     sequence_.Preintegrate();
     const std::vector<WindowTrack*> tracks = sequence_.SelectedTracks();
-    SequenceProblem problem;
-    problem.frames = sequence_.frames();
-    const std::vector<const WindowTrack*> read_only(tracks.begin(), tracks.end());
-    problem.tracks = read_only;
-    problem.prior = &sequence_.prior();
-    problem.T_BC = rig_.T_BC;
-    problem.gravity_W = gravity_W_;
-    problem.kernel = kernel_;
-    Result<SequenceCovariance> covariance =
-        ComputeSequenceCovariance(problem, with_covariance, with_covariance && config_.batch.filtering_bound);
+    WindowTerms terms;
+    ALIDADE_RETURN_IF_ERROR(AddTerms(kernel_, tracks, &terms));
+    Result<SequenceCovariance> covariance = ComputeSequenceCovariance(
+        {sequence_.frames(), terms}, with_covariance, with_covariance && config_.batch.filtering_bound);
     if (!covariance.ok()) {
       return covariance.status();
     }
@@ -146,7 +148,6 @@ class BatchSolve {
   }
 
   const EstimatorConfig& config_;
-  const RigCalibration& rig_;
   Eigen::Vector3d gravity_W_;
   ObservationKernel kernel_;
   const std::atomic<bool>* stop_;
@@ -156,9 +157,9 @@ class BatchSolve {
 
 }  // namespace
 
-Result<BatchReport> SolveBatch(const EstimatorConfig& config, const RigCalibration& rig,
-                               const std::atomic<bool>* stop, BatchSequence* sequence) {
-  return BatchSolve(config, rig, stop, sequence).Execute();
+Result<BatchReport> SolveBatch(const EstimatorConfig& config, const std::atomic<bool>* stop,
+                               BatchSequence* sequence) {
+  return BatchSolve(config, stop, sequence).Execute();
 }
 
 }  // namespace alidade

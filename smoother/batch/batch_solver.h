@@ -29,7 +29,7 @@ struct BatchReport {
 ///
 /// `stop` (may be null) is polled once an iteration. kDiverged: a solve failed, or the tolerance is not met
 /// after kMaxSolves solves.
-Result<BatchReport> SolveBatch(const EstimatorConfig& config, const RigCalibration& rig,
-                               const std::atomic<bool>* stop, BatchSequence* sequence);
+Result<BatchReport> SolveBatch(const EstimatorConfig& config, const std::atomic<bool>* stop,
+                               BatchSequence* sequence);
 
 }  // namespace alidade

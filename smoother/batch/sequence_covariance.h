@@ -1,11 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/status.h"
-#include "smoother/solve/window_system.h"
-#include "smoother/tracks/track_system.h"
+#include "smoother/solve/window_term.h"
 
 namespace alidade {
 
@@ -22,19 +22,16 @@ struct SequenceCovariance {
 };
 
 struct SequenceProblem {
-  std::span<const std::unique_ptr<WindowFrame>> frames;  ///< all but the first with preintegration
-  std::span<const WindowTrack* const> tracks;            ///< with landmarks, at least two views each
-  const LinearPrior* prior = nullptr;                    ///< on the first frame alone
-  Pose T_BC;
-  Eigen::Vector3d gravity_W = Eigen::Vector3d::Zero();
-  ObservationKernel kernel;
+  std::span<const std::unique_ptr<WindowFrame>> frames;
+  /// Each concerns one frame and landmarks, or two consecutive frames.
+  std::span<const std::unique_ptr<WindowTerm>> terms;
 };
 
 /// Block-sparse Cholesky factorisation of the information in time order and selected inversion.
 ///
 /// Front k holds the joint information of the landmarks in sight and the state x_k once every state and track
-/// before is eliminated (a track after its last view). To go on, x_{k+1} is joined to it by the IMU factor,
-/// then E = {x_k, tracks that ended} is eliminated from A = [A_EE A_ES; A_SE A_SS]:
+/// before is eliminated (a track after its last view). To go on, x_{k+1} is joined to it by the terms between
+/// both, then E = {x_k, tracks that ended} is eliminated from A = [A_EE A_ES; A_SE A_SS]:
 ///
 ///     G = A_SE A_EE^-1,   A_SS <- A_SS - G A_ES.
 ///
@@ -47,7 +44,8 @@ struct SequenceProblem {
 /// tracks that end, a frame. The filtered covariance is the inverse of the front's own last block after
 /// elimination of its landmarks: O(l^3) a frame, the dearest part.
 ///
-/// kDiverged: the information of some frame is not positive definite, or a landmark lies behind a view.
+/// kDiverged: the information of some frame is not positive definite, or a term is undefined (a landmark lies
+/// behind a view).
 Result<SequenceCovariance> ComputeSequenceCovariance(const SequenceProblem& problem, bool with_covariance,
                                                      bool with_filtered);
 

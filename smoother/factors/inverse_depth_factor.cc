@@ -37,35 +37,23 @@ NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) 
 
 }  // namespace
 
-InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC)
-    : base_(base), view_(view), T_BC_(T_BC) {}
-
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
                                        const WindowCalibration* calibration)
     : base_(base), view_(view), calibration_(calibration) {}
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
-  WindowCalibration camera;
-  NormalizedObservation observation = view_->observation;
-  if (calibration_ != nullptr) {
-    camera.layout = calibration_->layout;
-    if (!calibration_->At(parameters[3], &camera.mean)) {
-      return false;
-    }
-    observation = Seen(camera, *view_);
+  WindowCalibration camera{calibration_->layout, {}};
+  if (!calibration_->At(calibration_->Block(parameters, 3), &camera.mean)) {
+    return false;
   }
-  const auto geometry = [&](const WindowFrame& frame, const NavState& state) {
-    return calibration_ == nullptr ? MakeGeometry(frame, state, *T_BC_)
-                                   : MakeGeometry(frame, state, camera.mean);
-  };
-  const FrameGeometry base = geometry(*base_, UnpackNavState(parameters[0]));
-  const FrameGeometry view = geometry(*view_->frame, UnpackNavState(parameters[1]));
+  const NormalizedObservation observation = Seen(camera, *view_);
+  const FrameGeometry base = MakeGeometry(*base_, UnpackNavState(parameters[0]), camera.mean);
+  const FrameGeometry view = MakeGeometry(*view_->frame, UnpackNavState(parameters[1]), camera.mean);
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   AnchoredRows rows;
-  const bool calibrated = calibration_ != nullptr;
   const bool in_front = LinearizeAnchoredView(base, view, observation, {}, landmark, &rows,
-                                              tangent_jacobians != nullptr, calibrated ? &camera : nullptr);
+                                              tangent_jacobians != nullptr, &camera);
   if (!in_front) {
     rows.residual.setConstant(kBehindSigma);
     rows.anchor.setZero();
@@ -82,27 +70,24 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   if (tangent_jacobians[2] != nullptr) {
     Eigen::Map<RowMatrix2x3>{tangent_jacobians[2]} = rows.landmark;
   }
-  if (calibrated && tangent_jacobians[3] != nullptr) {
+  if (camera.size() > 0 && tangent_jacobians[3] != nullptr) {
     StoreCalibration(rows.calibration, *calibration_, parameters[3], tangent_jacobians[3]);
   }
   return true;
 }
 
 BaseBearingFactor::BaseBearingFactor(const WindowView* view, const WindowCalibration* calibration)
-    : observation_(view->observation), view_(view), calibration_(calibration) {}
+    : view_(view), calibration_(calibration) {}
 
 bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residual,
                                  double* const* tangent_jacobians) const {
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[0]);
-  WindowCalibration camera;
-  NormalizedObservation observation = observation_;
-  if (calibration_ != nullptr) {
-    camera.layout = calibration_->layout;
-    if (!calibration_->At(parameters[1], &camera.mean)) {
-      return false;
-    }
-    observation = Seen(camera, *view_);
+  const bool calibrates = blocks().size() > 1;
+  WindowCalibration camera = *calibration_;
+  if (calibrates && !calibration_->At(parameters[1], &camera.mean)) {
+    return false;
   }
+  const NormalizedObservation observation = Seen(camera, *view_);
   Eigen::Map<Vector2d> r(residual);
   r = observation.sqrt_information * (landmark.head<2>() - observation.z);
   if (tangent_jacobians != nullptr && tangent_jacobians[0] != nullptr) {
@@ -110,7 +95,7 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
     out.leftCols<2>() = observation.sqrt_information;
     out.col(2).setZero();
   }
-  if (calibration_ != nullptr && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
+  if (calibrates && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
     Eigen::Matrix2Xd rows(2, camera.size());
     CalibrationRows(camera.layout, camera.mean.camera, Eigen::Matrix3d::Identity(), nullptr,
                     Eigen::Matrix<double, 2, 6>::Zero(), Predicted(observation, r), rows);

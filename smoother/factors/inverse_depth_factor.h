@@ -9,8 +9,8 @@
 namespace alidade {
 
 /// One observation of a landmark (x, y, rho) anchored in another frame: LinearizeAnchoredView without a
-/// kernel. Blocks nav_base, nav_view, landmark and, of a camera that is calibrated online, its calibration; 2
-/// rows.
+/// kernel. Blocks nav_base, nav_view, landmark and, where something of it is estimated, the camera's
+/// calibration; 2 rows.
 ///
 /// The base bearing (x, y) is a measurement like any other, so it is estimated too and BaseBearingFactor
 /// holds it to the base observation: base noise is then accounted for exactly, correlation between the views
@@ -21,13 +21,11 @@ class InverseDepthFactor {
   static constexpr int kRows = 2;
 
   /// All must outlive the factor.
-  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const Pose* T_BC);
-  /// With a camera that is calibrated online.
   InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
-    return std::span(kBlocks).first(calibration_ == nullptr ? 3 : 4);
+    return std::span(kBlocks).first(calibration_->size() > 0 ? 4 : 3);
   }
   /// Behind the view the residual is replaced by a large constant with zero Jacobians, so that a trial step
   /// of the solver is refused rather than the whole solve failing. False: the calibration block is no camera.
@@ -38,8 +36,7 @@ class InverseDepthFactor {
                                                        BlockKind::kLandmark, BlockKind::kCalibration};
   const WindowFrame* base_;
   const WindowView* view_;
-  const Pose* T_BC_ = nullptr;
-  const WindowCalibration* calibration_ = nullptr;
+  const WindowCalibration* calibration_;
 };
 
 /// The base observation of an inverse-depth landmark: W ((x, y) - z). Block landmark and, where the
@@ -48,21 +45,19 @@ class BaseBearingFactor {
  public:
   static constexpr int kRows = 2;
 
-  explicit BaseBearingFactor(const NormalizedObservation& observation) : observation_(observation) {}
   /// Both must outlive the factor.
   BaseBearingFactor(const WindowView* view, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
-    return std::span(kBlocks).first(calibration_ == nullptr ? 1 : 2);
+    return std::span(kBlocks).first(calibration_->layout.intrinsics() < 0 ? 1 : 2);
   }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:
   static constexpr std::array<BlockKind, 2> kBlocks = {BlockKind::kLandmark, BlockKind::kCalibration};
-  NormalizedObservation observation_;
-  const WindowView* view_ = nullptr;  ///< with calibration_
-  const WindowCalibration* calibration_ = nullptr;
+  const WindowView* view_;
+  const WindowCalibration* calibration_;
 };
 
 /// The weak prior on the inverse depth of a track without parallax. Block landmark; 1 row.

@@ -13,46 +13,37 @@ constexpr double kBehindChiSquare = 1e4;
 
 }  // namespace
 
-PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
-                               const ObservationKernel& kernel)
-    : window_(&window),
-      frames_(window.size()),
-      tracks_(std::move(tracks)),
-      T_BC_(T_BC),
-      kernel_(kernel),
-      blocks_(static_cast<size_t>(window.size()), BlockKind::kNavState),
-      memo_(std::make_unique<Memo>()) {}
-
 PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks,
                                const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : PoseOnlyFactor(window, std::move(tracks), calibration.mean.T_BC, kernel) {
-  calibration_ = &calibration;
-  blocks_.push_back(BlockKind::kCalibration);
+    : window_(&window),
+      frames_(window.size()),
+      calibration_(&calibration),
+      tracks_(std::move(tracks)),
+      kernel_(kernel),
+      blocks_(static_cast<size_t>(window.size()), BlockKind::kNavState),
+      memo_(std::make_unique<Memo>()) {
+  if (calibration.size() > 0) {
+    blocks_.push_back(BlockKind::kCalibration);
+  }
 }
 
 bool PoseOnlyFactor::Linearize(const double* const* parameters) const {
-  std::vector<double> point;
-  std::vector<FrameGeometry> geometry;
-  WindowCalibration camera;
-  if (calibration_ != nullptr) {
-    const double* block = parameters[frames_];
-    camera.layout = calibration_->layout;
-    if (!calibration_->At(block, &camera.mean)) {
-      return false;
-    }
-    point.insert(point.end(), block, block + calibration_->size());
+  const double* block = calibration_->Block(parameters, static_cast<size_t>(frames_));
+  WindowCalibration camera{calibration_->layout, {}};
+  if (!calibration_->At(block, &camera.mean)) {
+    return false;
   }
+  std::vector<double> point(block, block + calibration_->size());
+  std::vector<FrameGeometry> geometry;
   for (int i = 0; i < frames_; ++i) {
     point.insert(point.end(), parameters[i], parameters[i] + kNavAmbientSize);
-    const NavState state = UnpackNavState(parameters[i]);
-    geometry.push_back(calibration_ == nullptr ? MakeGeometry(window_->frame(i), state, T_BC_)
-                                               : MakeGeometry(window_->frame(i), state, camera.mean));
+    geometry.push_back(MakeGeometry(window_->frame(i), UnpackNavState(parameters[i]), camera.mean));
   }
   if (point == memo_->parameters) {
     return true;
   }
   memo_->parameters = std::move(point);
-  PoseSystem system(frames_, calibration_ == nullptr ? nullptr : &camera);
+  PoseSystem system(frames_, &camera);
   const bool renormalize = camera.layout.intrinsics() >= 0;
   std::vector<WindowView> renormalized;
   for (const WindowTrack* track : tracks_) {
@@ -87,7 +78,7 @@ bool PoseOnlyFactor::Evaluate(const double* const* parameters, double* residual,
       out.topLeftCorner(memo_->jacobian.rows(), 6) = memo_->jacobian.middleCols<6>(6 * i);
     }
   }
-  if (calibration_ != nullptr && tangent_jacobians != nullptr && tangent_jacobians[frames_] != nullptr) {
+  if (calibration_->size() > 0 && tangent_jacobians != nullptr && tangent_jacobians[frames_] != nullptr) {
     using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, CalibrationLayout::kMaxSize, Eigen::RowMajor>;
     Eigen::Map<RowMatrix> out(tangent_jacobians[frames_], rows(), CalibrationLayout::kMaxSize);
     out.setZero();

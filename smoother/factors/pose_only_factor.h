@@ -28,14 +28,12 @@ class PoseOnlyFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
 
-  /// `tracks` have landmarks to start from; they and the window must outlive the factor.
-  PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks, const Pose& T_BC,
-                 const ObservationKernel& kernel);
-  /// With a camera that is calibrated online, which must outlive the factor; its block comes last.
+  /// `tracks` have landmarks to start from; they, the window and the calibration, whose block comes last,
+  /// must outlive the factor.
   PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks,
                  const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  [[nodiscard]] int rows() const { return 6 * frames_ + calibration_size() + 1; }
+  [[nodiscard]] int rows() const { return 6 * frames_ + calibration_->size() + 1; }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
@@ -50,13 +48,11 @@ class PoseOnlyFactor {
   };
   /// False when the calibration block is no camera.
   bool Linearize(const double* const* parameters) const;
-  [[nodiscard]] int calibration_size() const { return calibration_ == nullptr ? 0 : calibration_->size(); }
 
   const Window* window_;
   int frames_;
-  const WindowCalibration* calibration_ = nullptr;
+  const WindowCalibration* calibration_;
   std::vector<const WindowTrack*> tracks_;
-  Pose T_BC_;
   ObservationKernel kernel_;
   std::vector<BlockKind> blocks_;
   std::unique_ptr<Memo> memo_;

@@ -1,6 +1,7 @@
 #include "smoother/factors/prior_factor.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <utility>
 
 #include "smoother/factors/imu_factor.h"
@@ -12,6 +13,26 @@ template <int kColumns>
 using RowMap = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kColumns, Eigen::RowMajor>>;
 
 }  // namespace
+
+ColumnMap PriorColumns(int frames, bool clock, int calibration, size_t landmarks) {
+  ColumnMap columns;
+  for (int i = 0; i < frames; ++i) {
+    i == 0 ? columns.AddState(i) : columns.AddPose(i);
+  }
+  if (clock) {
+    columns.AddClock(0);
+  }
+  columns.AddCalibration(calibration);
+  for (size_t i = 0; i < landmarks; ++i) {
+    columns.AddLandmark(static_cast<int>(i));
+  }
+  return columns;
+}
+
+ColumnMap LinearPrior::columns() const {
+  return PriorColumns(static_cast<int>(anchors.size()), clock_origin.has_value(), calibration_origin.size(),
+                      landmarks.size());
+}
 
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior) {
@@ -45,69 +66,89 @@ void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior
 }
 
 PriorFactor::PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration)
-    : prior_(prior), calibration_(calibration) {
+    : prior_(prior), calibration_(calibration), columns_(prior->columns()) {
   blocks_ = {BlockKind::kNavState, BlockKind::kBias};
   blocks_.resize(prior->anchors.size() + 1, BlockKind::kNavState);
   if (prior->clock_origin) {
     blocks_.push_back(BlockKind::kClock);
   }
-  if (calibration_ != nullptr) {
+  if (calibration->size() > 0) {
     blocks_.push_back(BlockKind::kCalibration);
   }
 }
 
+void PriorFactor::AddFrame(size_t anchor, const double* block, double* residual, double* tangent) const {
+  const LinearPrior::Anchor& at = prior_->anchors[anchor];
+  const ColumnMap::Range columns = columns_.Frame(static_cast<int>(anchor));
+  const Eigen::Index width = std::min(columns.size, kNavColumns);
+  const auto jacobian = prior_->jacobian.middleCols(columns.first, width);
+  const NavState state = UnpackNavState(block);
+  const Vector9d xi = Local(prior_->convention, at.origin, state);
+  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * xi.head(width);
+  if (tangent != nullptr) {
+    const Matrix9d chain =
+        LocalJacobian(prior_->convention, at.origin, state) * InverseChartJacobian(prior_->convention, state);
+    RowMap<9>(tangent, rows(), 9).noalias() = jacobian * chain.topRows(width);
+  }
+}
+
+void PriorFactor::AddBias(const double* block, double* residual, double* tangent) const {
+  const ImuBias& origin = prior_->anchors.front().bias_origin;
+  const ImuBias bias = UnpackBias(block);
+  Vector6d shift;
+  shift << bias.gyro - origin.gyro, bias.accel - origin.accel;
+  const auto jacobian = prior_->jacobian.middleCols<6>(columns_.Frame(0).first + kNavColumns);
+  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * shift;
+  if (tangent != nullptr) {
+    RowMap<6>(tangent, rows(), 6) = jacobian;
+  }
+}
+
+void PriorFactor::AddClock(const double* block, double* residual, double* tangent) const {
+  const Eigen::Map<const Vector6d> clock(block);
+  const auto jacobian = prior_->jacobian.middleCols<6>(columns_.Clock(0).first);
+  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * (clock - *prior_->clock_origin);
+  if (tangent != nullptr) {
+    RowMap<6>(tangent, rows(), 6) = jacobian;
+  }
+}
+
+bool PriorFactor::AddCalibration(const double* block, double* residual, double* tangent) const {
+  constexpr int kWidth = CalibrationLayout::kMaxSize;
+  const WindowCalibration& origin = prior_->calibration_origin;
+  CameraCalibration camera;
+  if (!calibration_->At(block, &camera)) {
+    return false;
+  }
+  const auto jacobian = prior_->jacobian.middleCols(columns_.Calibration().first, origin.size());
+  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() +=
+      jacobian * Local(origin.layout, origin.mean, camera);
+  if (tangent != nullptr) {
+    RowMap<kWidth> out(tangent, rows(), kWidth);
+    out.setZero();
+    out.leftCols(origin.size()).noalias() =
+        jacobian * LocalJacobian(origin.layout, origin.mean, camera) * calibration_->BlockJacobian(block);
+  }
+  return true;
+}
+
 bool PriorFactor::Evaluate(const double* const* parameters, double* residual,
                            double* const* tangent_jacobians) const {
-  const Eigen::MatrixXd& J = prior_->jacobian;
-  Eigen::Map<Eigen::VectorXd> r(residual, rows());
-  r = prior_->residual;
-  const int count = static_cast<int>(prior_->anchors.size());
-  for (int i = 0; i < count; ++i) {
-    const LinearPrior::Anchor& anchor = prior_->anchors[static_cast<size_t>(i)];
-    const int block = i == 0 ? 0 : i + 1;
-    const int column = LinearPrior::Column(i);
-    const int width = i == 0 ? 9 : 6;
-    const NavState state = UnpackNavState(parameters[block]);
-    const Vector9d xi = Local(prior_->convention, anchor.origin, state);
-    r.noalias() += J.middleCols(column, width) * xi.head(width);
-    if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
-      const Matrix9d chain = LocalJacobian(prior_->convention, anchor.origin, state) *
-                             InverseChartJacobian(prior_->convention, state);
-      RowMap<9>(tangent_jacobians[block], rows(), 9).noalias() =
-          J.middleCols(column, width) * chain.topRows(width);
-    }
+  const auto tangent = [&](size_t block) {
+    return tangent_jacobians == nullptr ? nullptr : tangent_jacobians[block];
+  };
+  const size_t anchors = prior_->anchors.size();
+  Eigen::Map<Eigen::VectorXd>(residual, rows()) = prior_->residual;
+  for (size_t i = 0; i < anchors; ++i) {
+    const size_t block = i == 0 ? 0 : i + 1;
+    AddFrame(i, parameters[block], residual, tangent(block));
   }
-  const ImuBias bias = UnpackBias(parameters[1]);
-  Vector6d shift;
-  shift << bias.gyro - prior_->anchors.front().bias_origin.gyro,
-      bias.accel - prior_->anchors.front().bias_origin.accel;
-  r.noalias() += J.middleCols<6>(9) * shift;
-  if (tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
-    RowMap<6>(tangent_jacobians[1], rows(), 6) = J.middleCols<6>(9);
-  }
-  if (prior_->clock_origin) {
-    const int block = count + 1;
-    const Eigen::Map<const Vector6d> clock(parameters[block]);
-    r.noalias() += J.middleCols<6>(prior_->ClockColumn()) * (clock - *prior_->clock_origin);
-    if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
-      RowMap<6>(tangent_jacobians[block], rows(), 6) = J.middleCols<6>(prior_->ClockColumn());
-    }
-  }
-  if (calibration_ != nullptr) {
-    const int block = count + 1 + (prior_->clock_origin ? 1 : 0);
-    const WindowCalibration& origin = *prior_->calibration_origin;
-    CameraCalibration camera;
-    if (!calibration_->At(parameters[block], &camera)) {
+  AddBias(parameters[1], residual, tangent(1));
+  for (size_t block = anchors + 1; block < blocks_.size(); ++block) {
+    if (blocks_[block] == BlockKind::kClock) {
+      AddClock(parameters[block], residual, tangent(block));
+    } else if (!AddCalibration(parameters[block], residual, tangent(block))) {
       return false;
-    }
-    const auto columns = J.middleCols(prior_->CalibrationColumn(), origin.size());
-    r.noalias() += columns * Local(origin.layout, origin.mean, camera);
-    if (tangent_jacobians != nullptr && tangent_jacobians[block] != nullptr) {
-      constexpr int kWidth = CalibrationLayout::kMaxSize;
-      RowMap<kWidth> out(tangent_jacobians[block], rows(), kWidth);
-      out.setZero();
-      out.leftCols(origin.size()).noalias() = columns * LocalJacobian(origin.layout, origin.mean, camera) *
-                                              calibration_->BlockJacobian(parameters[block]);
     }
   }
   return true;

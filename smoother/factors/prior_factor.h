@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "smoother/manifold/lifted_cost.h"
+#include "smoother/window/column_map.h"
 #include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
 
@@ -15,9 +16,9 @@ namespace alidade {
 /// xi the stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed
 /// when the prior is made.
 ///
-/// Columns: the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta, p): vision
-/// reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the next one
-/// alone. Once aligned with GNSS, the clock of the first frame has six more, then comes the camera's
+/// Columns (PriorColumns): the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta,
+/// p): vision reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the
+/// next one alone. Once aligned with GNSS, the clock of the first frame has six more, then comes the camera's
 /// calibration where it is estimated. Landmarks whose information outlives the window have three each at the
 /// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge.
 struct LinearPrior {
@@ -34,22 +35,18 @@ struct LinearPrior {
   ErrorConvention convention = ErrorConvention::kRightInvariant;
   std::vector<Anchor> anchors;
   std::vector<Landmark> landmarks;
-  Eigen::MatrixXd jacobian;  ///< m x (15 + 6 (anchors - 1) [+ 6] + 3 landmarks)
+  Eigen::MatrixXd jacobian;  ///< m x columns().size()
   Eigen::VectorXd residual;  ///< m, r0
 
   std::optional<Vector6d> clock_origin;
-  /// Of a camera that is calibrated online.
-  std::optional<WindowCalibration> calibration_origin;
+  WindowCalibration calibration_origin;  ///< with an empty layout where nothing is estimated
 
-  [[nodiscard]] static int Column(int anchor) { return anchor == 0 ? 0 : 15 + 6 * (anchor - 1); }
-  [[nodiscard]] int columns() const { return LandmarkColumn(static_cast<int>(landmarks.size())); }
-  [[nodiscard]] int ClockColumn() const { return Column(static_cast<int>(anchors.size())); }
-  [[nodiscard]] int CalibrationColumn() const { return ClockColumn() + (clock_origin ? 6 : 0); }
-  [[nodiscard]] int calibration_size() const { return calibration_origin ? calibration_origin->size() : 0; }
-  [[nodiscard]] int LandmarkColumn(int landmark) const {
-    return CalibrationColumn() + calibration_size() + 3 * landmark;
-  }
+  /// Frames by their place among the anchors, landmarks by theirs.
+  [[nodiscard]] ColumnMap columns() const;
 };
+
+/// The columns of a prior on so many frames and landmarks.
+[[nodiscard]] ColumnMap PriorColumns(int frames, bool clock, int calibration, size_t landmarks = 0);
 
 /// The prior on a first state: covariance in the canonical chart, state as the frame's blocks hold it. False
 /// when the covariance is not positive definite to rounding.
@@ -67,15 +64,21 @@ class PriorFactor {
   static constexpr int kRows = Eigen::Dynamic;
 
   /// Both must outlive the factor. calibration: what the calibration's block refers to.
-  explicit PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration = nullptr);
+  PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return static_cast<int>(prior_->residual.size()); }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:
+  void AddFrame(size_t anchor, const double* block, double* residual, double* tangent) const;
+  void AddBias(const double* block, double* residual, double* tangent) const;
+  void AddClock(const double* block, double* residual, double* tangent) const;
+  bool AddCalibration(const double* block, double* residual, double* tangent) const;
+
   const LinearPrior* prior_;
   const WindowCalibration* calibration_;
+  ColumnMap columns_;
   std::vector<BlockKind> blocks_;
 };
 

@@ -1,5 +1,6 @@
 #include "smoother/factors/slam_prior.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -31,8 +32,9 @@ std::vector<const WindowTrack*> PriorTracks(const LinearPrior& prior, const Wind
   return tracks;
 }
 
-WindowPoint PointOf(const Window& window) {
+WindowPoint PointOf(const Window& window, const CameraCalibration& camera) {
   WindowPoint point;
+  point.camera = camera;
   for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
     point.states.push_back(frame->nav_state());
   }
@@ -55,6 +57,9 @@ struct SlamPrior::Views {
   /// A view's part over the calibration, whose columns begin at `at`, and over its landmark.
   void AddCalibration(const AnchoredRows& rows, Index landmark, Index at) {
     const Index size = rows.calibration.cols();
+    if (size == 0) {
+      return;
+    }
     const Eigen::MatrixX2d weighted = rows.weight * rows.calibration.transpose();
     coupling.block(landmark, at, 3, size).noalias() +=
         rows.weight * rows.landmark.transpose() * rows.calibration;
@@ -64,6 +69,9 @@ struct SlamPrior::Views {
   /// And between the calibration and a pose.
   void Couple(const AnchoredRows& rows, const Eigen::Matrix<double, 2, 6>& pose, Index pose_at, Index at) {
     const Index size = rows.calibration.cols();
+    if (size == 0) {
+      return;
+    }
     const Eigen::MatrixXd both = rows.weight * pose.transpose() * rows.calibration;
     frame_hessian.block(pose_at, at, 6, size) += both;
     frame_hessian.block(at, pose_at, size, 6) += both.transpose();
@@ -72,7 +80,7 @@ struct SlamPrior::Views {
 
 struct SlamPrior::Scene {
   std::vector<FrameGeometry> geometry;
-  std::optional<WindowCalibration> calibration;
+  WindowCalibration calibration;
   std::vector<std::vector<WindowView>> renormalized;  ///< of each track, where the intrinsics are estimated
 
   [[nodiscard]] const std::vector<WindowView>& Views(const std::vector<const WindowTrack*>& tracks,
@@ -82,13 +90,14 @@ struct SlamPrior::Scene {
 };
 
 SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
-                     const Pose& T_BC, const ObservationKernel& kernel)
+                     const WindowCalibration& calibration, const ObservationKernel& kernel)
     : prior_(prior),
       tracks_(std::move(tracks)),
-      T_BC_(T_BC),
       kernel_(kernel),
       window_(&window),
-      frames_(window.size()) {
+      calibration_(&calibration),
+      prior_columns_(prior->columns()),
+      columns_(PriorColumns(window.size(), prior->clock_origin.has_value(), calibration.size())) {
   MatrixXd rows(prior->jacobian.rows(), prior->jacobian.cols() + 1);
   rows << prior->jacobian, prior->residual;
   FormGram(rows, &gram_);
@@ -99,23 +108,13 @@ SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> t
   }
 }
 
-SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
-                     const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : SlamPrior(prior, std::move(tracks), window, calibration.mean.T_BC, kernel) {
-  calibration_ = &calibration;
-}
-
 SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
   Scene scene;
+  scene.calibration = WindowCalibration{calibration_->layout, point.camera};
   for (size_t i = 0; i < point.states.size(); ++i) {
     const WindowFrame& frame = window_->frame(static_cast<int>(i));
-    scene.geometry.push_back(calibration_ == nullptr ? MakeGeometry(frame, point.states[i], T_BC_)
-                                                     : MakeGeometry(frame, point.states[i], point.camera));
+    scene.geometry.push_back(MakeGeometry(frame, point.states[i], point.camera));
   }
-  if (calibration_ == nullptr) {
-    return scene;
-  }
-  scene.calibration = WindowCalibration{calibration_->layout, point.camera};
   if (calibration_->layout.intrinsics() >= 0) {
     for (const WindowTrack* track : tracks_) {
       scene.renormalized.push_back(track == nullptr ? std::vector<WindowView>()
@@ -138,14 +137,14 @@ VectorXd SlamPrior::StartingLandmarks() const {
 bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool with_frames,
                           Views* views) const {
   const std::vector<FrameGeometry>& geometry = scene.geometry;
-  const WindowCalibration* calibration = scene.calibration ? &*scene.calibration : nullptr;
+  const ColumnMap::Range camera = columns_.Calibration();
   views->landmark_hessian.assign(tracks_.size(), Eigen::Matrix3d::Zero());
   views->landmark_gradient.setZero(landmarks.size());
   views->robust_cost = 0;
   if (with_frames) {
-    views->coupling.setZero(landmarks.size(), columns());
-    views->frame_hessian.setZero(columns(), columns());
-    views->frame_gradient.setZero(columns());
+    views->coupling.setZero(landmarks.size(), columns_.size());
+    views->frame_hessian.setZero(columns_.size(), columns_.size());
+    views->frame_gradient.setZero(columns_.size());
   }
   for (size_t i = 0; i < tracks_.size(); ++i) {
     if (tracks_[i] == nullptr) {
@@ -157,15 +156,15 @@ bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool wi
       AnchoredRows rows;
       if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)],
                                  geometry[static_cast<size_t>(view.frame->index)], view.observation, kernel_,
-                                 landmarks.segment<3>(row), &rows, with_frames, calibration)) {
+                                 landmarks.segment<3>(row), &rows, with_frames, &scene.calibration)) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);
       const Eigen::Matrix<double, 3, 2> weighted = rows.weight * rows.landmark.transpose();
       views->landmark_hessian[i].noalias() += weighted * rows.landmark;
       views->landmark_gradient.segment<3>(row).noalias() += weighted * rows.residual;
-      if (with_frames && calibration != nullptr) {
-        views->AddCalibration(rows, row, CalibrationColumn());
+      if (with_frames) {
+        views->AddCalibration(rows, row, camera.first);
       }
       if (!with_frames || view.frame->index == anchor) {
         continue;  // seen from its own anchor a landmark concerns no pose
@@ -174,67 +173,18 @@ bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool wi
       both << rows.anchor, rows.view;
       const Eigen::Matrix<double, 12, 12> hessian = rows.weight * both.transpose() * both;
       const Eigen::Matrix<double, 12, 1> gradient = rows.weight * both.transpose() * rows.residual;
-      const std::array<int, 2> at = {Column(anchor), Column(view.frame->index)};
+      const std::array<Index, 2> at = {columns_.Frame(anchor).first, columns_.Frame(view.frame->index).first};
       for (int k = 0; k < 2; ++k) {
         views->coupling.block<3, 6>(row, at[k]).noalias() += weighted * both.middleCols<6>(6 * k);
         views->frame_gradient.segment<6>(at[k]) += gradient.segment<6>(6 * k);
         for (int l = 0; l < 2; ++l) {
           views->frame_hessian.block<6, 6>(at[k], at[l]) += hessian.block<6, 6>(6 * k, 6 * l);
         }
-        if (calibration != nullptr) {
-          views->Couple(rows, both.middleCols<6>(6 * k), at[k], CalibrationColumn());
-        }
+        views->Couple(rows, both.middleCols<6>(6 * k), at[k], camera.first);
       }
     }
   }
   return true;
-}
-
-VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
-  VectorXd xi(prior_->LandmarkColumn(0));
-  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
-    const LinearPrior::Anchor& anchor = prior_->anchors[i];
-    const Index width = i == 0 ? 9 : 6;
-    xi.segment(LinearPrior::Column(static_cast<int>(i)), width) =
-        Local(prior_->convention, anchor.origin, point.states[static_cast<size_t>(anchor.frame->index)])
-            .head(width);
-  }
-  const ImuBias& origin = prior_->anchors.front().bias_origin;
-  xi.segment<6>(9) << point.bias.gyro - origin.gyro, point.bias.accel - origin.accel;
-  if (prior_->clock_origin) {
-    xi.segment<6>(prior_->ClockColumn()) = *point.clock - *prior_->clock_origin;
-  }
-  if (prior_->calibration_origin) {
-    const WindowCalibration& camera = *prior_->calibration_origin;
-    xi.segment(prior_->CalibrationColumn(), camera.size()) = Local(camera.layout, camera.mean, point.camera);
-  }
-  return xi;
-}
-
-/// Columns over the prior's frames [, clock and calibration] to columns of the reduced system.
-MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& columns) const {
-  MatrixXd chained = MatrixXd::Zero(columns.rows(), this->columns());
-  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
-    const LinearPrior::Anchor& anchor = prior_->anchors[i];
-    const NavState& state = point.states[static_cast<size_t>(anchor.frame->index)];
-    const Matrix9d chain = LocalJacobian(prior_->convention, anchor.origin, state) *
-                           InverseChartJacobian(prior_->convention, state);
-    const Index width = i == 0 ? 9 : 6;
-    chained.middleCols(Column(anchor.frame->index), width).noalias() =
-        columns.middleCols(LinearPrior::Column(static_cast<int>(i)), width) *
-        chain.topLeftCorner(width, width);
-  }
-  chained.middleCols<6>(9) = columns.middleCols<6>(9);
-  if (prior_->clock_origin) {
-    chained.middleCols<6>(Column(frames_)) = columns.middleCols<6>(prior_->ClockColumn());
-  }
-  if (prior_->calibration_origin) {
-    const WindowCalibration& camera = *prior_->calibration_origin;
-    chained.rightCols(camera.size()).noalias() =
-        columns.middleCols(prior_->CalibrationColumn(), camera.size()) *
-        LocalJacobian(camera.layout, camera.mean, point.camera);
-  }
-  return chained;
 }
 
 bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landmarks, double* cost) const {

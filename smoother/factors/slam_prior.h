@@ -19,9 +19,9 @@ struct WindowPoint {
   std::vector<NavState> states;   ///< of every frame
   ImuBias bias;                   ///< of the first
   std::optional<Vector6d> clock;  ///< of the first, in an aligned window
-  CameraCalibration camera;       ///< where it is calibrated online
+  CameraCalibration camera;
 };
-[[nodiscard]] WindowPoint PointOf(const Window& window);
+[[nodiscard]] WindowPoint PointOf(const Window& window, const CameraCalibration& camera);
 
 /// A LinearPrior together with the views of its landmarks (SLAM features), as a function of the frames alone:
 ///
@@ -31,25 +31,19 @@ struct WindowPoint {
 /// together (3L x 3L, damped, re-weighted Gauss-Newton).
 class SlamPrior {
  public:
-  /// `prior`, `tracks` (PriorTracks) and `window` must outlive it.
-  SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
-            const Pose& T_BC, const ObservationKernel& kernel);
-  /// With a camera that is calibrated online; `calibration` must outlive it too.
+  /// `prior`, `tracks` (PriorTracks), `window` and `calibration` must outlive it.
   SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
             const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  /// Normal equations, landmarks eliminated, canonical chart: 15 columns of the first frame, (phi, dp) of
-  /// every other one, the first clock's six in an aligned window, the calibration's where it is estimated.
+  /// Normal equations over columns(), landmarks eliminated, canonical chart.
   struct Reduced {
     Eigen::MatrixXd hessian;  ///< lower triangle
     Eigen::VectorXd gradient;
     double robust_cost = 0;
   };
-  [[nodiscard]] static int Column(int frame) { return LinearPrior::Column(frame); }
-  [[nodiscard]] int CalibrationColumn() const { return Column(frames_) + (prior_->clock_origin ? 6 : 0); }
-  [[nodiscard]] int columns() const { return CalibrationColumn() + prior_->calibration_size(); }
-  /// Null unless it is estimated.
-  [[nodiscard]] const WindowCalibration* calibration() const { return calibration_; }
+  /// PriorColumns of all frames of the window, without landmarks.
+  [[nodiscard]] const ColumnMap& columns() const { return columns_; }
+  [[nodiscard]] const WindowCalibration& calibration() const { return *calibration_; }
   [[nodiscard]] const LinearPrior& prior() const { return *prior_; }
   [[nodiscard]] std::span<const WindowTrack* const> tracks() const { return tracks_; }
 
@@ -70,11 +64,11 @@ class SlamPrior {
 
   const LinearPrior* prior_;
   std::vector<const WindowTrack*> tracks_;
-  Pose T_BC_;
   ObservationKernel kernel_;
   const Window* window_;
-  int frames_;
-  const WindowCalibration* calibration_ = nullptr;
+  const WindowCalibration* calibration_;
+  ColumnMap prior_columns_;
+  ColumnMap columns_;
   Eigen::MatrixXd gram_;  ///< [J r0]^T [J r0]: frames, clock and calibration first, then landmarks, then r0
   Eigen::VectorXd origins_;
 };

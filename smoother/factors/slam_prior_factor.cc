@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "smoother/factors/imu_factor.h"
-
 namespace alidade {
 namespace {
 
@@ -15,13 +13,13 @@ constexpr double kBehindCost = 1e8;
 }  // namespace
 
 SlamPriorFactor::SlamPriorFactor(const SlamPrior* prior, int frames)
-    : prior_(prior), frames_(frames), memo_(std::make_unique<Memo>()) {
+    : prior_(prior), memo_(std::make_unique<Memo>()) {
   blocks_ = {BlockKind::kNavState, BlockKind::kBias};
   blocks_.resize(static_cast<size_t>(frames) + 1, BlockKind::kNavState);
   if (prior->prior().clock_origin) {
     blocks_.push_back(BlockKind::kClock);
   }
-  if (prior->calibration() != nullptr) {
+  if (prior->calibration().size() > 0) {
     blocks_.push_back(BlockKind::kCalibration);
   }
   memo_->landmarks = prior->StartingLandmarks();
@@ -30,6 +28,7 @@ SlamPriorFactor::SlamPriorFactor(const SlamPrior* prior, int frames)
 bool SlamPriorFactor::Linearize(const double* const* parameters) const {
   std::vector<double> values;
   WindowPoint point;
+  point.camera = prior_->calibration().mean;
   for (size_t i = 0; i < blocks_.size(); ++i) {
     values.insert(values.end(), parameters[i], parameters[i] + AmbientSize(blocks_[i]));
     if (blocks_[i] == BlockKind::kNavState) {
@@ -38,7 +37,7 @@ bool SlamPriorFactor::Linearize(const double* const* parameters) const {
       point.bias = UnpackBias(parameters[i]);
     } else if (blocks_[i] == BlockKind::kClock) {
       point.clock = Eigen::Map<const Vector6d>(parameters[i]);
-    } else if (!prior_->calibration()->At(parameters[i], &point.camera)) {
+    } else if (!prior_->calibration().At(parameters[i], &point.camera)) {
       return false;
     }
   }
@@ -49,7 +48,7 @@ bool SlamPriorFactor::Linearize(const double* const* parameters) const {
   SlamPrior::Reduced reduced;
   Eigen::VectorXd landmarks = memo_->landmarks;
   if (!prior_->Reduce(point, &landmarks, &reduced)) {
-    memo_->jacobian.setZero(prior_->columns(), prior_->columns());
+    memo_->jacobian.setZero(rows() - 1, rows() - 1);
     memo_->residual.setConstant(rows(), std::sqrt(kBehindCost));
     return true;
   }
@@ -67,33 +66,37 @@ bool SlamPriorFactor::Evaluate(const double* const* parameters, double* residual
     return false;
   }
   Eigen::Map<Eigen::VectorXd>(residual, rows()) = memo_->residual;
-  const auto write = [&](size_t block, Eigen::Index from, Eigen::Index width) {
-    if (tangent_jacobians == nullptr || tangent_jacobians[block] == nullptr) {
-      return;
+  const ColumnMap& columns = prior_->columns();
+  int frame = 0;
+  for (size_t block = 0; tangent_jacobians != nullptr && block < blocks_.size(); ++block) {
+    ColumnMap::Range from = columns.Frame(0);
+    switch (blocks_[block]) {
+      case BlockKind::kNavState:
+        from = columns.Frame(frame++);
+        from.size = std::min(from.size, kNavColumns);
+        break;
+      case BlockKind::kBias:
+        from = {from.first + kNavColumns, kBiasColumns};
+        break;
+      case BlockKind::kClock:
+        from = columns.Clock(0);
+        break;
+      default:
+        from = columns.Calibration();
+    }
+    if (tangent_jacobians[block] == nullptr) {
+      continue;
     }
     using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMatrix> out(tangent_jacobians[block], rows(), TangentSize(blocks_[block]));
     out.setZero();
-    out.topLeftCorner(rows() - 1, width) = memo_->jacobian.middleCols(from, width);
-  };
-  write(0, 0, 9);
-  write(1, 9, 6);
-  for (int i = 1; i < frames_; ++i) {
-    write(static_cast<size_t>(i) + 1, SlamPrior::Column(i), 6);
-  }
-  const size_t clock = static_cast<size_t>(frames_) + 1;
-  if (prior_->prior().clock_origin) {
-    write(clock, SlamPrior::Column(frames_), 6);
-  }
-  const size_t last = blocks_.size() - 1;
-  if (blocks_[last] == BlockKind::kCalibration && tangent_jacobians != nullptr &&
-      tangent_jacobians[last] != nullptr) {
-    using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, CalibrationLayout::kMaxSize, Eigen::RowMajor>;
-    Eigen::Map<RowMatrix> out(tangent_jacobians[last], rows(), CalibrationLayout::kMaxSize);
-    const int size = prior_->calibration()->size();
-    out.setZero();
-    out.topLeftCorner(rows() - 1, size).noalias() =
-        memo_->jacobian.rightCols(size) * prior_->calibration()->BlockJacobian(parameters[last]);
+    if (blocks_[block] == BlockKind::kCalibration) {
+      out.topLeftCorner(rows() - 1, from.size).noalias() =
+          memo_->jacobian.middleCols(from.first, from.size) *
+          prior_->calibration().BlockJacobian(parameters[block]);
+    } else {
+      out.topLeftCorner(rows() - 1, from.size) = memo_->jacobian.middleCols(from.first, from.size);
+    }
   }
   return true;
 }

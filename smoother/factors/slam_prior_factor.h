@@ -19,7 +19,7 @@ class SlamPriorFactor {
   /// `prior` must outlive the factor.
   SlamPriorFactor(const SlamPrior* prior, int frames);
 
-  [[nodiscard]] int rows() const { return prior_->columns() + 1; }
+  [[nodiscard]] int rows() const { return static_cast<int>(prior_->columns().size()) + 1; }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
@@ -34,7 +34,6 @@ class SlamPriorFactor {
   bool Linearize(const double* const* parameters) const;
 
   const SlamPrior* prior_;
-  int frames_;
   std::vector<BlockKind> blocks_;
   std::unique_ptr<Memo> memo_;
 };

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/imu_propagation.h"
 #include "core/stopwatch.h"
-#include "smoother/factors/imu_factor.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother.h"
-#include "smoother/solve/window_system.h"
+#include "smoother/solve/sensor_terms.h"
+#include "smoother/solve/vision_terms.h"
+#include "smoother/solve/window_solver.h"
 
 namespace alidade {
 
@@ -21,22 +23,20 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
     : config_(config),
       rig_(rig),
       noise_(config.imu.Scaled(rig.imu_noise)),
-      solve_options_{config.smoother, config.vision, rig.T_BC, GravityInWorld(config.imu.gravity_mps2)},
+      gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
       imu_(config.imu.max_gap_s),
       rest_(config.vision, config.init, rig.camera),
-      gnss_(config.gnss, rig.gnss, solve_options_.gravity_W),
+      gnss_(config.gnss, rig.gnss, gravity_W_),
       given_(InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s})),
       calibration_{given_.layout, given_.mean} {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   calibration_.mean = given_.mean;
   ALIDADE_RETURN_IF_ERROR(Begin(initial));
-  if (calibrates()) {
-    calibration_deviations_ = given_.deviations;
-    AddCalibrationPrior(given_, &prior_);
-  }
+  calibration_deviations_ = given_.deviations;
+  AddCalibrationPrior(given_, &prior_);
   return Status::Ok();
 }
 
@@ -64,13 +64,9 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
 }
 
 std::optional<CalibrationEstimate> SmootherEstimator::LatestCalibration() const {
-  return calibrates() ? std::optional(CalibrationEstimate{calibration_.layout, calibration_.mean,
-                                                          calibration_deviations_})
-                      : std::nullopt;
-}
-
-std::vector<FrameGeometry> SmootherEstimator::Geometry() const {
-  return calibrates() ? MakeGeometry(window_, camera()) : MakeGeometry(window_, camera().T_BC);
+  return calibration_.size() > 0 ? std::optional(CalibrationEstimate{calibration_.layout, calibration_.mean,
+                                                                     calibration_deviations_})
+                                 : std::nullopt;
 }
 
 Status SmootherEstimator::AddImu(const ImuSample& sample) {
@@ -117,7 +113,7 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
     dropped = window_.RemoveNewest();
     gnss_.Reattach(dropped.get(), &window_.newest());
   } else if (window_.size() > config_.smoother.window) {
-    MarginalizeOldestFrame();
+    ALIDADE_RETURN_IF_ERROR(MarginalizeOldestFrame());
   }
   PropagateToNewest(std::move(dropped), stamp_ns);
   return Status::Ok();
@@ -154,9 +150,8 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   }
   Preintegration preintegration(from.imu_bias(), noise_);
   preintegration.Add(interval_);
-  PackNavState(
-      CarryState(preintegration, from.nav_state(), from.imu_bias(), solve_options_.gravity_W, nullptr),
-      frame->nav.data());
+  PackNavState(CarryState(preintegration, from.nav_state(), from.imu_bias(), gravity_W_, nullptr),
+               frame->nav.data());
   gnss_.PredictClock(from, frame.get());
   if (dropped) {
     frame->preintegration = std::move(dropped->preintegration);
@@ -182,37 +177,50 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   }
 }
 
-std::optional<SlamPrior> SmootherEstimator::MakeSlamPrior() const {
-  if (prior_.landmarks.empty()) {
-    return std::nullopt;
+SlamPriorTerm* SmootherEstimator::SetPriorTerm(WindowTerms* terms) const {
+  if (terms->empty()) {
+    terms->emplace_back();
   }
-  return calibrates() ? SlamPrior(&prior_, PriorTracks(prior_, window_), window_, calibration_, kernel_)
-                      : SlamPrior(&prior_, PriorTracks(prior_, window_), window_, rig_.T_BC, kernel_);
+  if (prior_.landmarks.empty()) {
+    terms->front() = MakePriorTerm(prior_, calibration_);
+    return nullptr;
+  }
+  auto slam = std::make_unique<SlamPriorTerm>(prior_, window_, calibration_, kernel_);
+  SlamPriorTerm* const made = slam.get();
+  terms->front() = std::move(slam);
+  return made;
 }
 
 Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   for (int i = 1; i < window_.size(); ++i) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
-  if (calibrates()) {
-    window_.UpdateRates();
+  window_.UpdateRates();
+  WindowTerms terms;
+  SlamPriorTerm* slam = SetPriorTerm(&terms);
+  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), window_.size(), &terms);
+      !status.ok()) {
+    return Lost(status.message());
   }
-  std::optional<SlamPrior> slam = MakeSlamPrior();
+  const size_t without_vision = terms.size();
+  if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
+    AddTrackTerms(window_.frames(), *tracks, calibration_, kernel_, &terms);
+  } else if (!tracks->empty()) {
+    terms.push_back(std::make_unique<PoseOnlyTerm>(
+        window_, std::vector<const WindowTrack*>(tracks->begin(), tracks->end()), calibration_, kernel_));
+  }
   const Result<WindowSolveReport> report =
-      SolveWindow(solve_options_, prior_, *tracks, &window_, gnss_.context(), slam ? &*slam : nullptr,
-                  calibrates() ? &calibration_ : nullptr);
+      SolveWindow(config_.smoother, terms, *tracks, &window_, &calibration_);
   if (!report.ok()) {
     return Lost(report.message());
   }
+  terms.resize(without_vision);
   statistics_.iterations = report->iterations;
   if (calibration_.layout.intrinsics() >= 0) {
     window_.Renormalize(camera().camera);
   }
-
-  const std::vector<FrameGeometry> geometry = Geometry();
-  SlamPrior::Reduced reduced;
-  if (slam && !ReduceSlamPrior(*slam, &reduced)) {
-    return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) + " s have no solution");
+  if (slam != nullptr) {
+    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
   std::vector<WindowTrack*> gated = *tracks;
   for (auto& [id, track] : window_.tracks()) {
@@ -220,44 +228,38 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
       gated.push_back(&track);
     }
   }
-  if (GateTracks(geometry, gated) && slam) {
-    slam = MakeSlamPrior();
-    if (!ReduceSlamPrior(*slam, &reduced)) {
-      return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) +
-                  " s have no solution");
-    }
+  if (GateTracks(Geometry(), gated) && slam != nullptr) {
+    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(&terms)));
   }
   if (gnss_.aligned()) {
     gnss_.Gate(&window_, &statistics_);
   }
-  PoseSystem vision(window_.size(), Calibration());
-  for (const WindowTrack* track : *tracks) {
-    if (track->views.size() >= kMinViews) {
-      AddTrack(track->views, geometry, kernel_, track->landmark, &workspace_, &vision, track->depth_prior);
-    }
-  }
-  statistics_.features_used = vision.tracks + static_cast<int>(gated.size() - tracks->size());
-  statistics_.nis = vision.chi2;
-  statistics_.nis_dof = vision.dof;
-  return UpdateLatest(vision, slam ? &reduced : nullptr);
+  std::vector<const WindowTrack*> used;
+  std::copy_if(tracks->begin(), tracks->end(), std::back_inserter(used),
+               [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
+  auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
+  statistics_.features_used = vision->system().tracks + static_cast<int>(gated.size() - tracks->size());
+  statistics_.nis = vision->system().chi2;
+  statistics_.nis_dof = vision->system().dof;
+  terms.push_back(std::move(vision));
+  return UpdateLatest(terms);
 }
 
-bool SmootherEstimator::ReduceSlamPrior(const SlamPrior& slam, SlamPrior::Reduced* reduced) {
-  Eigen::VectorXd landmarks = slam.StartingLandmarks();
-  WindowPoint point = PointOf(window_);
-  point.camera = camera();
-  if (!slam.Reduce(point, &landmarks, reduced)) {
-    return false;
+Status SmootherEstimator::TakeLandmarks(const SlamPriorTerm& slam) {
+  const Eigen::VectorXd* landmarks = slam.Landmarks();
+  if (landmarks == nullptr) {
+    return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) + " s have no solution");
   }
-  for (size_t i = 0; i < slam.tracks().size(); ++i) {
-    if (const WindowTrack* track = slam.tracks()[i]) {
-      window_.tracks().at(track->id).landmark = landmarks.segment<3>(3 * static_cast<Eigen::Index>(i));
+  const std::span<const WindowTrack* const> tracks = slam.slam().tracks();
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i] != nullptr) {
+      window_.tracks().at(tracks[i]->id).landmark = landmarks->segment<3>(3 * static_cast<Eigen::Index>(i));
     }
   }
-  return true;
+  return Status::Ok();
 }
 
-Status SmootherEstimator::UpdateLatest(const PoseSystem& vision, const SlamPrior::Reduced* slam) {
+Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {
   const WindowFrame& newest = window_.newest();
   latest_.stamp_ns = newest.stamp_ns;
   latest_.nav = newest.nav_state();
@@ -265,11 +267,13 @@ Status SmootherEstimator::UpdateLatest(const PoseSystem& vision, const SlamPrior
   if (gnss_.aligned()) {
     latest_clock_.mean = newest.clock_state();
   }
-  if (!NewestCovariance(window_, prior_, vision, solve_options_.gravity_W, &latest_.covariance,
-                        gnss_.context(), &latest_clock_.covariance, slam,
-                        calibrates() ? &calibration_deviations_ : nullptr)) {
+  NewestEstimate known;
+  if (!NewestCovariance(window_.frames(), terms, &known)) {
     return Lost("smoother: information at " + FormatSeconds(newest.stamp_ns) + " s is not positive definite");
   }
+  latest_.covariance = known.covariance;
+  latest_clock_.covariance = known.clock_covariance;
+  calibration_deviations_ = known.calibration_deviations;
   return Status::Ok();
 }
 

@@ -8,7 +8,9 @@
 #include "core/rest_detector.h"
 #include "core/robust.h"
 #include "smoother/sliding/gnss_window.h"
-#include "smoother/solve/window_solver.h"
+#include "smoother/solve/prior_terms.h"
+#include "smoother/solve/sensor_terms.h"
+#include "smoother/solve/window_system.h"
 #include "smoother/tracks/track_system.h"
 
 namespace alidade {
@@ -58,20 +60,18 @@ class SmootherEstimator final : public Estimator {
   Status BeginFrame(TimeNs stamp_ns);
   /// The camera as it is known now.
   [[nodiscard]] const CameraCalibration& camera() const { return calibration_.mean; }
-  [[nodiscard]] bool calibrates() const { return calibration_.size() > 0; }
-  [[nodiscard]] std::vector<FrameGeometry> Geometry() const;
-  /// Null unless it is calibrated online.
-  [[nodiscard]] const WindowCalibration* Calibration() const {
-    return calibrates() ? &calibration_ : nullptr;
-  }
+  [[nodiscard]] std::vector<FrameGeometry> Geometry() const { return MakeGeometry(window_, camera()); }
   [[nodiscard]] bool NewestIsKeyframe() const;
   void DetectRest(const TrackFrame& frame);
-  void MarginalizeOldestFrame();
+  Status MarginalizeOldestFrame();
   [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);
   [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
                                                       size_t free);
-  [[nodiscard]] std::optional<SlamPrior> MakeSlamPrior() const;
-  bool ReduceSlamPrior(const SlamPrior& slam, SlamPrior::Reduced* reduced);
+  [[nodiscard]] SensorContext Sensors() const { return {gravity_W_, gnss_.context()}; }
+  /// The prior, first of a window's terms. Returns it where it has landmarks, else null.
+  SlamPriorTerm* SetPriorTerm(WindowTerms* terms) const;
+  /// Landmarks of the prior at the states just solved for.
+  Status TakeLandmarks(const SlamPriorTerm& slam);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   bool PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track);
@@ -80,7 +80,7 @@ class SmootherEstimator final : public Estimator {
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
   /// True when a SLAM feature was refused.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
-  Status UpdateLatest(const PoseSystem& vision, const SlamPrior::Reduced* slam);
+  Status UpdateLatest(const WindowTerms& terms);
   [[nodiscard]] Status Lost(const std::string& message);
 
   // Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
@@ -90,7 +90,7 @@ class SmootherEstimator final : public Estimator {
   EstimatorConfig config_;
   RigCalibration rig_;
   ImuNoise noise_;
-  WindowSolveOptions solve_options_;
+  Eigen::Vector3d gravity_W_;
   ObservationKernel kernel_;
   ChiSquareGate gate_;
   ImuBuffer imu_;
@@ -105,7 +105,6 @@ class SmootherEstimator final : public Estimator {
   ClockState latest_clock_;
   bool has_frames_ = false;  ///< a camera has been heard of
   FrameStatistics statistics_;
-  TrackWorkspace workspace_;
   std::vector<ImuSample> interval_;
   bool initialized_ = false;
 };

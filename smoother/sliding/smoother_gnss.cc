@@ -1,7 +1,6 @@
 #include "core/stopwatch.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother_estimator.h"
-#include "smoother/solve/window_system.h"
 
 // GNSS of SmootherEstimator.
 
@@ -14,9 +13,7 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   // The window begins anew at the newest state in the ENU frame: what it knew is in that state's covariance.
   ALIDADE_RETURN_IF_ERROR(Begin(TurnIntoEnu(alignment, latest_)));
   gnss_.Align(alignment, &window_.newest(), &prior_);
-  if (calibrates()) {
-    AddCalibrationPrior(*LatestCalibration(), &prior_);
-  }
+  AddCalibrationPrior({calibration_.layout, calibration_.mean, calibration_deviations_}, &prior_);
   latest_clock_ = FreshClock(config_.gnss, window_.newest().clock_state());
   return Status::Ok();
 }

@@ -4,6 +4,7 @@
 
 #include "smoother/sliding/smoother_estimator.h"
 #include "smoother/solve/marginalization.h"
+#include "smoother/solve/vision_terms.h"
 
 namespace alidade {
 namespace {
@@ -66,30 +67,41 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
   return promoted;
 }
 
-void SmootherEstimator::MarginalizeOldestFrame() {
+Status SmootherEstimator::MarginalizeOldestFrame() {
   const WindowFrame* oldest = &window_.frame(0);
   const std::vector<FrameGeometry> geometry = Geometry();
-  SlamChange slam{PriorTracks(prior_, window_), {}, camera().T_BC, kernel_};
+  SlamChange slam{PriorTracks(prior_, window_), {}, kernel_};
   const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
   const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
   const std::vector<WindowTrack*> promoted = NewFeatures(geometry, limit - std::min(limit, staying.size()));
   slam.after.assign(staying.begin(), staying.end());
   slam.after.insert(slam.after.end(), promoted.begin(), promoted.end());
 
-  PoseSystem vision(window_.size(), Calibration());
+  std::vector<const WindowTrack*> leaving;
   for (auto& [id, track] : window_.tracks()) {
-    if (track.anchor != nullptr || track.views.empty() || track.views.front().frame != oldest) {
-      continue;
-    }
-    if (track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) &&
-        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
-        AddTrack(track.views, geometry, kernel_, track.landmark, &workspace_, &vision)) {
-      track.Restart();
+    if (track.anchor == nullptr && !track.views.empty() && track.views.front().frame == oldest &&
+        track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) &&
+        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark)) {
+      leaving.push_back(&track);
     }
   }
-  prior_ = MarginalizeOldest(window_, prior_, vision, solve_options_.gravity_W, gnss_.context(), slam);
+  auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(leaving), calibration_, kernel_);
+  const std::vector<const WindowTrack*> gone = vision->used();
+  WindowTerms terms;
+  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), 2, &terms); !status.ok()) {
+    return Lost(status.message());
+  }
+  terms.insert(terms.begin() + 1, std::move(vision));
+  Result<LinearPrior> next = MarginalizeOldest(window_, prior_, calibration_, terms, slam);
+  if (!next.ok()) {
+    return Lost(next.message());
+  }
+  prior_ = std::move(*next);
   if (config_.smoother.first_estimates) {
     KeepFirstEstimates(prior_, &window_);
+  }
+  for (const WindowTrack* track : gone) {
+    window_.tracks().at(track->id).Restart();
   }
   for (const WindowTrack* track : slam.before) {
     if (track != nullptr && std::find(slam.after.begin(), slam.after.end(), track) == slam.after.end()) {
@@ -98,6 +110,7 @@ void SmootherEstimator::MarginalizeOldestFrame() {
   }
   window_.RemoveOldest();
   window_.Prune();
+  return Status::Ok();
 }
 
 }  // namespace alidade

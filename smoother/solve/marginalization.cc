@@ -1,12 +1,10 @@
 #include "smoother/solve/marginalization.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
-#include "smoother/manifold/dense_blas.h"
-#include "smoother/solve/frame_rows.h"
+#include "smoother/solve/marginal_stack.h"
 
 namespace alidade {
 namespace {
@@ -15,155 +13,135 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Whitened rows over all that the oldest frame's leaving concerns. Columns: the oldest frame (15), with GNSS
-/// its clock (6), landmarks that leave (3 each), the next frame (15), poses of the others (6 each), with GNSS
-/// the next clock (6), the calibration where it is estimated, landmarks that stay (3 each), the residual.
-class OldestStack {
+/// The columns of a window whose oldest frame leaves. First what is eliminated: the oldest frame, its clock,
+/// landmarks that leave. Then those of the next prior.
+struct LeavingColumns {
+  LeavingColumns(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
+                 const SlamChange& slam);
+
+  ColumnMap columns;
+  Index leaving = 0;
+  std::vector<int> before;  ///< number of each landmark of SlamChange::before
+  std::vector<bool> leaves;
+  std::vector<int> after;  ///< of each of SlamChange::after
+};
+
+LeavingColumns::LeavingColumns(const Window& window, const LinearPrior& prior,
+                               const WindowCalibration& calibration, const SlamChange& slam) {
+  columns.AddState(0);
+  if (prior.clock_origin) {
+    columns.AddClock(0);
+  }
+  int landmarks = 0;
+  for (const WindowTrack* track : slam.before) {
+    const auto stays = std::find(slam.after.begin(), slam.after.end(), track);
+    leaves.push_back(track == nullptr || stays == slam.after.end());
+    before.push_back(leaves.back() ? landmarks++ : static_cast<int>(stays - slam.after.begin()));
+  }
+  for (size_t i = 0; i < before.size(); ++i) {
+    before[i] += leaves[i] ? 0 : landmarks;
+  }
+  for (int i = 0; i < landmarks; ++i) {
+    columns.AddLandmark(i);
+  }
+  leaving = columns.size();
+  for (int i = 1; i < window.size(); ++i) {
+    i == 1 ? columns.AddState(i) : columns.AddPose(i);
+  }
+  if (prior.clock_origin) {
+    columns.AddClock(1);
+  }
+  columns.AddCalibration(calibration.size());
+  for (size_t i = 0; i < slam.after.size(); ++i) {
+    after.push_back(landmarks + static_cast<int>(i));
+    columns.AddLandmark(after.back());
+  }
+}
+
+/// What the old prior and the landmarks' views contribute.
+class PriorRows {
  public:
-  OldestStack(const Window& window, const LinearPrior& prior, const SlamChange& slam,
-              const GnssFactorContext* gnss, const WindowCalibration* calibration);
+  PriorRows(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
+            const SlamChange& slam, const LeavingColumns& leaving, MarginalStack* stack)
+      : window_(window),
+        prior_(prior),
+        columns_(prior.columns()),
+        calibration_(calibration),
+        slam_(slam),
+        leaving_(leaving),
+        stack_(*stack) {
+    CHECK(slam.before.size() == prior.landmarks.size());
+    CHECK(calibration.size() == prior.calibration_origin.size());
+    if (!slam.before.empty() || !slam.after.empty()) {
+      geometry_ = MakeGeometry(window, calibration.mean);
+    }
+  }
 
   void AddPrior();
-  void AddImu(const Eigen::Vector3d& gravity_W);
-  void AddVision(const PoseSystem& vision);
-  void AddRest();
-  void AddGnss();
   void AddLandmarkViews();
-  [[nodiscard]] LinearPrior Eliminate();
 
  private:
-  [[nodiscard]] Index Frame(int frame) const {
-    return frame == 0 ? 0 : leaving_ + (frame == 1 ? 0 : 15 + 6 * (frame - 2));
+  [[nodiscard]] ColumnMap::Range Pose(int frame) const {
+    return {stack_.columns().Frame(frame).first, kPoseColumns};
   }
-  [[nodiscard]] Index Clock() const { return Frame(window_.size()); }
-  [[nodiscard]] Index Calibration() const { return Clock() + clock_; }
-  [[nodiscard]] Index calibration_size() const { return prior_.calibration_size(); }
-  [[nodiscard]] Index Staying(size_t landmark) const {
-    return Calibration() + calibration_size() + 3 * static_cast<Index>(landmark);
-  }
-  [[nodiscard]] Index residual_column() const { return Staying(slam_.after.size()); }
-  Index NewRows(Index count);
-  /// d (phi, dp) of a frame's body / d its columns.
-  [[nodiscard]] Matrix6d Chart(int frame) const;
-  /// The same of its whole state.
-  [[nodiscard]] Matrix15d ImuChart(int frame) const;
-  void AddPriorLandmark(size_t landmark, Index rows, VectorXd* residual);
-  void AddView(const WindowTrack& track, const WindowView& view, Index landmark_column);
+  void AddLandmark(size_t landmark, Index rows, VectorXd* residual);
+  void AddView(const WindowTrack& track, const WindowView& view, int landmark);
 
   const Window& window_;
   const LinearPrior& prior_;
+  ColumnMap columns_;  ///< of the old prior
+  const WindowCalibration& calibration_;
   const SlamChange& slam_;
-  const GnssFactorContext* gnss_;
-  const WindowCalibration* calibration_;
-  Index clock_;
-  Index leaving_;                 ///< columns
-  std::vector<Index> column_of_;  ///< of the old prior's landmarks
-  std::vector<bool> leaves_;
+  const LeavingColumns& leaving_;
+  MarginalStack& stack_;
   std::vector<FrameGeometry> geometry_;
-  MatrixXd stack_;
-  Index rows_ = 0;
 };
 
-OldestStack::OldestStack(const Window& window, const LinearPrior& prior, const SlamChange& slam,
-                         const GnssFactorContext* gnss, const WindowCalibration* calibration)
-    : window_(window),
-      prior_(prior),
-      slam_(slam),
-      gnss_(gnss),
-      calibration_(calibration),
-      clock_(gnss != nullptr ? 6 : 0) {
-  CHECK(slam.before.size() == prior.landmarks.size());
-  CHECK((calibration == nullptr) == !prior.calibration_origin.has_value());
-  if (!slam.before.empty() || !slam.after.empty()) {
-    geometry_ =
-        calibration == nullptr ? MakeGeometry(window, slam.T_BC) : MakeGeometry(window, calibration->mean);
-  }
-  leaving_ = 15 + clock_;
-  for (const WindowTrack* track : slam.before) {
-    const auto stays = std::find(slam.after.begin(), slam.after.end(), track);
-    leaves_.push_back(track == nullptr || stays == slam.after.end());
-    column_of_.push_back(leaves_.back() ? leaving_ : stays - slam.after.begin());
-    leaving_ += leaves_.back() ? 3 : 0;
-  }
-  for (size_t i = 0; i < column_of_.size(); ++i) {
-    column_of_[i] = leaves_[i] ? column_of_[i] : Staying(static_cast<size_t>(column_of_[i]));
-  }
-  stack_.resize(2 * residual_column(), residual_column() + 1);
-}
-
-Index OldestStack::NewRows(Index count) {
-  const Index first = rows_;
-  rows_ += count;
-  if (rows_ > stack_.rows()) {
-    stack_.conservativeResize(std::max(rows_, 2 * stack_.rows()), residual_column() + 1);
-  }
-  stack_.middleRows(first, count).setZero();
-  return first;
-}
-
-Matrix6d OldestStack::Chart(int frame) const {
-  if (window_.frame(frame).first) {
-    return ImuChart(frame).topLeftCorner<6, 6>();
-  }
-  return ChartJacobian(prior_.convention, window_.frame(frame).nav_state().T_WB());
-}
-
-Matrix15d OldestStack::ImuChart(int frame) const {
-  const WindowFrame& of = window_.frame(frame);
-  const NavState state = of.nav_state();
-  Matrix15d chart = ImuChartJacobian(prior_.convention, state);
-  if (of.first) {
-    // The columns are the prior's coordinates, around the first estimate.
-    const Matrix9d moved = LocalJacobian(prior_.convention, of.first->Point(state), state);
-    chart.topLeftCorner<9, 9>() = (chart.topLeftCorner<9, 9>() * moved.inverse()).eval();
-  }
-  return chart;
-}
-
-void OldestStack::AddPrior() {
+void PriorRows::AddPrior() {
   const Index count = prior_.jacobian.rows();
-  const Index first = NewRows(count);
-  CHECK(first == 0);
+  const Index first = stack_.NewRows(count);
+  const auto columns = [&](const ColumnMap::Range& of) {
+    return prior_.jacobian.middleCols(of.first, of.size);
+  };
   VectorXd residual = prior_.residual;
   for (size_t i = 0; i < prior_.anchors.size(); ++i) {
     const LinearPrior::Anchor& anchor = prior_.anchors[i];
-    const Index width = i == 0 ? 15 : 6;
-    const Index from = LinearPrior::Column(static_cast<int>(i));
+    const ColumnMap::Range from = columns_.Frame(static_cast<int>(i));
     Vector15d xi;
     xi.head<9>() = Local(prior_.convention, anchor.origin, anchor.frame->nav_state());
     const ImuBias bias = anchor.frame->imu_bias();
     xi.tail<6>() << bias.gyro - anchor.bias_origin.gyro, bias.accel - anchor.bias_origin.accel;
-    stack_.block(0, Frame(anchor.frame->index), count, width) = prior_.jacobian.middleCols(from, width);
-    residual.noalias() += prior_.jacobian.middleCols(from, width) * xi.head(width);
+    const ColumnMap::Range to{stack_.columns().Frame(anchor.frame->index).first, from.size};
+    stack_.Columns(to, first, count) = columns(from);
+    residual.noalias() += columns(from) * xi.head(from.size);
   }
-  if (gnss_ != nullptr) {
-    const MatrixXd jacobian = prior_.jacobian.middleCols<6>(prior_.ClockColumn());
-    stack_.block(0, 15, count, 6) = jacobian;
+  if (prior_.clock_origin) {
+    const MatrixXd jacobian = columns(columns_.Clock(0));
+    stack_.Columns(stack_.columns().Clock(0), first, count) = jacobian;
     residual.noalias() += jacobian * (window_.frame(0).clock_state() - *prior_.clock_origin);
   }
-  if (calibration_ != nullptr) {
-    const WindowCalibration& origin = *prior_.calibration_origin;
-    const MatrixXd jacobian = prior_.jacobian.middleCols(prior_.CalibrationColumn(), calibration_size());
-    stack_.block(0, Calibration(), count, calibration_size()) = jacobian;
-    residual.noalias() += jacobian * Local(origin.layout, origin.mean, calibration_->mean);
-  }
+  const WindowCalibration& origin = prior_.calibration_origin;
+  const MatrixXd jacobian = columns(columns_.Calibration());
+  stack_.Columns(stack_.columns().Calibration(), first, count) = jacobian;
+  residual.noalias() += jacobian * Local(origin.layout, origin.mean, calibration_.mean);
   for (size_t i = 0; i < prior_.landmarks.size(); ++i) {
-    AddPriorLandmark(i, count, &residual);
+    AddLandmark(i, count, &residual);
   }
-  stack_.col(residual_column()).head(count) = residual;
+  stack_.Residual(first, count) = residual;
 }
 
-void OldestStack::AddPriorLandmark(size_t landmark, Index rows, VectorXd* residual) {
+void PriorRows::AddLandmark(size_t landmark, Index rows, VectorXd* residual) {
   const LinearPrior::Landmark& known = prior_.landmarks[landmark];
   const WindowTrack* track = slam_.before[landmark];
-  const MatrixXd columns = prior_.jacobian.middleCols<3>(prior_.LandmarkColumn(static_cast<int>(landmark)));
-  const Index at = column_of_[landmark];
+  const MatrixXd columns =
+      prior_.jacobian.middleCols<kLandmarkColumns>(columns_.Landmark(static_cast<int>(landmark)).first);
+  auto own = stack_.Columns(stack_.columns().Landmark(leaving_.before[landmark]), 0, rows);
   if (track == nullptr) {
-    stack_.block(0, at, rows, 3) = columns;
+    own = columns;
     return;
   }
   if (track->anchor == known.anchor) {
-    stack_.block(0, at, rows, 3) = columns;
+    own = columns;
     residual->noalias() += columns * (track->landmark - known.origin);
     return;
   }
@@ -175,147 +153,98 @@ void OldestStack::AddPriorLandmark(size_t landmark, Index rows, VectorXd* residu
                      track->landmark, &back));
   AnchorChange change;
   CHECK(ChangeAnchor(geometry_[static_cast<size_t>(from)], geometry_[static_cast<size_t>(to)], back.to,
-                     &change, calibration_ == nullptr ? nullptr : &calibration_->layout));
-  stack_.block(0, at, rows, 3).noalias() = columns * change.landmark;
-  stack_.block(0, Frame(from), rows, 6).noalias() += columns * (change.from_frame * Chart(from));
-  stack_.block(0, Frame(to), rows, 6).noalias() += columns * (change.to_frame * Chart(to));
-  if (calibration_ != nullptr) {
-    stack_.block(0, Calibration(), rows, calibration_size()).noalias() += columns * change.calibration;
-  }
+                     &change, &calibration_.layout));
+  own.noalias() = columns * change.landmark;
+  stack_.Columns(Pose(from), 0, rows).noalias() += columns * (change.from_frame * stack_.PoseChart(from));
+  stack_.Columns(Pose(to), 0, rows).noalias() += columns * (change.to_frame * stack_.PoseChart(to));
+  stack_.Columns(stack_.columns().Calibration(), 0, rows).noalias() += columns * change.calibration;
   residual->noalias() += columns * (back.to - known.origin);
 }
 
-void OldestStack::AddImu(const Eigen::Vector3d& gravity_W) {
-  const Index first = NewRows(15);
-  const ImuRows imu = LinearizeImu(window_.frame(0), window_.frame(1), gravity_W);
-  stack_.block<15, 15>(first, 0) = imu.first * ImuChart(0);
-  stack_.block<15, 15>(first, Frame(1)) = imu.second * ImuChart(1);
-  stack_.col(residual_column()).segment<15>(first) = imu.residual;
-}
-
-void OldestStack::AddVision(const PoseSystem& vision) {
-  MatrixXd jacobian;
-  VectorXd residual;
-  SquareRootRows(vision.hessian, vision.gradient, &jacobian, &residual);
-  const Index count = residual.size();
-  const Index first = NewRows(count);
-  for (int i = 0; i < window_.size(); ++i) {
-    stack_.block(first, Frame(i), count, 6).noalias() = jacobian.middleCols<6>(6 * i) * Chart(i);
-  }
-  stack_.block(first, Calibration(), count, calibration_size()) = jacobian.rightCols(calibration_size());
-  stack_.col(residual_column()).segment(first, count) = residual;
-}
-
-void OldestStack::AddRest() {
-  if (!window_.frame(0).rest) {
-    return;
-  }
-  const Index first = NewRows(RestModel::kRows);
-  const RestRows rest(window_.frame(0));
-  stack_.block<RestModel::kRows, 15>(first, 0) = rest.jacobian * ImuChart(0);
-  stack_.col(residual_column()).segment<RestModel::kRows>(first) = rest.residual;
-}
-
-void OldestStack::AddGnss() {
-  if (gnss_ == nullptr) {
-    return;
-  }
-  const WindowFrame& oldest = window_.frame(0);
-  const FrameEpochRows epochs = EpochRows(*gnss_, oldest);
-  const Index count = epochs.residual.size();
-  const Index first = NewRows(count + clock_);
-  stack_.block(first, 0, count, 15) = epochs.frame * ImuChart(0);
-  stack_.block(first, 15, count, 6) = epochs.clock;
-  stack_.col(residual_column()).segment(first, count) = epochs.residual;
-  const ClockStep step = StepTo(*gnss_, oldest, window_.frame(1));
-  stack_.block<6, 6>(first + count, 15) = -step.root * step.phi;
-  stack_.block<6, 6>(first + count, Clock()) = step.root;
-  stack_.col(residual_column()).segment<6>(first + count) =
-      step.root * (window_.frame(1).clock_state() - step.phi * oldest.clock_state());
-}
-
-void OldestStack::AddView(const WindowTrack& track, const WindowView& view, Index landmark_column) {
+void PriorRows::AddView(const WindowTrack& track, const WindowView& view, int landmark) {
   AnchoredRows rows;
   const int anchor = track.anchor->index;
   const int seen = view.frame->index;
   if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], geometry_[static_cast<size_t>(seen)],
-                             view.observation, slam_.kernel, track.landmark, &rows, true, calibration_)) {
+                             view.observation, slam_.kernel, track.landmark, &rows, true, &calibration_)) {
     return;
   }
-  const Index first = NewRows(2);
+  const Index first = stack_.NewRows(2);
   const double root = std::sqrt(rows.weight);
   if (anchor != seen) {
-    stack_.block<2, 6>(first, Frame(anchor)) = root * rows.anchor * Chart(anchor);
-    stack_.block<2, 6>(first, Frame(seen)) = root * rows.view * Chart(seen);
+    stack_.Columns(Pose(anchor), first, 2) =
+        Eigen::Matrix<double, 2, 6>(root * rows.anchor * stack_.PoseChart(anchor));
+    stack_.Columns(Pose(seen), first, 2) =
+        Eigen::Matrix<double, 2, 6>(root * rows.view * stack_.PoseChart(seen));
   }
-  if (calibration_ != nullptr) {
-    stack_.block(first, Calibration(), 2, calibration_size()) = root * rows.calibration;
-  }
-  stack_.block<2, 3>(first, landmark_column) = root * rows.landmark;
-  stack_.col(residual_column()).segment<2>(first) = root * rows.residual;
+  stack_.Columns(stack_.columns().Calibration(), first, 2) = root * rows.calibration;
+  stack_.Columns(stack_.columns().Landmark(landmark), first, 2) = root * rows.landmark;
+  stack_.Residual(first, 2) = root * rows.residual;
 }
 
-void OldestStack::AddLandmarkViews() {
+void PriorRows::AddLandmarkViews() {
   for (size_t i = 0; i < slam_.before.size(); ++i) {
-    for (size_t k = 0; leaves_[i] && slam_.before[i] != nullptr && k < slam_.before[i]->views.size(); ++k) {
-      AddView(*slam_.before[i], slam_.before[i]->views[k], column_of_[i]);
+    for (size_t k = 0; leaving_.leaves[i] && slam_.before[i] != nullptr && k < slam_.before[i]->views.size();
+         ++k) {
+      AddView(*slam_.before[i], slam_.before[i]->views[k], leaving_.before[i]);
     }
   }
   for (size_t i = 0; i < slam_.after.size(); ++i) {
     const std::vector<WindowView>& views = slam_.after[i]->views;
     if (!views.empty() && views.front().frame->index == 0) {
-      AddView(*slam_.after[i], views.front(), Staying(i));
+      AddView(*slam_.after[i], views.front(), leaving_.after[i]);
     }
   }
 }
 
-LinearPrior OldestStack::Eliminate() {
-  const Index columns = residual_column();
-  if (rows_ < columns + 1) {
-    NewRows(columns + 1 - rows_);
-  }
-  MatrixXd rows = stack_.topRows(rows_);
-  Triangularize(&rows);
-  LinearPrior next;
-  next.convention = prior_.convention;
-  const Index kept = columns - leaving_;
-  next.jacobian = rows.block(leaving_, leaving_, kept, kept).triangularView<Eigen::Upper>();
-  next.residual = rows.col(columns).segment(leaving_, kept);
-  if (gnss_ != nullptr) {
-    next.clock_origin = window_.frame(1).clock_state();
-  }
-  if (calibration_ != nullptr) {
-    next.calibration_origin = *calibration_;
-  }
-  for (int i = 1; i < window_.size(); ++i) {
-    const WindowFrame& frame = window_.frame(i);
+/// Names what the rows of a new prior are about. They hold at the present states.
+void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next) {
+  for (int i = 1; i < window.size(); ++i) {
+    const WindowFrame& frame = window.frame(i);
     const NavState now = frame.nav_state();
-    next.anchors.push_back({&frame, frame.first ? frame.first->Point(now) : now, frame.imu_bias()});
-    if (frame.first) {  // the rows hold at the present state, the origin is another
-      const Index width = i == 1 ? 9 : 6;
-      const Vector9d xi = Local(next.convention, next.anchors.back().origin, now);
-      next.residual.noalias() -= next.jacobian.middleCols(LinearPrior::Column(i - 1), width) * xi.head(width);
+    next->anchors.push_back({&frame, frame.first ? frame.first->Point(now) : now, frame.imu_bias()});
+  }
+  for (const WindowTrack* track : slam.after) {
+    next->landmarks.push_back({track->id, track->anchor, track->landmark});
+  }
+  const ColumnMap columns = next->columns();
+  for (size_t i = 0; i < next->anchors.size(); ++i) {
+    const LinearPrior::Anchor& anchor = next->anchors[i];
+    if (anchor.frame->first) {  // the origin is another than the present state
+      const ColumnMap::Range of = columns.Frame(static_cast<int>(i));
+      const Index width = std::min(of.size, kNavColumns);
+      const Vector9d xi = Local(next->convention, anchor.origin, anchor.frame->nav_state());
+      next->residual.noalias() -= next->jacobian.middleCols(of.first, width) * xi.head(width);
     }
   }
-  for (const WindowTrack* track : slam_.after) {
-    next.landmarks.push_back({track->id, track->anchor, track->landmark});
-  }
-  return next;
 }
 
 }  // namespace
 
-LinearPrior MarginalizeOldest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
-                              const Eigen::Vector3d& gravity_W, const GnssFactorContext* gnss,
-                              const SlamChange& slam) {
-  OldestStack stack(window, prior, slam, gnss, vision.calibration);
-  stack.AddPrior();
-  stack.AddImu(gravity_W);
-  stack.AddVision(vision);
-  stack.AddRest();
-  stack.AddGnss();
-  stack.AddLandmarkViews();
-  return stack.Eliminate();
+Result<LinearPrior> MarginalizeOldest(const Window& window, const LinearPrior& prior,
+                                      const WindowCalibration& calibration, const WindowTerms& terms,
+                                      const SlamChange& slam) {
+  const LeavingColumns leaving(window, prior, calibration, slam);
+  MarginalStack stack(window, prior.convention, leaving.columns, leaving.leaving);
+  PriorRows rows(window, prior, calibration, slam, leaving, &stack);
+  rows.AddPrior();
+  LinearTerm linear;
+  for (const std::unique_ptr<WindowTerm>& term : terms) {
+    if (term->Concerns({Unknown::Kind::kFrame, 0}) || term->Concerns({Unknown::Kind::kClock, 0})) {
+      ALIDADE_RETURN_IF_ERROR(term->Linearize(&linear));
+      stack.Add(&linear);
+    }
+  }
+  rows.AddLandmarkViews();
+  LinearPrior next;
+  next.convention = prior.convention;
+  stack.Eliminate(&next.jacobian, &next.residual);
+  if (prior.clock_origin) {
+    next.clock_origin = window.frame(1).clock_state();
+  }
+  next.calibration_origin = calibration;
+  AnchorPrior(window, slam, &next);
+  return next;
 }
 
 void KeepFirstEstimates(const LinearPrior& prior, Window* window) {

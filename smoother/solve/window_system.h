@@ -1,20 +1,21 @@
 #pragma once
 
-#include "smoother/factors/gnss_factors.h"
-#include "smoother/factors/slam_prior.h"
+#include <Eigen/Core>
+
+#include "core/error_convention.h"
+#include "smoother/solve/window_term.h"
 
 namespace alidade {
 
-/// Covariance of the newest frame (canonical chart, phi dp dv dbg dba) from the Gauss-Newton Hessian of the
-/// window at its present states: prior, IMU, rest and `vision` (all landmarks eliminated, kernels included).
-/// False when it is not positive definite.
-/// `slam`: a prior with landmarks at the present states, which then stands for `prior`.
-/// `gnss`: of an aligned window, whose epochs and clocks then count; clock_covariance is that of the newest.
-/// calibration_deviations: of the calibration that `vision` and `prior` hold.
-bool NewestCovariance(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
-                      const Eigen::Vector3d& gravity_W, Matrix15d* covariance,
-                      const GnssFactorContext* gnss = nullptr, Matrix6d* clock_covariance = nullptr,
-                      const SlamPrior::Reduced* slam = nullptr,
-                      Eigen::VectorXd* calibration_deviations = nullptr);
+/// What a window knows of its newest frame.
+struct NewestEstimate {
+  Matrix15d covariance;                    ///< of the state; canonical chart, phi dp dv dbg dba
+  Matrix6d clock_covariance;               ///< of the clock, in an aligned window
+  Eigen::VectorXd calibration_deviations;  ///< of what of the calibration is estimated
+};
+
+/// The same from the Gauss-Newton Hessian of `terms` over the frames at their present states; landmarks must
+/// be eliminated within the terms. False when it is not positive definite, or a term is undefined there.
+bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest);
 
 }  // namespace alidade

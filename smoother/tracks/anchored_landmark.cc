@@ -35,7 +35,7 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
     rows->anchor = whitening * over_anchor * anchor.camera_from_body;
     rows->view = whitening * over_view * view.camera_from_body;
   }
-  if (with_frames && calibration != nullptr) {
+  if (with_frames && calibration != nullptr && calibration->size() > 0) {
     const CalibrationLayout& layout = calibration->layout;
     // The ray's part; the cameras' places follow.
     rows->calibration.resize(2, layout.size());

@@ -18,14 +18,11 @@ constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into it
 const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const WindowView& view) {
   return geometry[static_cast<size_t>(view.frame->index)];
 }
-/// Row of the depth prior on rho, the inverse depth in the base view: d rho = drho - rho dz_b, z_b the depth
-/// of (x, y, 1) there.
+/// The depth prior on rho, the inverse depth in the base view.
 void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vector3d& landmark,
                    const CalibrationLayout* layout, TrackWorkspace* workspace) {
   const double rho = landmark.z();
-  const Vector3d ray = landmark.head<2>().homogeneous();
-  Eigen::Matrix<double, 1, 6> camera;
-  camera << -rho * Skew(ray).row(2), rho * rho * base.Linearized().rotation.col(2).transpose();
+  const Eigen::Matrix<double, 1, 6> camera = InverseDepthRow(base, landmark);
   const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
   const double residual = prior.sqrt_information * (rho - prior.mean);
   workspace->prior_residual = residual;
@@ -108,6 +105,15 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
 }
 
 }  // namespace
+
+/// d rho = drho - rho dz_b, z_b the depth of (x, y, 1) in the base view.
+Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base, const Vector3d& landmark) {
+  const double rho = landmark.z();
+  const Vector3d ray = landmark.head<2>().homogeneous();
+  Eigen::Matrix<double, 1, 6> camera;
+  camera << -rho * Skew(ray).row(2), rho * rho * base.Linearized().rotation.col(2).transpose();
+  return camera;
+}
 
 bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
                    const NormalizedObservation& observation, const ObservationKernel& kernel,

@@ -46,6 +46,11 @@ bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
                    const NormalizedObservation& observation, const ObservationKernel& kernel,
                    const Eigen::Vector3d& landmark, ViewRows* rows);
 
+/// d rho / d (phi, dp) of the base camera, rho being the inverse depth in the base view of a landmark that is
+/// a point of the world, as LinearizeView has it.
+[[nodiscard]] Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base,
+                                                          const Eigen::Vector3d& landmark);
+
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {
   std::vector<ViewRows> rows;

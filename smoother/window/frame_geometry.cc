@@ -9,6 +9,11 @@ using Eigen::Vector3d;
 /// Where the body of a frame was when the camera saw, and the camera with it.
 FrameGeometry Seeing(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
   const double later_s = camera.time_offset_s - frame.time_offset_s;
+  if (later_s == 0) {
+    FrameGeometry geometry = MakeGeometry(state, camera.T_BC);
+    geometry.camera_from_time = geometry.camera_from_body * frame.rates;
+    return geometry;
+  }
   const Matrix3d turn = so3::Exp(Vector3d(frame.rates.head<3>() * later_s));
   FrameGeometry geometry;
   geometry.R_WB = state.R_WB * turn;
@@ -21,12 +26,20 @@ FrameGeometry Seeing(const WindowFrame& frame, const NavState& state, const Came
   return geometry;
 }
 
-/// `make` gives the geometry at a state.
-template <typename Make>
-FrameGeometry WithFirstEstimate(const WindowFrame& frame, const NavState& state, const Make& make) {
-  FrameGeometry geometry = make(state);
+}  // namespace
+
+FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC) {
+  FrameGeometry geometry;
+  geometry.T_WC = state.T_WB() * T_BC;
+  geometry.camera_from_body = BodyToCameraJacobian(state.R_WB, T_BC);
+  geometry.R_WB = state.R_WB;
+  return geometry;
+}
+
+FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
+  FrameGeometry geometry = Seeing(frame, state, camera);
   if (frame.first) {
-    const FrameGeometry first = make(frame.first->Point(state));
+    const FrameGeometry first = Seeing(frame, frame.first->Point(state), camera);
     geometry.T_WC_first = first.T_WC;
     geometry.camera_from_body = first.camera_from_body * frame.first->Chain(state).topLeftCorner<6, 6>();
     geometry.R_WB = first.R_WB;
@@ -35,9 +48,7 @@ FrameGeometry WithFirstEstimate(const WindowFrame& frame, const NavState& state,
   return geometry;
 }
 
-/// `camera`: its pose on the body, or its calibration.
-template <typename Camera>
-std::vector<FrameGeometry> OfEveryFrame(const Window& window, const Camera& camera) {
+std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera) {
   std::vector<FrameGeometry> geometry;
   geometry.reserve(static_cast<size_t>(window.size()));
   for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
@@ -46,26 +57,13 @@ std::vector<FrameGeometry> OfEveryFrame(const Window& window, const Camera& came
   return geometry;
 }
 
-}  // namespace
-
-FrameGeometry MakeGeometry(const NavState& state, const Pose& T_BC) {
-  return {state.T_WB() * T_BC, BodyToCameraJacobian(state.R_WB, T_BC), {}};
-}
-
-FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, const Pose& T_BC) {
-  return WithFirstEstimate(frame, state, [&](const NavState& at) { return MakeGeometry(at, T_BC); });
-}
-
 std::vector<FrameGeometry> MakeGeometry(const Window& window, const Pose& T_BC) {
-  return OfEveryFrame(window, T_BC);
-}
-
-FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
-  return WithFirstEstimate(frame, state, [&](const NavState& at) { return Seeing(frame, at, camera); });
-}
-
-std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera) {
-  return OfEveryFrame(window, camera);
+  std::vector<FrameGeometry> geometry;
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    const CameraCalibration camera{{}, T_BC, frame->time_offset_s};
+    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera));
+  }
+  return geometry;
 }
 
 CameraFromCalibration CalibrationChain(const CalibrationLayout& layout, const FrameGeometry& frame) {
@@ -78,4 +76,5 @@ CameraFromCalibration CalibrationChain(const CalibrationLayout& layout, const Fr
   }
   return chain;
 }
+
 }  // namespace alidade

@@ -48,6 +48,9 @@ struct WindowFrame {
   [[nodiscard]] Vector6d clock_state() const { return Eigen::Map<const Vector6d>(clock->data()); }
 };
 
+/// Frames in time order; the index of each is its place.
+using WindowFrames = std::vector<std::unique_ptr<WindowFrame>>;
+
 /// One observation of a track inside the window.
 struct WindowView {
   const WindowFrame* frame = nullptr;
@@ -105,7 +108,7 @@ class Window {
   /// Drops tracks that are not seen any more and have fewer than two views left; SLAM features stay.
   void Prune();
 
-  [[nodiscard]] const std::vector<std::unique_ptr<WindowFrame>>& frames() const { return frames_; }
+  [[nodiscard]] const WindowFrames& frames() const { return frames_; }
   [[nodiscard]] WindowFrame& frame(int index) { return *frames_[static_cast<size_t>(index)]; }
   [[nodiscard]] const WindowFrame& frame(int index) const { return *frames_[static_cast<size_t>(index)]; }
   [[nodiscard]] WindowFrame& newest() { return *frames_.back(); }
@@ -117,7 +120,7 @@ class Window {
  private:
   void Renumber();
 
-  std::vector<std::unique_ptr<WindowFrame>> frames_;
+  WindowFrames frames_;
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
 

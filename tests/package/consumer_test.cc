@@ -30,8 +30,8 @@ TEST(Consumer, AProjectOfItsOwnFindsBuildsAndRuns) {
   EXPECT_LT(rmse_m, 0.3);
 }
 
-// GIVEN a program that links alidade::run alone, WHEN it streams its messages into a session, THEN the session
-// starts and follows, and the program needs neither OpenCV nor yaml nor what reads bags.
+// GIVEN a program that links alidade::run alone, WHEN it streams its messages into a session, THEN the
+// session starts and follows, and the program needs neither OpenCV nor yaml nor what reads bags.
 TEST(Consumer, ARobotNeedsTheSessionAlone) {
   TemporaryFolder folder;
   const CommandResult configured =

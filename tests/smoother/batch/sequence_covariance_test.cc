@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "core/imu_propagation.h"
-#include "smoother/solve/solve_store.h"
+#include "smoother/solve/prior_terms.h"
+#include "smoother/solve/sensor_terms.h"
+#include "smoother/solve/vision_terms.h"
 #include "tests/smoother/batch/batch_fixture.h"
 
 namespace alidade {
@@ -23,14 +25,14 @@ struct DenseSystem {
   VectorXd gradient;
 };
 
-DenseSystem EvaluateDense(SolveStore* store, size_t frames, size_t tracks, ceres::Problem* problem) {
+DenseSystem EvaluateDense(ParameterBlocks* blocks, size_t frames, size_t tracks, ceres::Problem* problem) {
   ceres::Problem::EvaluateOptions options;
   for (size_t i = 0; i < frames; ++i) {
-    options.parameter_blocks.push_back(store->Nav(static_cast<int>(i)));
-    options.parameter_blocks.push_back(store->Bias(static_cast<int>(i)));
+    options.parameter_blocks.push_back(blocks->Nav(static_cast<int>(i)));
+    options.parameter_blocks.push_back(blocks->Bias(static_cast<int>(i)));
   }
   for (size_t i = 0; i < tracks; ++i) {
-    options.parameter_blocks.push_back(store->Landmark(i));
+    options.parameter_blocks.push_back(blocks->Landmark(static_cast<int>(i)));
   }
   std::vector<double> residuals;
   ceres::CRSMatrix sparse;
@@ -60,24 +62,29 @@ class SequenceCovarianceTest : public testing::Test {
     for (WindowTrack& track : copies_) {
       tracks_.push_back(&track);
     }
-    T_BC_ = dataset.rig.T_BC;
   }
 
   [[nodiscard]] const BatchSequence& sequence() const { return run_.estimator->sequence(); }
 
-  [[nodiscard]] SequenceProblem MakeProblem(const std::vector<const WindowTrack*>& tracks) const {
-    SequenceProblem problem;
-    problem.frames = sequence().frames();
-    problem.tracks = tracks;
-    problem.prior = &sequence().prior();
-    problem.T_BC = T_BC_;
-    problem.gravity_W = GravityInWorld(config_.imu.gravity_mps2);
-    return problem;
+  /// Of the first `frames` frames and some tracks.
+  [[nodiscard]] WindowTerms MakeTerms(const std::vector<WindowTrack*>& tracks, size_t frames) const {
+    WindowTerms terms;
+    terms.push_back(MakePriorTerm(sequence().prior(), sequence().calibration()));
+    const Status status = AddSensorTerms({GravityInWorld(config_.imu.gravity_mps2)}, sequence().frames(),
+                                         static_cast<int>(frames), &terms);
+    EXPECT_TRUE(status.ok()) << status.message();
+    AddTrackTerms(sequence().frames(), tracks, sequence().calibration(), {}, &terms);
+    return terms;
+  }
+  [[nodiscard]] Result<SequenceCovariance> Compute(const std::vector<WindowTrack*>& tracks, size_t frames,
+                                                   bool with_covariance, bool with_filtered) const {
+    const WindowTerms terms = MakeTerms(tracks, frames);
+    return ComputeSequenceCovariance({std::span(sequence().frames()).first(frames), terms}, with_covariance,
+                                     with_filtered);
   }
 
   EstimatorConfig config_ = test::BatchTestConfig();
   test::BatchRun run_;
-  Pose T_BC_;
   std::vector<WindowTrack> copies_;
   std::vector<WindowTrack*> tracks_;
 };
@@ -86,20 +93,19 @@ TEST_F(SequenceCovarianceTest, EqualsTheDenseInverseOfCeresNormalEquations) {
   WindowFrame& moved = *sequence().frames()[7];
   moved.nav[5] += 0.01;  // off the minimum, so that there is a gradient and a decrement
   const size_t frames = sequence().frames().size();
-  SolveStore store(config_.smoother.error, {}, sequence().frames(), tracks_);
-  const std::unique_ptr<ceres::Problem> problem = store.MakeProblem();
-  store.AddPrior(sequence().prior(), problem.get());
-  ASSERT_TRUE(store.AddImu(GravityInWorld(config_.imu.gravity_mps2), problem.get()).ok());
-  store.AddRest(problem.get());
-  store.AddInverseDepth(T_BC_, problem.get());
-  const DenseSystem dense = EvaluateDense(&store, frames, tracks_.size(), problem.get());
+  const WindowTerms terms = MakeTerms(tracks_, frames);
+  ParameterBlocks blocks(config_.smoother.error, sequence().frames(), tracks_, sequence().calibration());
+  const std::unique_ptr<ceres::Problem> problem = blocks.MakeProblem();
+  for (const std::unique_ptr<WindowTerm>& term : terms) {
+    term->AddTo(&blocks, problem.get());
+  }
+  const DenseSystem dense = EvaluateDense(&blocks, frames, tracks_.size(), problem.get());
   const VectorXd scale = dense.hessian.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<MatrixXd> factor(scale.asDiagonal() * dense.hessian * scale.asDiagonal());
   const MatrixXd inverse =
       scale.asDiagonal() * factor.solve(MatrixXd::Identity(scale.size(), scale.size())) * scale.asDiagonal();
 
-  const std::vector<const WindowTrack*> tracks(tracks_.begin(), tracks_.end());
-  const Result<SequenceCovariance> sparse = ComputeSequenceCovariance(MakeProblem(tracks), true, false);
+  const Result<SequenceCovariance> sparse = Compute(tracks_, frames, true, false);
   ASSERT_TRUE(sparse.ok()) << sparse.message();
   for (size_t i = 0; i < frames; ++i) {
     const Matrix15d chart = ImuChartJacobian(config_.smoother.error, sequence().frames()[i]->nav_state());
@@ -118,22 +124,19 @@ TEST_F(SequenceCovarianceTest, EqualsTheDenseInverseOfCeresNormalEquations) {
 // GIVEN the same linearisation, WHEN everything after frame k is cut off, THEN the smoothed covariance of
 // what is now the last frame is the filtered one of the whole.
 TEST_F(SequenceCovarianceTest, FilteredIsSmoothedWithoutTheFuture) {
-  const std::vector<const WindowTrack*> all(tracks_.begin(), tracks_.end());
-  const Result<SequenceCovariance> whole = ComputeSequenceCovariance(MakeProblem(all), false, true);
+  const Result<SequenceCovariance> whole = Compute(tracks_, sequence().frames().size(), false, true);
   ASSERT_TRUE(whole.ok()) << whole.message();
   ASSERT_EQ(whole->filtered.size(), sequence().frames().size());
   for (const size_t k : {3u, 10u, 17u}) {
     std::vector<WindowTrack> cut = copies_;
-    std::vector<const WindowTrack*> tracks;
+    std::vector<WindowTrack*> tracks;
     for (WindowTrack& track : cut) {
       std::erase_if(track.views, [&](const WindowView& v) { return v.frame->index > static_cast<int>(k); });
       if (track.views.size() >= 2) {  // a single view says nothing of the poses
         tracks.push_back(&track);
       }
     }
-    SequenceProblem problem = MakeProblem(tracks);
-    problem.frames = problem.frames.first(k + 1);
-    const Result<SequenceCovariance> past = ComputeSequenceCovariance(problem, true, false);
+    const Result<SequenceCovariance> past = Compute(tracks, k + 1, true, false);
     ASSERT_TRUE(past.ok()) << past.message();
     const Vector15d unit = past->smoothed.back().diagonal().cwiseSqrt().cwiseInverse();
     const Matrix15d error =
@@ -144,15 +147,13 @@ TEST_F(SequenceCovarianceTest, FilteredIsSmoothedWithoutTheFuture) {
 
 TEST_F(SequenceCovarianceTest, InformationThatIsNotFiniteIsAStatus) {
   sequence().frames()[3]->nav[4] = std::nan("");
-  const std::vector<const WindowTrack*> none;
-  const Result<SequenceCovariance> result = ComputeSequenceCovariance(MakeProblem(none), true, true);
+  const Result<SequenceCovariance> result = Compute({}, sequence().frames().size(), true, true);
   EXPECT_EQ(result.code(), StatusCode::kDiverged);
 }
 
 TEST_F(SequenceCovarianceTest, TrackBehindTheCameraIsAStatusThatNamesIt) {
   copies_.front().landmark.z() = 1e6;
-  const std::vector<const WindowTrack*> tracks(tracks_.begin(), tracks_.end());
-  const Result<SequenceCovariance> result = ComputeSequenceCovariance(MakeProblem(tracks), true, true);
+  const Result<SequenceCovariance> result = Compute(tracks_, sequence().frames().size(), true, true);
   EXPECT_EQ(result.code(), StatusCode::kDiverged);
   EXPECT_NE(result.message().find("track " + std::to_string(copies_.front().id)), std::string::npos);
 }

@@ -158,11 +158,11 @@ TEST(InverseDepthFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConv
     WindowFixture fixture(seed, 3, 4, 1.0);
     const WindowTrack& track = *fixture.tracks().front();
     const LiftedCost<InverseDepthFactor> cost(
-        InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.T_BC));
+        InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.calibration));
     const Point point = {Nav(track.views.front().frame->nav_state()),
                          Nav(track.views.back().frame->nav_state()), track.landmark};
     ExpectJacobianInAllConventions(cost, point, 1e-7);
-    const LiftedCost<BaseBearingFactor> base(BaseBearingFactor(track.views.front().observation));
+    const LiftedCost<BaseBearingFactor> base(BaseBearingFactor(&track.views.front(), &fixture.calibration));
     ExpectJacobianInAllConventions(base, {track.landmark}, 1e-9);
   }
 }
@@ -178,7 +178,7 @@ TEST(InverseDepthFactorTest, ALandmarkBehindTheCameraCostsMuchButDoesNotFailTheS
   WindowFixture fixture(5, 3, 4);
   const WindowTrack& track = *fixture.tracks().front();
   const LiftedCost<InverseDepthFactor> cost(
-      InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.T_BC));
+      InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.calibration));
   Eigen::VectorXd landmark = track.landmark;
   landmark[2] = -1e3;  // far behind: rho t outweighs the ray
   const NavState base = track.views.front().frame->nav_state();
@@ -203,7 +203,7 @@ TEST(PriorFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions
       prior.jacobian.data()[i] = fixture.random.Uniform(-1, 1);
     }
     prior.residual = prior.jacobian.col(3);
-    const LiftedCost<PriorFactor> cost{PriorFactor(&prior)};
+    const LiftedCost<PriorFactor> cost{PriorFactor(&prior, &fixture.calibration)};
     const Point point = {Nav(fixture.window.frame(0).nav_state()), Bias(fixture.random.Bias()),
                          Nav(fixture.window.frame(1).nav_state()), Nav(fixture.window.frame(2).nav_state())};
     ExpectJacobianInAllConventions(cost, point, 1e-7);
@@ -222,7 +222,7 @@ TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
       track.depth_prior = {0.15, id % 3 == 0 ? 30.0 : 0.0};
     }
     const LiftedCost<PoseOnlyFactor> cost(
-        PoseOnlyFactor(fixture.window, fixture.tracks(), fixture.T_BC, {GetParam(), 1.5}));
+        PoseOnlyFactor(fixture.window, fixture.tracks(), fixture.calibration, {GetParam(), 1.5}));
     Point point;
     for (const auto& frame : fixture.window.frames()) {
       Vector9d shift;

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "smoother/solve/frame_rows.h"
-#include "smoother/solve/marginalization.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/calibrated_window.h"
 #include "tests/support/jacobian_checker.h"
 
@@ -25,7 +24,6 @@ struct SlamFixture : WindowFixture {
       calibration = {estimate.layout, estimate.mean};
     }
     first.residual.setConstant(0.3);
-    change.T_BC = T_BC;
     for (auto& [id, track] : window.tracks()) {
       if (track.views.front().frame->index == 0) {
         const int anchor = anchors[change.after.size() % anchors.size()];
@@ -35,14 +33,8 @@ struct SlamFixture : WindowFixture {
     }
   }
   [[nodiscard]] bool calibrated() const { return calibration.size() > 0; }
-  [[nodiscard]] const WindowCalibration* Calibration() const { return calibrated() ? &calibration : nullptr; }
-  [[nodiscard]] const CalibrationLayout* Layout() const {
-    return calibrated() ? &calibration.layout : nullptr;
-  }
-  [[nodiscard]] PoseSystem NoVision() const { return PoseSystem(window.size(), Calibration()); }
-  [[nodiscard]] std::vector<FrameGeometry> Geometry() const {
-    return calibrated() ? MakeGeometry(window, calibration.mean) : MakeGeometry(window, T_BC);
-  }
+  [[nodiscard]] PoseSystem NoVision() const { return PoseSystem(window.size(), &calibration); }
+  [[nodiscard]] std::vector<FrameGeometry> Geometry() const { return MakeGeometry(window, calibration.mean); }
   [[nodiscard]] CameraCalibration Moved(const Eigen::VectorXd& delta) const {
     CameraCalibration camera = calibration.mean;
     EXPECT_TRUE(Retract(calibration.layout, delta, &camera));
@@ -54,7 +46,7 @@ struct SlamFixture : WindowFixture {
     Vector9d xi = Vector9d::Zero();
     xi.head<6>() = pose;
     const NavState state = Retract(convention, frame.nav_state(), xi);
-    return calibrated() ? MakeGeometry(frame, state, Moved(camera)) : MakeGeometry(state, T_BC);
+    return MakeGeometry(frame, state, Moved(camera));
   }
   /// The projection written once more, by points: whitened residual of a view over (anchor, view, landmark,
   /// calibration).
@@ -93,7 +85,7 @@ struct SlamFixture : WindowFixture {
     track->anchor = to;
   }
   LinearPrior Leave() {
-    LinearPrior prior = MarginalizeOldest(window, first, NoVision(), gravity_W, nullptr, change);
+    LinearPrior prior = Marginalize(window, first, NoVision(), {gravity_W}, change);
     window.RemoveOldest();
     return prior;
   }
@@ -101,7 +93,6 @@ struct SlamFixture : WindowFixture {
   ErrorConvention convention;
   LinearPrior first;
   SlamChange change;
-  WindowCalibration calibration;
 };
 
 /// Dense normal equations over 15 coordinates of each frame, the calibration's, and 3 of each landmark.

@@ -6,7 +6,6 @@
 
 #include "core/reprojection.h"
 #include "smoother/factors/slam_prior_factor.h"
-#include "smoother/solve/window_system.h"
 #include "tests/smoother/factors/slam_fixture.h"
 
 namespace alidade {
@@ -22,14 +21,13 @@ using test::NumericJacobian;
 using test::SlamFixture;
 
 void ExpectPrior(const LinearPrior& prior, const DenseWindow& dense) {
-  ASSERT_EQ(prior.columns(), dense.hessian.rows());
+  ASSERT_EQ(prior.columns().size(), dense.hessian.rows());
   const MatrixXd information = prior.jacobian.transpose() * prior.jacobian;
   EXPECT_LT((information - dense.hessian).norm(), 1e-6 * dense.hessian.norm());
   const VectorXd gradient = prior.jacobian.transpose() * prior.residual;
   EXPECT_LT((gradient - dense.gradient).norm(), 1e-6 * dense.gradient.norm());
   // The calibration's columns are judged by themselves: those of the poses are far larger.
-  const Index at = prior.CalibrationColumn();
-  const Index size = prior.calibration_size();
+  const auto [at, size] = prior.columns().Calibration();
   const VectorXd scale = dense.hessian.diagonal().segment(at, size).cwiseSqrt().cwiseInverse();
   const MatrixXd own = scale.asDiagonal() * information.block(at, at, size, size) * scale.asDiagonal();
   const MatrixXd expected = scale.asDiagonal() * dense.hessian.block(at, at, size, size) * scale.asDiagonal();
@@ -55,7 +53,7 @@ TEST_P(SlamPriorTest, RowsOfAnAnchoredViewAgainstDifferences) {
       AnchoredRows rows;
       ASSERT_TRUE(LinearizeAnchoredView(geometry[static_cast<size_t>(track->anchor->index)],
                                         geometry[static_cast<size_t>(view.frame->index)], view.observation,
-                                        {}, track->landmark, &rows, true, fixture.Calibration()));
+                                        {}, track->landmark, &rows, true, &fixture.calibration));
       MatrixXd analytic(2, size);
       analytic << rows.anchor * ChartJacobian(convention(), track->anchor->nav_state().T_WB()),
           rows.view * ChartJacobian(convention(), view.frame->nav_state().T_WB()), rows.landmark,
@@ -80,7 +78,7 @@ TEST_P(SlamPriorTest, ChangeOfAnchorAgainstDifferences) {
     const VectorXd none = VectorXd::Zero(size);
     AnchorChange change;
     ASSERT_TRUE(ChangeAnchor(geometry(from, none.head<6>(), none), geometry(to, none.head<6>(), none),
-                             track.landmark, &change, fixture.Layout()));
+                             track.landmark, &change, &fixture.calibration.layout));
     const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
       AnchorChange back;
       EXPECT_TRUE(ChangeAnchor(geometry(to, delta.segment<6>(6), delta),
@@ -145,7 +143,7 @@ TEST_P(SlamPriorTest, AnchorsThatLeaveAndLostFeaturesGiveTheSchurComplement) {
     }
     // The landmarks' new coordinates, by differences of the change of anchor.
     MatrixXd substitute = MatrixXd::Identity(dense.hessian.rows(), dense.hessian.cols());
-    SlamChange change{tracks, {}, fixture.T_BC, {}};
+    SlamChange change{tracks, {}, {}};
     for (const size_t i : staying) {
       WindowTrack& track = fixture.window.tracks().at(tracks[i]->id);
       change.after.push_back(&track);
@@ -172,9 +170,8 @@ TEST_P(SlamPriorTest, AnchorsThatLeaveAndLostFeaturesGiveTheSchurComplement) {
     dense.hessian = (substitute.transpose() * dense.hessian * substitute).eval();
     dense.gradient = (substitute.transpose() * dense.gradient).eval();
     dense.KeepPrior(staying);
-    ExpectPrior(
-        MarginalizeOldest(fixture.window, prior, fixture.NoVision(), fixture.gravity_W, nullptr, change),
-        dense);
+    ExpectPrior(test::Marginalize(fixture.window, prior, fixture.NoVision(), {fixture.gravity_W}, change),
+                dense);
   }
 }
 
@@ -186,24 +183,19 @@ TEST_P(SlamPriorTest, ReducedSystemIsThatOfTheMinimumOverTheLandmarks) {
     const LinearPrior prior = fixture.Leave();
     const int frames = fixture.window.size();
     const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
-    const SlamPrior slam = fixture.calibrated()
-                               ? SlamPrior(&prior, tracks, fixture.window, fixture.calibration, {kernel, 1.5})
-                               : SlamPrior(&prior, tracks, fixture.window, fixture.T_BC, {kernel, 1.5});
-    WindowPoint origin = PointOf(fixture.window);
-    origin.camera = fixture.calibration.mean;
+    const SlamPrior slam(&prior, tracks, fixture.window, fixture.calibration, {kernel, 1.5});
+    const WindowPoint origin = PointOf(fixture.window, fixture.calibration.mean);
     const auto reduce = [&](const VectorXd& zeta) {
       WindowPoint point = origin;
       for (int i = 0; i < frames; ++i) {
         Vector9d xi = Vector9d::Zero();
-        xi.head(i == 0 ? 9 : 6) = zeta.segment(SlamPrior::Column(i), i == 0 ? 9 : 6);
+        xi.head(i == 0 ? 9 : 6) = zeta.segment(slam.columns().Frame(i).first, i == 0 ? 9 : 6);
         point.states[static_cast<size_t>(i)] =
             Retract(ErrorConvention::kSo3xRn, origin.states[static_cast<size_t>(i)], xi);
       }
       point.bias.gyro += zeta.segment<3>(9);
       point.bias.accel += zeta.segment<3>(12);
-      if (fixture.calibrated()) {
-        point.camera = fixture.Moved(zeta.tail(fixture.calibration.size()));
-      }
+      point.camera = fixture.Moved(zeta.tail(fixture.calibration.size()));
       VectorXd landmarks = slam.StartingLandmarks();
       SlamPrior::Reduced reduced;
       for (int k = 0; k < 4; ++k) {  // re-weighting converges linearly
@@ -211,11 +203,11 @@ TEST_P(SlamPriorTest, ReducedSystemIsThatOfTheMinimumOverTheLandmarks) {
       }
       return reduced;
     };
-    const SlamPrior::Reduced at = reduce(VectorXd::Zero(slam.columns()));
+    const SlamPrior::Reduced at = reduce(VectorXd::Zero(slam.columns().size()));
     const auto cost = [&](const VectorXd& zeta) -> VectorXd {
       return VectorXd::Constant(1, reduce(zeta).robust_cost / 2);
     };
-    const VectorXd numeric = NumericJacobian(cost, slam.columns(), 1e-4).transpose();
+    const VectorXd numeric = NumericJacobian(cost, static_cast<int>(slam.columns().size()), 1e-4).transpose();
     EXPECT_LT((numeric - at.gradient).norm(), 1e-3 * at.gradient.norm()) << static_cast<int>(kernel);
     // A focal length's own, many orders below a rotation's.
     if (fixture.calibrated()) {
@@ -259,22 +251,16 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
     }
     return system;
   };
-  Matrix15d before, after;
-  VectorXd camera_before, camera_after;
-  ASSERT_TRUE(NewestCovariance(fixture.window, fixture.first, vision(true), fixture.gravity_W, &before,
-                               nullptr, nullptr, nullptr, &camera_before));
+  const SensorContext sensors{fixture.gravity_W};
+  const NewestEstimate known_before = test::Newest(fixture.window, fixture.first, vision(true), sensors);
+  const Matrix15d before = known_before.covariance;
+  const VectorXd camera_before = known_before.calibration_deviations;
   const LinearPrior prior = fixture.Leave();
-  const std::vector<const WindowTrack*> tracks = PriorTracks(prior, fixture.window);
-  const SlamPrior slam = fixture.calibrated()
-                             ? SlamPrior(&prior, tracks, fixture.window, fixture.calibration, {})
-                             : SlamPrior(&prior, tracks, fixture.window, fixture.T_BC, {});
-  WindowPoint point = PointOf(fixture.window);
-  point.camera = fixture.calibration.mean;
-  VectorXd landmarks = slam.StartingLandmarks();
-  SlamPrior::Reduced reduced;
-  ASSERT_TRUE(slam.Reduce(point, &landmarks, &reduced));
-  ASSERT_TRUE(NewestCovariance(fixture.window, prior, vision(false), fixture.gravity_W, &after, nullptr,
-                               nullptr, &reduced, &camera_after));
+  const NewestEstimate known_after = test::Newest(
+      fixture.window, prior, vision(false), sensors,
+      std::make_unique<SlamPriorTerm>(prior, fixture.window, fixture.calibration, ObservationKernel{}));
+  const Matrix15d after = known_after.covariance;
+  const VectorXd camera_after = known_after.calibration_deviations;
   EXPECT_LT((after - before).norm(), 1e-5 * before.norm());
   ASSERT_EQ(camera_after.size(), fixture.calibration.size());
   for (Index i = 0; i < camera_after.size(); ++i) {
@@ -289,14 +275,14 @@ TEST(SlamPriorGaugeTest, NothingIsLearntOfYawAndPosition) {
   fixture.first.jacobian.setZero();
   LinearPrior prior = fixture.Leave();
   for (int leave = 0; leave < 2; ++leave) {
-    MatrixXd gauge = MatrixXd::Zero(prior.columns(), 4);
+    MatrixXd gauge = MatrixXd::Zero(prior.columns().size(), 4);
     for (int i = 0; i < static_cast<int>(prior.anchors.size()); ++i) {
-      gauge(LinearPrior::Column(i) + 2, 0) = 1;
-      gauge.block<3, 3>(LinearPrior::Column(i) + 3, 1).setIdentity();
+      gauge(prior.columns().Frame(i).first + 2, 0) = 1;
+      gauge.block<3, 3>(prior.columns().Frame(i).first + 3, 1).setIdentity();
     }
     EXPECT_LT((prior.jacobian * gauge).norm(), 1e-6 * prior.jacobian.norm());
     // Once more, with anchors that leave.
-    SlamChange change{PriorTracks(prior, fixture.window), {}, fixture.T_BC, {}};
+    SlamChange change{PriorTracks(prior, fixture.window), {}, {}};
     for (const WindowTrack* known : change.before) {
       WindowTrack& track = fixture.window.tracks().at(known->id);
       if (track.anchor->index == 0) {
@@ -304,7 +290,7 @@ TEST(SlamPriorGaugeTest, NothingIsLearntOfYawAndPosition) {
       }
       change.after.push_back(&track);
     }
-    prior = MarginalizeOldest(fixture.window, prior, fixture.NoVision(), fixture.gravity_W, nullptr, change);
+    prior = test::Marginalize(fixture.window, prior, fixture.NoVision(), {fixture.gravity_W}, change);
   }
 }
 

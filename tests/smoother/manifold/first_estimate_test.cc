@@ -6,9 +6,8 @@
 
 #include "smoother/factors/inverse_depth_factor.h"
 #include "smoother/factors/pose_only_factor.h"
-#include "smoother/solve/frame_rows.h"
-#include "smoother/solve/marginalization.h"
 #include "smoother/tracks/anchored_landmark.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/window_fixture.h"
 #include "tests/support/jacobian_checker.h"
 
@@ -104,7 +103,7 @@ struct Sliding : WindowFixture {
     return vision;
   }
   void Leave() {
-    prior = MarginalizeOldest(window, prior, Vision(true), gravity_W);
+    prior = test::Marginalize(window, prior, Vision(true), {gravity_W});
     if (keeps) {
       KeepFirstEstimates(prior, &window);
     }
@@ -133,7 +132,8 @@ struct Sliding : WindowFixture {
           LocalJacobian(prior.convention, anchor.origin, now) * InverseChartJacobian(prior.convention, now);
       const Index width = i == 0 ? 9 : 6;
       jacobian.middleCols(15 * static_cast<Index>(i), 9) =
-          prior.jacobian.middleCols(LinearPrior::Column(static_cast<int>(i)), width) * chain.topRows(width);
+          prior.jacobian.middleCols(prior.columns().Frame(static_cast<int>(i)).first, width) *
+          chain.topRows(width);
     }
     return Seen(jacobian, gauge);
   }
@@ -141,7 +141,7 @@ struct Sliding : WindowFixture {
     const MatrixXd gauge = NullSpace(window);
     double worst = 0;
     for (int i = 0; i + 1 < window.size(); ++i) {
-      const ImuRows imu = LinearizeImu(window.frame(i), window.frame(i + 1), gravity_W);
+      const test::ImuRows imu = test::LinearizeImu(window.frame(i), window.frame(i + 1), gravity_W);
       Eigen::Matrix<double, 15, 30> both;
       both << imu.first, imu.second;
       worst = std::max(worst, Seen(both, gauge.middleRows<30>(15 * i)));
@@ -219,8 +219,8 @@ TEST(FirstEstimateTest, FactorsKeepTheirResiduals) {
   const auto everything = [&] {
     const ImuFactor imu(&*sliding.window.frame(1).preintegration, sliding.gravity_W,
                         sliding.window.frame(0).first_estimate(), sliding.window.frame(1).first_estimate());
-    const InverseDepthFactor depth(&first, &track.views.back(), &sliding.T_BC);
-    const PoseOnlyFactor pose_only(sliding.window, sliding.tracks(), sliding.T_BC, {});
+    const InverseDepthFactor depth(&first, &track.views.back(), &sliding.calibration);
+    const PoseOnlyFactor pose_only(sliding.window, sliding.tracks(), sliding.calibration, {});
     std::vector<const double*> frames;
     for (const std::unique_ptr<WindowFrame>& frame : sliding.window.frames()) {
       frames.push_back(frame->nav.data());

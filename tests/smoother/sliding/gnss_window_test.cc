@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "smoother/solve/marginalization.h"
-#include "smoother/solve/window_system.h"
-#include "tests/gnss/model/synthetic_sky.h"
-#include "tests/smoother/window/window_fixture.h"
+#include "core/robust.h"
+#include "tests/smoother/sliding/gnss_fixture.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/support/jacobian_checker.h"
 
 namespace alidade::test {
@@ -13,48 +12,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
-
-constexpr TimeNs kSkyNs = 1'700'000'100 * kSecondNs;
-
-GnssConfig Config() {
-  GnssConfig config;
-  config.corrections.ionosphere = IonosphereMode::kNone;
-  return config;
-}
-
-/// A window whose frames have clocks and epochs of a sky, some milliseconds after each frame.
-struct GnssFixture : WindowFixture {
-  explicit GnssFixture(unsigned seed) : WindowFixture(seed, 4, 12, 1.0) {
-    const NavigationData sky = SyntheticSky(kSkyNs);
-    const MeasurementBuilder builder(std::make_shared<SatelliteCatalog>(sky), Config().corrections);
-    SyntheticReceiver receiver;
-    receiver.stamp_ns = kSkyNs;
-    EpochMeasurements measurements = builder.Prepare(Observe(sky, receiver));
-    builder.Locate(receiver.position_E, &measurements);
-    context.config = Config();
-    context.mount = {EnuFrame::At(receiver.position_E), Vector3d(0.1, -0.2, 0.3)};
-    context.gravity_W = gravity_W;
-    for (int i = 0; i < window.size(); ++i) {
-      WindowFrame& frame = window.frame(i);
-      frame.clock.emplace();
-      for (double& value : *frame.clock) {
-        value = random.Uniform(-3, 3);
-      }
-      FrameEpoch epoch;
-      epoch.stamp_ns = frame.stamp_ns + 30'000'000;
-      epoch.measurements = measurements;
-      for (int k = 0; k <= 3; ++k) {
-        epoch.imu.push_back(
-            {frame.stamp_ns + k * 10'000'000LL, random.Vector(0.4), Vector3d(0, 0, 9.81) + random.Vector(1)});
-      }
-      epoch.gyro_radps = epoch.imu.back().gyro;
-      epoch.preintegration.emplace(frame.imu_bias(), noise);
-      epoch.preintegration->Add(epoch.imu);
-      frame.epochs.push_back(epoch);
-    }
-  }
-  GnssFactorContext context;
-};
 
 // GIVEN an epoch with large residuals, THEN the factor's Jacobians are those of its robust residual.
 TEST(GnssEpochFactorTest, JacobiansAgainstDifferences) {
@@ -82,7 +39,7 @@ TEST(GnssEpochFactorTest, JacobiansAgainstDifferences) {
 }
 
 TEST(ClockFactorTest, ZeroOnItsProcess) {
-  const ClockStep step(Config(), 0.5, false);
+  const ClockStep step(GnssTestConfig(), 0.5, false);
   Vector6d from;
   from << 100, 20, 1, 2, 3, 4;
   const Vector6d to = step.phi * from;
@@ -93,6 +50,41 @@ TEST(ClockFactorTest, ZeroOnItsProcess) {
   EXPECT_DOUBLE_EQ(to[0], 110);
 }
 
+// GIVEN most rows of an epoch beyond the gate, so that the state is suspect and not the satellites, THEN none
+// pulls harder than at the gate, as in the filter.
+TEST(GnssWindowTest, RowsOfASuspectEpochAreScaledToTheGate) {
+  GnssFixture fixture(2);
+  GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
+  GnssAlignment alignment;
+  alignment.enu = fixture.context.mount.enu;
+  LinearPrior prior;
+  ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0),
+                               Matrix15d::Identity(), &prior));
+  gnss.Align(alignment, &fixture.window.frame(0), &prior);
+  for (int i = 0; i < fixture.window.size(); ++i) {
+    WindowFrame& frame = fixture.window.frame(i);
+    NavState away = frame.nav_state();
+    away.p_WB += Vector3d(300, -200, 100);
+    PackNavState(away, frame.nav.data());
+  }
+  FrameStatistics statistics;
+  gnss.Gate(&fixture.window, &statistics);
+  const double gate = ChiSquareQuantile(1, GnssTestConfig().gate_probability);
+  int at_the_gate = 0;
+  for (int i = 0; i < fixture.window.size(); ++i) {
+    const WindowFrame& frame = fixture.window.frame(i);
+    GnssResiduals residuals;
+    const FrameEpochRows rows = LinearizeFrameEpoch(*gnss.context(), frame.epochs[0], 0.03, frame.nav_state(),
+                                                    frame.imu_bias(), frame.clock_state(), false, &residuals);
+    for (const double residual : rows.residual) {
+      EXPECT_LE(residual * residual, gate * (1 + 1e-9));
+      at_the_gate += residual * residual > gate * (1 - 1e-9) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(at_the_gate, 8);
+  EXPECT_EQ(statistics.satellites_gated, 0);
+}
+
 class GnssMarginalizationTest : public testing::TestWithParam<ErrorConvention> {};
 
 // GIVEN a window with clocks and epochs, WHEN its oldest frame leaves, THEN state and clock of the newest are
@@ -100,7 +92,7 @@ class GnssMarginalizationTest : public testing::TestWithParam<ErrorConvention> {
 TEST_P(GnssMarginalizationTest, NothingIsLostAndNothingInvented) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     GnssFixture fixture(seed);
-    GnssWindow gnss(Config(), {}, fixture.gravity_W);
+    GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
     GnssAlignment alignment;
     alignment.enu = fixture.context.mount.enu;
     LinearPrior prior;
@@ -110,20 +102,14 @@ TEST_P(GnssMarginalizationTest, NothingIsLostAndNothingInvented) {
     gnss.Align(alignment, &fixture.window.frame(0), &prior);
     fixture.window.frame(0).clock = clock;
     const PoseSystem none(4);
-    Matrix15d before;
-    Matrix6d clock_before;
-    ASSERT_TRUE(NewestCovariance(fixture.window, prior, none, fixture.gravity_W, &before, &fixture.context,
-                                 &clock_before));
-    const LinearPrior next =
-        MarginalizeOldest(fixture.window, prior, none, fixture.gravity_W, &fixture.context);
-    EXPECT_EQ(next.columns(), 15 + 6 + 6 + 6);
+    const SensorContext sensors{fixture.gravity_W, &fixture.context};
+    const NewestEstimate before = Newest(fixture.window, prior, none, sensors);
+    const LinearPrior next = Marginalize(fixture.window, prior, none, sensors);
+    EXPECT_EQ(next.columns().size(), 15 + 6 + 6 + 6);
     fixture.window.RemoveOldest();
-    Matrix15d after;
-    Matrix6d clock_after;
-    ASSERT_TRUE(NewestCovariance(fixture.window, next, PoseSystem(3), fixture.gravity_W, &after,
-                                 &fixture.context, &clock_after));
-    EXPECT_TRUE(after.isApprox(before, 1e-6)) << seed;
-    EXPECT_TRUE(clock_after.isApprox(clock_before, 1e-6)) << seed;
+    const NewestEstimate after = Newest(fixture.window, next, PoseSystem(3), sensors);
+    EXPECT_TRUE(after.covariance.isApprox(before.covariance, 1e-6)) << seed;
+    EXPECT_TRUE(after.clock_covariance.isApprox(before.clock_covariance, 1e-6)) << seed;
   }
 }
 

@@ -115,6 +115,48 @@ EstimatorConfig WithSlamFeatures(int count) {
   return config;
 }
 
+/// Landmarks that a solve of this window may have held: those of the prior that are in sight, and tracks.
+int Landmarks(const Window& window) {
+  return static_cast<int>(std::count_if(window.tracks().begin(), window.tracks().end(), [](const auto& item) {
+    const WindowTrack& track = item.second;
+    return track.anchor != nullptr ? !track.views.empty() : track.views.size() >= 2;
+  }));
+}
+
+// GIVEN outliers, WHEN the gate refuses a landmark of the prior, THEN it is not counted as used besides.
+TEST(SmootherEstimatorTest, ARefusedSlamFeatureIsNotCountedAsUsed) {
+  SimulatorConfig simulator;
+  simulator.duration_s = 8;
+  simulator.path_m = 10;
+  simulator.outlier_rate = 0.02;
+  simulator.outlier_kind = SimOutlierKind::kJump;
+  const Dataset dataset = test::SimulateOrDie(simulator, 3);
+  SmootherEstimator estimator(WithSlamFeatures(60), dataset.rig);
+  ASSERT_TRUE(estimator.Initialize(test::DrawInitialState(dataset, 3)).ok());
+  size_t next = 0;
+  int refused = 0;
+  for (const TrackFrame& frame : dataset.tracks) {
+    while (next < dataset.imu.size() && (next == 0 || dataset.imu[next - 1].stamp_ns < frame.stamp_ns)) {
+      ASSERT_TRUE(estimator.AddImu(dataset.imu[next++]).ok());
+    }
+    std::vector<std::int64_t> features;
+    for (const auto& [id, track] : estimator.window().tracks()) {
+      if (track.anchor != nullptr && track.alive) {
+        features.push_back(id);
+      }
+    }
+    ASSERT_TRUE(estimator.AddFrame(frame).ok());
+    const FrameStatistics& statistics = estimator.last_statistics();
+    refused += static_cast<int>(std::count_if(features.begin(), features.end(), [&](std::int64_t id) {
+      const auto found = estimator.window().tracks().find(id);
+      return found != estimator.window().tracks().end() && found->second.alive &&
+             found->second.anchor == nullptr;
+    }));
+    EXPECT_LE(statistics.features_used, Landmarks(estimator.window()));
+  }
+  EXPECT_GT(refused, 3);
+}
+
 // Landmarks change their anchors, are lost and replaced all the time: nothing of it may show on exact data.
 TEST(SmootherEstimatorTest, SlamFeaturesLeaveExactDataExact) {
   const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "smoother/solve/marginalization.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/window_fixture.h"
 #include "tests/support/jacobian_checker.h"
 
@@ -120,8 +120,8 @@ TEST_P(MarginalizationTest, PriorEqualsTheBatchOnTheLinearProblem) {
     const Eigen::VectorXd batch_gradient = first.gradient + batch_vision.gradient - nothing.gradient;
     const Eigen::VectorXd batch_step = -batch_hessian.ldlt().solve(batch_gradient);
 
-    const LinearPrior next = MarginalizeOldest(fixture.window, prior, leaving, fixture.gravity_W);
-    ASSERT_EQ(next.columns(), 15 + 6 + 6);
+    const LinearPrior next = test::Marginalize(fixture.window, prior, leaving, {fixture.gravity_W});
+    ASSERT_EQ(next.columns().size(), 15 + 6 + 6);
     // What stays: the new prior, the IMU factors 1-2 and 2-3, and the staying tracks.
     DenseSystem rest = FullSystem(fixture, prior, staying);
     LinearPrior none = prior;
@@ -161,8 +161,7 @@ TEST_P(MarginalizationTest, NewestCovarianceIsTheInverseOfTheFullHessian) {
   LinearPrior prior;
   ASSERT_TRUE(MakeInitialPrior(GetParam(), fixture.window.frame(0), SomeCovariance(), &prior));
   const PoseSystem vision = Vision(fixture, 0, 3);
-  Matrix15d covariance;
-  ASSERT_TRUE(NewestCovariance(fixture.window, prior, vision, fixture.gravity_W, &covariance));
+  const Matrix15d covariance = test::Newest(fixture.window, prior, vision, {fixture.gravity_W}).covariance;
   const Matrix15d chart = ImuChartJacobian(GetParam(), fixture.window.newest().nav_state());
   const Eigen::MatrixXd inverse = FullSystem(fixture, prior, vision).hessian.inverse();
   const Matrix15d expected = chart * inverse.bottomRightCorner<15, 15>() * chart.transpose();
@@ -177,11 +176,12 @@ TEST(MarginalizationGaugeTest, VisionAndImuSayNothingAboutYawAndPositionInRightI
   ASSERT_TRUE(
       MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0), SomeCovariance(), &none));
   none.jacobian.setZero();
-  const LinearPrior prior = MarginalizeOldest(fixture.window, none, Vision(fixture, 0, 0), fixture.gravity_W);
-  Eigen::MatrixXd gauge = Eigen::MatrixXd::Zero(prior.columns(), 4);
+  const LinearPrior prior =
+      test::Marginalize(fixture.window, none, Vision(fixture, 0, 0), {fixture.gravity_W});
+  Eigen::MatrixXd gauge = Eigen::MatrixXd::Zero(prior.columns().size(), 4);
   for (int i = 0; i < 3; ++i) {
-    gauge(LinearPrior::Column(i) + 2, 0) = 1;  // theta = e_z in every frame, nothing in p and v
-    gauge.block<3, 3>(LinearPrior::Column(i) + 3, 1).setIdentity();
+    gauge(prior.columns().Frame(i).first + 2, 0) = 1;  // theta = e_z in every frame, nothing in p and v
+    gauge.block<3, 3>(prior.columns().Frame(i).first + 3, 1).setIdentity();
   }
   EXPECT_LT((prior.jacobian * gauge).norm(), 1e-6 * prior.jacobian.norm());
 }

@@ -8,9 +8,9 @@
 #include "smoother/factors/inverse_depth_factor.h"
 #include "smoother/factors/pose_only_factor.h"
 #include "smoother/factors/prior_factor.h"
-#include "smoother/solve/marginalization.h"
+#include "smoother/solve/vision_terms.h"
 #include "smoother/solve/window_solver.h"
-#include "smoother/solve/window_system.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/calibrated_window.h"
 #include "tests/support/jacobian_checker.h"
 
@@ -44,7 +44,6 @@ struct CalibratedWindow : WindowFixture {
     return system;
   }
 
-  WindowCalibration calibration;
   CalibrationEstimate estimate;
 };
 
@@ -123,7 +122,7 @@ TEST(WindowCalibrationTest, PriorOnTheCalibrationIsNumeric) {
   LinearPrior prior;
   ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kSo3xRn, fixture.window.frame(0), SomeCovariance(), &prior));
   AddCalibrationPrior(fixture.estimate, &prior);
-  ASSERT_EQ(prior.columns(), prior.jacobian.cols());
+  ASSERT_EQ(prior.columns().size(), prior.jacobian.cols());
   WindowCalibration moved = fixture.calibration;  // the window has moved on since the prior was made
   VectorXd shift = 0.7 * fixture.estimate.deviations;
   ASSERT_TRUE(Retract(moved.layout, shift, &moved.mean));
@@ -153,17 +152,16 @@ TEST(WindowCalibrationTest, MarginalizationKeepsWhatIsKnown) {
     ASSERT_TRUE(MakeInitialPrior(convention, fixture.window.frame(0), SomeCovariance(), &prior));
     AddCalibrationPrior(fixture.estimate, &prior);
     const PoseSystem all = fixture.Vision(0, 3);
-    Matrix15d before;
-    VectorXd deviations_before;
-    ASSERT_TRUE(NewestCovariance(fixture.window, prior, all, fixture.gravity_W, &before, nullptr, nullptr,
-                                 nullptr, &deviations_before));
+    const NewestEstimate known_before = test::Newest(fixture.window, prior, all, {fixture.gravity_W});
+    const Matrix15d before = known_before.covariance;
+    const VectorXd deviations_before = known_before.calibration_deviations;
     ASSERT_EQ(deviations_before.size(), 11);
     for (int i = 0; i < 11; ++i) {
       EXPECT_LT(deviations_before[i], (1 + 1e-9) * fixture.estimate.deviations[i]) << i;
     }
     const PoseSystem leaving = fixture.Vision(0, 0);
-    LinearPrior next = MarginalizeOldest(fixture.window, prior, leaving, fixture.gravity_W);
-    ASSERT_EQ(next.columns(), next.jacobian.cols());
+    const LinearPrior next = test::Marginalize(fixture.window, prior, leaving, {fixture.gravity_W});
+    ASSERT_EQ(next.columns().size(), next.jacobian.cols());
     for (auto& [id, track] : fixture.window.tracks()) {
       if (track.views.front().frame->index == 0) {
         track.Restart();
@@ -171,10 +169,10 @@ TEST(WindowCalibrationTest, MarginalizationKeepsWhatIsKnown) {
     }
     std::erase_if(fixture.window.tracks(), [](const auto& item) { return item.second.views.empty(); });
     fixture.window.RemoveOldest();
-    Matrix15d after;
-    VectorXd deviations_after;
-    ASSERT_TRUE(NewestCovariance(fixture.window, next, fixture.Vision(0, 2), fixture.gravity_W, &after,
-                                 nullptr, nullptr, nullptr, &deviations_after));
+    const NewestEstimate known_after =
+        test::Newest(fixture.window, next, fixture.Vision(0, 2), {fixture.gravity_W});
+    const Matrix15d after = known_after.covariance;
+    const VectorXd deviations_after = known_after.calibration_deviations;
     EXPECT_LT((after - before).norm(), 1e-6 * before.norm()) << ToString(convention);
     EXPECT_LT((deviations_after - deviations_before).cwiseQuotient(deviations_before).norm(), 1e-6);
   }
@@ -269,32 +267,42 @@ void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
         change.after.push_back(&track);
       }
     }
-    prior = MarginalizeOldest(fixture.window, prior, PoseSystem(fixture.window.size(), &fixture.calibration),
-                              fixture.gravity_W, nullptr, change);
+    prior = test::Marginalize(fixture.window, prior, PoseSystem(fixture.window.size(), &fixture.calibration),
+                              {fixture.gravity_W}, change);
     fixture.window.RemoveOldest();
     ASSERT_GT(prior.landmarks.size(), 10u);
   }
   VectorXd wrong(7);
   wrong << 0.02, -0.02, 0.02, 0.01, -0.01, 0.015, 0.01;
   ASSERT_TRUE(Retract(fixture.calibration.layout, wrong, &fixture.calibration.mean));
-  WindowSolveOptions options;
-  options.smoother.landmark = landmark;
-  options.smoother.max_iterations = 50;
-  options.T_BC = fixture.T_BC;
-  options.gravity_W = fixture.gravity_W;
+  SmootherConfig config_of_solve;
+  config_of_solve.landmark = landmark;
+  config_of_solve.max_iterations = 50;
   std::vector<WindowTrack*> tracks;
   for (auto& [id, track] : fixture.window.tracks()) {
     if (track.anchor == nullptr) {
       tracks.push_back(&track);
     }
   }
-  std::optional<SlamPrior> slam;
+  WindowTerms terms;
+  terms.push_back(MakePriorTerm(prior, fixture.calibration));
   if (slam_features) {
-    slam.emplace(&prior, PriorTracks(prior, fixture.window), fixture.window, fixture.calibration,
-                 ObservationKernel{});
+    terms.front() =
+        std::make_unique<SlamPriorTerm>(prior, fixture.window, fixture.calibration, ObservationKernel{});
   }
-  const Result<WindowSolveReport> report = SolveWindow(options, prior, tracks, &fixture.window, nullptr,
-                                                       slam ? &*slam : nullptr, &fixture.calibration);
+  ASSERT_TRUE(
+      AddSensorTerms({fixture.gravity_W}, fixture.window.frames(), fixture.window.size(), &terms).ok());
+  const VisionConfig vision;
+  const ObservationKernel kernel{vision.robust_kernel, vision.robust_scale_sigma};
+  if (landmark == SmootherLandmark::kInverseDepth) {
+    AddTrackTerms(fixture.window.frames(), tracks, fixture.calibration, kernel, &terms);
+  } else {
+    terms.push_back(std::make_unique<PoseOnlyTerm>(
+        fixture.window, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), fixture.calibration,
+        kernel));
+  }
+  const Result<WindowSolveReport> report =
+      SolveWindow(config_of_solve, terms, tracks, &fixture.window, &fixture.calibration);
   ASSERT_TRUE(report.ok()) << report.message();
   const VectorXd error = Local(fixture.calibration.layout, truth, fixture.calibration.mean);
   EXPECT_LT(error.head<3>().norm(), 1e-4);

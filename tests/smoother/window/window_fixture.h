@@ -8,6 +8,7 @@
 #include "smoother/factors/imu_factor.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/tracks/track_system.h"
+#include "smoother/window/window_calibration.h"
 #include "tests/support/random_states.h"
 
 namespace alidade::test {
@@ -18,6 +19,7 @@ struct WindowFixture {
   explicit WindowFixture(unsigned seed, int frames = 5, int landmarks = 12, double noise_sigma = 0.0)
       : random(seed) {
     T_BC = {random.Rotation(), random.Vector(0.2)};
+    calibration.mean.T_BC = T_BC;
     const ImuBias bias = random.Bias();
     const Eigen::Vector3d omega = random.Vector(0.4);
     const Eigen::Vector3d force = Eigen::Vector3d(0, 0, 9.81) + random.Vector(1);
@@ -59,6 +61,7 @@ struct WindowFixture {
   RandomStates random;
   Window window;
   Pose T_BC;
+  WindowCalibration calibration;  ///< nothing of it is estimated
   ImuNoise noise;
   Eigen::Vector3d gravity_W = GravityInWorld(9.81);
   double sigma = 1.0 / 460;

@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "smoother/factors/slam_prior.h"
+
+// The coordinates of a SlamPrior's linear part: where a window is in them, and how they move with its frames.
+
+namespace alidade {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
+  VectorXd xi(prior_columns_.size() - origins_.size());
+  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
+    const LinearPrior::Anchor& anchor = prior_->anchors[i];
+    const ColumnMap::Range columns = prior_columns_.Frame(static_cast<int>(i));
+    const Index width = std::min(columns.size, kNavColumns);
+    xi.segment(columns.first, width) =
+        Local(prior_->convention, anchor.origin, point.states[static_cast<size_t>(anchor.frame->index)])
+            .head(width);
+  }
+  const ImuBias& origin = prior_->anchors.front().bias_origin;
+  xi.segment<kBiasColumns>(prior_columns_.Frame(0).first + kNavColumns) << point.bias.gyro - origin.gyro,
+      point.bias.accel - origin.accel;
+  if (prior_->clock_origin) {
+    xi.segment<kClockColumns>(prior_columns_.Clock(0).first) = *point.clock - *prior_->clock_origin;
+  }
+  const WindowCalibration& camera = prior_->calibration_origin;
+  xi.segment(prior_columns_.Calibration().first, camera.size()) =
+      Local(camera.layout, camera.mean, point.camera);
+  return xi;
+}
+
+/// Columns over the prior's frames, clock and calibration to columns of the reduced system.
+MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& columns) const {
+  MatrixXd chained = MatrixXd::Zero(columns.rows(), columns_.size());
+  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
+    const LinearPrior::Anchor& anchor = prior_->anchors[i];
+    const NavState& state = point.states[static_cast<size_t>(anchor.frame->index)];
+    const Matrix9d chain = LocalJacobian(prior_->convention, anchor.origin, state) *
+                           InverseChartJacobian(prior_->convention, state);
+    const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
+    const Index width = std::min(from.size, kNavColumns);
+    chained.middleCols(columns_.Frame(anchor.frame->index).first, width).noalias() =
+        columns.middleCols(from.first, width) * chain.topLeftCorner(width, width);
+  }
+  chained.middleCols<kBiasColumns>(columns_.Frame(0).first + kNavColumns) =
+      columns.middleCols<kBiasColumns>(prior_columns_.Frame(0).first + kNavColumns);
+  if (prior_->clock_origin) {
+    chained.middleCols<kClockColumns>(columns_.Clock(0).first) =
+        columns.middleCols<kClockColumns>(prior_columns_.Clock(0).first);
+  }
+  const WindowCalibration& camera = prior_->calibration_origin;
+  chained.rightCols(camera.size()).noalias() =
+      columns.middleCols(prior_columns_.Calibration().first, camera.size()) *
+      LocalJacobian(camera.layout, camera.mean, point.camera);
+  return chained;
+}
+
+}  // namespace alidade

@@ -1,0 +1,79 @@
+#include "smoother/solve/marginal_stack.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <utility>
+
+#include "core/check.h"
+#include "smoother/manifold/dense_blas.h"
+
+namespace alidade {
+
+MarginalStack::MarginalStack(const Window& window, ErrorConvention convention, ColumnMap columns,
+                             Index leaving)
+    : window_(window), convention_(convention), columns_(std::move(columns)), leaving_(leaving) {
+  stack_.resize(2 * columns_.size(), columns_.size() + 1);
+}
+
+MarginalStack::Index MarginalStack::NewRows(Index count) {
+  const Index first = rows_;
+  rows_ += count;
+  if (rows_ > stack_.rows()) {
+    stack_.conservativeResize(std::max(rows_, 2 * stack_.rows()), columns_.size() + 1);
+  }
+  stack_.middleRows(first, count).setZero();
+  return first;
+}
+
+Matrix6d MarginalStack::PoseChart(int frame) const {
+  if (window_.frame(frame).first) {
+    return StateChart(frame).topLeftCorner<6, 6>();
+  }
+  return ChartJacobian(convention_, window_.frame(frame).nav_state().T_WB());
+}
+
+Matrix15d MarginalStack::StateChart(int frame) const {
+  const WindowFrame& of = window_.frame(frame);
+  const NavState state = of.nav_state();
+  Matrix15d chart = ImuChartJacobian(convention_, state);
+  if (of.first) {
+    // The columns are the prior's coordinates, around the first estimate.
+    const Matrix9d moved = LocalJacobian(convention_, of.first->Point(state), state);
+    chart.topLeftCorner<9, 9>() = (chart.topLeftCorner<9, 9>() * moved.inverse()).eval();
+  }
+  return chart;
+}
+
+void MarginalStack::Add(LinearTerm* term) {
+  term->MakeRows();
+  const Index count = term->residual.size();
+  const Index first = NewRows(count);
+  for (const TermPart& part : term->parts) {
+    const ColumnMap::Range at = columns_.Find(part.of);
+    CHECK_GE(at.size, part.width) << "a term concerns coordinates that the next prior cannot hold";
+    auto block = stack_.block(first, at.first, count, part.width);
+    if (part.of.kind != Unknown::Kind::kFrame) {
+      block = term->jacobian.middleCols(part.first, part.width);
+    } else if (part.width == kPoseColumns) {
+      block.noalias() = term->jacobian.middleCols<kPoseColumns>(part.first) * PoseChart(part.of.index);
+    } else {
+      block.noalias() = term->jacobian.middleCols(part.first, part.width) *
+                        StateChart(part.of.index).topLeftCorner(part.width, part.width);
+    }
+  }
+  Residual(first, count) = term->residual;
+}
+
+void MarginalStack::Eliminate(Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
+  const Index columns = columns_.size();
+  if (rows_ < columns + 1) {
+    NewRows(columns + 1 - rows_);
+  }
+  Eigen::MatrixXd rows = stack_.topRows(rows_);
+  Triangularize(&rows);
+  const Index kept = columns - leaving_;
+  *jacobian = rows.block(leaving_, leaving_, kept, kept).triangularView<Eigen::Upper>();
+  *residual = rows.col(columns).segment(leaving_, kept);
+}
+
+}  // namespace alidade

@@ -1,0 +1,175 @@
+#include "smoother/solve/vision_terms.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/predicted_observation.h"
+namespace alidade {
+namespace {
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
+  switch (kernel.kernel) {
+    case RobustKernel::kHuber:
+      return std::make_unique<ceres::HuberLoss>(kernel.scale_sigma);
+    case RobustKernel::kCauchy:
+      return std::make_unique<ceres::CauchyLoss>(kernel.scale_sigma);
+    case RobustKernel::kNone:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+PoseOnlyTerm::PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
+                           const WindowCalibration& calibration, const ObservationKernel& kernel)
+    : window_(&window), tracks_(std::move(tracks)), calibration_(&calibration), kernel_(kernel) {
+  for (int i = 0; i < window.size(); ++i) {
+    AddPart({Unknown::Kind::kFrame, i}, kPoseColumns);
+  }
+  AddPart({Unknown::Kind::kCalibration, 0}, calibration.size());
+}
+
+int PoseOnlyTerm::rows() const {
+  return static_cast<int>(columns()) + 1;  // PoseOnlyFactor
+}
+
+const PoseSystem& PoseOnlyTerm::system() const {
+  if (!system_) {
+    system_.emplace(window_->size(), calibration_);
+    const std::vector<FrameGeometry> geometry = MakeGeometry(*window_, calibration_->mean);
+    TrackWorkspace workspace;
+    for (const WindowTrack* track : tracks_) {
+      if (AddTrack(track->views, geometry, kernel_, track->landmark, &workspace, &*system_,
+                   track->depth_prior)) {
+        used_.push_back(track);
+      }
+    }
+  }
+  return *system_;
+}
+
+const std::vector<const WindowTrack*>& PoseOnlyTerm::used() const {
+  (void)system();
+  return used_;
+}
+
+Status PoseOnlyTerm::Linearize(LinearTerm* linear) const {
+  linear->SetInformation(parts(), system().hessian, system().gradient);
+  return Status::Ok();
+}
+
+void PoseOnlyTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
+  cost_.emplace(PoseOnlyFactor(*window_, tracks_, *calibration_, kernel_));
+  std::vector<double*> parameters;
+  for (int i = 0; i < window_->size(); ++i) {
+    parameters.push_back(blocks->Nav(i));
+  }
+  if (blocks->has_calibration()) {
+    parameters.push_back(blocks->Calibration());
+  }
+  problem->AddResidualBlock(&*cost_, nullptr, parameters);
+}
+
+ViewContext::ViewContext(const WindowFrames& frames, const WindowCalibration& camera,
+                         const ObservationKernel& of_views)
+    : calibration(&camera), kernel(of_views), loss(MakeLoss(of_views)) {
+  geometry.reserve(frames.size());
+  for (const std::unique_ptr<WindowFrame>& frame : frames) {
+    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera.mean));
+  }
+}
+
+ViewTerm::ViewTerm(std::shared_ptr<const ViewContext> context, const WindowTrack* track, int landmark,
+                   size_t view)
+    : context_(std::move(context)), track_(track), landmark_(landmark), view_(view) {
+  AddPart({Unknown::Kind::kFrame, track->views[view].frame->index}, kPoseColumns);
+  AddPart({Unknown::Kind::kLandmark, landmark}, kLandmarkColumns);
+  AddPart({Unknown::Kind::kCalibration, 0}, context_->calibration->size());
+}
+
+Status ViewTerm::Linearize(LinearTerm* linear) const {
+  const WindowView& view = track_->views[view_];
+  const FrameGeometry& base = context_->geometry[static_cast<size_t>(track_->views.front().frame->index)];
+  const FrameGeometry& frame = context_->geometry[static_cast<size_t>(view.frame->index)];
+  ViewRows rows;
+  if (!LinearizeView(base, frame, view.observation, context_->kernel, track_->landmark, &rows)) {
+    return Status::Diverged("smoother: track " + std::to_string(track_->id) + " lies behind the camera at " +
+                            FormatSeconds(view.frame->stamp_ns) + " s");
+  }
+  linear->ResizeRows(parts(), 2);
+  const WindowCalibration& camera = *context_->calibration;
+  const double root = std::sqrt(rows.weight);
+  linear->residual = root * rows.residual;
+  linear->jacobian.leftCols<kPoseColumns>() = root * rows.pose;
+  linear->jacobian.middleCols<kLandmarkColumns>(kPoseColumns) = root * rows.landmark;
+  CalibrationRows(camera.layout, camera.mean.camera, frame.R_WB, &frame.camera_from_time, root * rows.camera,
+                  Predicted(view.observation, rows.residual), linear->jacobian.rightCols(camera.size()));
+  return Status::Ok();
+}
+
+void ViewTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
+  const WindowView& base = track_->views.front();
+  const WindowView& view = track_->views[view_];
+  const WindowCalibration* calibration = context_->calibration;
+  std::vector<double*> parameters = {blocks->Landmark(landmark_)};
+  if (view_ == 0) {
+    cost_ = std::make_unique<LiftedCost<BaseBearingFactor>>(BaseBearingFactor(&base, calibration));
+  } else {
+    cost_ =
+        std::make_unique<LiftedCost<InverseDepthFactor>>(InverseDepthFactor(base.frame, &view, calibration));
+    parameters.insert(parameters.begin(), {blocks->Nav(base.frame->index), blocks->Nav(view.frame->index)});
+  }
+  if (parameters.size() < cost_->parameter_block_sizes().size()) {
+    parameters.push_back(blocks->Calibration());
+  }
+  problem->AddResidualBlock(cost_.get(), context_->loss.get(), parameters);
+}
+
+DepthPriorTerm::DepthPriorTerm(std::shared_ptr<const ViewContext> context, const WindowTrack* track,
+                               int landmark)
+    : context_(std::move(context)),
+      track_(track),
+      landmark_(landmark),
+      cost_(DepthPriorFactor(track->depth_prior)) {
+  AddPart({Unknown::Kind::kFrame, track->views.front().frame->index}, kPoseColumns);
+  AddPart({Unknown::Kind::kLandmark, landmark}, kLandmarkColumns);
+  AddPart({Unknown::Kind::kCalibration, 0}, context_->calibration->size());
+}
+
+Status DepthPriorTerm::Linearize(LinearTerm* linear) const {
+  const FrameGeometry& base = context_->geometry[static_cast<size_t>(track_->views.front().frame->index)];
+  const double* landmark = track_->landmark.data();
+  const Eigen::Matrix<double, 1, 6> camera =
+      track_->depth_prior.sqrt_information * InverseDepthRow(base, track_->landmark);
+  linear->ResizeRows(parts(), rows());
+  cost_.factor().Evaluate(&landmark, linear->residual.data(), nullptr);
+  linear->jacobian.leftCols<kPoseColumns>() = camera * base.camera_from_body;
+  linear->jacobian(0, kPoseColumns + 2) = track_->depth_prior.sqrt_information;
+  const CalibrationLayout& layout = context_->calibration->layout;
+  linear->jacobian.rightCols(layout.size()) = camera * CalibrationChain(layout, base);
+  return Status::Ok();
+}
+
+void DepthPriorTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
+  problem->AddResidualBlock(&cost_, nullptr, blocks->Landmark(landmark_));
+}
+
+void AddTrackTerms(const WindowFrames& frames, const std::vector<WindowTrack*>& tracks,
+                   const WindowCalibration& calibration, const ObservationKernel& kernel,
+                   WindowTerms* terms) {
+  const auto context = std::make_shared<const ViewContext>(frames, calibration, kernel);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const WindowTrack& track = *tracks[i];
+    const int landmark = static_cast<int>(i);
+    terms->push_back(std::make_unique<ViewTerm>(context, &track, landmark, 0));
+    if (track.depth_prior.sqrt_information > 0) {
+      terms->push_back(std::make_unique<DepthPriorTerm>(context, &track, landmark));
+    }
+    for (size_t k = 1; k < track.views.size(); ++k) {
+      terms->push_back(std::make_unique<ViewTerm>(context, &track, landmark, k));
+    }
+  }
+}
+
+}  // namespace alidade

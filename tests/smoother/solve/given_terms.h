@@ -1,0 +1,85 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+
+#include "smoother/factors/imu_factor.h"
+#include "smoother/solve/factor_term.h"
+#include "smoother/solve/marginalization.h"
+#include "smoother/solve/prior_terms.h"
+#include "smoother/solve/sensor_terms.h"
+#include "smoother/solve/window_system.h"
+
+namespace alidade::test {
+
+/// Normal equations over the poses of a window and its calibration, as a term.
+class GivenTerm final : public WindowTerm {
+ public:
+  explicit GivenTerm(const PoseSystem& system) : system_(system) {
+    const Eigen::Index calibration = system.calibration_size();
+    for (int i = 0; 6 * i < system.gradient.size() - calibration; ++i) {
+      AddPart({Unknown::Kind::kFrame, i}, kPoseColumns);
+    }
+    AddPart({Unknown::Kind::kCalibration, 0}, calibration);
+  }
+  [[nodiscard]] int rows() const override { return static_cast<int>(system_.gradient.size()); }
+  Status Linearize(LinearTerm* linear) const override {
+    linear->SetInformation(parts(), system_.hessian, system_.gradient);
+    return Status::Ok();
+  }
+  void AddTo(ParameterBlocks*, ceres::Problem*) override { FAIL() << "a linear problem only"; }
+
+ private:
+  PoseSystem system_;
+};
+
+/// The sensors' terms of a window and its vision.
+inline WindowTerms MakeTerms(const Window& window, const PoseSystem& vision, const SensorContext& sensors) {
+  WindowTerms terms;
+  const Status status = AddSensorTerms(sensors, window.frames(), window.size(), &terms);
+  EXPECT_TRUE(status.ok()) << status.message();
+  terms.push_back(std::make_unique<GivenTerm>(vision));
+  return terms;
+}
+
+inline LinearPrior Marginalize(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
+                               const SensorContext& sensors, const SlamChange& slam = {}) {
+  const WindowTerms terms = MakeTerms(window, vision, sensors);
+  const WindowCalibration none;
+  Result<LinearPrior> next = MarginalizeOldest(
+      window, prior, vision.calibration == nullptr ? none : *vision.calibration, terms, slam);
+  EXPECT_TRUE(next.ok()) << next.message();
+  return *next;
+}
+
+/// What is known of the newest frame; `slam` stands for a prior with landmarks.
+inline NewestEstimate Newest(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
+                             const SensorContext& sensors, std::unique_ptr<WindowTerm> slam = nullptr) {
+  const WindowCalibration none;
+  const WindowCalibration& calibration = vision.calibration == nullptr ? none : *vision.calibration;
+  WindowTerms terms = MakeTerms(window, vision, sensors);
+  terms.insert(terms.begin(), slam != nullptr ? std::move(slam) : MakePriorTerm(prior, calibration));
+  NewestEstimate newest;
+  EXPECT_TRUE(NewestCovariance(window.frames(), terms, &newest));
+  return newest;
+}
+
+/// Whitened rows of the IMU between two frames, over 15 canonical coordinates of each.
+struct ImuRows {
+  Matrix15d first, second;
+  Vector15d residual;
+};
+inline ImuRows LinearizeImu(const WindowFrame& from, const WindowFrame& to,
+                            const Eigen::Vector3d& gravity_W) {
+  const ImuFactor factor(&*to.preintegration, gravity_W, to.mean_step_s(), from.first_estimate(),
+                         to.first_estimate());
+  LinearTerm linear;
+  EXPECT_TRUE(MakeTerm(factor, {NavBlock(from), BiasBlock(from), NavBlock(to), BiasBlock(to)})
+                  ->Linearize(&linear)
+                  .ok());
+  return {linear.jacobian.leftCols<15>(), linear.jacobian.rightCols<15>(), linear.residual};
+}
+
+}  // namespace alidade::test
