@@ -88,6 +88,9 @@ int RunRun(const std::vector<std::string>&) {
     return Report(status);
   }
   Say(Summary(result));
+  if (config->gnss.enabled && !result.global) {
+    Say("GNSS was not used: " + result.align_report);
+  }
   return result.interrupted ? kExitInterrupted : Report(result.status);
 }
 

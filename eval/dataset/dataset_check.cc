@@ -8,6 +8,7 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_camera.h"
 #include "gnss/model/gnss_epoch.h"
+#include "gnss/positioning/time_check.h"
 
 namespace alidade {
 namespace {
@@ -227,6 +228,17 @@ std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
   return stamps;
 }
 
+/// Whether the ephemerides serve at the epochs' times.
+void CheckEphemerides(const GnssLog& log, Findings* findings) {
+  const GnssCoverage coverage = CheckCoverage(log);
+  if (coverage.usable_epochs < coverage.epochs) {
+    findings->Warning(Format("gnss0: %d of %d sampled epochs have no satellite that can be used (",
+                             coverage.epochs - coverage.usable_epochs, coverage.epochs) +
+                      Describe(coverage.faults) +
+                      Format("); the nearest ephemeris is %.1f h away", coverage.nearest_s / 3600));
+  }
+}
+
 }  // namespace
 
 std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
@@ -268,6 +280,10 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
         MeasuredRate(dataset.gnss->epochs.front().stamp_ns, dataset.gnss->epochs.back().stamp_ns, epochs),
         static_cast<double>(satellites) / static_cast<double>(epochs),
         dataset.gnss->catalog->navigation().ephemerides()));
+    const TimeNs offset_ns = SecondsToNs(dataset.rig.gnss.time_offset_s);
+    CheckSpan("gnss0", dataset.gnss->epochs.front().stamp_ns + offset_ns,
+              dataset.gnss->epochs.back().stamp_ns + offset_ns, dataset, &findings);
+    CheckEphemerides(*dataset.gnss, &findings);
   }
   if (!dataset.extra_cameras.empty()) {
     findings.Fact(Format("%zu more cameras with tracks: recorded, but estimators read only cam0",

@@ -11,6 +11,7 @@
 #include "gnss/formats/rinex_writer.h"
 #include "gnss/model/gnss_epoch.h"
 #include "gnss/orbits/gnss_files.h"
+#include "gnss/positioning/time_check.h"
 
 namespace alidade {
 namespace {
@@ -160,6 +161,9 @@ Status ReadGnssFolder(const std::string& folder, Dataset* dataset) {
   log->catalog = *catalog;
   log->approximate_position_E =
       sensor->approximate_position_E ? sensor->approximate_position_E : observations->approximate_position_E;
+  if (const Status tags = CheckTags(*log); !tags.ok()) {
+    return Status::Input((fs::path(folder) / sensor->observations).string() + ": " + tags.message());
+  }
   dataset->gnss = std::move(log);
   dataset->rig.gnss = sensor->receiver;
   return Status::Ok();

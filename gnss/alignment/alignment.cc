@@ -60,6 +60,7 @@ void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>
                            const std::optional<SinglePointSolution>& solution) {
   approximate_E_ = approximate_E ? approximate_E : approximate_E_;
   builder_ = epoch.builder;
+  left_out_.Add(epoch.measurements.left_out);
   GnssEpoch taken = epoch;
   if (solution) {
     std::erase_if(taken.measurements.satellites,
@@ -67,6 +68,7 @@ void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>
   }
   if (static_cast<int>(taken.measurements.satellites.size()) >= config_.align_min_satellites) {
     pending_.push_back(std::move(taken));
+    any_epoch_ = true;
   }
   MatchEpochs();
 }
@@ -155,11 +157,16 @@ std::optional<AlignmentGuess> GnssAligner::FirstGuess(const AlignmentFit& fit) c
   return best;
 }
 
+std::string GnssAligner::LeftOut() const {
+  return any_epoch_ ? "" : "; satellites left out: " + Describe(left_out_);
+}
+
 std::optional<GnssAlignment> GnssAligner::TryAlign() {
   if (static_cast<int>(samples_.size()) < config_.align_min_epochs || !approximate_E_) {
     report_ = Format("%zu epochs of at least %d satellites within the window, expected %d%s", samples_.size(),
                      config_.align_min_satellites, config_.align_min_epochs,
-                     approximate_E_ ? "" : "; no position yet");
+                     approximate_E_ ? "" : "; no position yet") +
+              LeftOut();
     return std::nullopt;
   }
   const TimeNs newest = samples_.back().state.stamp_ns;

@@ -60,6 +60,8 @@ class GnssAligner {
  private:
   void MatchEpochs();
   void Locate();
+  /// What became of the satellites, where no epoch could be used; else empty.
+  [[nodiscard]] std::string LeftOut() const;
   [[nodiscard]] std::vector<const AlignmentSample*> Choose() const;
   [[nodiscard]] std::optional<AlignmentGuess> FirstGuess(const AlignmentFit& fit) const;
   /// The alignment, if its yaw is known well enough; sets the report.
@@ -74,6 +76,8 @@ class GnssAligner {
   std::shared_ptr<const MeasurementBuilder> builder_;
   EnuFrame enu_;
   bool located_ = false;
+  bool any_epoch_ = false;  ///< with enough satellites
+  MeasurementCounts left_out_;
   TimeNs tried_ns_ = INT64_MIN;
   std::string report_;
 };

@@ -95,6 +95,7 @@ void GnssInertialStart::AddImu(const ImuSample& sample) {
 }
 
 void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<SinglePointSolution>& solution) {
+  left_out_.Add(epoch.measurements.left_out);
   if (!solution || !solution->has_velocity ||
       (!fixes_.empty() && SecondsBetween(fixes_.back().stamp_ns, epoch.stamp_ns) < kMinSpacingS)) {
     return;
@@ -225,7 +226,9 @@ GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
 
 std::optional<GnssInertialStart::Start> GnssInertialStart::TryStart() {
   if (static_cast<int>(fixes_.size()) < config_.align_min_epochs) {
-    report_ = Format("%zu single points with velocity, expected %d", fixes_.size(), config_.align_min_epochs);
+    report_ =
+        Format("%zu single points with velocity, expected %d", fixes_.size(), config_.align_min_epochs) +
+        (fixes_.empty() ? "; satellites left out: " + Describe(left_out_) : "");
     return std::nullopt;
   }
   Fit best = Solve(0);

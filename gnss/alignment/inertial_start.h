@@ -60,6 +60,7 @@ class GnssInertialStart {
   std::deque<ImuSample> imu_;
   std::deque<Fix> fixes_;
   std::optional<EnuFrame> enu_;
+  MeasurementCounts left_out_;
   std::string report_;
 };
 

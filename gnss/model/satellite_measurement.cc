@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/format.h"
 #include "gnss/base/constants.h"
 #include "gnss/model/atmosphere.h"
 
@@ -75,6 +76,18 @@ const SignalObservation* WithDoppler(const SatelliteObservation& observed, const
 }
 
 }  // namespace
+
+void MeasurementCounts::Add(const MeasurementCounts& other) {
+  no_ephemeris += other.no_ephemeris;
+  unhealthy += other.unhealthy;
+  no_signal += other.no_signal;
+  unused_system += other.unused_system;
+}
+
+std::string Describe(const MeasurementCounts& counts) {
+  return Format("%d without ephemeris, %d unhealthy, %d without signal", counts.no_ephemeris,
+                counts.unhealthy, counts.no_signal);
+}
 
 double ObservationVariance(double zenith_std, double elevation_rad, double cn0_dbhz,
                            std::optional<double> reported_std) {

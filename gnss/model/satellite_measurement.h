@@ -42,7 +42,11 @@ struct MeasurementCounts {
   int unhealthy = 0;
   int no_signal = 0;  ///< no pseudorange in a band that is used, or beyond bounds, or too weak
   int unused_system = 0;
+
+  void Add(const MeasurementCounts& other);
 };
+/// "3 without ephemeris, 0 unhealthy, 1 without signal".
+[[nodiscard]] std::string Describe(const MeasurementCounts& counts);
 
 /// The measurements of one epoch.
 struct EpochMeasurements {

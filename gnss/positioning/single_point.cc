@@ -61,11 +61,8 @@ double SinglePointSolver::BiasVariance(GnssSystem system, TimeNs stamp_ns) const
 
 Result<SinglePointSolution> SinglePointSolver::Solve(EpochMeasurements prepared) {
   if (prepared.satellites.empty()) {
-    const MeasurementCounts& c = prepared.left_out;
-    return Status::Input(
-        FormatGpsTime(prepared.tag_ns, 3) +
-        Format(": no satellite can be used (%d without ephemeris, %d unhealthy, %d without signal)",
-               c.no_ephemeris, c.unhealthy, c.no_signal));
+    return Status::Input(FormatGpsTime(prepared.tag_ns, 3) + ": no satellite can be used (" +
+                         Describe(prepared.left_out) + ")");
   }
   State state;
   Status status = SolveFrom(last_E_.value_or(Eigen::Vector3d::Zero()), &prepared, &state);
@@ -130,12 +127,10 @@ Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, State* state) 
     }
   }
   if (active < 4) {
-    const MeasurementCounts& c = epoch.left_out;
-    return Status::Input(
-        Format("%d satellites can be used, expected 4 (%d without ephemeris, %d unhealthy, %d without "
-               "signal, %zu below the mask or rejected)",
-               active, c.no_ephemeris, c.unhealthy, c.no_signal,
-               epoch.satellites.size() - static_cast<std::size_t>(active)));
+    return Status::Input(Format("%d satellites can be used, expected 4 (", active) +
+                         Describe(epoch.left_out) +
+                         Format(", %zu below the mask or rejected)",
+                                epoch.satellites.size() - static_cast<std::size_t>(active)));
   }
   std::array<int, kGnssSystems> column{};
   column.fill(-1);

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "eval/dataset/dataset.h"
+#include "gnss/model/gnss_epoch.h"
+#include "tests/gnss/model/synthetic_sky.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
@@ -115,6 +118,50 @@ TEST(DatasetCheck, GivenTheRealTumViRoomThenItsTruthGapsAreFound) {
   const Result<Dataset> dataset = ReadDataset(test::SharedDir() + "/data/tumvi/room3");
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   EXPECT_THAT(Complaints(*dataset, Severity::kWarning), HasSubstr("the longest is 1.99"));
+}
+
+/// With GNSS once a second, tags and ephemerides shifted.
+Dataset WithGnss(double tags_s, double ephemerides_s) {
+  Dataset dataset = Healthy();
+  const TimeNs begin = dataset.imu.front().stamp_ns;
+  auto log = std::make_shared<GnssLog>();
+  for (int i = 0; i < 10; ++i) {
+    test::SyntheticReceiver receiver;
+    receiver.stamp_ns = begin + i * kSecondNs;
+    ObservationEpoch epoch = test::Observe(test::SyntheticSky(begin), receiver);
+    epoch.stamp_ns += SecondsToNs(tags_s);
+    log->epochs.push_back(epoch);
+  }
+  log->catalog = std::make_shared<SatelliteCatalog>(test::SyntheticSky(begin + SecondsToNs(ephemerides_s)));
+  dataset.gnss = log;
+  return dataset;
+}
+
+TEST(DatasetCheck, GivenGnssThenItsSpanAndEphemeridesAreNoComplaint) {
+  EXPECT_EQ(Complaints(WithGnss(0, 0), Severity::kError), "");
+  EXPECT_EQ(Complaints(WithGnss(0, 0), Severity::kWarning), "");
+  EXPECT_THAT(Complaints(WithGnss(0, 0), Severity::kFact), HasSubstr("gnss0: starts +0.000 s"));
+}
+
+TEST(DatasetCheck, GivenEphemeridesADayOldThenItWarnsThatNoEpochCanBeUsed) {
+  const std::string warnings = Complaints(WithGnss(0, -86400), Severity::kWarning);
+  EXPECT_THAT(warnings, HasSubstr("gnss0: 8 of 8 sampled epochs have no satellite that can be used"));
+  EXPECT_THAT(warnings, HasSubstr("the nearest ephemeris is 24.2 h away"));
+}
+
+TEST(DatasetRead, GivenTagsThatAreNotGpstThenItIsRefusedWithTheOffset) {
+  const test::TemporaryFolder folder;
+  const double rollover_s = 1024 * 604800.0;
+  for (const auto& [tags_s, expected] :
+       {std::pair(-18.0, "need +18 s"), std::pair(-rollover_s, "need +1024 weeks")}) {
+    const std::string path = folder.File(expected);
+    ASSERT_TRUE(WriteDataset(WithGnss(tags_s, 0), path).ok());
+    const Result<Dataset> read = ReadDataset(path);
+    EXPECT_EQ(read.code(), StatusCode::kInput);
+    EXPECT_THAT(read.message(), testing::AllOf(HasSubstr("obs.rnx"), HasSubstr(expected)));
+  }
+  ASSERT_TRUE(WriteDataset(WithGnss(0, 0), folder.File("sound")).ok());
+  EXPECT_TRUE(ReadDataset(folder.File("sound")).ok());
 }
 
 }  // namespace

@@ -141,6 +141,18 @@ TEST(GnssAlignerTest, GIVEN_rest_THEN_it_waits_for_motion) {
   EXPECT_NE(aligner.report().find("too little motion"), std::string::npos) << aligner.report();
 }
 
+TEST(GnssAlignerTest, GIVEN_ephemerides_a_day_old_THEN_the_report_says_why_there_are_no_epochs) {
+  Walk walk;
+  walk.builder = std::make_shared<MeasurementBuilder>(
+      std::make_shared<SatelliteCatalog>(test::SyntheticSky(kStart - kDayNs)), walk.config.corrections);
+  GnssAligner aligner(walk.config, AtAnchor(walk));
+  EXPECT_FALSE(Follow(walk, 10, 40, &aligner));
+  EXPECT_NE(aligner.report().find("0 epochs of at least 1 satellites"), std::string::npos)
+      << aligner.report();
+  EXPECT_NE(aligner.report().find("without ephemeris"), std::string::npos) << aligner.report();
+  EXPECT_EQ(aligner.report().find("left out: 0 without"), std::string::npos) << aligner.report();
+}
+
 // GIVEN a receiver at rest and an estimate whose velocity sways within its deviation, as a shaken start's,
 // THEN the swaying is not taken for motion.
 TEST(GnssAlignerTest, GIVEN_an_estimate_that_sways_at_rest_THEN_it_waits_for_motion) {

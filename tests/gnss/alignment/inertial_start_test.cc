@@ -237,6 +237,8 @@ TEST(GnssInertialStartTest, GIVEN_epochs_without_solution_or_velocity_THEN_they_
   }
   EXPECT_FALSE(start.TryStart());
   EXPECT_NE(start.report().find("0 single points"), std::string::npos) << start.report();
+  EXPECT_NE(start.report().find("satellites left out: 0 without ephemeris"), std::string::npos)
+      << start.report();
 }
 
 }  // namespace
