@@ -56,34 +56,6 @@ double InverseJacobianCoefficient(double theta) {
   return (1 - 0.5 * theta / std::tan(0.5 * theta)) / t2;
 }
 
-/// Off-diagonal block Q(phi, rho) of the SE(3) left Jacobian, Barfoot, "State estimation for robotics",
-/// eq. 7.86.
-Matrix3d BarfootQ(const Vector3d& phi, const Vector3d& rho) {
-  const double theta = phi.norm();
-  const double t2 = theta * theta;
-  double c1;
-  double c2;
-  double c3;
-  if (theta < 0.3) {
-    const double t4 = t2 * t2;
-    c1 = 1.0 / 6 - t2 / 120 + t4 / 5040 - t4 * t2 / 362880;
-    c2 = 1.0 / 24 - t2 / 720 + t4 / 40320 - t4 * t2 / 3628800;
-    const double d = 1.0 / 120 - t2 / 5040 + t4 / 362880 - t4 * t2 / 39916800;
-    c3 = 0.5 * (c2 - 3 * d);
-  } else {
-    const double s = std::sin(theta);
-    const double c = std::cos(theta);
-    c1 = (theta - s) / (t2 * theta);
-    c2 = (t2 / 2 + c - 1) / (t2 * t2);
-    const double d = (theta - s - t2 * theta / 6) / (t2 * t2 * theta);
-    c3 = 0.5 * (c2 + 3 * d);
-  }
-  const Matrix3d p = Skew(phi);
-  const Matrix3d r = Skew(rho);
-  return 0.5 * r + c1 * (p * r + r * p + p * r * p) + c2 * (p * p * r + r * p * p - 3 * p * r * p) +
-         c3 * (p * r * p * p + p * p * r * p);
-}
-
 }  // namespace
 
 namespace so3 {
@@ -109,12 +81,6 @@ Matrix3d GammaDerivative(const Vector3d& phi, const Vector3d& v, int m) {
 
 Matrix3d Exp(const Vector3d& phi) {
   return Gamma(phi, 0);
-}
-
-Eigen::Quaterniond ExpQuaternion(const Vector3d& phi) {
-  const double half = 0.5 * phi.norm();
-  const double scale = half < 1e-4 ? 0.5 - half * half / 12 : 0.5 * std::sin(half) / half;
-  return Eigen::Quaterniond(std::cos(half), scale * phi.x(), scale * phi.y(), scale * phi.z()).normalized();
 }
 
 Vector3d Log(const Matrix3d& rotation) {
@@ -157,91 +123,4 @@ Matrix3d Normalize(const Matrix3d& m) {
 }
 
 }  // namespace so3
-
-namespace se3 {
-
-Eigen::Matrix4d Exp(const Vector6d& xi) {
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.topLeftCorner<3, 3>() = so3::Exp(xi.head<3>());
-  m.topRightCorner<3, 1>() = so3::LeftJacobian(xi.head<3>()) * xi.tail<3>();
-  return m;
-}
-
-Vector6d Log(const Eigen::Matrix4d& transform) {
-  Vector6d xi;
-  xi.head<3>() = so3::Log(transform.topLeftCorner<3, 3>());
-  xi.tail<3>() = so3::LeftJacobianInverse(xi.head<3>()) * transform.topRightCorner<3, 1>();
-  return xi;
-}
-
-Matrix6d LeftJacobian(const Vector6d& xi) {
-  Matrix6d j = Matrix6d::Zero();
-  j.topLeftCorner<3, 3>() = so3::LeftJacobian(xi.head<3>());
-  j.bottomRightCorner<3, 3>() = j.topLeftCorner<3, 3>();
-  j.bottomLeftCorner<3, 3>() = BarfootQ(xi.head<3>(), xi.tail<3>());
-  return j;
-}
-
-Matrix6d RightJacobian(const Vector6d& xi) {
-  return LeftJacobian(-xi);
-}
-
-Matrix6d Adjoint(const Eigen::Matrix4d& transform) {
-  const Matrix3d r = transform.topLeftCorner<3, 3>();
-  Matrix6d a = Matrix6d::Zero();
-  a.topLeftCorner<3, 3>() = r;
-  a.bottomRightCorner<3, 3>() = r;
-  a.bottomLeftCorner<3, 3>() = Skew(transform.topRightCorner<3, 1>()) * r;
-  return a;
-}
-
-}  // namespace se3
-
-namespace se23 {
-
-Matrix5d Exp(const Vector9d& xi) {
-  Matrix5d m = Matrix5d::Identity();
-  const Matrix3d j = so3::LeftJacobian(xi.head<3>());
-  m.topLeftCorner<3, 3>() = so3::Exp(xi.head<3>());
-  m.block<3, 1>(0, 3) = j * xi.segment<3>(3);
-  m.block<3, 1>(0, 4) = j * xi.tail<3>();
-  return m;
-}
-
-Vector9d Log(const Matrix5d& element) {
-  Vector9d xi;
-  xi.head<3>() = so3::Log(element.topLeftCorner<3, 3>());
-  const Matrix3d j_inverse = so3::LeftJacobianInverse(xi.head<3>());
-  xi.segment<3>(3) = j_inverse * element.block<3, 1>(0, 3);
-  xi.tail<3>() = j_inverse * element.block<3, 1>(0, 4);
-  return xi;
-}
-
-Matrix9d LeftJacobian(const Vector9d& xi) {
-  Matrix9d j = Matrix9d::Zero();
-  const Matrix3d j_rotation = so3::LeftJacobian(xi.head<3>());
-  for (int i = 0; i < 3; ++i) {
-    j.block<3, 3>(3 * i, 3 * i) = j_rotation;
-  }
-  j.block<3, 3>(3, 0) = BarfootQ(xi.head<3>(), xi.segment<3>(3));
-  j.block<3, 3>(6, 0) = BarfootQ(xi.head<3>(), xi.tail<3>());
-  return j;
-}
-
-Matrix9d RightJacobian(const Vector9d& xi) {
-  return LeftJacobian(-xi);
-}
-
-Matrix9d Adjoint(const Matrix5d& element) {
-  const Matrix3d r = element.topLeftCorner<3, 3>();
-  Matrix9d a = Matrix9d::Zero();
-  for (int i = 0; i < 3; ++i) {
-    a.block<3, 3>(3 * i, 3 * i) = r;
-  }
-  a.block<3, 3>(3, 0) = Skew(element.block<3, 1>(0, 3)) * r;
-  a.block<3, 3>(6, 0) = Skew(element.block<3, 1>(0, 4)) * r;
-  return a;
-}
-
-}  // namespace se23
 }  // namespace alidade

@@ -25,8 +25,6 @@ namespace so3 {
 
 /// Exp: rotation vector -> rotation matrix (Rodrigues).
 [[nodiscard]] Eigen::Matrix3d Exp(const Eigen::Vector3d& phi);
-/// Exp as a unit Hamilton quaternion.
-[[nodiscard]] Eigen::Quaterniond ExpQuaternion(const Eigen::Vector3d& phi);
 /// Log: rotation matrix -> rotation vector, |phi| <= pi. Accurate near 0 and near pi.
 [[nodiscard]] Eigen::Vector3d Log(const Eigen::Matrix3d& rotation);
 /// Left Jacobian: Exp(phi + d) = Exp(J_l(phi) d) Exp(phi) to first order.
@@ -45,31 +43,5 @@ namespace so3 {
 [[nodiscard]] Eigen::Matrix3d Normalize(const Eigen::Matrix3d& m);
 
 }  // namespace so3
-
-/// SE(3), tangent (phi, rho): Exp = [Exp(phi), J_l(phi) rho].
-namespace se3 {
-
-/// 4x4 homogeneous matrix of a tangent vector (phi, rho).
-[[nodiscard]] Eigen::Matrix4d Exp(const Vector6d& xi);
-[[nodiscard]] Vector6d Log(const Eigen::Matrix4d& transform);
-/// 6x6 Jacobians in the order (phi, rho).
-[[nodiscard]] Matrix6d LeftJacobian(const Vector6d& xi);
-[[nodiscard]] Matrix6d RightJacobian(const Vector6d& xi);
-[[nodiscard]] Matrix6d Adjoint(const Eigen::Matrix4d& transform);
-
-}  // namespace se3
-
-/// SE_2(3), extended poses (R, p, v), tangent (phi, rho_p, rho_v); Barrau and Bonnabel, 2017.
-namespace se23 {
-
-using Matrix5d = Eigen::Matrix<double, 5, 5>;
-/// 5x5 matrix [R p v; 0 1 0; 0 0 1] of a tangent vector.
-[[nodiscard]] Matrix5d Exp(const Vector9d& xi);
-[[nodiscard]] Vector9d Log(const Matrix5d& element);
-[[nodiscard]] Matrix9d LeftJacobian(const Vector9d& xi);
-[[nodiscard]] Matrix9d RightJacobian(const Vector9d& xi);
-[[nodiscard]] Matrix9d Adjoint(const Matrix5d& element);
-
-}  // namespace se23
 
 }  // namespace alidade
