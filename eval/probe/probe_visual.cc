@@ -65,7 +65,7 @@ Json PoseOnlyAnswer(const Json& input, ErrorConvention convention) {
   TrackLinearization track;
   if (!ComputePoseOnlyDepth(views, observations, base, pair, &depth, &point) ||
       !LinearizeTrack(views, observations, depth.p_W, &track)) {
-    throw CaseError{"no parallax between the views, or the landmark lies behind one of them"};
+    throw CaseError{"no parallax between the views, or the landmark is behind one of them"};
   }
   const Eigen::VectorXd observed_minus_predicted = -track.residual;
   Eigen::MatrixXd fixed_landmark = OverAllPoses(track);
@@ -118,7 +118,7 @@ Json InverseDepthAnswer(const Json& input, ErrorConvention convention) {
     InverseDepthModel::LandmarkJacobian landmark_block;
     if (!model.Evaluate(views[static_cast<size_t>(base)], views[static_cast<size_t>(k)], landmark,
                         &view_residual, &base_block, &view_block, &landmark_block)) {
-      throw CaseError{"landmark lies behind views[" + std::to_string(k) + "]"};
+      throw CaseError{"the landmark is behind views[" + std::to_string(k) + "]"};
     }
     residual.segment<2>(2 * k) = -view_residual;
     jacobian.block<2, 6>(2 * k, 6 * base) = base_block;
