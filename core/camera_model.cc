@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/reprojection.h"
+
 namespace alidade {
 namespace {
 
@@ -135,8 +137,7 @@ bool CameraModel::Project(const Vector3d& p_C, Vector2d* pixel, Eigen::Matrix<do
   if (!(p_C.z() > kMinDepthM)) {
     return false;
   }
-  const double inverse_z = 1.0 / p_C.z();
-  const Vector2d ideal = p_C.head<2>() * inverse_z;
+  const Vector2d ideal = p_C.head<2>() * (1.0 / p_C.z());
   Vector2d distorted;
   Matrix2d distortion_jacobian;
   if (!Distort(ideal, &distorted, jacobian != nullptr ? &distortion_jacobian : nullptr)) {
@@ -144,9 +145,7 @@ bool CameraModel::Project(const Vector3d& p_C, Vector2d* pixel, Eigen::Matrix<do
   }
   *pixel = intrinsics_.head<2>().cwiseProduct(distorted) + intrinsics_.tail<2>();
   if (jacobian != nullptr) {
-    Eigen::Matrix<double, 2, 3> perspective;
-    perspective << inverse_z, 0, -ideal.x() * inverse_z, 0, inverse_z, -ideal.y() * inverse_z;
-    *jacobian = intrinsics_.head<2>().asDiagonal() * distortion_jacobian * perspective;
+    *jacobian = intrinsics_.head<2>().asDiagonal() * distortion_jacobian * ProjectionJacobian(ideal, p_C.z());
   }
   return true;
 }

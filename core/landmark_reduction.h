@@ -8,6 +8,17 @@
 
 namespace alidade {
 
+/// The whitened rows of one observation, linearised at a landmark held fixed.
+struct ObservationRows {
+  Eigen::Vector2d residual;                    ///< predicted - measured
+  Eigen::Matrix<double, 2, 6> pose_jacobian;   ///< over (phi, dp) of the camera
+  Eigen::Matrix<double, 2, 3> point_jacobian;  ///< over an additive error of p_W
+};
+
+/// Linearises one view at the landmark p_W. False, with nothing written, when it lies behind the camera.
+bool LinearizeObservation(const Pose& T_WC, const NormalizedObservation& observation,
+                          const Eigen::Vector3d& p_W, ObservationRows* rows);
+
 /// The whitened rows of one track, linearised at a landmark held fixed, before the landmark is eliminated:
 /// W_k r_k = W_k J_k zeta_k + W_k J_pi R_k^T f~ + n, n ~ N(0, I).
 struct TrackLinearization {
@@ -31,11 +42,5 @@ bool LinearizeTrack(std::span<const Pose> T_WC, std::span<const NormalizedObserv
 /// N >= 2.
 void EliminateLandmark(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> point_jacobian,
                        Eigen::Ref<Eigen::MatrixXd> jacobian, Eigen::Ref<Eigen::VectorXd> residual);
-
-/// Gauss-Newton on the landmark alone (poses fixed), in inverse-depth coordinates of view `base`, minimising
-/// the whitened reprojection error. p_W is start and result. False when it does not stay in front of every
-/// view; p_W is then untouched.
-bool RefineLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations, int base,
-                    int iterations, Eigen::Vector3d* p_W);
 
 }  // namespace alidade

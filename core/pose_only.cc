@@ -1,7 +1,6 @@
 #include "core/pose_only.h"
 
 #include <cmath>
-#include <vector>
 
 #include "core/check.h"
 
@@ -41,11 +40,12 @@ struct DepthDerivative {
   Eigen::RowVectorXd observations;  // 1 x 2N
 };
 
-DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const Vector2d> z, int base,
+DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC,
+                                   std::span<const NormalizedObservation> observations, int base,
                                    DepthViews views, const PoseOnlyDepth& depth) {
   const int count = static_cast<int>(T_WC.size());
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d z_b = z[static_cast<size_t>(base)].homogeneous();
+  const Vector3d z_b = observations[static_cast<size_t>(base)].z.homogeneous();
   const Vector3d base_ray_W = base_view.rotation * z_b;
   DepthDerivative derivative{Eigen::RowVectorXd::Zero(6 * count), Eigen::RowVectorXd::Zero(2 * count)};
   for (int i = 0; i < count; ++i) {
@@ -53,7 +53,7 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const V
       continue;
     }
     const Pose& view = T_WC[static_cast<size_t>(i)];
-    const DepthRow row = MakeRow(view, z[static_cast<size_t>(i)], base_view, base_ray_W);
+    const DepthRow row = MakeRow(view, observations[static_cast<size_t>(i)].z, base_view, base_ray_W);
     // dd = [ (b - 2 d A)^T dA + A^T db ] / A^T A, with dA = [z]x dray - [ray]x dz and
     // db = -[z]x dshift + [shift]x dz.
     const Vector3d weight_a = (row.b - 2 * depth.depth * row.a) / depth.normal;
@@ -73,21 +73,36 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC, std::span<const V
   return derivative;
 }
 
+/// p_W moves with the base pose, the base's ray and the depth.
+void DifferentiatePoint(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
+                        int base, DepthViews views, const PoseOnlyDepth& depth,
+                        PoseOnlyJacobians* jacobians) {
+  const DepthDerivative derivative = DifferentiateDepth(T_WC, observations, base, views, depth);
+  const Pose& base_view = T_WC[static_cast<size_t>(base)];
+  const Vector3d z_b = observations[static_cast<size_t>(base)].z.homogeneous();
+  const Vector3d base_ray_W = base_view.rotation * z_b;
+  jacobians->poses = base_ray_W * derivative.poses;
+  jacobians->poses.middleCols<3>(6 * base) -= depth.depth * base_view.rotation * Skew(z_b);
+  jacobians->poses.middleCols<3>(6 * base + 3) += Matrix3d::Identity();
+  jacobians->observations = base_ray_W * derivative.observations;
+  jacobians->observations.middleCols<2>(2 * base) += depth.depth * base_view.rotation.leftCols<2>();
+}
+
 }  // namespace
 
-bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Vector2d> z, int base, DepthViews views,
-                          PoseOnlyDepth* depth) {
+bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
+                          int base, DepthViews views, PoseOnlyDepth* depth, PoseOnlyJacobians* jacobians) {
   const int count = static_cast<int>(T_WC.size());
-  CHECK_EQ(z.size(), T_WC.size());
+  CHECK_EQ(observations.size(), T_WC.size());
   CHECK(count >= 2 && base >= 0 && base < count);
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d base_ray_W = base_view.rotation * z[static_cast<size_t>(base)].homogeneous();
+  const Vector3d base_ray_W = base_view.rotation * observations[static_cast<size_t>(base)].z.homogeneous();
   double normal = 0;
   double right_side = 0;
   for (int i = 0; i < count; ++i) {
     if (GivesDepth(i, base, count, views)) {
-      const DepthRow row =
-          MakeRow(T_WC[static_cast<size_t>(i)], z[static_cast<size_t>(i)], base_view, base_ray_W);
+      const DepthRow row = MakeRow(T_WC[static_cast<size_t>(i)], observations[static_cast<size_t>(i)].z,
+                                   base_view, base_ray_W);
       normal += row.a.squaredNorm();
       right_side += row.a.dot(row.b);
     }
@@ -98,69 +113,19 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Vector2d> 
   depth->normal = normal;
   depth->depth = right_side / normal;
   depth->p_W = base_view.translation + depth->depth * base_ray_W;
-  return std::isfinite(depth->depth) && depth->p_W.allFinite();
+  if (!std::isfinite(depth->depth) || !depth->p_W.allFinite()) {
+    return false;
+  }
+  if (jacobians != nullptr) {
+    DifferentiatePoint(T_WC, observations, base, views, *depth, jacobians);
+  }
+  return true;
 }
 
 bool DepthIsDetermined(const PoseOnlyDepth& depth, int other_views, double sigma,
                        double max_relative_deviation) {
   const double parallax = depth.normal - 4 * other_views * sigma * sigma;
   return parallax * max_relative_deviation * max_relative_deviation > sigma * sigma;
-}
-
-bool PoseOnlyModel::Evaluate(std::span<const Pose> T_WC, std::span<const Vector2d> z, PoseOnlyDepth* depth,
-                             Eigen::VectorXd* residual, DynamicJacobian* jacobian,
-                             DynamicJacobian* noise_jacobian) const {
-  if (!ComputePoseOnlyDepth(T_WC, z, base, views, depth)) {
-    return false;
-  }
-  const int count = static_cast<int>(T_WC.size());
-  residual->resize(2 * count);
-  const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d z_b = z[static_cast<size_t>(base)].homogeneous();
-  const Vector3d base_ray_W = base_view.rotation * z_b;
-  // d p_W over all poses and observations; the landmark moves with the base pose, its ray and the depth.
-  Eigen::Matrix<double, 3, Eigen::Dynamic> point_poses;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> point_observations;
-  const bool differentiate = jacobian != nullptr || noise_jacobian != nullptr;
-  if (differentiate) {
-    const DepthDerivative derivative = DifferentiateDepth(T_WC, z, base, views, *depth);
-    point_poses = base_ray_W * derivative.poses;
-    point_poses.middleCols<3>(6 * base) -= depth->depth * base_view.rotation * Skew(z_b);
-    point_poses.middleCols<3>(6 * base + 3) += Matrix3d::Identity();
-    point_observations = base_ray_W * derivative.observations;
-    point_observations.middleCols<2>(2 * base) += depth->depth * base_view.rotation.leftCols<2>();
-  }
-  if (jacobian != nullptr) {
-    jacobian->resize(2 * count, 6 * count);
-  }
-  if (noise_jacobian != nullptr) {
-    noise_jacobian->resize(2 * count, 2 * count);
-  }
-  for (int k = 0; k < count; ++k) {
-    const Pose& view = T_WC[static_cast<size_t>(k)];
-    const Vector3d p_C = view.rotation.transpose() * (depth->p_W - view.translation);
-    if (!(p_C.z() > 0)) {
-      return false;
-    }
-    const Vector2d predicted = p_C.hnormalized();
-    residual->segment<2>(2 * k) = predicted - z[static_cast<size_t>(k)];
-    if (!differentiate) {
-      continue;
-    }
-    Eigen::Matrix<double, 2, 3> perspective;
-    perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-    perspective /= p_C.z();
-    const Eigen::Matrix<double, 2, 3> to_point = perspective * view.rotation.transpose();
-    if (jacobian != nullptr) {
-      jacobian->middleRows<2>(2 * k).noalias() = to_point * point_poses;
-      jacobian->block<2, 3>(2 * k, 6 * k) += perspective * Skew(p_C);
-      jacobian->block<2, 3>(2 * k, 6 * k + 3) -= to_point;
-    }
-    if (noise_jacobian != nullptr) {
-      noise_jacobian->middleRows<2>(2 * k).noalias() = to_point * point_observations;
-    }
-  }
-  return true;
 }
 
 }  // namespace alidade

@@ -19,10 +19,18 @@ struct PoseOnlyDepth {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< p_b + d R_b z_b
 };
 
+/// d p_W of a PoseOnlyDepth, total derivatives: 3 x 6N over (phi, dp) of the views and 3 x 2N over their z.
+/// The estimators' rows do not need them: what they add vanishes with the landmark (docs/pose_only.md).
+struct PoseOnlyJacobians {
+  Eigen::Matrix<double, 3, Eigen::Dynamic> poses;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> observations;
+};
+
 /// False when the views have no parallax (A^T A is zero to rounding) or a number is not finite. The depth may
-/// be negative: the caller judges. Needs at least two views; base in range.
-bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Eigen::Vector2d> z, int base,
-                          DepthViews views, PoseOnlyDepth* depth);
+/// be negative: the caller judges. Needs at least two views; base in range. jacobians: null skips them.
+bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
+                          int base, DepthViews views, PoseOnlyDepth* depth,
+                          PoseOnlyJacobians* jacobians = nullptr);
 
 /// Parallax gate: true when the depth's relative deviation sigma / sqrt(A^T A) is below
 /// `max_relative_deviation`. Noise alone makes A^T A about 4 sigma^2 for each of the `other_views`, which is
@@ -30,21 +38,5 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Eigen::Vec
 /// plane.
 [[nodiscard]] bool DepthIsDetermined(const PoseOnlyDepth& depth, int other_views, double sigma,
                                      double max_relative_deviation);
-
-/// Multi-view pose-only reprojection (paper eq. 5-7, 5-8): residual of every view against the landmark that
-/// ALL poses and observations define. Residual 2N (the base's two rows vanish), Jacobian through the depth:
-/// total derivatives.
-struct PoseOnlyModel {
-  int base = 0;
-  DepthViews views = DepthViews::kMulti;
-
-  using DynamicJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
-
-  /// residual: 2N, predicted - measured. jacobian: 2N x 6N over the views' (phi, dp). noise_jacobian: 2N x
-  /// 2N, d predicted / d z (so that residual noise is (noise_jacobian - I) n). False: no parallax, or the
-  /// landmark lies behind a view.
-  bool Evaluate(std::span<const Pose> T_WC, std::span<const Eigen::Vector2d> z, PoseOnlyDepth* depth,
-                Eigen::VectorXd* residual, DynamicJacobian* jacobian, DynamicJacobian* noise_jacobian) const;
-};
 
 }  // namespace alidade

@@ -34,6 +34,19 @@ bool ChiSquareGate::Accepts(double nis, int dof) const {
   return nis <= Threshold(dof);
 }
 
+double RobustCost(RobustKernel kernel, double scale_sigma, double squared_norm) {
+  const double k2 = scale_sigma * scale_sigma;
+  switch (kernel) {
+    case RobustKernel::kHuber:
+      return squared_norm <= k2 ? squared_norm : 2 * scale_sigma * std::sqrt(squared_norm) - k2;
+    case RobustKernel::kCauchy:
+      return k2 * std::log1p(squared_norm / k2);
+    case RobustKernel::kNone:
+      break;
+  }
+  return squared_norm;
+}
+
 double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm) {
   switch (kernel) {
     case RobustKernel::kHuber:
@@ -44,6 +57,19 @@ double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm
       break;
   }
   return 1.0;
+}
+
+double ObservationKernel::RadialCurvature(double s) const {
+  const double k2 = scale_sigma * scale_sigma;
+  switch (kernel) {
+    case RobustKernel::kHuber:
+      return s > k2 ? 0 : 1;
+    case RobustKernel::kCauchy:
+      return Weight(s) * ((k2 - s) / (k2 + s));
+    case RobustKernel::kNone:
+      break;
+  }
+  return 1;
 }
 
 RobustResidual Robustify(RobustKernel kernel, double scale_sigma, double residual) {

@@ -22,9 +22,25 @@ class ChiSquareGate {
   std::vector<double> thresholds_;
 };
 
+/// Cost rho(s) of a whitened residual with squared norm s, whose slope is RobustWeight:
+/// Huber s up to k^2, then 2 k |r| - k^2; Cauchy k^2 log(1 + s / k^2).
+[[nodiscard]] double RobustCost(RobustKernel kernel, double scale_sigma, double squared_norm);
+
 /// IRLS weight in (0, 1] of a whitened residual with squared norm s:
 /// Huber min(1, k / |r|), Cauchy 1 / (1 + s / k^2).
 [[nodiscard]] double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm);
+
+/// The robust kernel of one observation, rho(s) of its whitened squared residual s, with rho'(0) = 1.
+struct ObservationKernel {
+  RobustKernel kernel = RobustKernel::kNone;
+  double scale_sigma = 1;
+
+  [[nodiscard]] double Rho(double s) const { return RobustCost(kernel, scale_sigma, s); }
+  /// rho'(s).
+  [[nodiscard]] double Weight(double s) const { return RobustWeight(kernel, scale_sigma, s); }
+  /// rho' + 2 s rho'': second derivative of rho(|r|^2) / 2 along r. Zero or negative in the tails.
+  [[nodiscard]] double RadialCurvature(double s) const;
+};
 
 /// A scalar whitened residual whose square is the kernel's cost rho(r^2), with rho' = RobustWeight:
 /// Huber r^2 up to k, then 2 k |r| - k^2; Cauchy k^2 log(1 + r^2 / k^2).

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/predicted_observation.h"
+#include "core/landmark_reduction.h"
+#include "filter/landmark_view.h"
 
 namespace alidade {
 
@@ -26,20 +27,11 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
       keeper_(filter, max_clones, calibration_size) {
   const auto views = static_cast<size_t>(max_clones);
   poses_.reserve(views);
-  jacobian_poses_.reserve(views);
-  points_.reserve(views);
   observations_.reserve(views);
   offsets_.reserve(views);
-  chains_.reserve(views);
   clones_.reserve(views);
-  linearizations_.resize(views + 1);
-  for (Index k = 1; k <= max_clones; ++k) {
-    TrackLinearization& linearization = linearizations_[static_cast<size_t>(k)];
-    linearization.residual.resize(2 * k);
-    linearization.pose_jacobians.resize(2 * k, 6);
-    linearization.point_jacobian.resize(2 * k, 3);
-  }
   residual_.resize(2 * max_clones);
+  point_jacobian_.resize(2 * max_clones, 3);
   track_jacobian_.resize(2 * max_clones, 6 * max_clones + calibration_);
   Reserve(512);
   successors_.resize(kUsualTracks);
@@ -71,11 +63,8 @@ void FeatureUpdate::Reserve(int additional_rows) {
 
 bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
   poses_.clear();
-  jacobian_poses_.clear();
-  points_.clear();
   observations_.clear();
   offsets_.clear();
-  chains_.clear();
   clones_.clear();
   const bool inflate_base = filter_.base_reuse == BaseReuse::kInflate && track.base_rounds > 0;
   for (const TrackView& view : track.views) {
@@ -83,17 +72,13 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
     CHECK_GE(index, 0) << "a track refers to a clone that left the window";
     const Clone& clone = state.clones()[static_cast<size_t>(index)];
     poses_.push_back(clone.T_WC);
-    jacobian_poses_.push_back(clone.T_WC_jacobian);
-    points_.push_back(view.observation.z);
     observations_.push_back(view.observation);
     if (inflate_base && observations_.size() == 1) {
       observations_.back().sqrt_information /= filter_.base_inflation;
     }
     offsets_.push_back(state.CloneOffset(static_cast<size_t>(index)));
-    chains_.push_back(&clone.camera_from_error);
     clones_.push_back(index);
   }
-  linearization_ = &linearizations_[poses_.size()];
   return poses_.size() >= 2;
 }
 
@@ -102,36 +87,41 @@ TrackOutcome FeatureUpdate::Triangulate(double max_relative_deviation, bool refi
   PoseOnlyDepth depth;
   const DepthViews views =
       filter_.landmark == FilterLandmark::kPoseOnlyTwo ? DepthViews::kTwo : DepthViews::kMulti;
-  if (!ComputePoseOnlyDepth(poses_, points_, 0, views, &depth)) {
-    return TrackOutcome::kWaiting;
-  }
-  const int other_views = views == DepthViews::kTwo ? 1 : static_cast<int>(poses_.size()) - 1;
-  if (!DepthIsDetermined(depth, other_views, observations_.back().deviation(), max_relative_deviation)) {
+  if (!TriangulateLandmark(poses_, observations_, views, max_relative_deviation, &depth)) {
     return TrackOutcome::kWaiting;
   }
   if (depth.depth < vision_.min_depth_m || depth.depth > vision_.max_depth_m) {
     return TrackOutcome::kDegenerate;
   }
   *p_W = depth.p_W;
-  if (refine && !RefineLandmark(poses_, observations_, 0, filter_.refine_iterations, p_W)) {
+  if (refine && !RefineLandmark(poses_, observations_, filter_.refine_iterations, p_W)) {
     return TrackOutcome::kDegenerate;
   }
   return TrackOutcome::kReady;
 }
 
 bool FeatureUpdate::Linearize(const FilterState& state, const Eigen::Vector3d& p_W) {
-  if (!LinearizeTrack(poses_, observations_, p_W, linearization_)) {
-    return false;
+  const Index views = static_cast<Index>(clones_.size());
+  // Tracing eliminates the landmark from the identity too: what is left maps the observations' noise.
+  const Index columns = StateColumns() + (tracing_ ? 2 * views : 0);
+  if (track_jacobian_.cols() < columns) {
+    track_jacobian_.resize(track_jacobian_.rows(), 8 * track_jacobian_.rows() / 2 + calibration_);
   }
-  if (!state.first_estimates()) {
-    return true;
+  auto dense = track_jacobian_.topLeftCorner(2 * views, columns);
+  dense.setZero();
+  dense.rightCols(columns - StateColumns()).setIdentity();
+  LandmarkViewRows rows;
+  for (Index k = 0; k < views; ++k) {
+    const auto view = static_cast<size_t>(k);
+    const Clone& clone = state.clones()[static_cast<size_t>(clones_[view])];
+    if (!LinearizeView(state, clone, observations_[view], p_W, p_W, &rows)) {
+      return false;
+    }
+    residual_.segment<2>(2 * k) = rows.residual;
+    point_jacobian_.middleRows<2>(2 * k) = rows.landmark;
+    dense.block<2, 6>(2 * k, 6 * k) = rows.clone;
+    dense.block(2 * k, 6 * views, 2, calibration_) = rows.calibration;
   }
-  auto residual = residual_.head(linearization_->residual.size());
-  residual = linearization_->residual;
-  if (!LinearizeTrack(jacobian_poses_, observations_, p_W, linearization_)) {
-    return false;
-  }
-  linearization_->residual = residual;
   return true;
 }
 
@@ -139,7 +129,7 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
                                LandmarkRows* rows) const {
   const int core = state.CoreOffset();
   rows->landmark = {track.id, track.views.back().serial, 0, p_W, p_W};
-  rows->R_f = linearization_->point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
+  rows->R_f = point_jacobian_.topRows<3>().triangularView<Eigen::Upper>();
   rows->T.setZero(3, dimension_ - core);
   for (size_t k = 0; k < offsets_.size(); ++k) {
     rows->T.middleCols<6>(offsets_[k] - core) = track_jacobian_.block<3, 6>(0, 6 * static_cast<Index>(k));
@@ -148,11 +138,10 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
     rows->T.rightCols(calibration_) =
         track_jacobian_.block(0, 6 * static_cast<Index>(offsets_.size()), 3, calibration_);
   }
-  if (state.landmarks_are_anchored()) {
-    // An additive error of p_W is f~ - [p_W]x theta_a.
-    rows->T.middleCols<3>(offsets_.back() - core) -= rows->R_f * Skew(p_W);
+  if (state.landmark_error().anchored()) {
+    rows->T.middleCols<3>(offsets_.back() - core) += LandmarkError::OverAnchor(rows->R_f, p_W);
   }
-  rows->t = -linearization_->residual.head<3>();
+  rows->t = -residual_.head<3>();
 }
 
 TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& track, bool to_remember,
@@ -177,31 +166,13 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   if (!Linearize(state, p_W)) {
     return TrackOutcome::kDegenerate;
   }
-  if (to_remember && !keeper_.MayStart(linearization_->point_jacobian, p_W, poses_.back().translation)) {
+  const Index views = static_cast<Index>(clones_.size());
+  auto point_jacobian = point_jacobian_.topRows(2 * views);
+  if (to_remember && !keeper_.MayStart(point_jacobian, p_W, poses_.back().translation)) {
     return TrackOutcome::kWaiting;
   }
-  const Index views = static_cast<Index>(poses_.size());
-  // Tracing eliminates the landmark from the identity too: what is left maps the observations' noise.
-  const Index states = 6 * views + calibration_;
-  const Index columns = states + (tracing_ ? 2 * views : 0);
-  if (track_jacobian_.cols() < columns) {
-    track_jacobian_.resize(track_jacobian_.rows(), 8 * track_jacobian_.rows() / 2 + calibration_);
-  }
-  auto dense = track_jacobian_.topLeftCorner(2 * views, columns);
-  dense.setZero();
-  dense.rightCols(columns - states).setIdentity();
-  for (Index k = 0; k < views; ++k) {
-    dense.block<2, 6>(2 * k, 6 * k).noalias() =
-        linearization_->pose_jacobians.middleRows<2>(2 * k) * *chains_[static_cast<size_t>(k)];
-    if (calibration_ > 0) {
-      const auto view = static_cast<size_t>(k);
-      state.FillCalibrationRows(state.clones()[static_cast<size_t>(clones_[view])],
-                                linearization_->pose_jacobians.middleRows<2>(2 * k),
-                                Predicted(observations_[view], linearization_->residual.segment<2>(2 * k)),
-                                dense.block(2 * k, 6 * views, 2, calibration_));
-    }
-  }
-  EliminateLandmark(linearization_->point_jacobian, dense, linearization_->residual);
+  auto dense = track_jacobian_.topLeftCorner(2 * views, StateColumns() + (tracing_ ? 2 * views : 0));
+  EliminateLandmark(point_jacobian, dense, residual_.head(2 * views));
   const Block block = AddBlock(static_cast<int>(2 * views - 3));
   for (Index k = 0; k < views; ++k) {
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =
@@ -211,7 +182,7 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
     jacobian_.block(block.first, state.CalibrationOffset(), block.rows, calibration_) =
         dense.block(3, 6 * views, block.rows, calibration_);
   }
-  innovation_.segment(block.first, block.rows) = -linearization_->residual.tail(block.rows);
+  innovation_.segment(block.first, block.rows) = -residual_.segment(3, block.rows);
   if (landmark_rows != nullptr) {
     RetainRows(state, track, p_W, landmark_rows);
   } else {
@@ -235,10 +206,8 @@ void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const
   if (filter_.track_memory == TrackMemoryPolicy::kNone) {
     return;
   }
-  const Eigen::Matrix3d landmark_rows =
-      linearization_->point_jacobian.topRows<3>().triangularView<Eigen::Upper>();
-  const Eigen::Vector3d move =
-      landmark_rows.triangularView<Eigen::Upper>().solve(-linearization_->residual.head<3>());
+  const Eigen::Matrix3d landmark_rows = point_jacobian_.topRows<3>().triangularView<Eigen::Upper>();
+  const Eigen::Vector3d move = landmark_rows.triangularView<Eigen::Upper>().solve(-residual_.head<3>());
   keeper_.Start(state, p_W + move, landmark_rows, clone_rows, clones_, &successors_[blocks_.size() - 1]);
 }
 

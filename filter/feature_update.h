@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/landmark_reduction.h"
-#include "core/pose_only.h"
+#include "core/landmark_solver.h"
 #include "filter/filter_state.h"
 #include "filter/track_memory.h"
 #include "filter/track_store.h"
@@ -72,12 +71,16 @@ class FeatureUpdate {
                            LandmarkRows* landmark_rows);
   /// The depth needs a relative deviation below the given one.
   TrackOutcome Triangulate(double max_relative_deviation, bool refine, Eigen::Vector3d* p_W) const;
-  /// Residuals at the current poses, Jacobians where the state wants them.
+  /// Linearises every view at p_W, in the scratch of the track. False behind one of them.
   bool Linearize(const FilterState& state, const Eigen::Vector3d& p_W);
   /// The three rows that elimination left over.
   void RetainRows(const FilterState& state, const Track& track, const Eigen::Vector3d& p_W,
                   LandmarkRows* rows) const;
   void Reserve(int additional_rows);
+  /// Of the track at hand: six a view and the calibration's.
+  [[nodiscard]] Eigen::Index StateColumns() const {
+    return 6 * static_cast<Eigen::Index>(clones_.size()) + calibration_;
+  }
   /// The trace of the block that Append just added; `noise` holds its 2N - 3 rows.
   void Trace(const Track& track, const Eigen::Ref<const Eigen::MatrixXd>& noise);
   /// What the block that Append just added leaves over, into its successor.
@@ -88,6 +91,7 @@ class FeatureUpdate {
   VisionConfig vision_;
   int rows_ = 0;
   int dimension_ = 0;
+  bool prepared_ = false;         ///< the rows have been handed over
   Eigen::Index calibration_ = 0;  ///< size of the calibration's error
   std::vector<Block> blocks_;
   bool tracing_ = false;
@@ -98,15 +102,13 @@ class FeatureUpdate {
   Eigen::VectorXd innovation_;
   // Scratch of one track.
   std::vector<Pose> poses_;
-  std::vector<Pose> jacobian_poses_;
-  std::vector<Eigen::Vector2d> points_;
   std::vector<NormalizedObservation> observations_;
   std::vector<int> offsets_;
-  std::vector<const Matrix6d*> chains_;
   std::vector<int> clones_;
-  std::vector<TrackLinearization> linearizations_;  ///< by the number of views, so that none is resized twice
-  TrackLinearization* linearization_ = nullptr;     ///< of the track at hand
+  // Rows of the views, two each, in the upper part: residual, over p_W, over six columns a view and, after
+  // them, the calibration's.
   Eigen::VectorXd residual_;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> point_jacobian_;
   Eigen::MatrixXd track_jacobian_;
 };
 

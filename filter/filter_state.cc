@@ -99,7 +99,7 @@ void FilterState::AddClone(int serial, const Eigen::Vector3d& gyro_radps) {
 
 void FilterState::RemoveClone(size_t index) {
   CHECK_LT(index, clones_.size());
-  if (landmarks_are_anchored()) {
+  if (landmark_error().anchored()) {
     Reanchor(clones_[index].serial);
   }
   RemoveRows(CloneOffset(index), 6);
@@ -122,7 +122,6 @@ void FilterState::AddToLandmark(int landmark, const Eigen::Matrix3d& m, int sour
 }
 
 void FilterState::Reanchor(int leaving_serial) {
-  // Exp(theta_a) p^ + f~ = Exp(theta_b) p^ + f~': to first order f~' = f~ + [p^]x (theta_b - theta_a).
   const int leaving = FindClone(leaving_serial);
   const size_t newest = clones_.size() - 1;
   for (size_t i = 0; i < landmarks_.size(); ++i) {
@@ -131,9 +130,9 @@ void FilterState::Reanchor(int leaving_serial) {
       continue;
     }
     CHECK_NE(static_cast<size_t>(leaving), newest) << "the last clone holds anchors";
-    const Eigen::Matrix3d skew = Skew(JacobianPoint(landmark));
-    AddToLandmark(LandmarkOffset(i), skew, CloneOffset(newest));
-    AddToLandmark(LandmarkOffset(i), -skew, CloneOffset(static_cast<size_t>(leaving)));
+    const Eigen::Matrix3d lever = LandmarkError::Lever(JacobianPoint(landmark));
+    AddToLandmark(LandmarkOffset(i), lever, CloneOffset(newest));
+    AddToLandmark(LandmarkOffset(i), -lever, CloneOffset(static_cast<size_t>(leaving)));
     landmark.anchor_serial = clones_[newest].serial;
   }
 }
@@ -182,9 +181,9 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   }
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     Landmark& landmark = landmarks_[i];
-    if (landmarks_are_anchored()) {
+    if (landmark_error().anchored()) {
       const auto anchor = static_cast<size_t>(FindClone(landmark.anchor_serial));
-      landmark.p_W = so3::Exp(correction.segment<3>(CloneOffset(anchor))) * landmark.p_W;
+      landmark.p_W = LandmarkError::Turned(correction.segment<3>(CloneOffset(anchor)), landmark.p_W);
     }
     landmark.p_W += correction.segment<3>(LandmarkOffset(i));
   }

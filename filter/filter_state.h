@@ -10,6 +10,7 @@
 #include "core/measurement_log.h"
 #include "core/yaw_shift.h"
 #include "filter/filter_observer.h"
+#include "filter/landmark_error.h"
 #include "filter/square_root_covariance.h"
 
 namespace alidade {
@@ -27,10 +28,7 @@ struct Clone {
   Matrix6d camera_from_error = Matrix6d::Identity();  ///< d zeta_C / d xi of this clone, at T_WC_jacobian
 };
 
-/// A long-lived landmark kept in the state. Its error f~ is additive, p_W = p^_W + f~, except in the
-/// right-invariant convention, where it turns with the attitude error of its anchor clone a: p_W =
-/// Exp(theta_a) p^_W + f~. With it a common turn and a common shift of all errors change no predicted
-/// observation, wherever the landmark is linearised.
+/// A long-lived landmark kept in the state; its error is a LandmarkError.
 struct Landmark {
   std::int64_t id = 0;    ///< of its track
   int anchor_serial = 0;  ///< of a clone in the window
@@ -40,8 +38,8 @@ struct Landmark {
 };
 
 /// What the rows of a track say about its landmark after elimination (core/landmark_reduction.h): t = T x~ +
-/// R_f f~ + n, n ~ N(0, I_3) independent of the eliminated rows; x~ the core and all clones, f~ as in
-/// Landmark.
+/// R_f f~ + n, n ~ N(0, I_3) independent of the eliminated rows; x~ the core and all clones, f~ a
+/// LandmarkError.
 struct LandmarkRows {
   Landmark landmark;
   Eigen::Matrix3d R_f = Eigen::Matrix3d::Zero();  ///< upper triangular
@@ -137,10 +135,7 @@ class FilterState {
     return first_estimates_ ? landmark.p_W_first : landmark.p_W;
   }
   [[nodiscard]] bool first_estimates() const { return first_estimates_; }
-  /// True when a landmark's error turns with its anchor's.
-  [[nodiscard]] bool landmarks_are_anchored() const {
-    return convention_ == ErrorConvention::kRightInvariant;
-  }
+  [[nodiscard]] LandmarkError landmark_error() const { return LandmarkError(convention_); }
   [[nodiscard]] const NavState& nav() const { return nav_; }
   /// The current state as it was predicted, before any update.
   [[nodiscard]] const NavState& nav_first() const { return nav_first_; }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/predicted_observation.h"
+#include "filter/landmark_view.h"
 
 namespace alidade {
 namespace {
@@ -40,7 +40,7 @@ void SlamFeatures::Promote(int serial, TrackStore* tracks, FilterState* state) {
       continue;
     }
     LandmarkRows& rows = promoted_;
-    const int anchor = state->landmarks_are_anchored() ? memory.anchor : serial;
+    const int anchor = state->landmark_error().anchored() ? memory.anchor : serial;
     rows.landmark = {track.id, anchor, 0, memory.p_W, memory.p_W};
     rows.R_f = memory.landmark_rows;
     rows.t.setZero();
@@ -79,31 +79,22 @@ TrackOutcome SlamFeatures::Append(const FilterState& state, const Track& track, 
   const Landmark& landmark = state.landmarks()[static_cast<size_t>(index)];
   const Clone& clone = state.clones().back();
   const NormalizedObservation& observation = track.views.back().observation;
-  if (!LinearizeTrack({&clone.T_WC, 1}, {&observation, 1}, landmark.p_W, &linearization_)) {
-    return TrackOutcome::kDegenerate;
-  }
-  const Eigen::Vector2d residual = linearization_.residual;
-  const Eigen::Vector3d& p_W = state.JacobianPoint(landmark);
-  if (state.first_estimates() &&
-      !LinearizeTrack({&clone.T_WC_jacobian, 1}, {&observation, 1}, p_W, &linearization_)) {
+  const Eigen::Vector3d& jacobian_p_W = state.JacobianPoint(landmark);
+  LandmarkViewRows view;
+  if (!LinearizeView(state, clone, observation, landmark.p_W, jacobian_p_W, &view)) {
     return TrackOutcome::kDegenerate;
   }
   const FeatureUpdate::Block block = update->AddBlock(2);
   Eigen::Ref<Eigen::MatrixXd> jacobian = update->jacobian();
   auto rows = jacobian.middleRows<2>(block.first);
-  rows.middleCols<6>(state.CloneOffset(state.clones().size() - 1)) =
-      linearization_.pose_jacobians.topRows<2>() * clone.camera_from_error;
-  if (state.layout().size() > 0) {
-    state.FillCalibrationRows(clone, linearization_.pose_jacobians.topRows<2>(),
-                              Predicted(observation, residual),
-                              rows.middleCols(state.CalibrationOffset(), state.layout().size()));
-  }
-  rows.middleCols<3>(state.LandmarkOffset(static_cast<size_t>(index))) = linearization_.point_jacobian;
-  if (state.landmarks_are_anchored()) {
+  rows.middleCols<6>(state.CloneOffset(state.clones().size() - 1)) = view.clone;
+  rows.middleCols(state.CalibrationOffset(), state.layout().size()) = view.calibration;
+  rows.middleCols<3>(state.LandmarkOffset(static_cast<size_t>(index))) = view.landmark;
+  if (state.landmark_error().anchored()) {
     const auto anchor = static_cast<size_t>(state.FindClone(landmark.anchor_serial));
-    rows.middleCols<3>(state.CloneOffset(anchor)) -= linearization_.point_jacobian.topRows<2>() * Skew(p_W);
+    rows.middleCols<3>(state.CloneOffset(anchor)) += LandmarkError::OverAnchor(view.landmark, jacobian_p_W);
   }
-  update->innovation().segment<2>(block.first) = -residual;
+  update->innovation().segment<2>(block.first) = -view.residual;
   update->TraceNewestObservation(track);
   return TrackOutcome::kReady;
 }
@@ -121,10 +112,10 @@ void SlamFeatures::Enter(const Eigen::Ref<const Eigen::VectorXd>& correction,
     }
     // The state has moved since the rows were linearised.
     rows.t -= rows.T * moved;
-    if (state->landmarks_are_anchored()) {
+    if (state->landmark_error().anchored()) {
       const auto anchor = static_cast<size_t>(state->FindClone(rows.landmark.anchor_serial));
       const int theta = state->CloneOffset(anchor) - state->CoreOffset();
-      rows.landmark.p_W = so3::Exp(Eigen::Vector3d(moved.segment<3>(theta))) * rows.landmark.p_W;
+      rows.landmark.p_W = LandmarkError::Turned(moved.segment<3>(theta), rows.landmark.p_W);
     }
     rows.R_f *= scale;
     rows.T *= scale;

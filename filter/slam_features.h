@@ -62,7 +62,6 @@ class SlamFeatures {
   std::vector<Candidate> candidates_;  ///< the first taken_ are of this frame
   size_t taken_ = 0;
   LandmarkRows promoted_;
-  TrackLinearization linearization_;
 };
 
 }  // namespace alidade

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "core/predicted_observation.h"
+#include "core/landmark_reduction.h"
+#include "filter/landmark_view.h"
 
 namespace alidade {
 
@@ -43,12 +44,11 @@ Eigen::Matrix<double, 14, 18> RelativeErrors(ErrorConvention convention) {
 
 TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size)
     : convention_(filter.error),
+      error_(filter.error),
       max_depth_deviation_(filter.memory_depth_deviation),
       outlives_window_(filter.track_memory == TrackMemoryPolicy::kCarry),
       calibration_(calibration_size),
       columns_(6 * max_clones + calibration_size),
-      pose_(1),
-      observation_(1),
       stacked_(5, columns_),
       jacobian_(2, columns_) {}
 
@@ -103,10 +103,11 @@ void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, con
     memory->clone_rows.rightCols(calibration_) =
         clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_);
   }
-  if (convention_ == ErrorConvention::kRightInvariant) {
+  if (error_.anchored()) {
     const Clone& anchor = state.clones()[static_cast<size_t>(clones.back())];
     memory->anchor = anchor.serial;
-    memory->clone_rows.middleCols<3>(6 * anchor.slot) -= memory->landmark_rows * Skew(p_W);
+    memory->clone_rows.middleCols<3>(6 * anchor.slot) +=
+        LandmarkError::OverAnchor(memory->landmark_rows, p_W);
   }
 }
 
@@ -114,33 +115,27 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
                                const NormalizedObservation& observation, double weight,
                                TrackMemory* extended) {
   const Clone& clone = state.clones()[clone_index];
-  pose_[0] = clone.T_WC;
-  observation_[0] = observation;
-  observation_[0].sqrt_information *= weight;
-  if (!LinearizeTrack(pose_, observation_, memory.p_W, &linearization_)) {
+  const NormalizedObservation weighted{observation.z, weight * observation.sqrt_information};
+  LandmarkViewRows view;
+  if (!LinearizeView(state, clone, weighted, memory.p_W, memory.p_W, &view)) {
     return false;
   }
   Eigen::Matrix<double, 5, 3> landmark;
-  landmark << memory.landmark_rows, linearization_.point_jacobian;
+  landmark << memory.landmark_rows, view.landmark;
   stacked_.topRows<3>() = memory.clone_rows;
   stacked_.bottomRows<2>().setZero();
-  stacked_.block<2, 6>(3, 6 * clone.slot) =
-      linearization_.pose_jacobians.topRows<2>() * clone.camera_from_error;
-  if (calibration_ > 0) {
-    state.FillCalibrationRows(clone, linearization_.pose_jacobians.topRows<2>(),
-                              Predicted(observation_[0], linearization_.residual.head<2>()),
-                              stacked_.bottomRightCorner(2, calibration_));
-  }
-  if (convention_ == ErrorConvention::kRightInvariant) {
+  stacked_.block<2, 6>(3, 6 * clone.slot) = view.clone;
+  stacked_.bottomRightCorner(2, calibration_) = view.calibration;
+  if (error_.anchored()) {
     const int anchor = state.FindClone(memory.anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
-    stacked_.block<2, 3>(3, 6 * state.clones()[static_cast<size_t>(anchor)].slot) -=
-        linearization_.point_jacobian.topRows<2>() * Skew(memory.p_W);
+    stacked_.block<2, 3>(3, 6 * state.clones()[static_cast<size_t>(anchor)].slot) +=
+        LandmarkError::OverAnchor(view.landmark, memory.p_W);
   }
   // The reflections once, as a small matrix: the rows are few and long.
   Eigen::Matrix<double, 5, 5> rotation = Eigen::Matrix<double, 5, 5>::Identity();
   Eigen::Matrix<double, 5, 1> innovation;
-  innovation << Vector3d::Zero(), -linearization_.residual;
+  innovation << Vector3d::Zero(), -view.residual;
   EliminateLandmark(landmark, rotation, innovation);
   extended->active = true;
   extended->refusals = 0;
@@ -167,11 +162,11 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
              correction.segment(state.CalibrationOffset(), calibration_);
   }
   const Vector3d move = memory->landmark_rows.partialPivLu().solve(shift);
-  if (convention_ == ErrorConvention::kRightInvariant) {
+  if (error_.anchored()) {
     const int anchor = state.FindClone(memory->anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
     const Vector3d theta = correction.segment<3>(state.CloneOffset(static_cast<size_t>(anchor)));
-    memory->p_W = so3::Exp(theta) * memory->p_W;
+    memory->p_W = LandmarkError::Turned(theta, memory->p_W);
   }
   memory->p_W += move;
 }
@@ -217,11 +212,11 @@ void TrackMemoryKeeper::Condition(const FilterState& state, size_t index,
 void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& conditional,
                               TrackMemory* memory) const {
   const int leaving = 6 * conditional.leaving_slot;
-  if (convention_ == ErrorConvention::kRightInvariant && memory->anchor == conditional.leaving_serial) {
+  if (error_.anchored() && memory->anchor == conditional.leaving_serial) {
     const Clone& newest = state.clones().back();
-    const Matrix3d lever = memory->landmark_rows * Skew(memory->p_W);
-    memory->clone_rows.middleCols<3>(leaving) += lever;
-    memory->clone_rows.middleCols<3>(6 * newest.slot) -= lever;
+    const Matrix3d over_anchor = LandmarkError::OverAnchor(memory->landmark_rows, memory->p_W);
+    memory->clone_rows.middleCols<3>(leaving) -= over_anchor;
+    memory->clone_rows.middleCols<3>(6 * newest.slot) += over_anchor;
     memory->anchor = newest.serial;
   }
   const Eigen::Matrix<double, 3, 6> rows = memory->clone_rows.middleCols<6>(leaving);
@@ -239,8 +234,9 @@ void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& 
   whitener.matrixL().solveInPlace(memory->clone_rows);
 }
 
-bool TrackMemoryKeeper::MayStart(const Eigen::Matrix<double, Eigen::Dynamic, 3>& point_jacobian,
-                                 const Vector3d& p_W, const Vector3d& camera_W) const {
+bool TrackMemoryKeeper::MayStart(
+    const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& point_jacobian, const Vector3d& p_W,
+    const Vector3d& camera_W) const {
   const Matrix3d information = point_jacobian.transpose() * point_jacobian;
   const Vector3d ray = p_W - camera_W;
   return std::sqrt(ray.dot(information.ldlt().solve(ray))) < max_depth_deviation_ * ray.squaredNorm();

@@ -5,19 +5,16 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/landmark_reduction.h"
 #include "filter/filter_state.h"
 
 namespace alidade {
 
 /// What the updates of a track have left over about its landmark: three rows t = R f~ + T x + n, n ~ N(0, I),
-/// independent of everything already applied. f~ is the landmark's error, x the errors of the clones.
-///
-/// With the right-invariant error f = exp(theta_a) f^ + f~ with theta_a of an anchor clone, so that the yaw
-/// and translation columns cancel in every row even when f^ changes later; otherwise f = f^ + f~.
+/// independent of everything already applied. f~ is a LandmarkError, so that the yaw and translation columns
+/// cancel in every row even when p^_W changes later; x are the errors of the clones.
 struct TrackMemory {
   bool active = false;
-  int anchor = -1;  ///< serial of the anchor clone; right-invariant only
+  int anchor = -1;  ///< serial of the anchor clone of an anchored error
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   Eigen::Matrix3d landmark_rows = Eigen::Matrix3d::Identity();  ///< R
   /// T: six columns a clone slot, then the calibration's
@@ -68,8 +65,9 @@ class TrackMemoryKeeper {
 
   /// Whether a landmark at p_W is known well enough for a memory that starts; `point_jacobian`: whitened rows
   /// over p_W.
-  [[nodiscard]] bool MayStart(const Eigen::Matrix<double, Eigen::Dynamic, 3>& point_jacobian,
-                              const Eigen::Vector3d& p_W, const Eigen::Vector3d& camera_W) const;
+  [[nodiscard]] bool MayStart(
+      const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3>>& point_jacobian,
+      const Eigen::Vector3d& p_W, const Eigen::Vector3d& camera_W) const;
   /// Whether the memory's own linearisation still holds.
   [[nodiscard]] bool MayStay(const TrackMemory& memory, const Eigen::Vector3d& camera_W) const;
 
@@ -82,13 +80,11 @@ class TrackMemoryKeeper {
                              const std::vector<int>& clones);
 
   ErrorConvention convention_;
+  LandmarkError error_;
   double max_depth_deviation_;
   bool outlives_window_;
   Eigen::Index calibration_;  ///< size of the calibration's error
   Eigen::Index columns_;
-  TrackLinearization linearization_;
-  std::vector<Pose> pose_;
-  std::vector<NormalizedObservation> observation_;
   Eigen::Matrix<double, 5, Eigen::Dynamic> stacked_;
   Eigen::Matrix<double, 2, Eigen::Dynamic> jacobian_;
   Eigen::Vector2d innovation_ = Eigen::Vector2d::Zero();

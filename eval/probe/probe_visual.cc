@@ -31,55 +31,64 @@ DepthViews PairOf(const Json& input) {
                   ", expected \"multi\" or \"two\""};
 }
 
-/// The 2N-3 unit-noise rows [jacobian | residual] of a track whose landmark has been eliminated.
-void RowsWithoutLandmark(const std::vector<Pose>& views, const std::vector<Eigen::Vector2d>& z,
-                         const Eigen::Vector3d& p_W, Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
+/// Observations of unit noise.
+std::vector<NormalizedObservation> UnitNoise(const std::vector<Eigen::Vector2d>& z) {
   std::vector<NormalizedObservation> observations(z.size());
   for (size_t i = 0; i < z.size(); ++i) {
     observations[i].z = z[i];
   }
-  TrackLinearization linearization;
-  if (!LinearizeTrack(views, observations, p_W, &linearization)) {
-    throw CaseError{"landmark lies behind a view"};
+  return observations;
+}
+
+/// The rows of a track over the poses of all its views, the landmark held fixed, 2N x 6N.
+Eigen::MatrixXd OverAllPoses(const TrackLinearization& track) {
+  const Eigen::Index rows = track.residual.size();
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows, 3 * rows);
+  for (Eigen::Index k = 0; 2 * k < rows; ++k) {
+    jacobian.block<2, 6>(2 * k, 6 * k) = track.pose_jacobians.middleRows<2>(2 * k);
   }
-  EliminateLandmark(linearization.point_jacobian, *jacobian, *residual);
-  const Eigen::Index rows = residual->size() - kLandmarkRows;
-  *jacobian = jacobian->bottomRows(rows).eval();
-  *residual = residual->tail(rows).eval();
+  return jacobian;
 }
 
 }  // namespace
 
 Json PoseOnlyAnswer(const Json& input, ErrorConvention convention) {
   const std::vector<Pose> views = Views(input);
-  const std::vector<Eigen::Vector2d> z = Observations(input, views.size());
-  const PoseOnlyModel model{Index(Member(input, "base"), "base", static_cast<int>(views.size())),
-                            PairOf(input)};
-  if (model.views == DepthViews::kTwo && model.base + 1 == static_cast<int>(views.size())) {
+  const std::vector<NormalizedObservation> observations = UnitNoise(Observations(input, views.size()));
+  const int base = Index(Member(input, "base"), "base", static_cast<int>(views.size()));
+  const DepthViews pair = PairOf(input);
+  if (pair == DepthViews::kTwo && base + 1 == static_cast<int>(views.size())) {
     throw CaseError{"base: the last view cannot be the base of a two-view depth"};
   }
   PoseOnlyDepth depth;
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian, noise_jacobian;
-  if (!model.Evaluate(views, z, &depth, &residual, &jacobian, &noise_jacobian)) {
+  PoseOnlyJacobians point;
+  TrackLinearization track;
+  if (!ComputePoseOnlyDepth(views, observations, base, pair, &depth, &point) ||
+      !LinearizeTrack(views, observations, depth.p_W, &track)) {
     throw CaseError{"no parallax between the views, or the landmark lies behind one of them"};
   }
-  ToErrorCoordinates(views, convention, &jacobian);
-  const Eigen::VectorXd observed_minus_predicted = -residual;
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(residual.size(), residual.size());
+  const Eigen::VectorXd observed_minus_predicted = -track.residual;
+  Eigen::MatrixXd fixed_landmark = OverAllPoses(track);
+  // Total derivatives: the landmark follows poses and observations.
+  Eigen::MatrixXd total = fixed_landmark + track.point_jacobian * point.poses;
+  ToErrorCoordinates(views, convention, &total);
+  const Eigen::Index rows = track.residual.size();
+  const Eigen::MatrixXd noise =
+      Eigen::MatrixXd::Identity(rows, rows) - track.point_jacobian * point.observations;
 
-  Eigen::MatrixXd pose_rows = jacobian;
-  Eigen::VectorXd pose_residual = observed_minus_predicted;
-  RowsWithoutLandmark(views, z, depth.p_W, &pose_rows, &pose_residual);
+  ToErrorCoordinates(views, convention, &fixed_landmark);
+  Eigen::VectorXd reduced = observed_minus_predicted;
+  EliminateLandmark(track.point_jacobian, fixed_landmark, reduced);
+  const Eigen::MatrixXd pose_rows = fixed_landmark.bottomRows(rows - kLandmarkRows);
 
   Json answer;
   answer["depth"] = depth.depth;
   answer["p_f"] = VectorToJson(depth.p_W);
   answer["residual"] = VectorToJson(observed_minus_predicted);
-  answer["H_X"] = ToJson(jacobian);
-  answer["H_n"] = ToJson(identity - noise_jacobian);
+  answer["H_X"] = ToJson(total);
+  answer["H_n"] = ToJson(noise);
   answer["information"] = ToJson(pose_rows.transpose() * pose_rows);
-  answer["gradient"] = VectorToJson(pose_rows.transpose() * pose_residual);
+  answer["gradient"] = VectorToJson(pose_rows.transpose() * reduced.tail(rows - kLandmarkRows));
   return answer;
 }
 
@@ -93,6 +102,8 @@ Json InverseDepthAnswer(const Json& input, ErrorConvention convention) {
   }
   const Eigen::Index rows = static_cast<Eigen::Index>(2 * views.size());
 
+  const Eigen::Vector2d& bearing = z[static_cast<size_t>(base)];
+  const Eigen::Vector3d landmark(bearing.x(), bearing.y(), inverse_depth);
   // The base observes its own bearing exactly: its two rows stay zero.
   Eigen::VectorXd residual = Eigen::VectorXd::Zero(rows);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows, 3 * rows);
@@ -101,17 +112,18 @@ Json InverseDepthAnswer(const Json& input, ErrorConvention convention) {
     if (k == base) {
       continue;
     }
-    const InverseDepthModel model{z[static_cast<size_t>(base)], z[static_cast<size_t>(k)]};
-    Eigen::Vector2d view_residual, view_rho;
+    const InverseDepthModel model{z[static_cast<size_t>(k)]};
+    Eigen::Vector2d view_residual;
     InverseDepthModel::PoseJacobian base_block, view_block;
-    if (!model.Evaluate(views[static_cast<size_t>(base)], views[static_cast<size_t>(k)], inverse_depth,
-                        &view_residual, &base_block, &view_block, &view_rho)) {
+    InverseDepthModel::LandmarkJacobian landmark_block;
+    if (!model.Evaluate(views[static_cast<size_t>(base)], views[static_cast<size_t>(k)], landmark,
+                        &view_residual, &base_block, &view_block, &landmark_block)) {
       throw CaseError{"landmark lies behind views[" + std::to_string(k) + "]"};
     }
     residual.segment<2>(2 * k) = -view_residual;
     jacobian.block<2, 6>(2 * k, 6 * base) = base_block;
     jacobian.block<2, 6>(2 * k, 6 * k) = view_block;
-    jacobian_rho.segment<2>(2 * k) = view_rho;
+    jacobian_rho.segment<2>(2 * k) = landmark_block.col(2);
   }
   ToErrorCoordinates(views, convention, &jacobian);
 

@@ -8,7 +8,8 @@
 
 #include "core/imu_propagation.h"
 #include "core/landmark_reduction.h"
-#include "core/pose_only.h"
+#include "core/landmark_solver.h"
+#include "core/reprojection.h"
 #include "core/robust.h"
 
 namespace alidade {
@@ -23,10 +24,7 @@ constexpr double kMaxStartDepthM = 100.0;
 constexpr int kLandmarkIterations = 3;
 // Cost of an observation whose landmark lies behind its view: far outside the kernel.
 constexpr double kBehindSquared = 400.0;
-
-double CauchyCost(double squared) {
-  return kCauchyScale * kCauchyScale * std::log1p(squared / (kCauchyScale * kCauchyScale));
-}
+constexpr double kMinDepthM = 1e-3;
 
 }  // namespace
 
@@ -67,17 +65,13 @@ void AlignmentProblem::InitializeLandmarks() {
     }
     const SharedTrack& track = tracks_[t];
     const std::vector<Pose> cameras = Cameras(current_, track);
-    std::vector<Eigen::Vector2d> points;
-    for (const NormalizedObservation& observation : track.observations) {
-      points.push_back(observation.z);
-    }
     PoseOnlyDepth depth;
-    const bool found = ComputePoseOnlyDepth(cameras, points, 0, DepthViews::kMulti, &depth);
+    const bool found = ComputePoseOnlyDepth(cameras, track.observations, 0, DepthViews::kMulti, &depth);
     const double start = found && depth.depth > 0 ? std::min(depth.depth, kMaxStartDepthM) : kStartDepthM;
     Vector3d& landmark = current_.landmarks[t];
-    landmark = cameras.front() * (start * points.front().homogeneous());
+    landmark = cameras.front() * (start * track.observations.front().z.homogeneous());
     // When it cannot be refined it keeps its start and the kernel judges it.
-    static_cast<void>(RefineLandmark(cameras, track.observations, 0, 2 * kLandmarkIterations, &landmark));
+    static_cast<void>(RefineLandmark(cameras, track.observations, 2 * kLandmarkIterations, &landmark));
   }
 }
 
@@ -88,10 +82,11 @@ bool AlignmentProblem::TrackResiduals(const Variables& variables, size_t t,
   squared->clear();
   bool in_front = true;
   for (size_t k = 0; k < cameras.size(); ++k) {
-    const Vector3d p_C = cameras[k].rotation.transpose() * (variables.landmarks[t] - cameras[k].translation);
-    if (p_C.z() > 1e-3) {
+    const PointInCamera seen(cameras[k], variables.landmarks[t]);
+    Eigen::Vector2d predicted;
+    if (ProjectToPlane(seen.q, kMinDepthM, &predicted)) {
       const NormalizedObservation& observation = track.observations[k];
-      squared->push_back((observation.sqrt_information * (p_C.hnormalized() - observation.z)).squaredNorm());
+      squared->push_back((observation.sqrt_information * (predicted - observation.z)).squaredNorm());
     } else {
       squared->push_back(kBehindSquared);
       in_front = false;
@@ -105,7 +100,7 @@ double AlignmentProblem::TrackCost(const Variables& variables, size_t t) const {
   TrackResiduals(variables, t, &squared);
   double cost = 0;
   for (const double value : squared) {
-    cost += CauchyCost(value);
+    cost += RobustCost(RobustKernel::kCauchy, kCauchyScale, value);
   }
   return cost;
 }
@@ -249,7 +244,7 @@ double AlignmentProblem::TryStep(double damping) {
       weighted[k].sqrt_information *=
           std::sqrt(RobustWeight(RobustKernel::kCauchy, kCauchyScale, squared[k]));
     }
-    static_cast<void>(RefineLandmark(cameras, weighted, 0, kLandmarkIterations, &trial_.landmarks[t]));
+    static_cast<void>(RefineLandmark(cameras, weighted, kLandmarkIterations, &trial_.landmarks[t]));
     cost += TrackCost(trial_, t);
   }
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();

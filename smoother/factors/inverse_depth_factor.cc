@@ -1,6 +1,7 @@
 #include "smoother/factors/inverse_depth_factor.h"
 
 #include "core/predicted_observation.h"
+#include "smoother/tracks/anchored_landmark.h"
 
 namespace alidade {
 namespace {
@@ -14,62 +15,25 @@ using CalibrationRow = Eigen::Matrix<double, 2, CalibrationLayout::kMaxSize, Eig
 // rest of the cost, to which the solver's tolerance is relative.
 constexpr double kBehindSigma = 100;
 
-void StoreNav(const Eigen::Matrix2d& whitening, const InverseDepthModel::PoseJacobian& camera,
-              const FrameGeometry& frame, double* tangent) {
+void StoreNav(const Eigen::Matrix<double, 2, 6>& body, double* tangent) {
   if (tangent != nullptr) {
     Eigen::Map<RowMatrix2x9> out(tangent);
-    out.leftCols<6>() = whitening * camera * frame.camera_from_body;
+    out.leftCols<6>() = body;
     out.rightCols<3>().setZero();
   }
 }
 
-/// Rows over a calibration block: those of the intrinsics, at the ray as predicted, and `cameras`, over what
-/// the calibration does to the cameras' places.
-void StoreCalibration(const WindowCalibration& at, const WindowCalibration& calibration,
-                      const NormalizedObservation& predicted, const Eigen::Matrix2Xd& cameras,
-                      const double* block, double* tangent) {
-  Eigen::MatrixXd rows(2, at.size());
-  CalibrationRows(at.layout, at.mean.camera, Eigen::Matrix3d::Identity(), nullptr,
-                  Eigen::Matrix<double, 2, 6>::Zero(), predicted, rows);
+/// Rows over the layout's calibration to those over its block.
+void StoreCalibration(const Eigen::Matrix2Xd& rows, const WindowCalibration& calibration, const double* block,
+                      double* tangent) {
   Eigen::Map<CalibrationRow> out(tangent);
   out.setZero();
-  out.leftCols(at.size()).noalias() = (rows + cameras) * calibration.BlockJacobian(block);
+  out.leftCols(rows.cols()).noalias() = rows * calibration.BlockJacobian(block);
 }
 
 NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) {
   return at.layout.intrinsics() < 0 ? view.observation : Renormalized(at.mean.camera, view).observation;
 }
-
-/// Whitened residual and, over the two cameras and the landmark, Jacobians without their whitening.
-struct DepthRows {
-  Vector2d residual;
-  InverseDepthModel::PoseJacobian base, view;
-  Vector2d rho;
-  Eigen::Matrix2d bearing;
-
-  /// False behind the view; Jacobians are then zero.
-  bool Linearize(const FrameGeometry& base_frame, const FrameGeometry& view_frame,
-                 const Eigen::Vector3d& landmark, const NormalizedObservation& observation,
-                 bool differentiate) {
-    const InverseDepthModel model{landmark.head<2>(), observation.z};
-    Vector2d r;
-    bool in_front = model.Evaluate(base_frame.T_WC, view_frame.T_WC, landmark.z(), &r,
-                                   differentiate ? &base : nullptr, differentiate ? &view : nullptr,
-                                   differentiate ? &rho : nullptr, differentiate ? &bearing : nullptr);
-    if (differentiate && in_front && (base_frame.T_WC_first || view_frame.T_WC_first)) {
-      Vector2d ignored;
-      in_front = model.Evaluate(base_frame.Linearized(), view_frame.Linearized(), landmark.z(), &ignored,
-                                &base, &view, &rho, &bearing);
-    }
-    if (!in_front) {
-      *this = DepthRows{Vector2d::Zero(), InverseDepthModel::PoseJacobian::Zero(),
-                        InverseDepthModel::PoseJacobian::Zero(), Vector2d::Zero(), Eigen::Matrix2d::Zero()};
-      return false;
-    }
-    residual = observation.sqrt_information * r;
-    return true;
-  }
-};
 
 }  // namespace
 
@@ -98,31 +62,29 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   const FrameGeometry base = geometry(*base_, UnpackNavState(parameters[0]));
   const FrameGeometry view = geometry(*view_->frame, UnpackNavState(parameters[1]));
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
-  DepthRows rows;
-  const bool in_front = rows.Linearize(base, view, landmark, observation, tangent_jacobians != nullptr);
-  Eigen::Map<Vector2d>{residual} = in_front ? rows.residual : Vector2d::Constant(kBehindSigma);
+  AnchoredRows rows;
+  const bool calibrated = calibration_ != nullptr;
+  const bool in_front = LinearizeAnchoredView(base, view, observation, {}, landmark, &rows,
+                                              tangent_jacobians != nullptr, calibrated ? &camera : nullptr);
+  if (!in_front) {
+    rows.residual.setConstant(kBehindSigma);
+    rows.anchor.setZero();
+    rows.view.setZero();
+    rows.landmark.setZero();
+    rows.calibration.setZero(2, camera.size());
+  }
+  Eigen::Map<Vector2d>{residual} = rows.residual;
   if (tangent_jacobians == nullptr) {
     return true;
   }
-  const Eigen::Matrix2d& whitening = observation.sqrt_information;
-  StoreNav(whitening, rows.base, base, tangent_jacobians[0]);
-  StoreNav(whitening, rows.view, view, tangent_jacobians[1]);
+  StoreNav(rows.anchor, tangent_jacobians[0]);
+  StoreNav(rows.view, tangent_jacobians[1]);
   if (tangent_jacobians[2] != nullptr) {
-    Eigen::Map<RowMatrix2x3> out(tangent_jacobians[2]);
-    out.leftCols<2>() = whitening * rows.bearing;
-    out.col(2) = whitening * rows.rho;
+    Eigen::Map<RowMatrix2x3>{tangent_jacobians[2]} = rows.landmark;
   }
-  if (calibration_ == nullptr || tangent_jacobians[3] == nullptr) {
-    return true;
+  if (calibrated && tangent_jacobians[3] != nullptr) {
+    StoreCalibration(rows.calibration, *calibration_, parameters[3], tangent_jacobians[3]);
   }
-  if (!in_front) {
-    Eigen::Map<CalibrationRow>{tangent_jacobians[3]}.setZero();
-    return true;
-  }
-  const Eigen::Matrix2Xd cameras = whitening * (rows.base * CalibrationChain(camera.layout, base) +
-                                                rows.view * CalibrationChain(camera.layout, view));
-  StoreCalibration(camera, *calibration_, Predicted(observation, rows.residual), cameras, parameters[3],
-                   tangent_jacobians[3]);
   return true;
 }
 
@@ -149,8 +111,10 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
     out.col(2).setZero();
   }
   if (calibration_ != nullptr && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
-    StoreCalibration(camera, *calibration_, Predicted(observation, r),
-                     Eigen::Matrix2Xd::Zero(2, camera.size()), parameters[1], tangent_jacobians[1]);
+    Eigen::Matrix2Xd rows(2, camera.size());
+    CalibrationRows(camera.layout, camera.mean.camera, Eigen::Matrix3d::Identity(), nullptr,
+                    Eigen::Matrix<double, 2, 6>::Zero(), Predicted(observation, r), rows);
+    StoreCalibration(rows, *calibration_, parameters[1], tangent_jacobians[1]);
   }
   return true;
 }

@@ -3,20 +3,19 @@
 #include <array>
 #include <span>
 
-#include "core/inverse_depth.h"
 #include "smoother/manifold/lifted_cost.h"
 #include "smoother/tracks/track_system.h"
 
 namespace alidade {
 
-/// One observation of a landmark (x, y, rho) anchored in another frame: InverseDepthModel with the base
-/// bearing (x, y) as part of the landmark, whitened. Blocks nav_base, nav_view, landmark and, of a camera
-/// that is calibrated online, its calibration; 2 rows.
+/// One observation of a landmark (x, y, rho) anchored in another frame: LinearizeAnchoredView without a
+/// kernel. Blocks nav_base, nav_view, landmark and, of a camera that is calibrated online, its calibration; 2
+/// rows.
 ///
-/// The model takes the base bearing as exact. It is a measurement like any other, so here the bearing is
-/// estimated too and BaseBearingFactor holds it to the base observation: base noise is then accounted for
-/// exactly, correlation between the views of a track included. (Holding it fixed, as VINS-Mono does, counts
-/// the common error of a track as information.)
+/// The base bearing (x, y) is a measurement like any other, so it is estimated too and BaseBearingFactor
+/// holds it to the base observation: base noise is then accounted for exactly, correlation between the views
+/// of a track included. (Holding it fixed, as VINS-Mono does, counts the common error of a track as
+/// information.)
 class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;

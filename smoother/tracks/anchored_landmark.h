@@ -6,38 +6,6 @@
 
 namespace alidade {
 
-/// A landmark l = (x, y, rho) of one camera (bearing on its normalised plane, inverse depth [1/m]) seen from
-/// another: the scaled point of the target camera
-///
-///     q = R_t^T (R_s (x, y, 1) + rho (p_s - p_t)),
-///
-/// with its derivatives over (phi, dp) of both bodies, canonical chart. rho = 0 is regular.
-class LandmarkTransfer {
- public:
-  /// kNow: between the present cameras, for the value. kLinearized: where their Jacobians are taken.
-  enum class At { kNow, kLinearized };
-  LandmarkTransfer(const FrameGeometry& source, const FrameGeometry& target, const Eigen::Vector3d& l,
-                   At at = At::kNow);
-
-  Eigen::Vector3d q;
-  Eigen::Matrix3d landmark;  ///< dq / dl
-
-  [[nodiscard]] Eigen::Matrix<double, 3, 6> SourceFrame() const;  ///< dq / d source body
-  [[nodiscard]] Eigen::Matrix<double, 3, 6> TargetFrame() const;  ///< dq / d target body
-  /// dq / d calibration of the camera that both are, in the layout's columns.
-  [[nodiscard]] Eigen::Matrix3Xd Calibration(const CalibrationLayout& layout) const;
-
- private:
-  [[nodiscard]] Eigen::Matrix<double, 3, 6> SourceCamera() const;
-  [[nodiscard]] Eigen::Matrix<double, 3, 6> TargetCamera() const;
-
-  const FrameGeometry* source_;
-  const FrameGeometry* target_;
-  Eigen::Vector3d l_;
-  Eigen::Matrix3d R_WT_;  ///< of the target camera
-  Eigen::Matrix3d turn_;  ///< R_t^T R_s
-};
-
 /// The whitened rows of one view of a landmark that is anchored in another frame's camera, and moves with it:
 /// what LinearizeView gives for a point of the world.
 struct AnchoredRows {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/predicted_observation.h"
-#include "core/robust.h"
+#include "core/reprojection.h"
 
 namespace alidade {
 namespace {
@@ -12,10 +12,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Matrix2x3 = Eigen::Matrix<double, 2, 3>;
 
 constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into its camera no row can be trusted
-constexpr double kMinViewDepth = 1e-6;    // of the scaled point (x, y, 1) + rho t
 
 const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const WindowView& view) {
   return geometry[static_cast<size_t>(view.frame->index)];
@@ -109,57 +107,30 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
   }
 }
 
-/// The point (x, y, 1) / rho of the base camera in another, times rho.
-struct ScaledPoint {
-  ScaledPoint(const Pose& base, const Pose& T_WC, const Vector3d& landmark)
-      : shift_W(base.translation - T_WC.translation) {
-    const Vector3d ray_W = base.rotation * landmark.head<2>().homogeneous();
-    q = T_WC.rotation.transpose() * (ray_W + landmark.z() * shift_W);
-  }
-  Vector3d shift_W;
-  Vector3d q;
-};
 }  // namespace
 
-double ObservationKernel::Rho(double s) const {
-  const double k2 = scale_sigma * scale_sigma;
-  switch (kernel) {
-    case RobustKernel::kHuber:
-      return s <= k2 ? s : 2 * scale_sigma * std::sqrt(s) - k2;
-    case RobustKernel::kCauchy:
-      return k2 * std::log1p(s / k2);
-    case RobustKernel::kNone:
-      break;
-  }
-  return s;
-}
 bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
                    const NormalizedObservation& observation, const ObservationKernel& kernel,
                    const Vector3d& landmark, ViewRows* rows) {
-  const double rho = landmark.z();
-  ScaledPoint seen(base.T_WC, frame.T_WC, landmark);
-  if (!(seen.q.z() > kMinViewDepth)) {
+  const Eigen::Matrix2d& whitening = observation.sqrt_information;
+  Vector2d predicted;
+  PointRows<2> projection;
+  AnchoredPointInCamera seen(base.T_WC, frame.T_WC, landmark);
+  if (!ProjectToPlane(seen.q, kMinScaledDepth, &predicted, &projection)) {
     return false;
   }
-  rows->residual = observation.sqrt_information * (seen.q.hnormalized() - observation.z);
-  const Pose& T_WC = frame.Linearized();
-  const Pose& T_W_base = base.Linearized();
+  rows->residual = whitening * (predicted - observation.z);
   if (base.T_WC_first || frame.T_WC_first) {
-    seen = ScaledPoint(T_W_base, T_WC, landmark);
-    if (!(seen.q.z() > kMinViewDepth)) {
+    seen = AnchoredPointInCamera(base.Linearized(), frame.Linearized(), landmark);
+    if (!ProjectToPlane(seen.q, kMinScaledDepth, &predicted, &projection)) {
       return false;
     }
   }
-  const Vector2d predicted = seen.q.hnormalized();
-  Matrix2x3 perspective;
-  perspective << 1, 0, -predicted.x(), 0, 1, -predicted.y();
-  const Matrix2x3 weighted = observation.sqrt_information * (perspective / seen.q.z());
-  const Matrix2x3 to_world = weighted * T_WC.rotation.transpose();
-  rows->landmark << to_world * T_W_base.rotation.leftCols<2>(), to_world * seen.shift_W;
-  rows->camera << weighted * Skew(seen.q), -rho * to_world;
+  const PointRows<2> over_q = whitening * projection;
+  seen.Chain(over_q, nullptr, &rows->camera, &rows->landmark);
   rows->pose.noalias() = rows->camera * frame.camera_from_body;
   rows->squared_norm = rows->residual.squaredNorm();
-  rows->weight = RobustWeight(kernel.kernel, kernel.scale_sigma, rows->squared_norm);
+  rows->weight = kernel.Weight(rows->squared_norm);
   return true;
 }
 

@@ -4,19 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/landmark_solver.h"
+#include "core/robust.h"
 #include "smoother/window/frame_geometry.h"
 
 namespace alidade {
-
-/// Robust kernel of one observation: rho(s) of its whitened squared residual s, with ceres' conventions
-/// (rho'(0) = 1).
-struct ObservationKernel {
-  RobustKernel kernel = RobustKernel::kNone;
-  double scale_sigma = 1;
-
-  [[nodiscard]] double Rho(double squared_norm) const;
-};
 
 /// Normal equations of vision alone, every landmark eliminated (the 2N-3 rows N^T [H | r] of each track; N
 /// the left null space of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical
@@ -70,9 +62,7 @@ struct TrackWorkspace {
   std::vector<Eigen::Matrix<double, 6, 3>> reduced;  ///< coupling times L^-T, so that H -= reduced reduced^T
 };
 
-/// Landmark of the track with the poses held fixed: damped, iteratively re-weighted Gauss-Newton over (x, y,
-/// rho) of the base view, run to convergence so that the cost's derivative through the landmark vanishes.
-/// `landmark` is start and result. False: behind a view, or not finite.
+/// Landmark of the track with the poses held fixed (core/landmark_solver.h).
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                    const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,
                    const DepthPrior& prior = {});
@@ -88,8 +78,7 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
 [[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,
                                     std::span<const FrameGeometry> geometry, const Eigen::Vector3d& landmark);
 
-/// First value of a landmark from the pose-only depth (core/pose_only.h). False without parallax: when the
-/// depth's relative deviation exceeds `max_relative_deviation` (DepthIsDetermined).
+/// First value of a landmark from its pose-only depth. False without parallax (TriangulateLandmark).
 bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                         double max_relative_deviation, Eigen::Vector3d* landmark);
 

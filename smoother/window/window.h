@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/clock_state.h"
+#include "core/landmark_solver.h"
 #include "core/measurement_log.h"
 #include "core/preintegration.h"
 #include "core/rest_model.h"
@@ -56,14 +57,6 @@ struct WindowView {
   // Whatever the intrinsics are:
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< what was seen
   double root_weight_per_px = 1;                    ///< whitens the pixel
-};
-
-/// Weak prior on a landmark's inverse depth, for tracks without parallax: sqrt_information (rho - mean). Such
-/// a track (at rest, or far away) still holds rotation and says that the camera did not move; leaving it out
-/// would leave both to the IMU.
-struct DepthPrior {
-  double mean = 0;              ///< [1/m]
-  double sqrt_information = 0;  ///< [m]; 0: no prior
 };
 
 /// A landmark seen in the window. The first view is its base. A SLAM feature instead has columns in the prior

@@ -8,6 +8,7 @@
 #include "core/landmark_reduction.h"
 #include "core/pose_only.h"
 #include "tests/support/jacobian_checker.h"
+#include "tests/support/pose_only_model.h"
 #include "tests/support/random_states.h"
 
 namespace alidade {
@@ -232,7 +233,7 @@ TEST(CalibrationTest, RowsOfATrackAreNumericInEveryConvention) {
 }
 
 /// d residual / d (bodies, calibration) of PoseOnlyModel, from its rows over the cameras and over the rays.
-MatrixXd PoseOnlyRows(const Rig& rig, const CalibrationLayout& layout, const PoseOnlyModel& model,
+MatrixXd PoseOnlyRows(const Rig& rig, const CalibrationLayout& layout, const test::PoseOnlyModel& model,
                       ErrorConvention convention) {
   std::vector<Vector2d> z;
   for (const NormalizedObservation& observation : rig.Observe(rig.calibration)) {
@@ -271,7 +272,7 @@ TEST(CalibrationTest, PoseOnlyResidualIsNumericInEveryConvention) {
     for (int trial = 0; trial < 24; ++trial) {
       const Rig rig(&random, kLenses[trial % 4], 3 + trial % 3);
       const CalibrationLayout layout(Everything(), rig.calibration.camera);
-      const PoseOnlyModel model{trial % 3, trial % 2 == 0 ? DepthViews::kMulti : DepthViews::kTwo};
+      const test::PoseOnlyModel model{trial % 3, trial % 2 == 0 ? DepthViews::kMulti : DepthViews::kTwo};
       const auto residual = [&](const VectorXd& xi) -> VectorXd {
         CameraCalibration moved = rig.calibration;
         EXPECT_TRUE(Retract(layout, xi.tail(layout.size()), &moved));
@@ -301,13 +302,11 @@ TEST(CalibrationTest, PoseOnlyAndFixedLandmarkLeaveTheSameRows) {
     const CalibrationLayout layout(Everything(), rig.calibration.camera);
     const std::vector<Pose> views = rig.Views(rig.calibration, rig.Bodies());
     std::vector<NormalizedObservation> observations = rig.Observe(rig.calibration);
-    std::vector<Vector2d> z;
     for (NormalizedObservation& observation : observations) {
       observation.sqrt_information.setIdentity();
-      z.push_back(observation.z);
     }
     PoseOnlyDepth depth;
-    ASSERT_TRUE(ComputePoseOnlyDepth(views, z, 0, DepthViews::kMulti, &depth));
+    ASSERT_TRUE(ComputePoseOnlyDepth(views, observations, 0, DepthViews::kMulti, &depth));
     TrackLinearization track;
     ASSERT_TRUE(LinearizeTrack(views, observations, depth.p_W, &track));
     const ErrorConvention convention = ErrorConvention::kRightInvariant;
@@ -330,12 +329,12 @@ TEST(CalibrationTest, InverseDepthResidualIsNumericInEveryConvention) {
       config.intrinsics = false;  // the model takes rays
       const CalibrationLayout layout(config, rig.calibration.camera);
       const std::vector<NormalizedObservation> rays = rig.Observe(rig.calibration);
-      const InverseDepthModel model{rays[0].z, rays[1].z};
-      const double rho = 1.0 / 6;
+      const InverseDepthModel model{rays[1].z};
+      const Eigen::Vector3d landmark(rays[0].z.x(), rays[0].z.y(), 1.0 / 6);
       const auto evaluate = [&](const std::vector<Pose>& views, InverseDepthModel::PoseJacobian* base,
                                 InverseDepthModel::PoseJacobian* view) {
         Vector2d r;
-        EXPECT_TRUE(model.Evaluate(views[0], views[1], rho, &r, base, view, nullptr));
+        EXPECT_TRUE(model.Evaluate(views[0], views[1], landmark, &r, base, view, nullptr));
         return r;
       };
       std::array<InverseDepthModel::PoseJacobian, 2> jacobians;

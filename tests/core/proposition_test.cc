@@ -19,7 +19,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -34,8 +33,7 @@ struct Scene {
     views = random.CamerasLookingAt(point, kViews, 8, 2);
     for (const Pose& view : views) {
       const Vector3d p = view.Inverse() * point;
-      z.emplace_back(p.head<2>() / p.z());
-      observations.push_back({z.back(), Eigen::Matrix2d::Identity() / kSigma});
+      observations.push_back({p.head<2>() / p.z(), Eigen::Matrix2d::Identity() / kSigma});
     }
     MatrixXd root = MatrixXd::NullaryExpr(6 * kViews, 6 * kViews, [&] { return random.Uniform(-1, 1); });
     prior = 1e-4 * root * root.transpose() + 1e-6 * MatrixXd::Identity(6 * kViews, 6 * kViews);
@@ -54,11 +52,11 @@ struct Scene {
     constexpr double kStep = 1e-6;
     const auto g = [&](const VectorXd& pose_errors, const VectorXd& noise) {
       std::vector<Pose> moved = views;
-      std::vector<Vector2d> seen = z;
+      std::vector<NormalizedObservation> seen = observations;
       for (Index k = 0; k < kViews; ++k) {
         moved[static_cast<size_t>(k)] = Retract(ErrorConvention::kSo3xRn, moved[static_cast<size_t>(k)],
                                                 Vector6d(pose_errors.segment<6>(6 * k)));
-        seen[static_cast<size_t>(k)] += noise.segment<2>(2 * k);
+        seen[static_cast<size_t>(k)].z += noise.segment<2>(2 * k);
       }
       PoseOnlyDepth depth;
       EXPECT_TRUE(ComputePoseOnlyDepth(moved, seen, 0, DepthViews::kMulti, &depth));
@@ -93,7 +91,6 @@ struct Scene {
 
   Vector3d point;
   std::vector<Pose> views;
-  std::vector<Vector2d> z;
   std::vector<NormalizedObservation> observations;
   MatrixXd prior;
   MatrixXd by_poses;     ///< J: whitened rows with the landmark fixed

@@ -9,6 +9,7 @@
 #include "filter/feature_update.h"
 #include "filter/filter.h"
 #include "filter/filter_state.h"
+#include "tests/support/pose_only_model.h"
 #include "tests/support/random_states.h"
 #include "tests/support/scenario.h"
 
@@ -117,7 +118,7 @@ void PoseOnlyRows(const FilterState& state, const Track& track, MatrixXd* h, Mat
   VectorXd residual;
   MatrixXd total;
   MatrixXd by_observations;
-  ASSERT_TRUE(PoseOnlyModel{}.Evaluate(views, points, &depth, &residual, &total, &by_observations));
+  ASSERT_TRUE(test::PoseOnlyModel{}.Evaluate(views, points, &depth, &residual, &total, &by_observations));
   // N spans what no landmark can explain: the left null space of d prediction / d p_f.
   MatrixXd by_landmark(2 * count, 3);
   for (Index k = 0; k < count; ++k) {

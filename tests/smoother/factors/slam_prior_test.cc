@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "core/reprojection.h"
 #include "smoother/factors/slam_prior_factor.h"
 #include "smoother/solve/window_system.h"
 #include "tests/smoother/factors/slam_fixture.h"
@@ -231,8 +232,8 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
     const std::vector<FrameGeometry> geometry = fixture.Geometry();
     const int base = track.anchor != nullptr ? track.anchor->index : track.views.front().frame->index;
     for (WindowView& view : track.views) {
-      const LandmarkTransfer seen(geometry[static_cast<size_t>(base)],
-                                  geometry[static_cast<size_t>(view.frame->index)], track.landmark);
+      const AnchoredPointInCamera seen(geometry[static_cast<size_t>(base)].T_WC,
+                                       geometry[static_cast<size_t>(view.frame->index)].T_WC, track.landmark);
       view.observation.z = seen.q.hnormalized();
       if (fixture.calibrated()) {
         ASSERT_TRUE(fixture.calibration.mean.camera.Project(seen.q, &view.pixel));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/reprojection.h"
 #include "smoother/factors/inverse_depth_factor.h"
 #include "smoother/factors/pose_only_factor.h"
 #include "smoother/factors/prior_factor.h"
@@ -248,8 +249,8 @@ void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
   const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, truth);
   for (auto& [id, track] : fixture.window.tracks()) {
     for (WindowView& view : track.views) {
-      const LandmarkTransfer seen(geometry[static_cast<size_t>(track.views.front().frame->index)],
-                                  geometry[static_cast<size_t>(view.frame->index)], track.landmark);
+      const AnchoredPointInCamera seen(geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC,
+                                       geometry[static_cast<size_t>(view.frame->index)].T_WC, track.landmark);
       view.observation.z = seen.q.hnormalized();
     }
   }

@@ -1,0 +1,96 @@
+#include "filter/landmark_view.h"
+
+#include <gtest/gtest.h>
+
+#include "core/landmark_reduction.h"
+#include "tests/support/jacobian_checker.h"
+#include "tests/support/random_states.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using test::RandomStates;
+
+const Pose kExtrinsics{so3::Exp({0.1, -0.2, 0.05}), {0.1, 0.02, -0.05}};
+const Vector3d kPoint(1.5, -0.8, 9);
+
+FilterState OneClone(ErrorConvention convention, RandomStates* random) {
+  FilterState state(convention, false, kExtrinsics, {2, 1});
+  NavEstimate initial;
+  initial.nav = {so3::Exp(random->Vector(0.2)), random->Vector(1), random->Vector(1)};
+  initial.covariance.diagonal().setConstant(1e-4);
+  EXPECT_TRUE(state.Reset(initial).ok());
+  state.AddClone(1);
+  return state;
+}
+
+NormalizedObservation SomeObservation(RandomStates* random) {
+  NormalizedObservation observation;
+  observation.z = random->Vector(0.2).head<2>();
+  observation.sqrt_information << 400, 10, -20, 500;
+  return observation;
+}
+
+/// The true landmark of an error f~, where the anchor's attitude is off by theta.
+Vector3d Truth(const LandmarkError& error, const Vector3d& theta, const Vector3d& f) {
+  return error.anchored() ? Vector3d(so3::Exp(theta) * kPoint + f) : Vector3d(kPoint + f);
+}
+
+// The rows over the error of the view's clone, of the anchor's attitude and of the landmark.
+TEST(LandmarkViewTest, RowsAreNumericInEveryConvention) {
+  RandomStates random(81);
+  for (const ErrorConvention convention : test::kAllConventions) {
+    for (int trial = 0; trial < 20; ++trial) {
+      const FilterState state = OneClone(convention, &random);
+      const Clone& clone = state.clones().front();
+      const NormalizedObservation observation = SomeObservation(&random);
+      const LandmarkError error = state.landmark_error();
+      LandmarkViewRows rows;
+      ASSERT_TRUE(LinearizeView(state, clone, observation, kPoint, kPoint, &rows));
+      MatrixXd analytic = MatrixXd::Zero(2, 12);
+      analytic.leftCols<6>() = rows.clone;
+      analytic.rightCols<3>() = rows.landmark;
+      if (error.anchored()) {
+        analytic.middleCols<3>(6) = LandmarkError::OverAnchor(rows.landmark, kPoint);
+      }
+      const auto residual = [&](const VectorXd& xi) -> VectorXd {
+        const Pose T_WC = Retract(convention, clone.T_WB, Vector6d(xi.head<6>())) * kExtrinsics;
+        ObservationRows moved;
+        EXPECT_TRUE(
+            LinearizeObservation(T_WC, observation, Truth(error, xi.segment<3>(6), xi.tail<3>()), &moved));
+        return moved.residual;
+      };
+      EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(residual, 12), 1e-7), "");
+      EXPECT_LT((rows.residual - residual(VectorXd::Zero(12))).norm(), 1e-9);
+      EXPECT_EQ(rows.calibration.cols(), 0);
+    }
+  }
+}
+
+TEST(LandmarkViewTest, ALandmarkBehindTheCameraIsRefused) {
+  RandomStates random(82);
+  const FilterState state = OneClone(ErrorConvention::kRightInvariant, &random);
+  LandmarkViewRows rows;
+  EXPECT_FALSE(
+      LinearizeView(state, state.clones().front(), SomeObservation(&random), -kPoint, -kPoint, &rows));
+}
+
+TEST(LandmarkErrorTest, TheLeverMovesTheAnchor) {
+  const LandmarkError error(ErrorConvention::kRightInvariant);
+  ASSERT_TRUE(error.anchored());
+  // The same true landmark by the attitude errors of two anchors, over (theta_a, theta_b, f~).
+  const auto error_from_b = [&](const VectorXd& xi) -> VectorXd {
+    return Truth(error, xi.head<3>(), xi.tail<3>()) - LandmarkError::Turned(xi.segment<3>(3), kPoint);
+  };
+  MatrixXd analytic(3, 9);
+  analytic << -LandmarkError::Lever(kPoint), LandmarkError::Lever(kPoint), Eigen::Matrix3d::Identity();
+  EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(error_from_b, 9), 1e-9), "");
+  EXPECT_FALSE(LandmarkError(ErrorConvention::kLeftInvariant).anchored());
+  EXPECT_FALSE(LandmarkError(ErrorConvention::kSo3xRn).anchored());
+}
+
+}  // namespace
+}  // namespace alidade
