@@ -44,6 +44,7 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
 
 void FeatureUpdate::Begin(const FilterState& state) {
   rows_ = 0;
+  prepared_ = false;
   dimension_ = state.covariance().dimension();
   blocks_.clear();
   traces_.clear();

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/check.h"
 #include "core/estimator_config.h"
 #include "core/landmark_solver.h"
 #include "filter/filter_state.h"
@@ -60,10 +61,22 @@ class FeatureUpdate {
   void Remember(const FilterState& state, size_t block, double weight, Track* track);
   [[nodiscard]] const TrackMemoryKeeper& keeper() const { return keeper_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I).
-  [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> jacobian() { return jacobian_.topLeftCorner(rows_, dimension_); }
-  /// y = measured - predicted.
-  [[nodiscard]] Eigen::Ref<Eigen::VectorXd> innovation() { return innovation_.head(rows_); }
+  /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I). Until Prepare.
+  [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> jacobian() {
+    CHECK(!prepared_) << "the rows are prepared";
+    return jacobian_.topLeftCorner(rows_, dimension_);
+  }
+  /// y = measured - predicted. Until Prepare.
+  [[nodiscard]] Eigen::Ref<Eigen::VectorXd> innovation() {
+    CHECK(!prepared_) << "the rows are prepared";
+    return innovation_.head(rows_);
+  }
+  /// Hands the rows over to be applied; those from `sparse_from` on are of landmarks of the state.
+  [[nodiscard]] PreparedRows Prepare(int sparse_from, SquareRootCovariance* covariance) {
+    const PreparedRows prepared = covariance->Prepare(jacobian(), innovation(), sparse_from);
+    prepared_ = true;
+    return prepared;
+  }
 
  private:
   bool GatherViews(const FilterState& state, const Track& track);

@@ -192,8 +192,8 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, {rest_rows_, rest_innovation_, {}});
   }
-  state_.covariance().Prepare(rest_rows_);
-  if (!state_.covariance().Apply(rest_rows_, rest_innovation_, Correction(), nullptr)) {
+  const PreparedRows prepared = state_.covariance().Prepare(rest_rows_, rest_innovation_);
+  if (!state_.covariance().Apply(prepared, Correction(), nullptr)) {
     return false;
   }
   Correct();

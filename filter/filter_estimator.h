@@ -49,9 +49,9 @@ class FilterEstimator : public Estimator {
   /// Zero velocity and zero angular rate, as far as the rest detector says so. False as above.
   bool UpdateAtRest(const RestVerdict& rest);
   /// Normalised innovation squared of every appended track, against the state before the update.
-  void MeasureBlocks();
+  void MeasureBlocks(const PreparedRows& rows);
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
-  void GateBlocks();
+  void GateBlocks(PreparedRows* rows);
   /// Appends the rows of a track's views, or those its newest view adds to its memory.
   TrackOutcome AppendViews(const Track& track, int leaving_serial);
   /// The part of correction_ that the present error dimension uses.

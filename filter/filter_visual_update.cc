@@ -73,13 +73,12 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   if (observer_ != nullptr) {
     observed_ = {update_.jacobian(), update_.innovation(), update_.traces()};
   }
-  state_.covariance().Prepare(update_.jacobian(), landmark_rows);
-  GateBlocks();
+  PreparedRows rows = update_.Prepare(landmark_rows, &state_.covariance());
+  GateBlocks(&rows);
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, observed_);
   }
-  if (!state_.covariance().Apply(update_.jacobian(), update_.innovation(), Correction(), &statistics_.nis,
-                                 landmark_rows)) {
+  if (!state_.covariance().Apply(rows, Correction(), &statistics_.nis)) {
     return false;
   }
   for (size_t block = 0; block < appended_.size(); ++block) {
@@ -109,18 +108,15 @@ TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial
   return update_.Append(state_, track, to_remember);
 }
 
-void FilterEstimator::MeasureBlocks() {
-  const Eigen::Ref<const Eigen::MatrixXd> prepared = update_.jacobian();
-  const Eigen::Ref<const Eigen::VectorXd> innovation = update_.innovation();
+void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
   block_nis_.clear();
   for (const FeatureUpdate::Block& block : update_.blocks()) {
-    block_nis_.push_back(state_.covariance().NormalizedInnovationSquared(
-        prepared.middleRows(block.first, block.rows), innovation.segment(block.first, block.rows)));
+    block_nis_.push_back(state_.covariance().NormalizedInnovationSquared(rows, block.first, block.rows));
   }
 }
 
-void FilterEstimator::GateBlocks() {
-  MeasureBlocks();
+void FilterEstimator::GateBlocks(PreparedRows* rows) {
+  MeasureBlocks(*rows);
   accepted_.assign(appended_.size(), true);
   weights_.assign(appended_.size(), 0);
   int refused = 0;
@@ -128,12 +124,9 @@ void FilterEstimator::GateBlocks() {
     accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
     refused += accepted_[i] ? 0 : 1;
   }
-  const bool state_is_suspect =
-      StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
-                     kLeastRefusedTracks);
+  const bool state_is_suspect = StateIsSuspect(refused, static_cast<int>(appended_.size()),
+                                               config_.vision.max_gated_share, kLeastRefusedTracks);
   statistics_.suspect = state_is_suspect;
-  Eigen::Ref<Eigen::MatrixXd> prepared = update_.jacobian();
-  Eigen::Ref<Eigen::VectorXd> innovation = update_.innovation();
   for (size_t i = 0; i < appended_.size(); ++i) {
     const FeatureUpdate::Block& block = update_.blocks()[i];
     double weight = 0;
@@ -150,8 +143,7 @@ void FilterEstimator::GateBlocks() {
     ++(accepted_[i] ? statistics_.features_used : statistics_.features_gated);
     statistics_.nis_dof += accepted_[i] ? block.rows : 0;
     if (weight < 1) {
-      prepared.middleRows(block.first, block.rows) *= std::sqrt(weight);
-      innovation.segment(block.first, block.rows) *= std::sqrt(weight);
+      rows->Scale(block.first, block.rows, std::sqrt(weight));
       if (observer_ != nullptr) {
         observed_.jacobian.middleRows(block.first, block.rows) *= std::sqrt(weight);
         observed_.innovation.segment(block.first, block.rows) *= std::sqrt(weight);

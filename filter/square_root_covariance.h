@@ -6,6 +6,7 @@
 
 #include "core/lie.h"
 #include "core/status.h"
+#include "filter/prepared_rows.h"
 
 namespace alidade {
 
@@ -56,21 +57,19 @@ class SquareRootCovariance {
   void Remove(int first, int size);
 
   /// Kalman update with unit-noise rows H over the whole error (rows x dimension()) and innovation y =
-  /// measured - predicted. Prepare computes A = H S, in place; rows may then be gated or re-weighted in A and
-  /// y before Apply.
+  /// measured - predicted. Prepare computes A = H S, in place; rows may then be gated or re-weighted before
+  /// Apply.
   ///
   /// The rows from `sparse_from` on are handled apart (both in Prepare and Apply): few of their entries are
   /// not zero, but these reach leading blocks, which the rows before need not pay for. -1: no such rows.
-  void Prepare(Eigen::Ref<Eigen::MatrixXd> rows_in_place, int sparse_from = -1);
-  /// y^T (A A^T + I)^-1 y of some prepared rows A alone; NaN when a row is not finite.
-  [[nodiscard]] double NormalizedInnovationSquared(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows,
-                                                   const Eigen::Ref<const Eigen::VectorXd>& y);
+  [[nodiscard]] PreparedRows Prepare(Eigen::Ref<Eigen::MatrixXd> rows, Eigen::Ref<Eigen::VectorXd> innovation,
+                                     int sparse_from = -1);
+  /// y^T (A A^T + I)^-1 y of the rows [first, first + count) alone; NaN when one is not finite.
+  [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
   /// y, the normalised innovation squared. False, with nothing changed, when a row is not finite: M is at
   /// least the identity, so nothing else can stop its factorisation.
-  bool Apply(const Eigen::Ref<const Eigen::MatrixXd>& prepared_rows,
-             const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> correction, double* nis,
-             int sparse_from = -1);
+  bool Apply(const PreparedRows& prepared, Eigen::Ref<Eigen::VectorXd> correction, double* nis);
 
   /// Kalman update with unit-noise rows that see the errors [first, first + rows.cols()) alone, as Prepare
   /// and Apply. The work grows with their number times dimension() squared: for rows much fewer than the

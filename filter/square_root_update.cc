@@ -27,20 +27,22 @@ int LeadingZeroColumns(const Eigen::Ref<const MatrixXd>& matrix) {
 
 }  // namespace
 
-void SquareRootCovariance::Prepare(Eigen::Ref<MatrixXd> rows_in_place, int sparse_from) {
-  CHECK_EQ(rows_in_place.cols(), dimension_);
-  const Index rows = rows_in_place.rows();
-  const Index dense = sparse_from < 0 ? rows : sparse_from;
-  const int first = LeadingZeroColumns(rows_in_place.topRows(dense));
+PreparedRows SquareRootCovariance::Prepare(Eigen::Ref<MatrixXd> rows, Eigen::Ref<VectorXd> innovation,
+                                           int sparse_from) {
+  CHECK_EQ(rows.cols(), dimension_);
+  CHECK_EQ(rows.rows(), innovation.size());
+  const int count = static_cast<int>(rows.rows());
+  const int dense = sparse_from < 0 ? count : sparse_from;
+  const int first = LeadingZeroColumns(rows.topRows(dense));
   if (first < dimension_) {
-    cblas_dtrmm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, static_cast<int>(dense),
-                dimension_ - first, 1.0, Data(first, first), capacity(),
-                rows_in_place.data() + first * rows_in_place.outerStride(),
-                static_cast<int>(rows_in_place.outerStride()));
+    cblas_dtrmm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, dense, dimension_ - first,
+                1.0, Data(first, first), capacity(), rows.data() + first * rows.outerStride(),
+                static_cast<int>(rows.outerStride()));
   }
-  if (dense < rows) {
-    PrepareSparse(rows_in_place.bottomRows(rows - dense));
+  if (dense < count) {
+    PrepareSparse(rows.bottomRows(count - dense));
   }
+  return PreparedRows(rows, innovation, dense);
 }
 
 void SquareRootCovariance::PrepareSparse(Eigen::Ref<MatrixXd> rows_in_place) {
@@ -68,11 +70,12 @@ void SquareRootCovariance::PrepareSparse(Eigen::Ref<MatrixXd> rows_in_place) {
   }
 }
 
-double SquareRootCovariance::NormalizedInnovationSquared(const Eigen::Ref<const MatrixXd>& prepared_rows,
-                                                         const Eigen::Ref<const VectorXd>& y) {
-  const Index rows = prepared_rows.rows();
+double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count) {
+  const auto a = prepared.rows_.middleRows(first, count);
+  const auto y = prepared.innovation_.segment(first, count);
+  const Index rows = count;
   if (rows == 2) {  // a remembered track or a landmark of the state: too small for BLAS
-    const auto pair = prepared_rows.middleRows<2>(0);
+    const auto pair = prepared.rows_.middleRows<2>(first);
     const Eigen::Matrix2d variance = pair.lazyProduct(pair.transpose()) + Eigen::Matrix2d::Identity();
     const Eigen::Vector2d innovation = y;
     return innovation.dot(variance.inverse() * innovation);
@@ -83,8 +86,8 @@ double SquareRootCovariance::NormalizedInnovationSquared(const Eigen::Ref<const 
   }
   const int n = static_cast<int>(rows);
   const int ld = static_cast<int>(gate_.rows());
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, dimension_, 1.0, prepared_rows.data(),
-              static_cast<int>(prepared_rows.outerStride()), 0.0, gate_.data(), ld);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, dimension_, 1.0, a.data(),
+              static_cast<int>(a.outerStride()), 0.0, gate_.data(), ld);
   gate_.diagonal().head(rows).array() += 1.0;
   gated_.head(rows) = y;
   int info = 0;
@@ -151,13 +154,13 @@ void SquareRootCovariance::DivideTriangle(int first, int begin, int size) {
   DivideTriangle(first, begin + head, tail);
 }
 
-bool SquareRootCovariance::Apply(const Eigen::Ref<const MatrixXd>& prepared_rows,
-                                 const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> correction,
-                                 double* nis, int sparse_from) {
+bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<VectorXd> correction, double* nis) {
+  const Eigen::Ref<MatrixXd>& prepared_rows = prepared.rows_;
+  const Eigen::Ref<VectorXd>& y = prepared.innovation_;
   const int rows = static_cast<int>(prepared_rows.rows());
   const int lda = static_cast<int>(prepared_rows.outerStride());
   const int n = dimension_;
-  const int dense = sparse_from < 0 ? rows : sparse_from;
+  const int dense = prepared.sparse_from_;
   // Where the rows see nothing, the corresponding part of M is the identity.
   const int first_dense = LeadingZeroColumns(prepared_rows.topRows(dense));
   const int first_sparse = LeadingZeroColumns(prepared_rows.bottomRows(rows - dense));

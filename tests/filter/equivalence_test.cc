@@ -98,8 +98,8 @@ Outcome MsckfUpdate(Window window) {
     EXPECT_EQ(update.Append(window.state, track), TrackOutcome::kReady);
   }
   VectorXd correction(window.state.covariance().dimension());
-  window.state.covariance().Prepare(update.jacobian());
-  EXPECT_TRUE(window.state.covariance().Apply(update.jacobian(), update.innovation(), correction, nullptr));
+  SquareRootCovariance& covariance = window.state.covariance();
+  EXPECT_TRUE(covariance.Apply(update.Prepare(-1, &covariance), correction, nullptr));
   window.state.Correct(correction);
   return window.Look();
 }

@@ -94,8 +94,8 @@ TEST_P(GnssStateTest, ClockPropagatesAsTheDenseCovariance) {
   covariance.AddLeading(0.5 * Eigen::Matrix3d::Identity(), MatrixXd::Random(3, covariance.dimension() - 6));
   MatrixXd rows = MatrixXd::Random(8, covariance.dimension());
   Eigen::VectorXd correction(covariance.dimension());
-  covariance.Prepare(rows);
-  ASSERT_TRUE(covariance.Apply(rows, Eigen::VectorXd::Ones(8), correction, nullptr));
+  Eigen::VectorXd innovation = Eigen::VectorXd::Ones(8);
+  ASSERT_TRUE(covariance.Apply(covariance.Prepare(rows, innovation), correction, nullptr));
   const MatrixXd before = covariance.Covariance();
   Matrix6d phi = Matrix6d::Identity();
   phi(0, 1) = 0.3;

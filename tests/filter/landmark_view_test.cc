@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "core/landmark_reduction.h"
+#include "filter/feature_update.h"
 #include "tests/support/jacobian_checker.h"
 #include "tests/support/random_states.h"
 
@@ -90,6 +93,27 @@ TEST(LandmarkErrorTest, TheLeverMovesTheAnchor) {
   EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(error_from_b, 9), 1e-9), "");
   EXPECT_FALSE(LandmarkError(ErrorConvention::kLeftInvariant).anchored());
   EXPECT_FALSE(LandmarkError(ErrorConvention::kSo3xRn).anchored());
+}
+
+// Rows H cannot be taken for prepared rows H S: only the covariance makes these.
+static_assert(!std::is_constructible_v<PreparedRows, Eigen::Ref<MatrixXd>, Eigen::Ref<VectorXd>, int>);
+static_assert(!std::is_default_constructible_v<PreparedRows>);
+
+TEST(PreparedRowsDeathTest, RowsOnceHandedOverAreRefused) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // OpenBLAS has threads
+  RandomStates random(83);
+  FilterState state = OneClone(ErrorConvention::kRightInvariant, &random);
+  FeatureUpdate update(FilterConfig(), VisionConfig(), 2);
+  update.Begin(state);
+  update.AddBlock(2);
+  update.innovation().setZero();
+  EXPECT_EQ(update.jacobian().rows(), 2);
+  const PreparedRows prepared = update.Prepare(-1, &state.covariance());
+  EXPECT_EQ(state.covariance().NormalizedInnovationSquared(prepared, 0, 2), 0);
+  EXPECT_DEATH((void)update.jacobian(), "prepared");
+  EXPECT_DEATH((void)update.Prepare(-1, &state.covariance()), "prepared");
+  update.Begin(state);
+  EXPECT_EQ(update.jacobian().rows(), 0);
 }
 
 }  // namespace

@@ -57,8 +57,9 @@ class Flight {
   VectorXd Apply() {
     VectorXd correction(state_.covariance().dimension());
     MatrixXd rows = update_.jacobian();
-    state_.covariance().Prepare(rows);
-    EXPECT_TRUE(state_.covariance().Apply(rows, update_.innovation(), correction, nullptr));
+    VectorXd innovation = update_.innovation();
+    EXPECT_TRUE(
+        state_.covariance().Apply(state_.covariance().Prepare(rows, innovation), correction, nullptr));
     state_.Correct(correction);
     return correction;
   }
@@ -214,9 +215,8 @@ TEST_P(EveryConvention, APromotedMemoryLosesNothing) {
       update.Remember(promoted.state_, 0, 1, &track);
       ASSERT_TRUE(track.memory.active);
       VectorXd correction(promoted.state_.covariance().dimension());
-      promoted.state_.covariance().Prepare(update.jacobian());
-      ASSERT_TRUE(
-          promoted.state_.covariance().Apply(update.jacobian(), update.innovation(), correction, nullptr));
+      SquareRootCovariance& covariance = promoted.state_.covariance();
+      ASSERT_TRUE(covariance.Apply(update.Prepare(-1, &covariance), correction, nullptr));
     } else if (i == 5) {
       TrackStore store;
       store.tracks().push_back(track);

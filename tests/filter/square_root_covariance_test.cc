@@ -98,23 +98,22 @@ class SquareRootCovarianceTest : public ::testing::Test {
       h(row, n - 6) = random_.Normal();
       h(row, n - 1) = random_.Normal();
     }
-    const VectorXd y = RandomMatrix(&random_, rows, 1);
+    VectorXd y = RandomMatrix(&random_, rows, 1);
     const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(rows, rows);
     const MatrixXd gain = s.ldlt().solve(h * dense_).transpose();
     const VectorXd expected = gain * y;
     const double nis = y.dot(s.ldlt().solve(y));
     const MatrixXd rest = MatrixXd::Identity(n, n) - gain * h;
     dense_ = rest * dense_ * rest.transpose() + gain * gain.transpose();
-    root_.Prepare(h, sparse > 0 ? 40 : -1);
+    const PreparedRows prepared = root_.Prepare(h, y, sparse > 0 ? 40 : -1);
     for (const auto& [first, count] : {std::pair{0, 40}, std::pair{3, 2}, std::pair{7, 5}}) {
       const VectorXd part = y.segment(first, count);
       const double block_nis = part.dot(s.block(first, first, count, count).ldlt().solve(part));
-      EXPECT_NEAR(root_.NormalizedInnovationSquared(h.middleRows(first, count), part), block_nis,
-                  1e-9 * block_nis);
+      EXPECT_NEAR(root_.NormalizedInnovationSquared(prepared, first, count), block_nis, 1e-9 * block_nis);
     }
     VectorXd correction(root_.dimension());
     double measured = 0;
-    ASSERT_TRUE(root_.Apply(h, y, correction, &measured, sparse > 0 ? 40 : -1));
+    ASSERT_TRUE(root_.Apply(prepared, correction, &measured));
     EXPECT_NEAR(measured, nis, 1e-9 * nis);
     EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
   }
@@ -250,9 +249,9 @@ TEST_F(SquareRootCovarianceTest, ZeroedRowsDoNothing) {
   Clone();
   const MatrixXd before = root_.Covariance();
   MatrixXd h = MatrixXd::Zero(5, root_.dimension());
+  VectorXd y = VectorXd::Zero(5);
   VectorXd correction(root_.dimension());
-  root_.Prepare(h);
-  ASSERT_TRUE(root_.Apply(h, VectorXd::Zero(5), correction, nullptr));
+  ASSERT_TRUE(root_.Apply(root_.Prepare(h, y), correction, nullptr));
   EXPECT_EQ(correction.norm(), 0.0);
   EXPECT_EQ((root_.Covariance() - before).norm(), 0.0);
 }
@@ -261,12 +260,13 @@ TEST_F(SquareRootCovarianceTest, RowsThatAreNotFiniteAreRefusedAndChangeNothing)
   const MatrixXd before = root_.Covariance();
   MatrixXd h = MatrixXd::Ones(3, root_.dimension());
   h(1, 2) = std::nan("");
+  VectorXd y = VectorXd::Zero(3);
   VectorXd correction(root_.dimension());
-  root_.Prepare(h);
-  EXPECT_FALSE(root_.Apply(h, VectorXd::Zero(3), correction, nullptr));
+  const PreparedRows prepared = root_.Prepare(h, y);
+  EXPECT_FALSE(root_.Apply(prepared, correction, nullptr));
   EXPECT_EQ(root_.Covariance(), before);
-  EXPECT_TRUE(std::isnan(root_.NormalizedInnovationSquared(h, VectorXd::Zero(3))));
-  EXPECT_TRUE(std::isnan(root_.NormalizedInnovationSquared(h.topRows(2), VectorXd::Zero(2))));
+  EXPECT_TRUE(std::isnan(root_.NormalizedInnovationSquared(prepared, 0, 3)));
+  EXPECT_TRUE(std::isnan(root_.NormalizedInnovationSquared(prepared, 0, 2)));
 }
 
 TEST_F(SquareRootCovarianceTest, StaysPositiveWhereTheSubtractiveFormDoesNot) {
@@ -274,9 +274,9 @@ TEST_F(SquareRootCovarianceTest, StaysPositiveWhereTheSubtractiveFormDoesNot) {
   // A measurement 1e9 times better than the prior, many times over: P - K H P loses all digits.
   for (int i = 0; i < 50; ++i) {
     MatrixXd h = 1e9 * RandomMatrix(&random_, 30, root_.dimension());
+    VectorXd y = VectorXd::Zero(30);
     VectorXd correction(root_.dimension());
-    root_.Prepare(h);
-    ASSERT_TRUE(root_.Apply(h, VectorXd::Zero(30), correction, nullptr));
+    ASSERT_TRUE(root_.Apply(root_.Prepare(h, y), correction, nullptr));
   }
   const MatrixXd p = root_.Covariance();
   ASSERT_TRUE(p.allFinite());

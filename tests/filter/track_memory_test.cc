@@ -115,8 +115,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   FeatureUpdate all(plain, vision_, kFrames + 1);
   all.Begin(joint);
   ASSERT_EQ(all.Append(joint, SeenFromClones(joint, p_W, 0, kFrames), false), TrackOutcome::kReady);
-  joint.covariance().Prepare(all.jacobian());
-  ASSERT_TRUE(joint.covariance().Apply(all.jacobian(), all.innovation(), correction, nullptr));
+  ASSERT_TRUE(joint.covariance().Apply(all.Prepare(-1, &joint.covariance()), correction, nullptr));
 
   FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
   Track track = SeenFromClones(sequential, p_W, 0, 5);
@@ -126,8 +125,8 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
                                   : update.Append(sequential, track, true),
               TrackOutcome::kReady);
     update.Remember(sequential, 0, 1, &track);
-    sequential.covariance().Prepare(update.jacobian());
-    ASSERT_TRUE(sequential.covariance().Apply(update.jacobian(), update.innovation(), correction, nullptr));
+    ASSERT_TRUE(
+        sequential.covariance().Apply(update.Prepare(-1, &sequential.covariance()), correction, nullptr));
     EXPECT_LT(correction.norm(), 1e-9);
     if (seen < kFrames) {
       track.views = SeenFromClones(sequential, p_W, seen, seen + 1).views;

@@ -57,10 +57,10 @@ CovarianceAnalysis Analyze(const TwoRounds& rounds, FilterState* state) {
   EXPECT_TRUE(state->Reset(UnitPrior()).ok());
   for (const FilterRows* rows : {&rounds.first, &rounds.second}) {
     analysis.OnUpdate(*state, *rows);
-    MatrixXd prepared = rows->jacobian;
+    FilterRows copy = *rows;
     VectorXd correction(state->covariance().dimension());
-    state->covariance().Prepare(prepared);
-    EXPECT_TRUE(state->covariance().Apply(prepared, rows->innovation, correction, nullptr));
+    const PreparedRows prepared = state->covariance().Prepare(copy.jacobian, copy.innovation);
+    EXPECT_TRUE(state->covariance().Apply(prepared, correction, nullptr));
   }
   return analysis;
 }
