@@ -9,6 +9,31 @@
 #include "gnss/base/constants.h"
 
 namespace alidade {
+namespace {
+
+/// The variance behind each row of an epoch: pseudoranges come first, one a satellite; then the rates of
+/// those that have one.
+std::vector<double*> RowVariances(const GnssConfig& config, const GnssResiduals& residuals,
+                                  EpochMeasurements* epoch) {
+  std::vector<double*> variances;
+  std::vector<double*> rates;
+  auto measured = epoch->satellites.begin();
+  for (const SatelliteResidual& told : residuals.satellites) {  // those of the epoch above the mask, in order
+    while (!(measured->satellite == told.satellite)) {
+      ++measured;
+    }
+    if (config.pseudorange) {
+      variances.push_back(&measured->pseudorange_variance);
+    }
+    if (config.doppler && told.range_rate_residual_mps) {
+      rates.push_back(&measured->range_rate_variance);
+    }
+  }
+  variances.insert(variances.end(), rates.begin(), rates.end());
+  return variances;
+}
+
+}  // namespace
 
 GnssWindow::GnssWindow(const GnssConfig& config, const GnssReceiver& receiver,
                        const Eigen::Vector3d& gravity_W)
@@ -131,8 +156,13 @@ void GnssWindow::Gate(Window* window, FrameStatistics* statistics) {
         nis.push_back(residual * residual);
       }
       const GnssWeights weights = WeighRows(config_, gate_threshold_, nis);
-      for (const double weight : weights.weights) {
-        epoch.used.push_back(weight > 0);
+      const std::vector<double*> variances = RowVariances(config_, residuals, &epoch.measurements);
+      CHECK_EQ(variances.size(), nis.size());
+      for (std::size_t k = 0; k < nis.size(); ++k) {
+        epoch.used.push_back(weights.weights[k] > 0);
+        if (epoch.used[k] && nis[k] > gate_threshold_) {
+          *variances[k] /= weights.weights[k];  // the state is suspect: as WindowTrack::ScaleInformation
+        }
       }
       if (epoch.counted) {
         continue;
