@@ -100,6 +100,7 @@ static_assert(!std::is_constructible_v<PreparedRows, Eigen::Ref<MatrixXd>, Eigen
 static_assert(!std::is_default_constructible_v<PreparedRows>);
 
 TEST(PreparedRowsDeathTest, RowsOnceHandedOverAreRefused) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // OpenBLAS has threads
   RandomStates random(83);
   FilterState state = OneClone(ErrorConvention::kRightInvariant, &random);
   FeatureUpdate update(FilterConfig(), VisionConfig(), 2);
