@@ -12,7 +12,7 @@ Dataset SimulateGnss() {
   config.duration_s = 4;
   config.path_m = 5;
   config.gnss.rate_hz = 2;
-  config.start_time_s = 1.7e9;
+  config.start_time_s = 1'700'000'000;
   Result<Dataset> dataset = Simulate(config, 1);
   EXPECT_TRUE(dataset.ok()) << dataset.message();
   return *dataset;
