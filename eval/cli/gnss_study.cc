@@ -9,7 +9,7 @@
 #include "eval/cli/support.h"
 #include "eval/compare/compare_input.h"
 #include "eval/config/config_yaml.h"
-#include "eval/run/recorder.h"
+#include "eval/record/recorder.h"
 
 namespace alidade::cli {
 namespace {

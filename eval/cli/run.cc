@@ -8,7 +8,7 @@
 #include "eval/config/config_yaml.h"
 #include "eval/files/sha256.h"
 #include "eval/frontend_run/image_pipeline.h"
-#include "eval/run/recorder.h"
+#include "eval/record/recorder.h"
 
 namespace alidade::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "eval/compare/external_cell.h"
 #include "eval/comparison/cell_score.h"
-#include "eval/run/recorder.h"
+#include "eval/record/recorder.h"
 
 namespace alidade {
 namespace {

@@ -1,58 +1,65 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/estimator.h"
-#include "core/measurement_log.h"
 #include "eval/run/gnss_feed.h"
-#include "eval/run/run_result.h"
+#include "eval/run/session_event.h"
 #include "gnss/alignment/alignment.h"
 #include "gnss/alignment/inertial_start.h"
 
 namespace alidade {
 
-/// What a run does with the epochs of its log: before the alignment they go to the aligner (or, without a
-/// camera, to the start), after it to the estimator. Writes the GNSS part of the result, and its status when
-/// the estimator is lost.
+/// What a session does with its epochs: before the alignment they go to the aligner (or, without a camera, to
+/// the start), after it to the estimator. Statuses it returns mean that the estimator is lost (kDiverged) or
+/// takes no GNSS.
 class GnssRun {
  public:
-  /// All must outlive the object; log.gnss is not null.
-  GnssRun(const EstimatorConfig& config, const MeasurementLog& log, Estimator* estimator, RunResult* result);
+  /// All but `setup` must outlive the object.
+  GnssRun(const EstimatorConfig& config, const RigCalibration& rig, const GnssSetup& setup,
+          Estimator* estimator, std::vector<SessionEvent>* events);
 
-  /// The epoch that TakeEpoch or TryStart will take, at its IMU time; nullptr at the end.
-  [[nodiscard]] const GnssEpoch* NextEpoch() { return feed_.Next(); }
-  /// The IMU reaches the epoch when the run is aligned.
-  void TakeEpoch();
-  /// Hands the aligner the state after the frame at `stamp_ns`, and the estimator the alignment as soon as
-  /// there is one. `gyro_radps`: of that time.
-  void Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps);
+  [[nodiscard]] GnssFeed& feed() { return feed_; }
+  [[nodiscard]] bool aligned() const { return alignment_.has_value(); }
 
+  /// The next epoch; `running`: there is an estimate. The IMU reaches the epoch when the run is aligned. True
+  /// when the estimator took it.
+  Result<bool> TakeEpoch(bool running);
+  /// A frame was taken at `stamp_ns`. Hands the aligner the state there, and the estimator the alignment as
+  /// soon as there is one, which is then returned. `gyro_radps`: of that time.
+  Result<std::optional<GnssAlignment>> Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps);
   /// The estimator has begun anew with a state that stands in the ENU frame already.
-  void Realign();
+  Status Realign();
+  /// Reports what became of satellites since the last call.
+  void CollectResiduals();
+  /// The state after a frame; a new start goes on from its clock.
+  void Remember(TimeNs stamp_ns, const std::optional<ClockState>& clock);
 
   // Without a camera.
   void AddImuBeforeStart(const ImuSample& sample) { start_.AddImu(sample); }
   /// Takes an epoch; the start once it is known.
   std::optional<GnssInertialStart::Start> TryStart();
+  [[nodiscard]] const std::string& start_report() const { return start_.report(); }
   /// The estimator has begun there.
-  void AlignAtStart(const GnssInertialStart::Start& start);
-
-  /// Adds what the epochs since the last call did.
-  void Tell(FrameStatistics* statistics);
+  Status AlignAtStart(const GnssInertialStart::Start& start);
 
  private:
-  void AddEpoch(const GnssEpoch& epoch);
-  void CollectResiduals();
-  void SetGlobal(const GnssAlignment& alignment, TimeNs stamp_ns);
+  void ReportWaiting(TimeNs stamp_ns);
+  void ReportAligned(const GnssAlignment& alignment, TimeNs stamp_ns, double yaw_std_rad);
 
-  const MeasurementLog& log_;
+  GnssReceiver receiver_;
   Estimator& estimator_;
-  RunResult& result_;
+  std::vector<SessionEvent>& events_;
   GnssFeed feed_;
   GnssAligner aligner_;
   GnssInertialStart start_;
   std::optional<GnssAlignment> alignment_;  ///< the one in use
-  FrameStatistics epochs_;                  ///< of the epochs since the last record
+  std::string waiting_for_;                 ///< as last reported
+  TimeNs residuals_ns_ = INT64_MIN;         ///< of the last ones reported
+  Vector6d clock_ = Vector6d::Zero();       ///< after the last frame
+  TimeNs clock_ns_ = 0;
 };
 
 }  // namespace alidade

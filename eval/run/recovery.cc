@@ -1,86 +1,73 @@
 #include "eval/run/recovery.h"
 
-#include <algorithm>
-#include <vector>
-
-#include "core/imu_buffer.h"
-#include "core/imu_propagation.h"
-
 namespace alidade {
 
-Recovery::Recovery(const EstimatorConfig& config, const MeasurementLog& log, RunResult* result)
-    : config_(config), log_(log), result_(*result), monitor_(config.recovery) {}
+Recovery::Recovery(const EstimatorConfig& config, const RigCalibration& rig, bool camera)
+    : config_(config),
+      rig_(rig),
+      enabled_(camera && config.recovery.enabled && config.backend != Backend::kBatch),
+      monitor_(config.recovery),
+      reckoning_(config.imu.Scaled(rig.imu_noise), config.imu.gravity_mps2, config.imu.max_gap_s) {}
+
+void Recovery::AddImu(const ImuSample& sample) {
+  if (enabled_) {
+    reckoning_.AddImu(sample);
+  }
+  if (lost()) {
+    initializer_->AddImu(sample);
+  }
+}
 
 std::string Recovery::Check(const NavEstimate& estimate, const FrameStatistics& statistics) {
-  if (!config_.recovery.enabled || config_.backend == Backend::kBatch) {
+  if (!enabled_) {
     return {};
   }
   std::string reason = monitor_.Check(estimate, statistics);
   if (reason.empty() && (monitor_.supported() || !last_sound_)) {
-    last_sound_ = estimate;
+    SetSound(estimate);
   }
   return reason;
 }
 
-bool Recovery::GiveUp(TimeNs stamp_ns, const std::string& reason) {
-  if (!config_.recovery.enabled || config_.backend == Backend::kBatch || !last_sound_) {
+bool Recovery::GiveUp(TimeNs stamp_ns) {
+  if (!enabled_ || !last_sound_) {
     return false;
   }
-  result_.restarts.push_back({stamp_ns, reason, 0, {}});
-  if (!result_.records.empty()) {
-    result_.records.back().status = "lost";
-    result_.records.back().reason = reason;
-  }
+  lost_ns_ = stamp_ns;
   EstimatorConfig config = config_;
-  // Truth is for the first start alone: a run that gets lost has to find itself.
+  // A given state is for the first start alone: once lost, it has to be found.
   config.init.method = config.init.method == InitMethod::kTruth ? InitMethod::kAuto : config.init.method;
-  initializer_ = std::make_unique<Initializer>(config, log_.rig);
-  refusal_ = "there is no frame";
+  initializer_ = std::make_unique<Initializer>(config, rig_);
   return true;
 }
 
-Result<NavEstimate> Recovery::TryStart(const TrackFrame& frame, size_t next_imu) {
-  const Result<NavEstimate> start = initializer_->AddFrame(frame);
+void Recovery::Turn(const GnssAlignment& alignment) {
+  if (last_sound_) {
+    last_sound_ = TurnIntoEnu(alignment, *last_sound_);
+    reckoning_.Reset(TurnIntoEnu(alignment, reckoning_.Here()));  // keeps the samples after it
+  }
+}
+
+Result<NavEstimate> Recovery::TryStart(const TrackFrame& frame) {
+  Result<NavEstimate> start = initializer_->AddFrame(frame);
   if (!start.ok()) {
-    refusal_ = start.message();
     return start;
   }
-  return ContinueFrom(*last_sound_, Reckoned(start->stamp_ns, next_imu), *start);
+  // Where the IMU has a hole the rig is taken to be where it was.
+  NavEstimate reckoned = reckoning_.At(start->stamp_ns).value_or(*last_sound_);
+  reckoned.stamp_ns = start->stamp_ns;
+  return ContinueFrom(*last_sound_, reckoned, *start);
 }
 
 void Recovery::Started(const NavEstimate& start) {
-  result_.restarts.back().restarted_ns = start.stamp_ns;
-  result_.restarts.back().init_report = initializer_->report();
   initializer_.reset();
   monitor_.Reset();
-  last_sound_ = start;
+  SetSound(start);
 }
 
-std::string Recovery::Message() const {
-  return "lost at " + FormatSeconds(result_.restarts.back().lost_ns) + " s (" +
-         result_.restarts.back().reason + ") and not started again: " + refusal_;
-}
-
-/// The last sound state propagated over the IMU alone. Where the IMU has a hole it stays where it was.
-NavEstimate Recovery::Reckoned(TimeNs stamp_ns, size_t next_imu) const {
-  NavEstimate reckoned = *last_sound_;
-  ImuBuffer buffer(config_.imu.max_gap_s);
-  const auto first =
-      std::upper_bound(log_.imu.begin(), log_.imu.end(), reckoned.stamp_ns,
-                       [](TimeNs stamp, const ImuSample& sample) { return stamp < sample.stamp_ns; });
-  for (auto sample = first == log_.imu.begin() ? first : first - 1;
-       sample != log_.imu.begin() + static_cast<std::ptrdiff_t>(next_imu); ++sample) {
-    static_cast<void>(buffer.Add(*sample).ok());
-  }
-  std::vector<ImuSample> samples;
-  if (buffer.Interval(reckoned.stamp_ns, stamp_ns, &samples).ok()) {
-    ImuTransition transition;
-    PropagateImu(samples, reckoned.bias, config_.imu.Scaled(log_.rig.imu_noise),
-                 GravityInWorld(config_.imu.gravity_mps2), &reckoned.nav, &transition);
-    reckoned.covariance = transition.phi * reckoned.covariance * transition.phi.transpose() + transition.q;
-  }
-  reckoned.stamp_ns = stamp_ns;
-  return reckoned;
+void Recovery::SetSound(const NavEstimate& estimate) {
+  last_sound_ = estimate;
+  reckoning_.Reset(estimate);
 }
 
 }  // namespace alidade

@@ -6,46 +6,53 @@
 
 #include "core/health_monitor.h"
 #include "core/measurement_log.h"
-#include "eval/run/run_result.h"
+#include "eval/run/dead_reckoning.h"
 #include "frontend/initialization/initializer.h"
+#include "gnss/alignment/alignment.h"
 
 namespace alidade {
 
-/// How a run gets over the loss of its estimate: judges every state, and once one is given up looks for a new
-/// start in the data that follow, placed where dead reckoning from the last sound state leads. Writes
-/// RunResult::restarts.
+/// Loss of the estimate and the way back: judges every state, and once one is given up looks for a new start
+/// in the data that follow, placed where dead reckoning from the last sound state leads.
 class Recovery {
  public:
-  /// All must outlive the object.
-  Recovery(const EstimatorConfig& config, const MeasurementLog& log, RunResult* result);
+  /// All must outlive the object. A start needs frames: without a camera nothing is recovered.
+  Recovery(const EstimatorConfig& config, const RigCalibration& rig, bool camera);
+
+  /// Every sample, in order, from that before the first state on.
+  void AddImu(const ImuSample& sample);
+  /// A sample to which the search for a new start does not reach back.
+  void PassOver(const ImuSample& sample) { reckoning_.AddImu(sample); }
 
   /// Empty while the state is sound, else why it is not (HealthMonitor). Empty when recovery is off.
   [[nodiscard]] std::string Check(const NavEstimate& estimate, const FrameStatistics& statistics);
   /// Gives the estimate up. False when no new start may be sought: recovery is off, the estimator looks back,
   /// or there never was a sound state.
-  bool GiveUp(TimeNs stamp_ns, const std::string& reason);
+  bool GiveUp(TimeNs stamp_ns);
   [[nodiscard]] bool lost() const { return initializer_ != nullptr; }
+  [[nodiscard]] TimeNs lost_ns() const { return lost_ns_; }
+  /// The world was turned: the last sound state is turned with it.
+  void Turn(const GnssAlignment& alignment);
 
   // While lost.
-  void AddImu(const ImuSample& sample) { initializer_->AddImu(sample); }
-  /// The state to go on from, or why there is none yet. `next_imu`: the log's samples before it are
-  /// delivered.
-  Result<NavEstimate> TryStart(const TrackFrame& frame, size_t next_imu);
-  /// The estimator has begun there.
+  /// The state to go on from, or why there is none yet.
+  Result<NavEstimate> TryStart(const TrackFrame& frame);
+  [[nodiscard]] const std::string& method() const { return initializer_->method(); }
+  [[nodiscard]] const std::string& report() const { return initializer_->report(); }
+  /// The estimator has begun there; not lost any more.
   void Started(const NavEstimate& start);
-  /// Why the run ends lost.
-  [[nodiscard]] std::string Message() const;
 
  private:
-  [[nodiscard]] NavEstimate Reckoned(TimeNs stamp_ns, size_t next_imu) const;
+  void SetSound(const NavEstimate& estimate);
 
   const EstimatorConfig& config_;
-  const MeasurementLog& log_;
-  RunResult& result_;
+  const RigCalibration& rig_;
+  const bool enabled_;
   HealthMonitor monitor_;
+  DeadReckoning reckoning_;  ///< from last_sound_
   std::optional<NavEstimate> last_sound_;
+  TimeNs lost_ns_ = 0;
   std::unique_ptr<Initializer> initializer_;  ///< while lost
-  std::string refusal_;                       ///< of the last attempt
 };
 
 }  // namespace alidade

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "eval/metrics/metrics.h"
 #include "eval/run/gnss_feed.h"
@@ -153,7 +154,10 @@ double SinglePointRmse(const GnssConfig& config, const MeasurementLog& log, cons
     return GnssRunFigures::kNone;
   }
   const EnuFrame enu = EnuFrame::At(*log.rig.gnss.anchor_E);
-  GnssFeed feed(config, log);
+  GnssFeed feed(config, SetupOf(*log.gnss), log.rig.gnss.time_offset_s);
+  for (const ObservationEpoch& epoch : log.gnss->epochs) {
+    feed.Add(std::shared_ptr<const ObservationEpoch>(log.gnss, &epoch));
+  }
   std::vector<PositionError> errors;
   for (; const GnssEpoch* epoch = feed.Next(); feed.Pop()) {
     const Result<TrajectoryPoint> there = InterpolateTruth(truth, epoch->stamp_ns);

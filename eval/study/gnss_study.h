@@ -6,7 +6,7 @@
 
 #include "core/gnss_config.h"
 #include "core/measurement_log.h"
-#include "eval/run/run_result.h"
+#include "eval/record/run_result.h"
 #include "eval/simulation/sim_gnss_config.h"
 
 namespace alidade {

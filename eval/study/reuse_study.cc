@@ -1,7 +1,7 @@
 #include "eval/study/reuse_study.h"
 
 #include "eval/audit/covariance_analysis.h"
-#include "eval/run/runner.h"
+#include "eval/record/runner.h"
 #include "filter/filter.h"
 
 namespace alidade {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/robust.h"
@@ -52,6 +53,9 @@ class SinglePointSolver {
 
   /// Errors (kInput): too few satellites with ephemerides above the mask, or a weak geometry, in words.
   Result<SinglePointSolution> Solve(const ObservationEpoch& epoch);
+
+  /// Further epochs are prepared with this one, such as when newer ephemerides came in.
+  void SetBuilder(MeasurementBuilder builder) { builder_ = std::move(builder); }
 
  private:
   struct Bias {

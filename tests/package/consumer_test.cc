@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/package/installed_tree.h"
 #include "tests/support/temporary_folder.h"
 
@@ -26,6 +28,37 @@ TEST(Consumer, AProjectOfItsOwnFindsBuildsAndRuns) {
   EXPECT_NEAR(path_m, 13, 0.1);
   EXPECT_GT(rmse_m, 0);
   EXPECT_LT(rmse_m, 0.3);
+}
+
+// GIVEN a program that links alidade::run alone, WHEN it streams its messages into a session, THEN the
+// session starts and follows, and the program needs neither OpenCV nor yaml nor what reads bags.
+TEST(Consumer, ARobotNeedsTheSessionAlone) {
+  TemporaryFolder folder;
+  const CommandResult configured =
+      Shell(std::string(ALIDADE_CMAKE) + " -G Ninja -S " + Source("tests/package/robot") + " -B " +
+            folder.File("build") + " -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH='" ALIDADE_PREFIX "'" +
+            " -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON" +
+            " -DCMAKE_DISABLE_FIND_PACKAGE_BZip2=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenSSL=ON");
+  ASSERT_EQ(configured.code, 0) << configured.output;
+  const CommandResult built = Shell(std::string(ALIDADE_CMAKE) + " --build " + folder.File("build"));
+  ASSERT_EQ(built.code, 0) << built.output;
+  const CommandResult libraries = ShellIn(folder.path(), "ldd build/robot");
+  EXPECT_THAT(libraries.output, testing::Not(testing::HasSubstr("opencv")));
+  EXPECT_THAT(libraries.output, testing::Not(testing::HasSubstr("yaml")));
+
+  const CommandResult run = ShellIn(folder.path(), "build/robot");
+  ASSERT_EQ(run.code, 0) << run.output;
+  EXPECT_THAT(run.output, testing::HasSubstr("started at"));
+  const std::size_t last = run.output.rfind('\n', run.output.size() - 2);
+  int states = 0;
+  double newest_s = 0, speed_mps = 0;
+  ASSERT_EQ(std::sscanf(run.output.c_str() + (last == std::string::npos ? 0 : last + 1),
+                        "%d states, newest at %lf s, speed %lf m/s", &states, &newest_s, &speed_mps),
+            3)
+      << run.output;
+  EXPECT_GT(states, 100);
+  EXPECT_EQ(newest_s, 15);
+  EXPECT_NEAR(speed_mps, std::hypot(1.8, 0.4 * std::cos(30)), 0.05);
 }
 
 TEST(Consumer, AnotherMinorVersionIsRefused) {

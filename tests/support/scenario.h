@@ -10,6 +10,7 @@
 #include "core/error_convention.h"
 #include "core/estimator.h"
 #include "core/random.h"
+#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
@@ -59,20 +60,39 @@ inline NavEstimate DrawInitialState(const Dataset& dataset, unsigned seed, doubl
   return initial;
 }
 
-/// Feeds the sequence in time order and measures against the truth.
+/// The forward pass of an estimator: what it revises at the end is left to the test.
+class ForwardPass final : public Estimator {
+ public:
+  explicit ForwardPass(Estimator* estimator) : estimator_(*estimator) {}
+
+  Status Initialize(const NavEstimate& initial) override { return estimator_.Initialize(initial); }
+  Status AddImu(const ImuSample& sample) override { return estimator_.AddImu(sample); }
+  Status AddFrame(const TrackFrame& frame) override { return estimator_.AddFrame(frame); }
+  NavEstimate Latest() const override { return estimator_.Latest(); }
+  bool initialized() const override { return estimator_.initialized(); }
+  const FrameStatistics& last_statistics() const override { return estimator_.last_statistics(); }
+  std::optional<CalibrationEstimate> LatestCalibration() const override {
+    return estimator_.LatestCalibration();
+  }
+
+ private:
+  Estimator& estimator_;
+};
+
+/// Runs the estimator over the sequence from `initial` on and measures against the truth.
 inline ScenarioResult RunScenario(const Dataset& dataset, const NavEstimate& initial, Estimator* estimator) {
+  EstimatorConfig config;
+  config.init.method = InitMethod::kTruth;
+  config.recovery.enabled = false;
+  RunOptions options;
+  options.start_state = [&](TimeNs) { return Result<NavEstimate>(initial); };
+  ForwardPass forward(estimator);
+  const RunResult run = RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, options, &forward);
+  EXPECT_EQ(run.imu_rejected, 0);
   ScenarioResult result;
-  result.status = estimator->Initialize(initial);
-  size_t next = 0;
-  for (const TrackFrame& frame : dataset.tracks) {
-    if (!result.status.ok()) {
-      break;
-    }
-    while (next < dataset.imu.size() && (next == 0 || dataset.imu[next - 1].stamp_ns < frame.stamp_ns)) {
-      EXPECT_TRUE(estimator->AddImu(dataset.imu[next++]).ok());
-    }
-    result.status = estimator->AddFrame(frame);
-    result.last = estimator->Latest();
+  result.status = run.status.ok() && run.frames_skipped > 0 ? Status::Input(run.skip_report) : run.status;
+  for (const RunRecord& record : run.records) {
+    result.last = record.estimate;
     const NavState& truth = TruthAt(dataset, result.last.stamp_ns).nav;
     const Vector6d error = Local(ErrorConvention::kSo3xRn, result.last.nav, truth).head<6>();
     const Matrix6d covariance = result.last.covariance.topLeftCorner<6, 6>();

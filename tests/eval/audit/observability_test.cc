@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/run/runner.h"
+#include "eval/record/runner.h"
 #include "filter/feature_update.h"
 #include "filter/filter.h"
 #include "filter/filter_state.h"

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "eval/frontend_run/image_pipeline.h"
-#include "eval/run/runner.h"
+#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 
 namespace alidade {

@@ -3,7 +3,7 @@
 
 #include "eval/config/config_yaml.h"
 #include "eval/metrics/evaluate.h"
-#include "eval/run/runner.h"
+#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "filter/filter_estimator.h"
 

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "eval/record/run_builder.h"
+#include "eval/record/runner.h"
+#include "eval/run/session.h"
+
+namespace alidade {
+
+/// One pass of one estimator over one log, as RunEstimator says: hands the log to a session. All arguments
+/// must outlive it.
+class LogPlayer {
+ public:
+  LogPlayer(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
+            Estimator* estimator);
+
+  /// To be called once.
+  RunResult Play();
+
+ private:
+  [[nodiscard]] SessionOptions OptionsOfSession() const;
+  [[nodiscard]] Result<NavEstimate> FirstState(TimeNs imu_ns) const;
+  /// Why init.method truth cannot start this run whatever the frame.
+  [[nodiscard]] Status CheckTruth() const;
+  void PlayFrames();
+  /// GNSS and IMU without a camera.
+  void PlayEpochs();
+  /// Every sample up to and including the first one at or after `stamp_ns`.
+  void AddImuUntil(TimeNs stamp_ns);
+  void AddEpochsUntil(TimeNs tag_ns);
+  void AddEpoch(size_t index);
+  void TakeEvents();
+  [[nodiscard]] bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  /// What the status becomes when the log is at its end.
+  void Conclude();
+  void TakeFinalized();
+  void CompareCalibration();
+
+  const EstimatorConfig& config_;
+  const MeasurementLog& log_;
+  const RunOptions& options_;
+  Estimator& estimator_;
+  const bool camera_;  ///< else there are epochs alone
+  Session session_;
+  RunBuilder builder_;
+  RunResult& result_;
+  size_t next_imu_ = 0;
+  size_t next_epoch_ = 0;
+};
+
+}  // namespace alidade

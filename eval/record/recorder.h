@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "eval/record/runner.h"
+
+namespace alidade {
+
+/// What a run was made from: with equal identities the outputs are equal.
+struct RunIdentity {
+  EstimatorConfig config;
+  std::string dataset;         ///< name of the sequence
+  std::string dataset_digest;  ///< SHA-256 of its files, or of the simulation's configuration and seed
+  std::string input_digest;    ///< SHA-256 of the measurement log
+  unsigned seed = 1;
+  size_t imu_samples = 0;
+  size_t frames = 0;
+  bool audited = false;  ///< the run carries the observability audit
+};
+
+/// Digest of the resolved configuration.
+[[nodiscard]] std::string DigestOf(const EstimatorConfig& config);
+
+/// Writes trajectory.tum, states.csv, timing.csv, status.csv, for an audited run observability.csv, and,
+/// last, run.json into `folder` (formats: docs/formats.md). Equal runs give equal bytes in all but timing.csv
+/// and the object `times` of run.json. A run.json that was there is removed first, so that a folder with one
+/// is always complete. Errors: kOutput.
+Status WriteRun(const RunIdentity& identity, const RunResult& result, const std::string& folder);
+
+/// What WriteRun wrote, read back: states (rotations to rounding), pose covariances, timing, statistics and
+/// status. kInput: the folder holds no complete run, or a file is not as written.
+Result<RunResult> ReadRun(const std::string& folder);
+
+/// True when `folder` holds a complete run of this identity (audited if it asks for that) that neither was
+/// interrupted nor failed for want of input.
+[[nodiscard]] bool HoldsRun(const std::string& folder, const RunIdentity& identity);
+
+}  // namespace alidade

@@ -1,0 +1,145 @@
+#include "eval/record/run_builder.h"
+
+#include <utility>
+
+namespace alidade {
+namespace {
+
+void Add(const FrameStatistics& epoch, FrameStatistics* sum) {
+  sum->satellites_used += epoch.satellites_used;
+  sum->satellites_gated += epoch.satellites_gated;
+  sum->gnss_nis += epoch.gnss_nis;
+  sum->gnss_nis_dof += epoch.gnss_nis_dof;
+  sum->clock_jump = sum->clock_jump || epoch.clock_jump;
+  sum->propagate_ms += epoch.propagate_ms;
+  sum->update_ms += epoch.update_ms;
+}
+
+}  // namespace
+
+void RunBuilder::Take(const SessionEvent& event) {
+  std::visit([this](const auto& e) { On(e); }, event);
+}
+
+std::string RunBuilder::LostMessage() const {
+  const Restart& loss = result_.restarts.back();
+  return "lost at " + FormatSeconds(loss.lost_ns) + " s (" + loss.reason +
+         ") and not started again: " + refusal_;
+}
+
+void RunBuilder::On(const StartedEvent& event) {
+  result_.init_stamp_ns = event.estimate.stamp_ns;
+  result_.init_method = event.method;
+  result_.init_report = event.report;
+}
+
+void RunBuilder::On(const StateEvent& event) {
+  if (event.source == Sensor::kGnss) {
+    ++result_.epochs_used;
+    Add(event.statistics, &epochs_);
+  }
+  if (camera_ != (event.source == Sensor::kCamera)) {
+    return;
+  }
+  if (!result_.records.empty() && event.estimate.stamp_ns <= result_.records.back().estimate.stamp_ns) {
+    return;  // an epoch that a later state will hold
+  }
+  RunRecord& record = result_.records.emplace_back();
+  record.estimate = event.estimate;
+  record.statistics = camera_ ? event.statistics : FrameStatistics();
+  Add(std::exchange(epochs_, {}), &record.statistics);
+  record.clock = event.clock;
+  record.calibration = event.calibration;
+  record.frontend_ms = event.frontend_ms;
+  record.backend_ms = event.backend_ms;
+  if (std::exchange(restarted_, false)) {
+    record.status = "restarted";
+    record.reason = result_.restarts.back().init_report;
+  }
+}
+
+void RunBuilder::On(const SuspectEvent& event) {
+  RunRecord& record = result_.records.back();
+  if (record.status == "ok") {
+    record.status = "suspect";
+    record.reason = event.reason;
+  }
+}
+
+void RunBuilder::On(const LostEvent& event) {
+  result_.restarts.push_back({event.stamp_ns, event.reason, 0, {}});
+  if (!result_.records.empty()) {
+    result_.records.back().status = "lost";
+    result_.records.back().reason = event.reason;
+  }
+  lost_ = true;
+  refusal_ = "there is no frame";
+}
+
+void RunBuilder::On(const RestartedEvent& event) {
+  result_.restarts.back().restarted_ns = event.estimate.stamp_ns;
+  result_.restarts.back().init_report = event.report;
+  lost_ = false;
+  restarted_ = true;
+}
+
+void RunBuilder::On(const AlignedEvent& event) {
+  result_.global = event.global;
+  result_.align_report = event.alignment.report;
+  // What was told in the local world is turned with it; the last record tells the state as it now stands.
+  for (RunRecord& record : result_.records) {
+    record.estimate = TurnIntoEnu(event.alignment, record.estimate);
+    record.status = "local";
+  }
+  if (!result_.records.empty()) {
+    RunRecord& record = result_.records.back();
+    record.estimate = event.estimate;
+    record.clock = event.clock;
+    record.status = "ok";
+  }
+}
+
+void RunBuilder::On(const SatellitesEvent& event) {
+  result_.gnss_residuals.push_back(event.residuals);
+}
+
+void RunBuilder::On(const WaitingEvent& event) {
+  switch (event.sought) {
+    case Sought::kStart:
+      result_.init_report = event.reason;
+      result_.align_report = camera_ ? result_.align_report : event.reason;
+      break;
+    case Sought::kRestart:
+      refusal_ = event.reason;
+      break;
+    case Sought::kAlignment:
+      result_.align_report = event.reason;
+      break;
+  }
+}
+
+void RunBuilder::On(const TooLateEvent& event) {
+  On(SkippedEvent{event.sensor, event.stamp_ns, Describe(event)});
+}
+
+void RunBuilder::On(const SkippedEvent& event) {
+  switch (event.sensor) {
+    case Sensor::kImu:
+      ++result_.imu_rejected;
+      break;
+    case Sensor::kCamera:
+      result_.skip_report = result_.frames_skipped++ == 0 ? event.reason : result_.skip_report;
+      break;
+    case Sensor::kGnss:
+      if (result_.epochs_skipped++ == 0 && result_.skip_report.empty()) {
+        result_.skip_report = event.reason;
+      }
+      break;
+  }
+}
+
+void RunBuilder::On(const FailedEvent& event) {
+  result_.status = event.status;
+}
+
+}  // namespace alidade

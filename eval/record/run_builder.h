@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "eval/record/run_result.h"
+#include "eval/run/session_event.h"
+
+namespace alidade {
+
+/// Makes a RunResult of what a session reports: a record a frame or, without a camera, an epoch.
+class RunBuilder {
+ public:
+  explicit RunBuilder(bool camera) : camera_(camera) {}
+
+  void Take(const SessionEvent& event);
+
+  /// Lost, and no new start found since.
+  [[nodiscard]] bool lost() const { return lost_; }
+  /// Why the run ends lost.
+  [[nodiscard]] std::string LostMessage() const;
+  [[nodiscard]] RunResult& result() { return result_; }
+
+ private:
+  void On(const StartedEvent& event);
+  void On(const StateEvent& event);
+  void On(const SuspectEvent& event);
+  void On(const LostEvent& event);
+  void On(const RestartedEvent& event);
+  void On(const AlignedEvent& event);
+  void On(const SatellitesEvent& event);
+  void On(const WaitingEvent& event);
+  void On(const TooLateEvent& event);
+  void On(const SkippedEvent& event);
+  void On(const FailedEvent& event);
+
+  bool camera_;
+  RunResult result_;
+  FrameStatistics epochs_;  ///< of the epochs since the last record
+  bool lost_ = false;
+  bool restarted_ = false;  ///< the next record is the first of a new start
+  std::string refusal_;     ///< of the last attempt to start again
+};
+
+}  // namespace alidade

@@ -1,0 +1,314 @@
+#include "eval/run/estimator_loop.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/format.h"
+
+namespace alidade {
+namespace {
+
+/// Satellites, innovations and times of an epoch: what a smoother's solve says of vision is not the epoch's.
+FrameStatistics OfEpoch(const FrameStatistics& all) {
+  FrameStatistics epoch;
+  epoch.satellites_used = all.satellites_used;
+  epoch.satellites_gated = all.satellites_gated;
+  epoch.gnss_nis = all.gnss_nis;
+  epoch.gnss_nis_dof = all.gnss_nis_dof;
+  epoch.clock_jump = all.clock_jump;
+  epoch.propagate_ms = all.propagate_ms;
+  epoch.update_ms = all.update_ms;
+  return epoch;
+}
+
+}  // namespace
+
+EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration& rig,
+                             const SessionOptions& options, Estimator* estimator,
+                             std::vector<SessionEvent>* events)
+    : config_(config),
+      rig_(rig),
+      options_(options),
+      estimator_(*estimator),
+      events_(*events),
+      recovery_(config, rig, options.camera) {
+  if (options.camera && config.init.method != InitMethod::kTruth) {
+    initializer_ = std::make_unique<Initializer>(config, rig);
+  }
+  if (config.gnss.enabled && options.gnss) {
+    gnss_.emplace(config, rig, *options.gnss, estimator, events);
+  }
+}
+
+TimeNs EstimatorLoop::ImuTime(TimeNs camera_ns) const {
+  const std::optional<CalibrationEstimate> calibration =
+      running() ? estimator_.LatestCalibration() : std::nullopt;
+  return camera_ns + SecondsToNs(calibration ? calibration->mean.time_offset_s : rig_.camera_time_offset_s);
+}
+
+TimeNs EstimatorLoop::EpochLead() const {
+  return options_.camera || running() ? 0 : SecondsToNs(config_.gnss.max_time_offset_s);
+}
+
+void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
+  const Stopwatch stopwatch;
+  const TimeNs imu_ns = ImuTime(frame.stamp_ns);
+  DeliverImu(imu_ns);
+  if (phase_ == Phase::kSeeking) {
+    TryStart(frame);
+  } else if (phase_ == Phase::kLost) {
+    TryRestart(frame);
+  }
+  if (running()) {
+    AddFrame(frame, stopwatch);
+  }
+  if (running()) {
+    AlignAfterFrame(imu_ns);
+  }
+  TrimImu();
+}
+
+void EstimatorLoop::ProcessEpoch() {
+  if (options_.camera) {
+    ProcessEpochWithCamera();
+  } else {
+    ProcessEpochAlone();
+  }
+  TrimImu();
+}
+
+void EstimatorLoop::ProcessEpochWithCamera() {
+  const Stopwatch stopwatch;
+  const TimeNs stamp_ns = gnss_->feed().Next()->stamp_ns;
+  if (gnss_->aligned()) {
+    DeliverImu(stamp_ns);
+  }
+  const Result<bool> taken = gnss_->TakeEpoch(running());
+  if (taken.code() == StatusCode::kDiverged) {
+    GiveUp(estimator_.Latest().stamp_ns, taken.status());
+  } else if (!taken.ok()) {
+    Fail(stamp_ns, taken.status());
+  } else if (*taken) {
+    ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
+  }
+}
+
+void EstimatorLoop::ProcessEpochAlone() {
+  const Stopwatch stopwatch;
+  const TimeNs stamp_ns = gnss_->feed().Next()->stamp_ns;
+  DeliverImu(stamp_ns + EpochLead());
+  if (!running()) {
+    StartWithEpoch();
+    return;
+  }
+  const Result<bool> taken = gnss_->TakeEpoch(true);
+  if (!taken.ok()) {
+    Fail(stamp_ns, taken.status());
+  } else if (*taken) {
+    ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
+  }
+}
+
+void EstimatorLoop::DeliverImu(TimeNs stamp_ns) {
+  while (const ImuSample* sample = imu_.Deliver(stamp_ns)) {
+    gyro_radps_ = sample->gyro;
+    if (running()) {
+      AddImu(*sample);
+    } else if (phase_ == Phase::kLost) {
+      recovery_.AddImu(*sample);
+    } else if (initializer_ != nullptr) {
+      initializer_->AddImu(*sample);
+    } else if (gnss_ && !options_.camera) {
+      gnss_->AddImuBeforeStart(*sample);
+    }
+  }
+}
+
+void EstimatorLoop::AddImu(const ImuSample& sample) {
+  recovery_.AddImu(sample);
+  if (const Status status = estimator_.AddImu(sample); !status.ok()) {
+    events_.emplace_back(SkippedEvent{Sensor::kImu, sample.stamp_ns, status.message()});
+  }
+}
+
+Result<NavEstimate> EstimatorLoop::FindStart(const TrackFrame& frame) {
+  if (initializer_ != nullptr) {
+    return initializer_->AddFrame(frame);
+  }
+  const TimeNs imu_ns = ImuTime(frame.stamp_ns);
+  const std::vector<ImuSample> before = imu_.DeliveredSince(imu_ns);
+  if (before.empty() || imu_ns < before.front().stamp_ns) {
+    return Status::Input("no IMU sample before the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+  }
+  return options_.start_state
+             ? options_.start_state(imu_ns)
+             : Result<NavEstimate>(Status::Config(
+                   "init.method: found truth, but no state was given; expected static, dynamic or auto"));
+}
+
+void EstimatorLoop::TryStart(const TrackFrame& frame) {
+  const Result<NavEstimate> start = FindStart(frame);
+  if (!start.ok()) {
+    events_.emplace_back(WaitingEvent{Sought::kStart, frame.stamp_ns, start.message()});
+    return;
+  }
+  if (Begin(*start)) {
+    StartedEvent event{*start, "given", "a given state"};
+    if (initializer_ != nullptr) {
+      event.method = initializer_->method();
+      event.report = initializer_->report();
+      initializer_.reset();
+    }
+    events_.emplace_back(std::move(event));
+  }
+}
+
+void EstimatorLoop::TryRestart(const TrackFrame& frame) {
+  const Result<NavEstimate> start = recovery_.TryStart(frame);
+  if (!start.ok()) {
+    events_.emplace_back(WaitingEvent{Sought::kRestart, frame.stamp_ns, start.message()});
+    return;
+  }
+  if (!Begin(*start)) {
+    return;
+  }
+  events_.emplace_back(RestartedEvent{recovery_.lost_ns(), *start, recovery_.method(), recovery_.report()});
+  recovery_.Started(*start);
+  if (gnss_) {
+    if (Status status = gnss_->Realign(); !status.ok()) {
+      Fail(start->stamp_ns, std::move(status));
+    }
+  }
+}
+
+void EstimatorLoop::StartWithEpoch() {
+  const TimeNs tag_ns = gnss_->feed().Next()->measurements.tag_ns;
+  const std::optional<GnssInertialStart::Start> start = gnss_->TryStart();
+  if (!start) {
+    events_.emplace_back(WaitingEvent{Sought::kStart, tag_ns, gnss_->start_report()});
+    return;
+  }
+  if (!Begin(start->estimate)) {
+    return;
+  }
+  events_.emplace_back(StartedEvent{start->estimate, "gnss", gnss_->start_report()});
+  if (Status status = gnss_->AlignAtStart(*start); !status.ok()) {
+    Fail(start->estimate.stamp_ns, std::move(status));
+  }
+}
+
+bool EstimatorLoop::Begin(const NavEstimate& start) {
+  if (const Status status = estimator_.Initialize(start); !status.ok()) {
+    Fail(start.stamp_ns, Status::Diverged("initial state refused: " + status.message()));
+    return false;
+  }
+  phase_ = Phase::kRunning;
+  state_ns_ = start.stamp_ns;
+  for (const ImuSample& sample : imu_.DeliveredSince(start.stamp_ns)) {
+    AddImu(sample);
+  }
+  return true;
+}
+
+void EstimatorLoop::AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch) {
+  Status status = estimator_.AddFrame(frame);
+  if (status.code() == StatusCode::kInput) {
+    events_.emplace_back(SkippedEvent{Sensor::kCamera, frame.stamp_ns, status.message()});
+    return;
+  }
+  if (status.ok()) {
+    const std::string reason = recovery_.Check(estimator_.Latest(), estimator_.last_statistics());
+    status = reason.empty()
+                 ? Status::Ok()
+                 : Status::Diverged(reason + " after the frame at " + FormatSeconds(frame.stamp_ns) + " s");
+  }
+  if (!status.ok()) {
+    GiveUp(ImuTime(frame.stamp_ns), status);
+    return;
+  }
+  ReportState(Sensor::kCamera, frame.stamp_ns, frame.frontend_ms, stopwatch);
+}
+
+void EstimatorLoop::AlignAfterFrame(TimeNs stamp_ns) {
+  if (!gnss_) {
+    return;
+  }
+  const Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
+  if (!alignment.ok()) {
+    Fail(stamp_ns, alignment.status());
+  } else if (*alignment) {
+    recovery_.Turn(**alignment);
+  }
+}
+
+void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double frontend_ms,
+                                const Stopwatch& stopwatch) {
+  const bool is_frame = source == Sensor::kCamera;
+  StateEvent event;
+  event.source = source;
+  event.message_ns = message_ns;
+  event.estimate = estimator_.Latest();
+  if (!IsFinite(event.estimate)) {
+    GiveUp(is_frame ? ImuTime(message_ns) : message_ns,
+           Status::Diverged("state is not finite after the frame at " + FormatSeconds(message_ns) + " s"));
+    return;
+  }
+  state_ns_ = event.estimate.stamp_ns;
+  event.statistics = is_frame ? estimator_.last_statistics() : OfEpoch(estimator_.last_statistics());
+  event.clock = estimator_.LatestClock();
+  event.calibration = estimator_.LatestCalibration();
+  event.frontend_ms = frontend_ms;
+  event.backend_ms = stopwatch.ElapsedMs();
+  const bool suspect = event.statistics.suspect;
+  if (gnss_ && is_frame) {
+    gnss_->CollectResiduals();  // the smoother judges an epoch with the frame after it
+    gnss_->Remember(state_ns_, event.clock);
+  }
+  events_.emplace_back(std::move(event));
+  if (suspect) {
+    events_.emplace_back(SuspectEvent{state_ns_, "most tracks contradict the state"});
+  }
+}
+
+void EstimatorLoop::GiveUp(TimeNs stamp_ns, const Status& status) {
+  if (recovery_.GiveUp(stamp_ns)) {
+    phase_ = Phase::kLost;
+    events_.emplace_back(LostEvent{stamp_ns, status.message()});
+  } else {
+    Fail(stamp_ns, status);
+  }
+}
+
+void EstimatorLoop::Fail(TimeNs stamp_ns, Status status) {
+  phase_ = Phase::kFailed;
+  events_.emplace_back(FailedEvent{stamp_ns, std::move(status)});
+}
+
+void EstimatorLoop::PassTime(TimeNs now_ns) {
+  if (running()) {
+    if (SecondsBetween(state_ns_, now_ns) > options_.max_silence_s) {
+      GiveUp(state_ns_ + SecondsToNs(options_.max_silence_s),
+             Status::Diverged(Format("no frame or epoch was used for %g s", options_.max_silence_s)));
+    }
+    return;
+  }
+  // No start looks back that far.
+  constexpr double kForeverS = 1e9;
+  const TimeNs oldest_ns = now_ns - SecondsToNs(std::min(options_.max_silence_s, kForeverS));
+  while (const std::optional<ImuSample> sample = imu_.PassOver(oldest_ns)) {
+    if (phase_ == Phase::kLost) {
+      recovery_.PassOver(*sample);
+    }
+  }
+}
+
+void EstimatorLoop::TrimImu() {
+  // A state found by an epoch alone may lie before what was delivered by twice the unknown time offset.
+  constexpr double kMarginS = 1;
+  if (imu_.delivered_ns() != INT64_MIN) {
+    const TimeNs newest = imu_.delivered_ns() - SecondsToNs(kMarginS + 2 * config_.gnss.max_time_offset_s);
+    imu_.DropBefore(running() ? std::min(newest, state_ns_) : newest);
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,83 @@
+#include "eval/run/imu_stream.h"
+
+#include <algorithm>
+
+namespace alidade {
+namespace {
+
+bool Earlier(const ImuSample& sample, TimeNs stamp_ns) {
+  return sample.stamp_ns < stamp_ns;
+}
+
+}  // namespace
+
+ImuStream::Arrival ImuStream::Add(const ImuSample& sample) {
+  if (sample.stamp_ns <= delivered_ns_) {
+    return Arrival::kTooLate;
+  }
+  if (samples_.empty() || samples_.back().stamp_ns < sample.stamp_ns) {
+    samples_.push_back(sample);
+  } else {
+    const auto place = std::lower_bound(samples_.begin(), samples_.end(), sample.stamp_ns, Earlier);
+    if (place->stamp_ns == sample.stamp_ns) {
+      return Arrival::kTwice;
+    }
+    samples_.insert(place, sample);
+  }
+  if (sample.stamp_ns > newest_ns_) {
+    newest_ns_ = sample.stamp_ns;
+    newest_gyro_ = sample.gyro;
+  }
+  return Arrival::kTaken;
+}
+
+const ImuSample* ImuStream::Deliver(TimeNs stamp_ns) {
+  if (delivered_ns_ >= stamp_ns || delivered_ == samples_.size()) {
+    return nullptr;
+  }
+  const ImuSample& sample = samples_[delivered_++];
+  delivered_ns_ = sample.stamp_ns;
+  return &sample;
+}
+
+std::optional<ImuSample> ImuStream::PassOver(TimeNs stamp_ns) {
+  if (delivered_ == samples_.size() || samples_[delivered_].stamp_ns >= stamp_ns) {
+    return std::nullopt;
+  }
+  const ImuSample sample = samples_[delivered_];
+  samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(delivered_) + 1);
+  delivered_ = 0;
+  delivered_ns_ = sample.stamp_ns;
+  return sample;
+}
+
+std::optional<TimeNs> ImuStream::FirstAtOrAfter(TimeNs stamp_ns) const {
+  const auto found = std::lower_bound(samples_.begin(), samples_.end(), stamp_ns, Earlier);
+  return found == samples_.end() ? std::nullopt : std::optional(found->stamp_ns);
+}
+
+std::vector<ImuSample> ImuStream::DeliveredSince(TimeNs stamp_ns) const {
+  return Range(stamp_ns, delivered_);
+}
+
+std::vector<ImuSample> ImuStream::Since(TimeNs stamp_ns) const {
+  return Range(stamp_ns, samples_.size());
+}
+
+std::vector<ImuSample> ImuStream::Range(TimeNs stamp_ns, size_t end) const {
+  const auto last = samples_.begin() + static_cast<std::ptrdiff_t>(end);
+  auto first = std::upper_bound(samples_.begin(), last, stamp_ns, [](TimeNs stamp, const ImuSample& sample) {
+    return stamp < sample.stamp_ns;
+  });
+  first -= first == samples_.begin() ? 0 : 1;
+  return {first, last};
+}
+
+void ImuStream::DropBefore(TimeNs stamp_ns) {
+  while (delivered_ >= 2 && samples_[1].stamp_ns <= stamp_ns) {
+    samples_.pop_front();
+    --delivered_;
+  }
+}
+
+}  // namespace alidade

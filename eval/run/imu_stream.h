@@ -1,0 +1,52 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "core/imu_sample.h"
+
+namespace alidade {
+
+/// Inertial samples in the order of their stamps, whatever the order they arrive in, with a mark up to which
+/// they are delivered.
+class ImuStream {
+ public:
+  enum class Arrival { kTaken, kTwice, kTooLate };
+  /// Sorts the sample in. kTooLate: it is not after the last delivered one.
+  Arrival Add(const ImuSample& sample);
+
+  /// The next sample to deliver to what happens at `stamp_ns`: the samples up to and including the first one
+  /// at or after it, one a call; null when they are delivered or there is none left. Valid until the next
+  /// call.
+  const ImuSample* Deliver(TimeNs stamp_ns);
+  /// Takes out the oldest sample that is not delivered yet when it lies before `stamp_ns`; later samples not
+  /// after it are too late.
+  std::optional<ImuSample> PassOver(TimeNs stamp_ns);
+
+  /// Stamp of the first sample at or after `stamp_ns`, if there is one.
+  [[nodiscard]] std::optional<TimeNs> FirstAtOrAfter(TimeNs stamp_ns) const;
+  /// INT64_MIN before the first sample.
+  [[nodiscard]] TimeNs newest_ns() const { return newest_ns_; }
+  [[nodiscard]] const Eigen::Vector3d& newest_gyro() const { return newest_gyro_; }
+  [[nodiscard]] TimeNs delivered_ns() const { return delivered_ns_; }
+  /// The samples from the last one not after `stamp_ns` on (from the first there is, where all are after), up
+  /// to the last delivered one or to the newest.
+  [[nodiscard]] std::vector<ImuSample> DeliveredSince(TimeNs stamp_ns) const;
+  [[nodiscard]] std::vector<ImuSample> Since(TimeNs stamp_ns) const;
+
+  /// Forgets delivered samples that DeliveredSince(stamp_ns) does not need.
+  void DropBefore(TimeNs stamp_ns);
+  [[nodiscard]] size_t size() const { return samples_.size(); }
+
+ private:
+  [[nodiscard]] std::vector<ImuSample> Range(TimeNs stamp_ns, size_t end) const;
+
+  std::deque<ImuSample> samples_;
+  size_t delivered_ = 0;  ///< of samples_
+  TimeNs delivered_ns_ = INT64_MIN;
+  TimeNs newest_ns_ = INT64_MIN;
+  Eigen::Vector3d newest_gyro_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace alidade

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "core/estimator.h"
+#include "core/estimator_config.h"
+
+namespace alidade {
+
+/// filter | smoother | batch
+[[nodiscard]] std::string_view ToString(Backend backend);
+
+/// The back end that `config.backend` names.
+[[nodiscard]] std::unique_ptr<Estimator> MakeEstimator(const EstimatorConfig& config,
+                                                       const RigCalibration& rig);
+
+}  // namespace alidade

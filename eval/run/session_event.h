@@ -1,0 +1,122 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "core/estimator.h"
+#include "gnss/alignment/alignment.h"
+#include "gnss/model/gnss_epoch.h"
+
+namespace alidade {
+
+/// Who sent a message.
+enum class Sensor { kImu, kCamera, kGnss };
+/// imu | camera | gnss
+[[nodiscard]] std::string_view ToString(Sensor sensor);
+
+// What a Session reports. Stamps of messages are those of their sensor: camera time, receiver's tag. Stamps
+// of estimates are IMU time.
+
+/// The first state was found. The StateEvent of the frame that gave it follows.
+struct StartedEvent {
+  NavEstimate estimate;
+  std::string method;  ///< given | static | dynamic | gnss
+  std::string report;  ///< the figures that let it pass
+};
+
+/// The state after a frame or an epoch that the estimator took.
+struct StateEvent {
+  Sensor source = Sensor::kCamera;
+  TimeNs message_ns = 0;  ///< stamp of the frame; IMU time of the epoch
+  /// A smoother may keep an epoch for its next frame: then the state is still that of the last frame.
+  NavEstimate estimate;
+  FrameStatistics statistics;                      ///< of this frame or epoch
+  std::optional<ClockState> clock;                 ///< once aligned
+  std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
+  double frontend_ms = 0;                          ///< TrackFrame::frontend_ms
+  double backend_ms = 0;  ///< wall time for this message and the IMU samples before it
+};
+
+/// Most of the newest frame's tracks contradict the state (FrameStatistics::suspect); follows its StateEvent.
+struct SuspectEvent {
+  TimeNs stamp_ns = 0;  ///< of the state
+  std::string reason;
+};
+
+/// The estimate was given up; a new start is sought.
+struct LostEvent {
+  TimeNs stamp_ns = 0;  ///< IMU time of the message at which it was
+  std::string reason;
+};
+
+/// A new start was found, placed where dead reckoning from the last sound state leads.
+struct RestartedEvent {
+  TimeNs lost_ns = 0;  ///< stamp of the LostEvent
+  NavEstimate estimate;
+  std::string method;
+  std::string report;
+};
+
+/// How the estimates came to stand in the ENU frame.
+struct GlobalFrame {
+  EnuFrame enu;
+  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();
+  TimeNs stamp_ns = 0;       ///< of the first state that stands there
+  double time_offset_s = 0;  ///< IMU time less GPST, as given or estimated
+  double yaw_rad = 0;        ///< by which the local world was turned
+  double yaw_std_rad = 0;
+};
+
+/// The local world was turned into the ENU frame: estimates from now on stand there; TurnIntoEnu with
+/// `alignment` turns earlier ones.
+struct AlignedEvent {
+  GlobalFrame global;
+  GnssAlignment alignment;
+  NavEstimate estimate;  ///< the state of the last StateEvent, turned
+  std::optional<ClockState> clock;
+};
+
+/// What became of the satellites of an epoch. A smoother judges them with the frame after the epoch.
+struct SatellitesEvent {
+  GnssResiduals residuals;
+};
+
+/// What is still sought, and why it was not found yet.
+enum class Sought { kStart, kRestart, kAlignment };
+struct WaitingEvent {
+  Sought sought = Sought::kStart;
+  TimeNs stamp_ns = 0;  ///< of the frame or epoch at which it was sought
+  std::string reason;
+};
+
+/// A message was refused because newer ones had been processed when it came.
+struct TooLateEvent {
+  Sensor sensor = Sensor::kImu;
+  TimeNs stamp_ns = 0;
+  double late_s = 0;  ///< by which its IMU time lies before what was processed
+};
+
+/// A message was not used.
+struct SkippedEvent {
+  Sensor sensor = Sensor::kImu;
+  TimeNs stamp_ns = 0;
+  std::string reason;
+};
+
+/// The session is over: the estimate is lost and no new start may be sought (recovery.enabled, a back end
+/// that looks back, GNSS without a camera), or the back end refused its start or its alignment.
+struct FailedEvent {
+  TimeNs stamp_ns = 0;  ///< IMU time of the message at which it was
+  Status status;
+};
+
+using SessionEvent =
+    std::variant<StartedEvent, StateEvent, SuspectEvent, LostEvent, RestartedEvent, AlignedEvent,
+                 SatellitesEvent, WaitingEvent, TooLateEvent, SkippedEvent, FailedEvent>;
+
+/// One line for a log or a terminal: "lost at 12.300 s: speed 130 m/s, limit 100".
+[[nodiscard]] std::string Describe(const SessionEvent& event);
+
+}  // namespace alidade

@@ -1,0 +1,140 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "eval/config/config_yaml.h"
+#include "eval/record/runner.h"
+#include "eval/record/truth_start.h"
+#include "eval/simulation/simulator.h"
+#include "tests/eval/run/stream.h"
+
+// Sessions with GNSS.
+
+namespace alidade {
+namespace {
+
+using test::Only;
+
+constexpr test::Delays kLive = {{0.02, 0.008}, {0.06, 0.1}, {0.2, 0.1}};
+
+Dataset SimulateGnss(const std::vector<std::string>& settings) {
+  const Result<SimulatorConfig> config = LoadSimulatorConfig(
+      std::string(ALIDADE_SOURCE_DIR) + "/configs/datasets/gnss_figure8_short.yaml", settings);
+  EXPECT_TRUE(config.ok()) << config.message();
+  Result<Dataset> dataset = Simulate(*config, 1);
+  EXPECT_TRUE(dataset.ok()) << dataset.message();
+  return *dataset;
+}
+
+const Dataset& Walk() {
+  static const Dataset* const dataset =
+      new Dataset(SimulateGnss({"duration_s=12", "path_m=48", "gnss.clock_jump_at_s=6"}));
+  return *dataset;
+}
+
+EstimatorConfig Preset(const std::string& name) {
+  const Result<EstimatorConfig> config =
+      LoadEstimatorConfig(std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/" + name + ".yaml",
+                          {"gnss.model_std_scale=0", "gnss.pseudorange_std_m=0.5", "init.method=truth"});
+  EXPECT_TRUE(config.ok()) << config.message();
+  return *config;
+}
+
+SessionOptions Options(const EstimatorConfig& config, const Dataset& dataset) {
+  SessionOptions options;
+  options.lateness = {0.01, 0.2, 0.4};
+  options.gnss = SetupOf(*dataset.gnss);
+  options.start_state = [init = config.init, &dataset](TimeNs imu_ns) {
+    return StartFromTruth(init, *dataset.truth, imu_ns, 1);
+  };
+  return options;
+}
+
+std::vector<SessionEvent> StreamOf(const EstimatorConfig& config, const Dataset& dataset,
+                                   const SessionOptions& options, unsigned seed) {
+  Result<std::unique_ptr<Session>> session = Session::Make(config, dataset.rig, options);
+  EXPECT_TRUE(session.ok()) << session.message();
+  return test::Stream(session->get(), dataset, test::ArrivalsOf(dataset, kLive, seed));
+}
+
+class SessionGnssTest : public testing::TestWithParam<const char*> {};
+
+// GIVEN GNSS that comes 0.2 to 0.3 s late, frames that overtake each other, and a jump of the receiver's
+// clock, THEN the session aligns by itself, and its states in the ENU frame are those of the ordered log, bit
+// by bit.
+TEST_P(SessionGnssTest, AlignsAndGivesTheStatesOfTheOrderedLog) {
+  const Dataset& dataset = Walk();
+  const EstimatorConfig config = Preset(GetParam());
+  const RunResult ordered =
+      RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss}, &*dataset.truth, 1);
+  ASSERT_TRUE(ordered.status.ok()) << ordered.status.message();
+  ASSERT_TRUE(ordered.global.has_value()) << ordered.align_report;
+  const std::vector<SessionEvent> events = StreamOf(config, dataset, Options(config, dataset), 1);
+  EXPECT_TRUE(Only<TooLateEvent>(events).empty());
+  const auto aligned = Only<AlignedEvent>(events);
+  ASSERT_EQ(aligned.size(), 1u);
+  EXPECT_EQ(aligned[0].global.stamp_ns, ordered.global->stamp_ns);
+  EXPECT_EQ(aligned[0].global.yaw_rad, ordered.global->yaw_rad);
+  const std::vector<NavEstimate> states = test::StatesOf(events);
+  ASSERT_EQ(states.size(), ordered.records.size());
+  size_t compared = 0;
+  for (size_t i = 0; i < states.size(); ++i) {
+    if (states[i].stamp_ns > aligned[0].global.stamp_ns) {
+      ASSERT_TRUE(test::SameBits(states[i], ordered.records[i].estimate)) << i;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 50u);
+  EXPECT_FALSE(Only<SatellitesEvent>(events).empty());
+  bool waited = false;
+  for (const WaitingEvent& event : Only<WaitingEvent>(events)) {
+    waited = waited || event.sought == Sought::kAlignment;
+  }
+  EXPECT_TRUE(waited);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothBackEnds, SessionGnssTest, testing::Values("gvio", "gvins_class"),
+                         [](const auto& param) { return std::string(param.param); });
+
+// GIVEN no camera, THEN the session starts in the ENU frame from GNSS and IMU, and its states do not depend
+// on the delays.
+TEST(SessionWithoutCameraTest, StartsFromGnssAndTheOrderOfArrivalDoesNotMatter) {
+  Dataset dataset = SimulateGnss({"duration_s=40", "path_m=600", "landmark_count=10", "gnss.outage_start_s=39"});
+  dataset.tracks.clear();
+  const EstimatorConfig config = Preset("gnss_imu");
+  const RunResult ordered =
+      RunEstimator(config, {dataset.rig, dataset.imu, {}, {}, dataset.gnss}, nullptr, 1);
+  ASSERT_TRUE(ordered.status.ok()) << ordered.status.message();
+  SessionOptions options = Options(config, dataset);
+  options.camera = false;
+  for (const unsigned seed : {1u, 2u}) {
+    const std::vector<SessionEvent> events = StreamOf(config, dataset, options, seed);
+    ASSERT_EQ(Only<StartedEvent>(events).size(), 1u);
+    EXPECT_EQ(Only<StartedEvent>(events)[0].method, "gnss");
+    const std::vector<NavEstimate> states = test::StatesOf(events, Sensor::kGnss);
+    ASSERT_EQ(states.size(), ordered.records.size());
+    ASSERT_GT(states.size(), 20u);
+    for (size_t i = 0; i < states.size(); ++i) {
+      ASSERT_TRUE(test::SameBits(states[i], ordered.records[i].estimate)) << i;
+    }
+  }
+}
+
+// GIVEN no ephemerides at first, WHEN a catalog is added for later epochs, THEN the alignment waits for it.
+TEST(SessionCatalogTest, EphemeridesMayComeLater) {
+  const Dataset& dataset = Walk();
+  const EstimatorConfig config = Preset("gvio");
+  SessionOptions options = Options(config, dataset);
+  options.gnss->catalog = nullptr;
+  Result<std::unique_ptr<Session>> session = Session::Make(config, dataset.rig, options);
+  ASSERT_TRUE(session.ok()) << session.message();
+  const TimeNs from_ns = dataset.gnss->epochs[dataset.gnss->epochs.size() / 3].stamp_ns;
+  (*session)->AddCatalog(from_ns, dataset.gnss->catalog);
+  const std::vector<SessionEvent> events =
+      test::Stream(session->get(), dataset, test::ArrivalsOf(dataset, kLive, 1));
+  const auto aligned = Only<AlignedEvent>(events);
+  ASSERT_EQ(aligned.size(), 1u);
+  EXPECT_GT(aligned[0].global.stamp_ns, from_ns);
+}
+
+}  // namespace
+}  // namespace alidade

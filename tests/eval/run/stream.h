@@ -1,0 +1,114 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "core/random.h"
+#include "eval/dataset/dataset.h"
+#include "eval/run/session.h"
+#include "gnss/model/gnss_epoch.h"
+
+namespace alidade::test {
+
+/// When the messages of a sensor arrive: after their stamp by `delay_s` and up to `jitter_s` more.
+struct Delay {
+  double delay_s = 0;
+  double jitter_s = 0;
+};
+struct Delays {
+  Delay imu, camera, gnss;
+};
+
+struct Arrival {
+  TimeNs arrival_ns = 0;
+  Sensor sensor = Sensor::kImu;
+  size_t index = 0;
+};
+
+/// The messages of a log in the order of their arrival; equal seeds give equal orders.
+inline std::vector<Arrival> ArrivalsOf(const Dataset& dataset, const Delays& delays, unsigned seed) {
+  RandomStream random(seed, "arrivals");
+  std::vector<Arrival> arrivals;
+  const auto add = [&](Sensor sensor, size_t index, TimeNs stamp_ns, const Delay& delay) {
+    arrivals.push_back(
+        {stamp_ns + SecondsToNs(delay.delay_s + delay.jitter_s * random.Uniform(0, 1)), sensor, index});
+  };
+  for (size_t i = 0; i < dataset.imu.size(); ++i) {
+    add(Sensor::kImu, i, dataset.imu[i].stamp_ns, delays.imu);
+  }
+  for (size_t i = 0; i < dataset.tracks.size(); ++i) {
+    add(Sensor::kCamera, i, dataset.tracks[i].stamp_ns, delays.camera);
+  }
+  for (size_t i = 0; dataset.gnss != nullptr && i < dataset.gnss->epochs.size(); ++i) {
+    add(Sensor::kGnss, i, dataset.gnss->epochs[i].stamp_ns, delays.gnss);
+  }
+  std::stable_sort(arrivals.begin(), arrivals.end(),
+                   [](const Arrival& a, const Arrival& b) { return a.arrival_ns < b.arrival_ns; });
+  return arrivals;
+}
+
+inline void AddTo(Session* session, const Dataset& dataset, const Arrival& message) {
+  switch (message.sensor) {
+    case Sensor::kImu:
+      session->AddImu(dataset.imu[message.index]);
+      break;
+    case Sensor::kCamera:
+      session->AddFrame(dataset.tracks[message.index]);
+      break;
+    case Sensor::kGnss:
+      session->AddGnss(dataset.gnss->epochs[message.index]);
+      break;
+  }
+}
+
+/// Hands the messages over one by one, and what waits at the end; returns all events.
+inline std::vector<SessionEvent> Stream(Session* session, const Dataset& dataset,
+                                        const std::vector<Arrival>& arrivals) {
+  std::vector<SessionEvent> events;
+  const auto take = [&] {
+    for (SessionEvent& event : session->TakeEvents()) {
+      events.push_back(std::move(event));
+    }
+  };
+  for (const Arrival& message : arrivals) {
+    AddTo(session, dataset, message);
+    take();
+  }
+  session->Flush();
+  take();
+  return events;
+}
+
+/// The events of one kind.
+template <typename Event>
+std::vector<Event> Only(const std::vector<SessionEvent>& events) {
+  std::vector<Event> only;
+  for (const SessionEvent& event : events) {
+    if (const Event* found = std::get_if<Event>(&event)) {
+      only.push_back(*found);
+    }
+  }
+  return only;
+}
+
+/// The states after frames.
+inline std::vector<NavEstimate> StatesOf(const std::vector<SessionEvent>& events,
+                                         Sensor source = Sensor::kCamera) {
+  std::vector<NavEstimate> states;
+  for (const StateEvent& event : Only<StateEvent>(events)) {
+    if (event.source == source) {
+      states.push_back(event.estimate);
+    }
+  }
+  return states;
+}
+
+[[nodiscard]] inline bool SameBits(const NavEstimate& a, const NavEstimate& b) {
+  return a.stamp_ns == b.stamp_ns && a.nav.R_WB == b.nav.R_WB && a.nav.p_WB == b.nav.p_WB &&
+         a.nav.v_WB == b.nav.v_WB && a.bias.gyro == b.bias.gyro && a.bias.accel == b.bias.accel &&
+         a.covariance == b.covariance;
+}
+
+}  // namespace alidade::test
