@@ -98,7 +98,8 @@ INSTANTIATE_TEST_SUITE_P(BothBackEnds, SessionGnssTest, testing::Values("gvio", 
 // GIVEN no camera, THEN the session starts in the ENU frame from GNSS and IMU, and its states do not depend
 // on the delays.
 TEST(SessionWithoutCameraTest, StartsFromGnssAndTheOrderOfArrivalDoesNotMatter) {
-  Dataset dataset = SimulateGnss({"duration_s=40", "path_m=600", "landmark_count=10", "gnss.outage_start_s=39"});
+  Dataset dataset =
+      SimulateGnss({"duration_s=40", "path_m=600", "landmark_count=10", "gnss.outage_start_s=39"});
   dataset.tracks.clear();
   const EstimatorConfig config = Preset("gnss_imu");
   const RunResult ordered =
