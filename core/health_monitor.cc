@@ -24,7 +24,8 @@ double Yaw(const Matrix3d& R_WB) {
   return upright ? std::atan2(-R_WB(0, 1), R_WB(1, 1)) : std::atan2(R_WB(1, 0), R_WB(0, 0));
 }
 
-/// A rotation about the vertical through the position, and a shift, in the canonical chart of a state: 15 x 4.
+/// A rotation about the vertical through the position, and a shift, in the canonical chart of a state: 15
+/// x 4.
 Eigen::Matrix<double, 15, 4> GaugeDirections(const NavState& state) {
   Eigen::Matrix<double, 15, 4> directions = Eigen::Matrix<double, 15, 4>::Zero();
   directions.topRows<9>() = YawShift{0, state.p_WB}.ParameterJacobian(state);

@@ -52,8 +52,8 @@ TEST(ConsensusTest, GIVEN_many_refusals_THEN_the_state_is_suspect_and_few_are_th
   EXPECT_FALSE(StateIsSuspect(0, 0, 0.5, 0));
 }
 
-/// Largest probability, over the number of measurements, that chance alone makes more than half of them and at
-/// least `least` wrong when each is wrong with probability q.
+/// Largest probability, over the number of measurements, that chance alone makes more than half of them and
+/// at least `least` wrong when each is wrong with probability q.
 double FalseSuspicion(double q, int least) {
   double largest = 0;
   for (int n = least; n <= 100; ++n) {
