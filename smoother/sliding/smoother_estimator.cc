@@ -14,6 +14,20 @@
 #include "smoother/solve/window_solver.h"
 
 namespace alidade {
+namespace {
+
+/// SLAM features that have views in the window.
+std::vector<WindowTrack*> FeaturesInSight(Window* window) {
+  std::vector<WindowTrack*> features;
+  for (auto& [id, track] : window->tracks()) {
+    if (track.anchor != nullptr && !track.views.empty()) {
+      features.push_back(&track);
+    }
+  }
+  return features;
+}
+
+}  // namespace
 
 std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const RigCalibration& rig) {
   return std::make_unique<SmootherEstimator>(config, rig);
@@ -222,12 +236,9 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
+  const std::vector<WindowTrack*> features = FeaturesInSight(&window_);
   std::vector<WindowTrack*> gated = *tracks;
-  for (auto& [id, track] : window_.tracks()) {
-    if (track.anchor != nullptr && !track.views.empty()) {
-      gated.push_back(&track);
-    }
-  }
+  gated.insert(gated.end(), features.begin(), features.end());
   if (GateTracks(Geometry(), gated) && slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(&terms)));
   }
@@ -238,7 +249,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   std::copy_if(tracks->begin(), tracks->end(), std::back_inserter(used),
                [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
   auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
-  statistics_.features_used = vision->system().tracks + static_cast<int>(gated.size() - tracks->size());
+  statistics_.features_used = vision->system().tracks + static_cast<int>(FeaturesInSight(&window_).size());
   statistics_.nis = vision->system().chi2;
   statistics_.nis_dof = vision->system().dof;
   terms.push_back(std::move(vision));
