@@ -237,9 +237,9 @@ TEST_F(SquareRootCovarianceTest, ApplyRefusesRowsThatLeaveNothingOfTheIdentity) 
   Clone();
   const MatrixXd before = root_.Covariance();
   MatrixXd rows = 1e150 * MatrixXd::Ones(2, root_.dimension());
-  root_.Prepare(rows);
+  VectorXd innovation = VectorXd::Ones(2);
   VectorXd correction(root_.dimension());
-  EXPECT_FALSE(root_.Apply(rows, VectorXd::Ones(2), correction, nullptr));
+  EXPECT_FALSE(root_.Apply(root_.Prepare(rows, innovation), correction, nullptr));
   EXPECT_EQ(root_.Covariance(), before);
 }
 

@@ -10,7 +10,7 @@
 #include "filter/filter.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother.h"
-#include "smoother/solve/frame_rows.h"
+#include "tests/smoother/solve/given_terms.h"
 #include "tests/support/jacobian_checker.h"
 #include "tests/support/random_states.h"
 
@@ -136,7 +136,7 @@ TEST(ImuIntervalTest, RowsOfTheSmootherHoldTheCovarianceOfTheFilter) {
     PackNavState(end.nav, second.nav.data());
     PackBias(end.bias, second.bias.data());
     UpdatePreintegration(first, rig.imu_noise, &second);
-    const ImuRows rows = LinearizeImu(first, second, GravityInWorld(kGravity));
+    const test::ImuRows rows = test::LinearizeImu(first, second, GravityInWorld(kGravity));
     EXPECT_LT(rows.residual.norm(), 1e-6) << "in standard deviations";
     const Matrix15d chart = ImuChartJacobian(convention, start.nav);
     const Matrix15d chart_end = ImuChartJacobian(convention, end.nav);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gnss/model/gnss_epoch.h"
+#include "gnss/positioning/single_point.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

@@ -73,8 +73,7 @@ struct ImuRows {
 };
 inline ImuRows LinearizeImu(const WindowFrame& from, const WindowFrame& to,
                             const Eigen::Vector3d& gravity_W) {
-  const ImuFactor factor(&*to.preintegration, gravity_W, to.mean_step_s(), from.first_estimate(),
-                         to.first_estimate());
+  const ImuFactor factor(&*to.preintegration, gravity_W, from.first_estimate(), to.first_estimate());
   LinearTerm linear;
   EXPECT_TRUE(MakeTerm(factor, {NavBlock(from), BiasBlock(from), NavBlock(to), BiasBlock(to)})
                   ->Linearize(&linear)
