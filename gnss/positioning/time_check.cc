@@ -87,8 +87,8 @@ Status RolloverFault(const GnssLog& log, std::int64_t periods) {
   return Status::Input(
       Format("the observations' dates need %+lld weeks: they begin at %s, no ephemeris covers them, and "
              "%+lld s later they do; expected GPST (a receiver whose week number rolled over)",
-             static_cast<long long>(1024 * periods), FormatGpsTime(log.epochs.front().stamp_ns, 0).c_str(),
-             static_cast<long long>(periods * (kRolloverNs / kSecondNs))));
+             1024 * static_cast<long long>(periods), FormatGpsTime(log.epochs.front().stamp_ns, 0).c_str(),
+             static_cast<long long>(periods) * (kRolloverNs / kSecondNs)));
 }
 
 /// `scale`, `mended`: of single points without and with the offset.

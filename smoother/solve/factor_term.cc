@@ -79,7 +79,7 @@ std::vector<double*> FactorBlocks::Spread(int rows, std::vector<double>* tangent
   for (const TermBlock& block : blocks_) {
     width += TangentSize(block.kind);
   }
-  tangents->resize(static_cast<size_t>(rows * width));
+  tangents->resize(static_cast<size_t>(rows) * static_cast<size_t>(width));
   std::vector<double*> jacobians;
   double* at = tangents->data();
   for (const TermBlock& block : blocks_) {

@@ -36,7 +36,7 @@ SlamPriorTerm::SlamPriorTerm(const LinearPrior& prior, const Window& window,
 
 const SlamPriorTerm::Solution& SlamPriorTerm::Solve() const {
   if (!solution_) {
-    solution_.emplace();
+    solution_ = Solution();
     solution_->landmarks = slam_.StartingLandmarks();
     solution_->valid =
         slam_.Reduce(PointOf(*window_, calibration_->mean), &solution_->landmarks, &solution_->reduced);

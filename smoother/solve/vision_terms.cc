@@ -62,6 +62,7 @@ Status PoseOnlyTerm::Linearize(LinearTerm* linear) const {
 void PoseOnlyTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
   cost_.emplace(PoseOnlyFactor(*window_, tracks_, *calibration_, kernel_));
   std::vector<double*> parameters;
+  parameters.reserve(static_cast<size_t>(window_->size()) + 1);
   for (int i = 0; i < window_->size(); ++i) {
     parameters.push_back(blocks->Nav(i));
   }
