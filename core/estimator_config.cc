@@ -284,6 +284,7 @@ void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("recovery", "divergence and the start after it, shared by both back ends",
                   [&] { recovery.Describe(visitor); });
   visitor.Section("gnss", "raw GNSS", [&] { gnss.Describe(visitor); });
+  visitor.Section("fix", "position fixes", [&] { fix.Describe(visitor); });
 }
 
 Status EstimatorConfig::Validate() const {
