@@ -252,6 +252,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeFaults(this, visitor);
   DescribeLandmarks(this, visitor);
   visitor.Section("gnss", "the receiver", [&] { gnss.Describe(visitor); });
+  visitor.Section("fix", "position fixes", [&] { fix.Describe(visitor); });
   visitor.Section("render", "images of the camera", [&] { render.Describe(visitor); });
 }
 
