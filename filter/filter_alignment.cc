@@ -43,7 +43,7 @@ Matrix9d TurnOfChart(const Eigen::Matrix3d& R_NW) {
 }  // namespace
 
 void FilterState::Align(const Eigen::Matrix3d& R_NW, const Vector3d& p_NW, const Eigen::Matrix4d& covariance,
-                        const Matrix6d& clock_covariance) {
+                        const std::optional<Matrix6d>& clock_covariance) {
   CHECK(landmarks_.empty());
   const Index n = covariance_.dimension();
   MatrixXd factor = covariance_.factor().triangularView<Eigen::Upper>();
@@ -73,15 +73,18 @@ void FilterState::Align(const Eigen::Matrix3d& R_NW, const Vector3d& p_NW, const
   nav_first_ = Moved(nav_first_, R_NW, p_NW);
   const Eigen::LLT<Eigen::Matrix4d> root(covariance);
   CHECK(root.info() == Eigen::Success) << "covariance of the alignment";
-  const Eigen::LLT<Matrix6d> clock_root(clock_covariance);
-  CHECK(clock_root.info() == Eigen::Success) << "covariance of the clock";
-  MatrixXd stacked = MatrixXd::Zero(kClockSize + n, kClockSize + n + 4);
-  stacked.topLeftCorner(kClockSize, kClockSize) = clock_root.matrixL();
-  stacked.block(kClockSize, kClockSize, n, n) = factor;
+  const int clock = clock_covariance ? kClockSize : 0;
+  MatrixXd stacked = MatrixXd::Zero(clock + n, clock + n + 4);
+  if (clock_covariance) {
+    const Eigen::LLT<Matrix6d> clock_root(*clock_covariance);
+    CHECK(clock_root.info() == Eigen::Success) << "covariance of the clock";
+    stacked.topLeftCorner<kClockSize, kClockSize>() = clock_root.matrixL();
+  }
+  stacked.block(clock, clock, n, n) = factor;
   stacked.bottomRightCorner(n, 4) = alignment * root.matrixL().toDenseMatrix();
-  covariance_.Assign(kClockSize, stacked);
+  covariance_.Assign(clock, stacked);
   if (observer_ != nullptr) {
-    observer_->OnAlign(maps);
+    observer_->OnAlign(maps, clock > 0);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -90,9 +91,10 @@ class FilterState {
   void AddLandmark(const LandmarkRows& rows);
   void RemoveLandmark(size_t index);
   /// Turns world and states by R_NW about the vertical, shifts them by p_NW, adds the covariance of that (of
-  /// yaw about W's origin and shift) to that of all states, and enters the clock's rows. Without landmarks.
+  /// yaw about W's origin and shift) to that of all states, and enters the clock's rows, if its covariance is
+  /// given. Without landmarks.
   void Align(const Eigen::Matrix3d& R_NW, const Eigen::Vector3d& p_NW, const Eigen::Matrix4d& covariance,
-             const Matrix6d& clock_covariance);
+             const std::optional<Matrix6d>& clock_covariance);
   /// Retracts every state by its part of the correction (error order of the class).
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction);
 

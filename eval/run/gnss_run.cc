@@ -138,7 +138,7 @@ void GnssRun::AlignAtStart(const GnssInertialStart::Start& start) {
 }
 
 void GnssRun::SetGlobal(const GnssAlignment& alignment, TimeNs stamp_ns) {
-  result_.global = {alignment.enu,         log_.rig.gnss.p_BA, stamp_ns,
+  result_.global = {*alignment.enu,        log_.rig.gnss.p_BA, stamp_ns,
                     feed_.time_offset_s(), alignment.yaw_rad,  std::sqrt(alignment.covariance(0, 0))};
 }
 

@@ -221,9 +221,9 @@ std::optional<GnssAlignment> GnssAligner::Judge(const AlignmentGuess& guess, con
   alignment.enu = enu_;
   alignment.yaw_rad = guess.yaw_rad;
   alignment.p_NW = guess.p_NW;
-  alignment.clock = guess.biases;
-  alignment.clock[ClockState::kClock] = guess.clock_m.back();
-  alignment.clock[ClockState::kDrift] = guess.drift_mps.back();
+  Vector6d& clock = alignment.clock.emplace(guess.biases);
+  clock[ClockState::kClock] = guess.clock_m.back();
+  clock[ClockState::kDrift] = guess.drift_mps.back();
   alignment.time_offset_s = guess.time_offset_s;
   alignment.report =
       report_ + Format(", yaw %.4f rad", guess.yaw_rad) +

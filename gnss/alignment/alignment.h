@@ -12,17 +12,17 @@
 
 namespace alidade {
 
-/// How the local world W stands in the ENU frame N at an anchor: p_N = Rz(yaw) p_W + p_NW. Both are
-/// gravity-aligned, so that four numbers say it.
+/// How the local world W stands in the ENU frame N at an anchor, or in a gravity-aligned frame of position
+/// fixes: p_N = Rz(yaw) p_W + p_NW. Both are gravity-aligned, so that four numbers say it.
 struct GnssAlignment {
-  TimeNs stamp_ns = 0;  ///< IMU time of the last epoch used
-  EnuFrame enu;         ///< N
+  TimeNs stamp_ns = 0;          ///< IMU time of the last epoch used
+  std::optional<EnuFrame> enu;  ///< N; nothing: a frame whose place on the Earth is not known
   double yaw_rad = 0;
   Eigen::Vector3d p_NW = Eigen::Vector3d::Zero();
   /// Of (yaw, p_NW): truth = estimate + error, the turn about W's origin.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  Vector6d clock = Vector6d::Zero();  ///< at stamp_ns
-  double time_offset_s = 0;           ///< estimated, to be added to the receiver's
+  std::optional<Vector6d> clock;  ///< of the GNSS receiver at stamp_ns; nothing: from position fixes alone
+  double time_offset_s = 0;       ///< estimated, to be added to the receiver's
   std::string report;
 
   [[nodiscard]] Eigen::Matrix3d R_NW() const;

@@ -18,11 +18,11 @@ GnssWindow::GnssWindow(const GnssConfig& config, const GnssReceiver& receiver,
       gate_threshold_(ChiSquareQuantile(1, config.gate_probability)) {}
 
 void GnssWindow::Align(const GnssAlignment& alignment, WindowFrame* frame, LinearPrior* prior) {
-  context_ = GnssFactorContext{config_, {alignment.enu, receiver_.p_BA}, gravity_W_};
+  context_ = GnssFactorContext{config_, {*alignment.enu, receiver_.p_BA}, gravity_W_};
   removed_jumps_m_ = 0;
   clock_lost_ = false;
   const double since_s = std::max(0.0, SecondsBetween(alignment.stamp_ns, frame->stamp_ns));
-  const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * alignment.clock);
+  const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * *alignment.clock);
   frame->clock.emplace();
   Eigen::Map<Vector6d>{frame->clock->data()} = fresh.mean;
   const Eigen::LLT<Matrix6d> factor(fresh.covariance);
