@@ -8,6 +8,7 @@
 #include "core/clock_state.h"
 #include "core/measurement_log.h"
 #include "gnss/alignment/alignment_fit.h"
+#include "gnss/alignment/state_history.h"
 #include "gnss/positioning/single_point.h"
 
 namespace alidade {
@@ -65,7 +66,7 @@ class GnssAligner {
 
   GnssConfig config_;
   GnssReceiver receiver_;
-  std::deque<AlignmentState> states_;
+  StateHistory states_;
   std::deque<GnssEpoch> pending_;
   std::deque<AlignmentSample> samples_;
   std::optional<Eigen::Vector3d> approximate_E_;

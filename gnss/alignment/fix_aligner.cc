@@ -79,6 +79,11 @@ void FixAligner::AddState(const NavEstimate& estimate) {
 void FixAligner::AddFix(const PositionFix& fix) {
   pending_.push_back(fix);
   MatchFixes();
+  // Without a state there is nothing to match; what waits is bounded all the same.
+  while (!pending_.empty() &&
+         SecondsBetween(pending_.front().stamp_ns, fix.stamp_ns) > config_.align_window_s) {
+    pending_.pop_front();
+  }
 }
 
 void FixAligner::MatchFixes() {

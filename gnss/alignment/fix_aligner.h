@@ -30,7 +30,8 @@ class FixAligner {
 
   /// The estimate in the local world; rising stamps.
   void AddState(const NavEstimate& estimate);
-  /// A fix in IMU time and in N. One that is no measurement (MakeFixMeasurement) is passed over.
+  /// A fix in IMU time and in N; rising stamps. One that is no measurement (MakeFixMeasurement) is passed
+  /// over.
   void AddFix(const PositionFix& fix);
 
   /// The alignment, without a clock, once its yaw is known well enough; report() says what is missing.
