@@ -53,8 +53,8 @@ class FilterObserver {
   virtual void OnRemove(int /*first*/, int /*size*/) {}
   /// Core and clones <- turn times them (square, of both together), for the world is turned; the errors of
   /// yaw and shift that this brings lie along the directions in which these errors are unobservable anyway.
-  /// Then six rows of the clock enter before the core. There are no landmarks.
-  virtual void OnAlign(const Eigen::MatrixXd& /*turn*/) {}
+  /// Then six rows of the clock enter before the core if `has_clock`. There are no landmarks.
+  virtual void OnAlign(const Eigen::MatrixXd& /*turn*/, bool /*has_clock*/) {}
   /// An update is about to be applied to `state`.
   virtual void OnUpdate(const FilterState& /*state*/, const FilterRows& /*rows*/) {}
   /// A frame is done.

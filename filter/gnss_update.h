@@ -24,7 +24,8 @@ class GnssUpdate {
   /// Null, the default, observes nothing. It must outlive the object.
   void SetObserver(FilterObserver* observer) { observer_ = observer; }
 
-  /// Turns the state, which holds no landmarks, into the ENU frame and enters the clock.
+  /// Turns the state, which holds no landmarks, into the alignment's frame and enters the clock, if it is
+  /// known.
   void Align(const GnssAlignment& alignment, FilterState* state);
   [[nodiscard]] bool aligned() const { return mount_.has_value(); }
   /// Back to a local world.

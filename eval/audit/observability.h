@@ -48,7 +48,7 @@ class ObservabilityAudit : public FilterObserver {
   void OnAddLandmark(int first, const Eigen::MatrixXd& rows) override;
   void OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) override;
   void OnRemove(int first, int size) override;
-  void OnAlign(const Eigen::MatrixXd& turn) override;
+  void OnAlign(const Eigen::MatrixXd& turn, bool has_clock) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
 

@@ -23,6 +23,8 @@ class GnssRun {
 
   [[nodiscard]] GnssFeed& feed() { return feed_; }
   [[nodiscard]] bool aligned() const { return alignment_.has_value(); }
+  /// Precondition: aligned.
+  [[nodiscard]] const EnuFrame& enu() const { return *alignment_->enu; }
 
   /// The next epoch; `running`: there is an estimate. The IMU reaches the epoch when the run is aligned. True
   /// when the estimator took it.

@@ -10,6 +10,7 @@
 #include "eval/dataset/dataset.h"
 #include "eval/simulation/continuous_trajectory.h"
 #include "eval/simulation/render_config.h"
+#include "eval/simulation/sim_fix_config.h"
 #include "eval/simulation/sim_gnss_config.h"
 
 namespace alidade {
@@ -132,6 +133,7 @@ struct SimulatorConfig {
   double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
 
   SimGnssConfig gnss;
+  SimFixConfig fix;
   RenderConfig render;
 
   [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }
