@@ -153,6 +153,7 @@ class Schedule {
 
   void AddFixes() {
     std::vector<std::uint32_t> topics;
+    topics.reserve(dataset_.rig.fixes.size());
     for (std::size_t k = 0; k < dataset_.rig.fixes.size(); ++k) {
       topics.push_back(dataset_.rig.fixes[k].anchor_llh_deg
                            ? bag_->AddTopic(NavSatFixTopic(topics_, k), "sensor_msgs/NavSatFix")

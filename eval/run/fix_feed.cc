@@ -6,6 +6,7 @@
 namespace alidade {
 
 FixFeed::FixFeed(const RigCalibration& rig, bool with_gnss) : sensors_(rig.fixes) {
+  frames_.reserve(sensors_.size());
   for (const FixSensor& sensor : sensors_) {
     frames_.push_back(sensor.anchor_llh_deg ? std::optional(EnuFrameAtLlh(*sensor.anchor_llh_deg))
                                             : std::nullopt);

@@ -162,6 +162,7 @@ FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess
   Fit fit;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     std::vector<double> norms;
+    norms.reserve(points.size());
     for (const Point& point : points) {
       norms.push_back(guess.Residual(point).norm());
     }
