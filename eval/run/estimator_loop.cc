@@ -90,14 +90,7 @@ void EstimatorLoop::ProcessEpochWithCamera() {
   if (gnss_->aligned()) {
     DeliverImu(stamp_ns);
   }
-  const Result<bool> taken = gnss_->TakeEpoch(running());
-  if (taken.code() == StatusCode::kDiverged) {
-    GiveUp(estimator_.Latest().stamp_ns, taken.status());
-  } else if (!taken.ok()) {
-    Fail(stamp_ns, taken.status());
-  } else if (*taken) {
-    ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
-  }
+  ReportTaken(Sensor::kGnss, gnss_->TakeEpoch(running()), stamp_ns, stopwatch);
 }
 
 void EstimatorLoop::ProcessEpochAlone() {
@@ -122,15 +115,19 @@ void EstimatorLoop::ProcessFix() {
   if (fixes_->aligned()) {
     DeliverImu(stamp_ns);
   }
-  const Result<bool> taken = fixes_->TakeFix(running());
+  ReportTaken(Sensor::kFix, fixes_->TakeFix(running()), stamp_ns, stopwatch);
+  TrimImu();
+}
+
+void EstimatorLoop::ReportTaken(Sensor source, const Result<bool>& taken, TimeNs stamp_ns,
+                                const Stopwatch& stopwatch) {
   if (taken.code() == StatusCode::kDiverged) {
     GiveUp(estimator_.Latest().stamp_ns, taken.status());
   } else if (!taken.ok()) {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
-    ReportState(Sensor::kFix, stamp_ns, 0, stopwatch);
+    ReportState(source, stamp_ns, 0, stopwatch);
   }
-  TrimImu();
 }
 
 void EstimatorLoop::DeliverImu(TimeNs stamp_ns) {

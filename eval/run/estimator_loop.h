@@ -67,6 +67,8 @@ class EstimatorLoop {
   void AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch);
   void AlignAfterFrame(TimeNs stamp_ns);
   Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
+  /// The state after an epoch or a fix with a camera, if the estimator took it, or why it is lost.
+  void ReportTaken(Sensor source, const Result<bool>& taken, TimeNs stamp_ns, const Stopwatch& stopwatch);
   void ReportState(Sensor source, TimeNs message_ns, double frontend_ms, const Stopwatch& stopwatch);
   void GiveUp(TimeNs stamp_ns, const Status& status);
   void Fail(TimeNs stamp_ns, Status status);

@@ -1,7 +1,6 @@
 #include "gnss/alignment/fix_aligner.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,10 +20,6 @@ constexpr std::size_t kMaxPoints = 40;  // bounds the pairs
 constexpr double kRetryS = 0.5;
 constexpr int kRows = PositionFixModel::kRows;
 
-Matrix3d RotationZ(double yaw_rad) {
-  return Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
-}
-
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -43,13 +38,12 @@ struct FixAligner::Point {
 };
 
 struct FixAligner::Guess {
-  double yaw_rad = 0;
-  Vector3d p_NW = Vector3d::Zero();
+  YawShift transform;
   Vector3d dv_W = Vector3d::Zero();
 
   [[nodiscard]] Vector3d Residual(const Point& point) const {
-    const Vector3d turned = RotationZ(yaw_rad) * (point.p_WA + point.since_newest_s * dv_W);
-    return point.sqrt_information * (turned + p_NW - point.p_NA);
+    const Vector3d turned = transform.Rotation() * (point.p_WA + point.since_newest_s * dv_W);
+    return point.sqrt_information * (turned + transform.p_NW - point.p_NA);
   }
 };
 
@@ -132,9 +126,10 @@ FixAligner::Guess FixAligner::FirstGuess(const std::vector<Point>& points) {
       const Vector3d chord_W = points[j].p_WA - points[i].p_WA;
       const Vector3d chord_N = points[j].p_NA - points[i].p_NA;
       Guess guess;
-      guess.yaw_rad = std::atan2(chord_N.y(), chord_N.x()) - std::atan2(chord_W.y(), chord_W.x());
-      guess.p_NW = 0.5 * (points[i].p_NA + points[j].p_NA -
-                          RotationZ(guess.yaw_rad) * (points[i].p_WA + points[j].p_WA));
+      YawShift& transform = guess.transform;
+      transform.yaw_rad = std::atan2(chord_N.y(), chord_N.x()) - std::atan2(chord_W.y(), chord_W.x());
+      transform.p_NW =
+          0.5 * (points[i].p_NA + points[j].p_NA - transform.Rotation() * (points[i].p_WA + points[j].p_WA));
       for (std::size_t k = 0; k < points.size(); ++k) {
         squares[k] = guess.Residual(points[k]).squaredNorm();
       }
@@ -170,7 +165,7 @@ FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess
     fit.inside = 0;
     Matrix7d hessian = Matrix7d::Zero();
     Vector7d gradient = Vector7d::Zero();
-    const Matrix3d R_NW = RotationZ(guess.yaw_rad);
+    const Matrix3d R_NW = guess.transform.Rotation();
     for (std::size_t k = 0; k < points.size(); ++k) {
       if (norms[k] > std::max(gate, kGateScales * median_norm * fit.scale)) {
         continue;
@@ -197,8 +192,8 @@ FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess
     if (solver.info() != Eigen::Success || !solver.isPositive() || !step.allFinite()) {
       return fit;
     }
-    guess.yaw_rad = std::remainder(guess.yaw_rad + step[0], 2 * M_PI);
-    guess.p_NW += step.segment<3>(1);
+    guess.transform.yaw_rad = std::remainder(guess.transform.yaw_rad + step[0], 2 * M_PI);
+    guess.transform.p_NW += step.segment<3>(1);
     guess.dv_W += step.tail<3>();
     fit.covariance = solver.solve(Eigen::Matrix<double, 7, 4>::Identity()).topRows<4>();
   }
@@ -247,9 +242,9 @@ std::optional<GnssAlignment> FixAligner::Judge(const Fit& fit, std::size_t point
   }
   alignment.stamp_ns = newest;
   alignment.enu = enu_;
-  alignment.yaw_rad = fit.guess.yaw_rad;
-  alignment.p_NW = fit.guess.p_NW;
-  alignment.report = report_ + Format(", yaw %.4f rad", fit.guess.yaw_rad);
+  alignment.yaw_rad = fit.guess.transform.yaw_rad;
+  alignment.p_NW = fit.guess.transform.p_NW;
+  alignment.report = report_ + Format(", yaw %.4f rad", fit.guess.transform.yaw_rad);
   return alignment;
 }
 
