@@ -1,6 +1,7 @@
 #include "gnss/alignment/fix_aligner.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
