@@ -10,8 +10,8 @@ function(alidade_add_room folder room)
   alidade_install_library(${target} ${folder}_${room} INTERNAL ${ARG_INTERNAL})
 endfunction()
 
-# alidade_compile_fast(<target>): the target's sources start from the precompiled headers of core and are compiled in groups, so that
-# headers are read and templates instantiated once a group. Names in anonymous namespaces must therefore differ within a room.
+# alidade_compile_fast(<target>): the target's sources start from the precompiled headers of core. With ALIDADE_UNITY they are compiled in
+# groups too, so names in anonymous namespaces must differ within a room.
 function(alidade_compile_fast target)
   if(NOT target STREQUAL alidade_core)
     target_precompile_headers(${target} REUSE_FROM alidade_core)
