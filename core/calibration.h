@@ -63,8 +63,8 @@ bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const Eigen::Vect
 [[nodiscard]] Eigen::VectorXd Local(const CalibrationLayout& layout, const CameraCalibration& estimate,
                                     const CameraCalibration& truth);
 
-/// d zeta_B / d t of a moving body in the canonical chart: (omega_B, v_W). A camera whose time offset is off
-/// by dt sees from where the body is dt later (Li & Mourikis, IJRR 2014).
+/// d zeta_B / d t of a moving body in the canonical chart: (omega_B, v_W). A camera with a time-offset error
+/// dt observes from the pose that the body has dt later (Li & Mourikis, IJRR 2014).
 [[nodiscard]] inline Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB) {
   return (Vector6d() << omega_B, v_WB).finished();
 }

@@ -36,12 +36,16 @@ struct FrameStatistics {
   int nis_dof = 0;       ///< rows applied, vision's
   double gnss_nis = 0;   ///< the same of the epochs since the frame before
   int gnss_nis_dof = 0;
+  int fixes_used = 0;  ///< position fixes since the frame before
+  int fixes_gated = 0;
+  double fix_nis = 0;  ///< normalised innovation squared of the used ones
+  int fix_nis_dof = 0;
   bool clock_jump = false;  ///< the receiver clock was set anew
   double propagate_ms = 0;
   double update_ms = 0;
 };
 
-/// What an estimator that looks back says of one frame when the sequence is over.
+/// Revised estimate of one frame, available after the sequence (batch estimate).
 struct FinalizedFrame {
   NavEstimate estimate;
   FrameStatistics statistics;
@@ -71,11 +75,18 @@ class Estimator {
   virtual Status AddFrame(const TrackFrame& frame) = 0;
 
   /// Turns the local world into the ENU frame of `alignment`: states, covariance (with the alignment's own)
-  /// and what later frames refer to. Called once, before the first AddGnss, at the time of the state.
+  /// and what later frames refer to. Called once, before the first AddGnss or AddFix, at the time
+  /// of the state.
   /// kConfig: the back end takes no GNSS.
   virtual Status Align(const GnssAlignment& /*alignment*/) { return NoGnss(); }
   /// Updates with an epoch; the same rules as AddFrame. A frame may follow at the same stamp or later.
   virtual Status AddGnss(const GnssEpoch& /*epoch*/) { return NoGnss(); }
+  /// Updates with a position of IMU time that stands in W as Align turned it; the same rules as AddGnss.
+  /// kInput also: a sensor that the rig does not have, or no covariance. kConfig: the back end takes no
+  /// position fixes.
+  virtual Status AddFix(const PositionFix& /*fix*/) {
+    return Status::Config("fix.enabled: this back end takes no position fixes; expected false");
+  }
   /// Receiver clock after the last epoch; nothing before Align.
   [[nodiscard]] virtual std::optional<ClockState> LatestClock() const { return std::nullopt; }
   /// What became of the last epoch's satellites; null before Align.
@@ -87,12 +98,12 @@ class Estimator {
   [[nodiscard]] virtual const FrameStatistics& last_statistics() const = 0;
 
   /// The camera's calibration after the last accepted frame; nothing when none is estimated. Frames are
-  /// placed in IMU time by the time offset it tells, and the IMU must have been added as far as that.
+  /// placed in IMU time by its time offset, and IMU samples must have been added up to that time.
   [[nodiscard]] virtual std::optional<CalibrationEstimate> LatestCalibration() const { return std::nullopt; }
 
   /// Called once, when the log is at its end: revised estimates of all accepted frames, in their order; empty
-  /// for an estimator that does not look back. `stop` (may be null) is polled: when it is set the result is
-  /// empty. kDiverged: no estimate was found; those of Latest stand.
+  /// for an online estimator. `stop` (may be null) is polled: when it is set the result is empty. kDiverged:
+  /// no estimate was found; those of Latest remain valid.
   virtual Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* /*stop*/) {
     return std::vector<FinalizedFrame>();
   }

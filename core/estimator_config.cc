@@ -326,6 +326,7 @@ void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("recovery", "detection of divergence and re-initialisation, shared by both back ends",
                   [&] { recovery.Describe(visitor); });
   visitor.Section("gnss", "raw GNSS", [&] { gnss.Describe(visitor); });
+  visitor.Section("fix", "position fixes", [&] { fix.Describe(visitor); });
 }
 
 Status EstimatorConfig::Validate() const {
@@ -350,6 +351,11 @@ Status EstimatorConfig::Validate() const {
   if (gnss.enabled && backend == Backend::kBatch) {
     return Status::Config(
         "gnss.enabled: true, but the batch back end takes no GNSS; expected false, or backend: "
+        "filter or smoother");
+  }
+  if (fix.enabled && backend == Backend::kBatch) {
+    return Status::Config(
+        "fix.enabled: true, but the batch back end takes no position fixes; expected false, or backend: "
         "filter or smoother");
   }
   if (calibration.any() && backend == Backend::kBatch) {

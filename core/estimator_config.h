@@ -4,6 +4,7 @@
 
 #include "core/config_schema.h"
 #include "core/error_convention.h"
+#include "core/fix_config.h"
 #include "core/gnss_config.h"
 #include "core/imu_sample.h"
 #include "core/status.h"
@@ -203,6 +204,7 @@ struct EstimatorConfig {
   CalibrationConfig calibration;
   RecoveryConfig recovery;
   GnssConfig gnss;
+  FixConfig fix;
 
   /// Lists every key with unit, range and reason; the order is the order of configs/base.yaml.
   void Describe(ConfigVisitor& visitor);

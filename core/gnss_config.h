@@ -8,9 +8,9 @@
 
 namespace alidade {
 
-/// What is done about the ionosphere: nothing, the broadcast model (GPS's Klobuchar, else BeiDou's, else
-/// nothing with a larger deviation; NeQuick G is not implemented), or the ionosphere-free pair of two bands.
-/// A satellite without a second band is then left out.
+/// Ionosphere correction: none, the broadcast model (Klobuchar with GPS parameters, else BeiDou's, else none
+/// with a larger standard deviation; NeQuick G is not implemented), or the ionosphere-free pair of two bands,
+/// for which a satellite without a second band is not used.
 enum class IonosphereMode { kNone, kBroadcast, kFree };
 
 /// Which signals are used and how far they are trusted.

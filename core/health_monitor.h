@@ -6,12 +6,11 @@
 
 namespace alidade {
 
-/// Tells when an estimate is lost although its estimator goes on: not finite, its covariance no covariance,
-/// faster or more biased than the limits of RecoveryConfig, or contradicted by its tracks for
-/// recovery.max_suspect_s without a frame in between that supports it. A frame supports the
-/// state when at least half of the tracks that were due could be used without force
-/// (FrameStatistics::suspect), or at rest; it contradicts when more failed; without tracks that were due it
-/// says nothing.
+/// Detects a lost estimate: not finite, with an invalid covariance, with speed or biases beyond the limits of
+/// RecoveryConfig, or contradicted by its tracks for recovery.max_suspect_s without a supporting frame in
+/// between. A frame supports the state when at least half of the due tracks could be used without the
+/// consensus gate (FrameStatistics::suspect), or at rest. It contradicts the state when more failed. A frame
+/// without due tracks does neither.
 class HealthMonitor {
  public:
   explicit HealthMonitor(const RecoveryConfig& config) : config_(config) {}
@@ -30,14 +29,15 @@ class HealthMonitor {
   TimeNs doubted_since_ns_ = 0;
 };
 
-/// The state of a new start, moved to where the rig should be: a new start knows neither its yaw nor its
-/// position. `reckoned` is the last sound estimate propagated to the stamp of `start`, covariance included;
-/// its yaw and position, with their covariance, replace those of `start`, whose other coordinates keep
-/// theirs. Canonical chart throughout.
+/// The state of a new start, placed at the expected pose of the rig: a new start has an arbitrary yaw and
+/// origin. `reckoned` is the last valid estimate, propagated with the IMU to the stamp of `start`, covariance
+/// included; its yaw and position, with their covariance, replace those of `start`, whose other coordinates
+/// keep theirs. Canonical chart throughout.
 ///
-/// The start checks the reckoning: velocity and tilt, which both know, disagree as far as the IMU failed
-/// meanwhile. The disagreement counts as deviation of yaw and, times the time since, of position. Beyond the
-/// start's own speed the reckoning is worth nothing: the rig is then taken to be about where it was.
+/// Velocity and tilt are known to both; their difference measures the error of the dead reckoning. It is
+/// added to the standard deviation of yaw and, multiplied by the elapsed time, of position. If the velocity
+/// difference exceeds the start's own speed, the dead reckoning is dropped and the rig is assumed to be near
+/// its last valid position.
 [[nodiscard]] NavEstimate ContinueFrom(const NavEstimate& sound, const NavEstimate& reckoned,
                                        const NavEstimate& start);
 

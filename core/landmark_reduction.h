@@ -32,9 +32,9 @@ struct TrackLinearization {
 bool LinearizeTrack(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
                     const Eigen::Vector3d& p_W, TrackLinearization* linearization);
 
-/// The rows that say something about the poses alone: N^T [H | r] with N the left null space of the point
-/// Jacobian; at most 2N-3 rows, unit noise. With the total Jacobian H_X of PoseOnlyModel, N^T H_X is the same
-/// matrix: the pose-only update is the MSCKF update on equal observations and linearisation point
+/// The rows that do not depend on the landmark: N^T [H | r] with N the left null space of the point Jacobian;
+/// at most 2N-3 rows, unit noise. With the total Jacobian H_X of PoseOnlyModel, N^T H_X is the same matrix:
+/// the pose-only update is the MSCKF update on equal observations and linearisation point
 /// (docs/pose_only.md).
 ///
 /// `jacobian` is 2N x M with all state columns, `residual` 2N; both are overwritten, the first 3 rows then

@@ -18,8 +18,8 @@ bool TriangulateLandmark(std::span<const Pose> T_WC, std::span<const NormalizedO
                          DepthViews views, double max_relative_deviation, PoseOnlyDepth* depth);
 
 /// Weak prior on a landmark's inverse depth, for tracks without parallax: sqrt_information (rho - mean). Such
-/// a track (at rest, or far away) still holds rotation and says that the camera did not move; leaving it out
-/// would leave both to the IMU.
+/// a track (at rest, or far away) still constrains rotation and shows that the camera did not move; without
+/// it both would depend on the IMU.
 struct DepthPrior {
   double mean = 0;              ///< [1/m]
   double sqrt_information = 0;  ///< [m]; 0: no prior

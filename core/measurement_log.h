@@ -9,6 +9,7 @@
 #include "core/camera_model.h"
 #include "core/imu_sample.h"
 #include "core/navigation_state.h"
+#include "core/position_fix.h"
 
 namespace alidade {
 
@@ -31,8 +32,8 @@ struct TrackFrame {
 struct GnssReceiver {
   Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();  ///< antenna in the body frame [m]
   double time_offset_s = 0;                        ///< t_imu = t_GPST + offset
-  /// Origin of the ENU frame the sequence's truth stands in, ECEF [m]. Estimates then stand there too;
-  /// without it the first solution is the origin. A choice of coordinates only.
+  /// Origin of the ENU frame of the sequence's truth, ECEF [m], used for the estimates too. Empty: the first
+  /// solution is the origin.
   std::optional<Eigen::Vector3d> anchor_E;
 };
 
@@ -45,6 +46,7 @@ struct RigCalibration {
   ImuNoise imu_noise;
   double camera_time_offset_s = 0;  ///< t_imu = t_camera + offset
   GnssReceiver gnss = {};
+  std::vector<FixSensor> fixes = {};
 };
 
 /// One more camera of the rig beside the one in RigCalibration. Its track ids are those of the first camera
@@ -66,6 +68,9 @@ struct MeasurementLog {
   std::vector<ExtraCamera> extra_cameras = {};
   /// Raw observations and ephemerides; null without GNSS.
   std::shared_ptr<const GnssLog> gnss = nullptr;
+  /// Of all sensors, in the order of IMU time (stamp + the sensor's offset); those of one sensor with
+  /// strictly increasing stamps.
+  std::vector<PositionFix> fixes = {};
 };
 
 }  // namespace alidade

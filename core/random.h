@@ -9,12 +9,11 @@
 namespace alidade {
 
 /// A stream of pseudo-random numbers that is the same on every standard library: the engine is
-/// std::mt19937_64, whose output the C++ standard fixes, and the distributions (which it does not fix) are
-/// our own.
+/// std::mt19937_64, whose output the C++ standard specifies; the distributions, which it does not specify,
+/// are implemented here.
 ///
-/// A stream is named by a seed and a purpose. Streams of different purposes are independent for practical
-/// ends, so that one more sensor, or one more draw in one of them, leaves the numbers of all others as they
-/// were.
+/// A stream is named by a seed and a purpose. Streams of different purposes are practically independent: an
+/// additional sensor or draw in one stream does not change the numbers of the others.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view purpose);

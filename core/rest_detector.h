@@ -15,9 +15,9 @@ struct RestVerdict {
   bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
 };
 
-/// Tells from tracks and IMU together whether the rig stands still. A track at rest has no parallax and is
-/// refused by the gate of depth, so that without this a resting estimator drifts with its accelerometer;
-/// tracks alone cannot tell a shift from a turn, an IMU alone cannot tell rest from constant velocity.
+/// Detects rest from tracks and IMU. At rest tracks have no parallax and are rejected by the parallax gate,
+/// so an estimator would drift with its accelerometer. Tracks alone cannot separate translation from
+/// rotation, an IMU alone cannot separate rest from constant velocity.
 ///
 /// No translation: the image flow since the oldest frame of the window, freed of the rig's turn, fitted by
 /// shift, zoom and roll over the common tracks, stays below VisionConfig::rest_max_flow_px at the image's

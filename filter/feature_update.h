@@ -35,9 +35,9 @@ class FeatureUpdate {
   TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember = false) {
     return AppendViews(state, track, to_remember, nullptr);
   }
-  /// The same for a track that shall become a landmark of the state: linearised where Gauss-Newton puts it,
-  /// with the three rows left over in `landmark_rows`. kWaiting, with nothing appended, while its depth is
-  /// not known to slam_max_depth_deviation.
+  /// The same for a track that becomes a SLAM feature: linearised at the Gauss-Newton solution, with the
+  /// three remaining rows in `landmark_rows`. kWaiting, with nothing appended, while its depth is not known
+  /// to slam_max_depth_deviation.
   TrackOutcome AppendLandmark(const FilterState& state, const Track& track, LandmarkRows* landmark_rows) {
     return AppendViews(state, track, false, landmark_rows);
   }

@@ -17,7 +17,7 @@ constexpr int kClockSize = FilterState::kClockSize;
 }  // namespace
 
 void FilterState::Align(const YawShift& transform, const Eigen::Matrix4d& covariance,
-                        const Matrix6d& clock_covariance) {
+                        const std::optional<Matrix6d>& clock_covariance) {
   CHECK(landmarks_.empty());
   const Index n = covariance_.dimension();
   MatrixXd factor = covariance_.factor().triangularView<Eigen::Upper>();
@@ -47,15 +47,18 @@ void FilterState::Align(const YawShift& transform, const Eigen::Matrix4d& covari
   nav_first_ = transform * nav_first_;
   const Eigen::LLT<Eigen::Matrix4d> root(covariance);
   CHECK(root.info() == Eigen::Success) << "covariance of the alignment";
-  const Eigen::LLT<Matrix6d> clock_root(clock_covariance);
-  CHECK(clock_root.info() == Eigen::Success) << "covariance of the clock";
-  MatrixXd stacked = MatrixXd::Zero(kClockSize + n, kClockSize + n + 4);
-  stacked.topLeftCorner(kClockSize, kClockSize) = clock_root.matrixL();
-  stacked.block(kClockSize, kClockSize, n, n) = factor;
+  const int clock = clock_covariance ? kClockSize : 0;
+  MatrixXd stacked = MatrixXd::Zero(clock + n, clock + n + 4);
+  if (clock_covariance) {
+    const Eigen::LLT<Matrix6d> clock_root(*clock_covariance);
+    CHECK(clock_root.info() == Eigen::Success) << "covariance of the clock";
+    stacked.topLeftCorner<kClockSize, kClockSize>() = clock_root.matrixL();
+  }
+  stacked.block(clock, clock, n, n) = factor;
   stacked.bottomRightCorner(n, 4) = alignment * root.matrixL().toDenseMatrix();
-  covariance_.Assign(kClockSize, stacked);
+  covariance_.Assign(clock, stacked);
   if (observer_ != nullptr) {
-    observer_->OnAlign(maps);
+    observer_->OnAlign(maps, clock > 0);
   }
 }
 

@@ -24,6 +24,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone,
               state_.layout().size()),
       gnss_(config.gnss, rig.gnss),
+      fixes_(config.fix, rig.fixes),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
       correction_(state_.covariance().capacity()) {
@@ -38,6 +39,8 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));
   tracks_.Clear();
   gnss_.Reset();
+  fixes_.Reset();
+  aligned_ = false;
   rest_.Clear();
   imu_.DropBefore(initial.stamp_ns);
   frame_stamp_ns_ = INT64_MIN;
@@ -51,6 +54,7 @@ void FilterEstimator::SetObserver(FilterObserver* observer) {
   observer_ = observer;
   state_.SetObserver(observer);
   gnss_.SetObserver(observer);
+  fixes_.SetObserver(observer);
   update_.SetTracing(observer != nullptr);
 }
 

@@ -8,6 +8,7 @@
 #include "core/robust.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
+#include "filter/fix_update.h"
 #include "filter/gnss_update.h"
 #include "filter/slam_features.h"
 #include "filter/track_store.h"
@@ -25,6 +26,7 @@ class FilterEstimator : public Estimator {
   Status AddFrame(const TrackFrame& frame) override;
   Status Align(const GnssAlignment& alignment) override;
   Status AddGnss(const GnssEpoch& epoch) override;
+  Status AddFix(const PositionFix& fix) override;
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return state_.Estimate(); }
@@ -38,6 +40,10 @@ class FilterEstimator : public Estimator {
 
  private:
   Status PropagateTo(TimeNs stamp_ns);
+  /// The same for a measurement between frames; `what` names it in messages. kDiverged: not aligned.
+  Status BeginMeasurement(const char* what, TimeNs stamp_ns);
+  /// Corrects the state unless `finite` is false; kDiverged when the state is lost.
+  Status EndMeasurement(const char* what, TimeNs stamp_ns, bool finite);
   /// Index of the clone to marginalise after this frame, or -1 while the window is not full.
   [[nodiscard]] int ChooseLeavingClone() const;
   /// True when the track's views are to be used in this frame.
@@ -75,12 +81,14 @@ class FilterEstimator : public Estimator {
   SlamFeatures slam_;
   TrackStore tracks_;
   GnssUpdate gnss_;
+  FixUpdate fixes_;
   RestDetector rest_;
   ImuBuffer imu_;
   FrameStatistics statistics_;
   FilterObserver* observer_ = nullptr;
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
+  bool aligned_ = false;               ///< W is the frame of GNSS and fixes
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame

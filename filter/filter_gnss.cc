@@ -1,7 +1,9 @@
+#include <string>
+
 #include "core/stopwatch.h"
 #include "filter/filter_estimator.h"
 
-// GNSS of FilterEstimator.
+// GNSS and position fixes of FilterEstimator.
 
 namespace alidade {
 
@@ -22,34 +24,60 @@ Status FilterEstimator::Align(const GnssAlignment& alignment) {
   }
   rest_.Clear();
   gnss_.Align(alignment, &state_);
+  aligned_ = true;
   return Status::Ok();
 }
 
-Status FilterEstimator::AddGnss(const GnssEpoch& epoch) {
-  if (!initialized_ || !gnss_.aligned()) {
+Status FilterEstimator::BeginMeasurement(const char* what, TimeNs stamp_ns) {
+  if (!initialized_ || !aligned_) {
     return Status::Diverged("filter: not aligned");
   }
-  if (epoch.stamp_ns < state_.stamp_ns()) {
-    return Status::Input("filter: the GNSS epoch at " + FormatSeconds(epoch.stamp_ns) +
+  if (stamp_ns < state_.stamp_ns()) {
+    return Status::Input(std::string("filter: the ") + what + " at " + FormatSeconds(stamp_ns) +
                          " s is older than the state");
   }
   statistics_ = {};
   const Stopwatch stopwatch;
-  if (epoch.stamp_ns > state_.stamp_ns()) {
-    ALIDADE_RETURN_IF_ERROR(PropagateTo(epoch.stamp_ns));
+  if (stamp_ns > state_.stamp_ns()) {
+    ALIDADE_RETURN_IF_ERROR(PropagateTo(stamp_ns));
   }
   statistics_.propagate_ms = stopwatch.ElapsedMs();
-  const bool finite = gnss_.Apply(epoch, last_gyro_radps_, &state_, Correction(), &statistics_);
+  return Status::Ok();
+}
+
+Status FilterEstimator::EndMeasurement(const char* what, TimeNs stamp_ns, bool finite) {
   if (finite) {
     Correct();
   }
-  statistics_.update_ms = stopwatch.ElapsedMs() - statistics_.propagate_ms;
   if (!finite || !state_.AllFinite()) {
     initialized_ = false;
-    return Status::Diverged("filter: state is not finite after the GNSS epoch at " +
-                            FormatSeconds(epoch.stamp_ns) + " s");
+    return Status::Diverged(std::string("filter: state is not finite after the ") + what + " at " +
+                            FormatSeconds(stamp_ns) + " s");
   }
   return Status::Ok();
+}
+
+Status FilterEstimator::AddGnss(const GnssEpoch& epoch) {
+  if (!gnss_.aligned()) {
+    return Status::Diverged("filter: not aligned");
+  }
+  ALIDADE_RETURN_IF_ERROR(BeginMeasurement("GNSS epoch", epoch.stamp_ns));
+  const Stopwatch stopwatch;
+  const bool finite = gnss_.Apply(epoch, last_gyro_radps_, &state_, Correction(), &statistics_);
+  const Status status = EndMeasurement("GNSS epoch", epoch.stamp_ns, finite);
+  statistics_.update_ms = stopwatch.ElapsedMs();
+  return status;
+}
+
+Status FilterEstimator::AddFix(const PositionFix& fix) {
+  const Result<FixMeasurement> measurement = fixes_.Prepare(fix);
+  ALIDADE_RETURN_IF_ERROR(measurement.status());
+  ALIDADE_RETURN_IF_ERROR(BeginMeasurement("position fix", fix.stamp_ns));
+  const Stopwatch stopwatch;
+  const bool finite = fixes_.Apply(*measurement, &state_, Correction(), &statistics_);
+  const Status status = EndMeasurement("position fix", fix.stamp_ns, finite);
+  statistics_.update_ms = stopwatch.ElapsedMs();
+  return status;
 }
 
 std::optional<ClockState> FilterEstimator::LatestClock() const {

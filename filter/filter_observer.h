@@ -29,10 +29,10 @@ struct FilterRows {
   std::vector<TracedBlock> blocks;
 };
 
-/// Sees every linear operation the filter performs on its error, with the matrices it really uses. The error
-/// is [landmarks, newest first | clock 6, once aligned with GNSS | core 15 | clones, newest first]; without
-/// landmarks in the state (filter.slam_features: 0) the core, or its clock, comes first. Default functions do
-/// nothing, and a filter without observer does no extra work.
+/// Receives every linear operation of the filter on its error, with the matrices that the filter uses. The
+/// error is [landmarks, newest first | clock 6, once aligned with GNSS | core 15 | clones, newest first];
+/// without landmarks in the state (filter.slam_features: 0) the core, or its clock, comes first. Default
+/// functions do nothing, and a filter without observer does no extra work.
 class FilterObserver {
  public:
   virtual ~FilterObserver() = default;
@@ -51,10 +51,10 @@ class FilterObserver {
   virtual void OnAddToLandmark(int /*landmark*/, const Eigen::Matrix3d& /*m*/, int /*source*/) {}
   /// The rows [first, first + size) leave.
   virtual void OnRemove(int /*first*/, int /*size*/) {}
-  /// Core and clones <- turn times them (square, of both together), for the world is turned; the errors of
-  /// yaw and shift that this brings lie along the directions in which these errors are unobservable anyway.
-  /// Then six rows of the clock enter before the core. There are no landmarks.
-  virtual void OnAlign(const Eigen::MatrixXd& /*turn*/) {}
+  /// Core and clones <- turn times them (square, of both together) at the rotation into ENU; the added errors
+  /// of yaw and position are along directions that are unobservable anyway. Then six rows of the clock enter
+  /// before the core if `has_clock`. There are no landmarks.
+  virtual void OnAlign(const Eigen::MatrixXd& /*turn*/, bool /*has_clock*/) {}
   /// An update is about to be applied to `state`.
   virtual void OnUpdate(const FilterState& /*state*/, const FilterRows& /*rows*/) {}
   /// A frame is done.

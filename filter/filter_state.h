@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -91,8 +92,9 @@ class FilterState {
   void AddLandmark(const LandmarkRows& rows);
   void RemoveLandmark(size_t index);
   /// Transforms all states, adds the covariance of the transform's parameters (yaw, p_NW) to theirs, and
-  /// enters the clock's rows. Precondition: no landmarks.
-  void Align(const YawShift& transform, const Eigen::Matrix4d& covariance, const Matrix6d& clock_covariance);
+  /// enters the clock's rows if its covariance is given. Precondition: no landmarks.
+  void Align(const YawShift& transform, const Eigen::Matrix4d& covariance,
+             const std::optional<Matrix6d>& clock_covariance);
   /// Retracts every state by its part of the correction (error order of the class).
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction);
 

@@ -19,9 +19,13 @@ GnssUpdate::GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver)
     : config_(config), receiver_(receiver), gate_threshold_(ChiSquareQuantile(1, config.gate_probability)) {}
 
 void GnssUpdate::Align(const GnssAlignment& alignment, FilterState* state) {
-  const ClockState fresh = FreshClock(config_, alignment.clock);
+  if (!alignment.clock) {
+    state->Align(alignment.Transform(), alignment.covariance, std::nullopt);
+    return;
+  }
+  const ClockState fresh = FreshClock(config_, *alignment.clock);
   state->Align(alignment.Transform(), alignment.covariance, fresh.covariance);
-  mount_ = AntennaMount{alignment.enu, receiver_.p_BA};
+  mount_ = AntennaMount{*alignment.enu, receiver_.p_BA};
   clock_ = fresh.mean;
   clock_stamp_ns_ = alignment.stamp_ns;
 }

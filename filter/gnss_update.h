@@ -14,9 +14,9 @@ namespace alidade {
 /// The filter's part of GNSS: receiver clock in state and covariance, update with an epoch.
 ///
 /// The clock's error is a leading block of the covariance, directly before the core: a row of the factor
-/// depends on its own and later columns alone, so the clock's process noise touches its six columns only, and
-/// a state without GNSS pays nothing. Between epochs the clock is left as it is, since nothing else depends
-/// on it.
+/// depends on its own and later columns alone, so the clock's process noise involves only its six columns,
+/// and a state without GNSS has no extra cost. Between epochs the clock is not propagated, since no other
+/// state depends on it.
 class GnssUpdate {
  public:
   GnssUpdate(const GnssConfig& config, const GnssReceiver& receiver);
@@ -24,7 +24,8 @@ class GnssUpdate {
   /// Null, the default, observes nothing. It must outlive the object.
   void SetObserver(FilterObserver* observer) { observer_ = observer; }
 
-  /// Turns the state, which holds no landmarks, into the ENU frame and enters the clock.
+  /// Turns the state, which holds no landmarks, into the alignment's frame and enters the clock, if it is
+  /// known.
   void Align(const GnssAlignment& alignment, FilterState* state);
   [[nodiscard]] bool aligned() const { return mount_.has_value(); }
   /// Back to a local world.

@@ -44,8 +44,8 @@ class SlamFeatures {
              FilterState* state, TrackStore* tracks);
   /// Counts the gate's refusals in a row of a track in the state.
   static void CountRefusals(bool accepted, const Track& track, FilterState* state);
-  /// Takes landmarks out of the state whose track was not seen in frame `serial`, or was refused twice in a
-  /// row (such a track starts afresh).
+  /// Removes landmarks whose track was not observed in frame `serial`, or was rejected twice in a row (such a
+  /// track starts again).
   static void RemoveEnded(int serial, TrackStore* tracks, FilterState* state);
 
  private:

@@ -143,11 +143,13 @@ void ObservabilityAudit::AddRows(const MatrixXd& jacobian) {
   factor_ = Triangle(stacked);
 }
 
-void ObservabilityAudit::OnAlign(const MatrixXd& turn) {
+void ObservabilityAudit::OnAlign(const MatrixXd& turn, bool has_clock) {
   CHECK(landmark_firsts_.empty() && !has_clock_);
   map_ = turn * map_;
-  InsertRows(core_, kClock);
-  has_clock_ = true;
+  if (has_clock) {
+    InsertRows(core_, kClock);
+  }
+  has_clock_ = has_clock;
 }
 
 void ObservabilityAudit::OnUpdate(const FilterState& /*state*/, const FilterRows& rows) {

@@ -23,7 +23,7 @@ struct ObservabilityRecord {
   double null_angle_rad = 0;  ///< largest principal angle between the four weakest directions and theory
 };
 
-/// The four directions that no inertial-visual measurement can tell, as errors of `convention` at `nav`: yaw
+/// The four unobservable directions of visual-inertial odometry, as errors of `convention` at `nav`: yaw
 /// about gravity (column 0) and the three global shifts (1-3); 15 x 4. In right-invariant errors this is the
 /// first fifteen rows of the paper's eq. 4-9, whatever `nav`; the others are transformed at `nav`.
 [[nodiscard]] Eigen::Matrix<double, 15, 4> UnobservableDirections(ErrorConvention convention,
@@ -48,7 +48,7 @@ class ObservabilityAudit : public FilterObserver {
   void OnAddLandmark(int first, const Eigen::MatrixXd& rows) override;
   void OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) override;
   void OnRemove(int first, int size) override;
-  void OnAlign(const Eigen::MatrixXd& turn) override;
+  void OnAlign(const Eigen::MatrixXd& turn, bool has_clock) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
 

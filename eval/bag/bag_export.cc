@@ -3,12 +3,15 @@
 #include <algorithm>
 
 #include "core/format.h"
+#include "eval/bag/bag_fixes.h"
+#include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/rosbag/gnss_messages.h"
 #include "eval/rosbag/ros_sensor_messages.h"
 #include "eval/rosbag/rosbag_writer.h"
 #include "frontend/tracking/klt_tracker.h"
+#include "gnss/base/anchor_llh.h"
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade {
@@ -34,6 +37,7 @@ class Schedule {
       AddObservations(*dataset_.gnss);
       AddNavigation(dataset_.gnss->catalog->navigation());
     }
+    AddFixes();
     AddSheets();
     // Stable: messages of one stamp keep the order in which they were listed.
     std::stable_sort(pending_.begin(), pending_.end(),
@@ -147,6 +151,31 @@ class Schedule {
     }
   }
 
+  void AddFixes() {
+    std::vector<std::uint32_t> topics;
+    topics.reserve(dataset_.rig.fixes.size());
+    for (std::size_t k = 0; k < dataset_.rig.fixes.size(); ++k) {
+      topics.push_back(dataset_.rig.fixes[k].anchor_llh_deg
+                           ? bag_->AddTopic(NavSatFixTopic(topics_, k), "sensor_msgs/NavSatFix")
+                           : bag_->AddTopic(PositionTopic(k), "alidade/Position"));
+    }
+    for (const PositionFix& fix : dataset_.fixes) {
+      const auto k = static_cast<std::size_t>(fix.sensor);
+      const FixSensor& sensor = dataset_.rig.fixes[k];
+      Add(fix.stamp_ns + SecondsToNs(sensor.time_offset_s), topics[k], [&fix, &sensor] {
+        return sensor.anchor_llh_deg ? EncodeNavSatFix(OnEarth(fix, *sensor.anchor_llh_deg))
+                                     : EncodePosition(fix);
+      });
+    }
+  }
+
+  static NavSatFix OnEarth(const PositionFix& fix, const Eigen::Vector3d& anchor_llh_deg) {
+    const EnuFrame enu = EnuFrameAtLlh(anchor_llh_deg);
+    const Eigen::Vector3d position_E = enu.ToEcef(fix.p_A);
+    const Eigen::Matrix3d turn = EnuFrame::At(position_E).R_EN.transpose() * enu.R_EN;
+    return {fix.stamp_ns, LlhDegOf(position_E), turn * fix.covariance * turn.transpose()};
+  }
+
   void AddSheets() {
     AddSheet("imu0", ImuSensorYaml(dataset_.rig.imu_noise, dataset_.imu_rate_hz));
     if (!dataset_.images.empty() || !dataset_.tracks.empty() || !dataset_.camera_stamps.empty()) {
@@ -154,6 +183,9 @@ class Schedule {
     }
     for (std::size_t k = 0; k < dataset_.extra_cameras.size(); ++k) {
       AddSheet("cam" + std::to_string(k + 1), ExtraCameraYaml(dataset_, k));
+    }
+    for (std::size_t k = 0; k < dataset_.rig.fixes.size(); ++k) {
+      AddSheet("fix" + std::to_string(k), FixSensorYaml(dataset_.rig.fixes[k]));
     }
     if (dataset_.gnss != nullptr) {
       AddSheet("gnss0", GnssSensorYaml(dataset_.rig.gnss, dataset_.gnss->approximate_position_E));

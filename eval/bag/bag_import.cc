@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "eval/bag/bag_fixes.h"
 #include "eval/bag/bag_gnss.h"
 #include "eval/bag/bag_sheets.h"
 #include "eval/dataset/calibration_import.h"
@@ -83,7 +84,9 @@ class Importer {
       if (std::optional<std::string> text = DecodeText(message.data)) {
         sheets_.Take(topic, *std::move(text));
       }
-    } else if (const Status status = gnss_.Take(topics_, message); !status.ok()) {
+    } else if (const Result<bool> fix = fixes_.Take(topics_, message); !fix.ok()) {
+      Damage(topic, fix.message());
+    } else if (const Status status = *fix ? Status::Ok() : gnss_.Take(topics_, message); !status.ok()) {
       Damage(topic, status.message());
     }
     return Status::Ok();
@@ -196,6 +199,7 @@ class Importer {
     ALIDADE_RETURN_IF_ERROR(AssembleImu());
     ALIDADE_RETURN_IF_ERROR(AssembleCamera());
     ALIDADE_RETURN_IF_ERROR(AssembleExtraCameras());
+    ALIDADE_RETURN_IF_ERROR(fixes_.Assemble(path_, sheets_, &dataset, &import_.remarks));
     const std::string* sheet = sheets_.Text("gnss0");
     return gnss_.Assemble(path_, sheet == nullptr ? std::string() : *sheet, &dataset, &import_.remarks);
   }
@@ -263,6 +267,7 @@ class Importer {
   std::map<std::string, std::int64_t> damaged_;
   std::map<std::size_t, std::vector<TrackFrame>> extra_;
   BagGnss gnss_;
+  BagFixes fixes_;
   bool has_images_ = false;  ///< that were handed over
   std::int64_t done_ = 0;
   std::int64_t total_ = 0;

@@ -62,7 +62,8 @@ Status BagTopics::Set(const std::string& list) {
                                                                    {"iono", &ionosphere},
                                                                    {"pvt", &solution},
                                                                    {"pulse", &time_pulse},
-                                                                   {"trigger", &trigger}};
+                                                                   {"trigger", &trigger},
+                                                                   {"fix", &fix}};
   std::vector<std::string> names;
   for (const auto& [name, topic] : words) {
     names.push_back(name);
@@ -105,6 +106,9 @@ Status BagTopics::Resolve(const std::string& path, const std::map<std::string, s
   for (const auto& sensor : sensors) {
     ALIDADE_RETURN_IF_ERROR(
         ResolveOne(path, found, sensor.word, sensor.types, sensor.by_default, sensor.topic));
+  }
+  if (fix != usual.fix) {
+    ALIDADE_RETURN_IF_ERROR(ResolveOne(path, found, "fix", {"sensor_msgs/NavSatFix"}, usual.fix, &fix));
   }
   return imu.empty() ? Status::Input(path + ": no topic of type sensor_msgs/Imu; found " + Inventory(found))
                      : Status::Ok();

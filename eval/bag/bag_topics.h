@@ -21,9 +21,10 @@ struct BagTopics {
   std::string solution = "/ublox_driver/receiver_pvt";
   std::string time_pulse = "/ublox_driver/time_pulse_info";
   std::string trigger = "/external_trigger";
+  std::string fix = "/fix0/fix";  ///< sensor_msgs/NavSatFix of fix0; it is not searched for by type
 
   /// Sets "imu=/imu/data,cam0=/left/image_raw": imu, cam0, tracks, truth, range, ephem, glo_ephem, iono, pvt,
-  /// pulse, trigger. kUsage: an unknown sensor, or no name.
+  /// pulse, trigger, fix. kUsage: an unknown sensor, or no name.
   Status Set(const std::string& list);
 
   /// Replaces a name that a bag does not have by that of the only topic of its types, or by nothing when

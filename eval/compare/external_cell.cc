@@ -35,6 +35,7 @@ Dataset DatasetOf(const ExternalCell& cell) {
   dataset.tracks = cell.log.frames;
   dataset.extra_cameras = cell.log.extra_cameras;
   dataset.gnss = cell.log.gnss;
+  dataset.fixes = cell.log.fixes;
   if (cell.truth != nullptr) {
     dataset.truth = *cell.truth;
   }

@@ -37,6 +37,7 @@ struct Dataset {
   std::vector<ImageEntry> images;          ///< cam0/data.csv, or of a bag; empty when there is none
   std::vector<TimeNs> camera_stamps;       ///< cam0/timestamps.csv; empty when there is none
   std::shared_ptr<const GnssLog> gnss;     ///< gnss0: observations and navigation data; null without it
+  std::vector<PositionFix> fixes;          ///< fix0, fix1, ... of rig.fixes, as in MeasurementLog
   std::optional<Trajectory>
       truth;  ///< state_groundtruth_estimate0/{data.csv | data_pose.csv | data_position.csv}
   std::string truth_path;

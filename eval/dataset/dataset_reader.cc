@@ -3,6 +3,7 @@
 
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/csv.h"
@@ -105,6 +106,7 @@ Result<Dataset> ReadDataset(const std::string& path) {
   if (fs::is_directory(mav / "gnss0")) {
     ALIDADE_RETURN_IF_ERROR(ReadGnssFolder((mav / "gnss0").string(), &dataset));
   }
+  ALIDADE_RETURN_IF_ERROR(ReadFixFolders(mav.string(), &dataset));
   ALIDADE_RETURN_IF_ERROR(ReadTruth(mav / "state_groundtruth_estimate0", &dataset));
   if (!dataset.truth && fs::is_directory(mav / "mocap0")) {  // TUM VI's name
     ALIDADE_RETURN_IF_ERROR(ReadTruth(mav / "mocap0", &dataset));

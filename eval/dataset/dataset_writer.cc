@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/output_file.h"
@@ -145,6 +146,7 @@ Status WriteDataset(const Dataset& dataset, const std::string& path) {
   if (dataset.gnss != nullptr) {
     ALIDADE_RETURN_IF_ERROR(WriteGnssFolder(dataset, (mav / "gnss0").string()));
   }
+  ALIDADE_RETURN_IF_ERROR(WriteFixFolders(dataset, mav.string()));
   if (dataset.truth.has_value()) {
     const char* name = dataset.truth->has_velocity      ? "data.csv"
                        : dataset.truth->has_orientation ? "data_pose.csv"

@@ -172,6 +172,25 @@ void AddGnss(const GnssReceiver& receiver, const GnssLog& gnss, Hasher* hasher) 
   }
 }
 
+/// Nothing for a log without fixes.
+void AddFixes(const MeasurementLog& log, Hasher* hasher) {
+  if (log.fixes.empty()) {
+    return;
+  }
+  for (const FixSensor& sensor : log.rig.fixes) {
+    hasher->Add(sensor.p_BA);
+    hasher->Add(sensor.time_offset_s);
+    hasher->Add(std::int64_t{sensor.anchor_llh_deg.has_value()});
+    hasher->Add(sensor.anchor_llh_deg.value_or(Eigen::Vector3d::Zero()));
+  }
+  for (const PositionFix& fix : log.fixes) {
+    hasher->Add(std::int64_t{fix.stamp_ns});
+    hasher->Add(std::int64_t{fix.sensor});
+    hasher->Add(fix.p_A);
+    hasher->Add(fix.covariance);
+  }
+}
+
 }  // namespace
 
 std::string DigestOf(const MeasurementLog& log) {
@@ -192,6 +211,7 @@ std::string DigestOf(const MeasurementLog& log) {
   if (log.gnss != nullptr) {
     AddGnss(log.rig.gnss, *log.gnss, &hasher);
   }
+  AddFixes(log, &hasher);
   return hasher.Hex();
 }
 

@@ -102,12 +102,22 @@ std::string TimingText(const RunResult& result) {
   return text;
 }
 
-std::string StatusText(const RunResult& result) {
+/// Names of the columns of position fixes behind the other columns of status.csv.
+constexpr const char* kFixColumns = ",fixes_used,fixes_gated,fix_nis,fix_nis_dof";
+
+std::string FixFields(const FrameStatistics& s) {
+  return "," + std::to_string(s.fixes_used) + "," + std::to_string(s.fixes_gated) + "," +
+         ShortestDouble(s.fix_nis) + "," + std::to_string(s.fix_nis_dof);
+}
+
+std::string StatusText(const RunResult& result, bool with_fixes) {
   std::string text =
       "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
       "dof,"
       "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_nis_"
-      "dof\n";
+      "dof";
+  text += with_fixes ? kFixColumns : "";
+  text += '\n';
   for (const RunRecord& record : result.records) {
     const FrameStatistics& s = record.statistics;
     text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
@@ -123,7 +133,9 @@ std::string StatusText(const RunResult& result) {
     std::string reason = record.reason;
     std::replace_if(
         reason.begin(), reason.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
-    text += "," + reason + "," + ShortestDouble(s.gnss_nis) + "," + std::to_string(s.gnss_nis_dof) + '\n';
+    text += "," + reason + "," + ShortestDouble(s.gnss_nis) + "," + std::to_string(s.gnss_nis_dof);
+    text += with_fixes ? FixFields(s) : "";
+    text += '\n';
   }
   return text;
 }
@@ -161,13 +173,39 @@ Json GnssJson(const RunIdentity& identity, const RunResult& result) {
   }
   if (HasGnss(result)) {
     const GlobalFrame& global = *result.global;
-    const Eigen::Vector3d& anchor = global.enu.origin_E;
+    const Eigen::Vector3d& anchor = global.enu->origin_E;
     json["aligned_ns"] = global.stamp_ns;
     json["anchor_E"] = {anchor.x(), anchor.y(), anchor.z()};
     json["lever_arm_m"] = {global.p_BA.x(), global.p_BA.y(), global.p_BA.z()};
     json["time_offset_s"] = global.time_offset_s;
     json["yaw_rad"] = global.yaw_rad;
     json["yaw_std_rad"] = global.yaw_std_rad;
+  }
+  return json;
+}
+
+/// How the run stood with position fixes.
+Json FixJson(const RunResult& result) {
+  int used = 0;
+  int gated = 0;
+  for (const RunRecord& record : result.records) {
+    used += record.statistics.fixes_used;
+    gated += record.statistics.fixes_gated;
+  }
+  Json json = {{"aligned", result.global.has_value()},
+               {"report", result.align_report},
+               {"used", used},
+               {"gated", gated},
+               {"skipped", result.fixes_skipped}};
+  if (result.global && result.global->source == GlobalFrame::Source::kFixes) {
+    const GlobalFrame& global = *result.global;
+    json["aligned_ns"] = global.stamp_ns;
+    json["yaw_rad"] = global.yaw_rad;
+    json["yaw_std_rad"] = global.yaw_std_rad;
+    if (global.enu) {
+      const Eigen::Vector3d& anchor = global.enu->origin_E;
+      json["anchor_E"] = {anchor.x(), anchor.y(), anchor.z()};
+    }
   }
   return json;
 }
@@ -214,6 +252,9 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   if (identity.config.gnss.enabled || HasGnss(result)) {
     json["gnss"] = GnssJson(identity, result);
   }
+  if (identity.config.fix.enabled) {
+    json["fix"] = FixJson(result);
+  }
   json["config"] = ConfigToJson([&config](ConfigVisitor& visitor) { config.Describe(visitor); });
   json["times"] = {{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}};
   return json;
@@ -234,7 +275,8 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
       WriteFileAtomically((path / "trajectory.tum").string(), FormatTum(TrajectoryOf(result))));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "states.csv").string(), StatesText(result)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "timing.csv").string(), TimingText(result)));
-  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "status.csv").string(), StatusText(result)));
+  ALIDADE_RETURN_IF_ERROR(
+      WriteFileAtomically((path / "status.csv").string(), StatusText(result, identity.config.fix.enabled)));
   if (identity.audited) {
     ALIDADE_RETURN_IF_ERROR(
         WriteFileAtomically((path / "observability.csv").string(), ObservabilityText(result)));

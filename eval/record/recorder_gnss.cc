@@ -10,7 +10,7 @@
 namespace alidade {
 
 bool HasGnss(const RunResult& result) {
-  return result.global.has_value();
+  return result.global && result.global->source == GlobalFrame::Source::kGnss;
 }
 
 std::string ClockColumns() {
@@ -33,7 +33,7 @@ std::string ClockFields(const RunRecord& record) {
 }
 
 std::string AntennaPositions(const RunResult& result, double time_offset_s) {
-  const EnuFrame& enu = result.global->enu;
+  const EnuFrame& enu = *result.global->enu;
   std::vector<SinglePointSolution> rows;
   for (const RunRecord& record : result.records) {
     if (!record.clock) {

@@ -6,7 +6,7 @@
 
 namespace alidade {
 
-/// Whether any state of the run stands in the ENU frame.
+/// Whether raw GNSS brought the states of the run into the ENU frame.
 [[nodiscard]] bool HasGnss(const RunResult& result);
 
 /// Names of the clock terms behind the other columns of states.csv, each with a leading comma.

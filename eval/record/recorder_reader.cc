@@ -44,17 +44,25 @@ Eigen::Vector3d GetVector(const Json& json, const char* key) {
   return values.size() == 3 ? Eigen::Vector3d(values.data()) : Eigen::Vector3d::Zero();
 }
 
-/// How the run came to stand in the ENU frame, if it did.
-std::optional<GlobalFrame> ReadGlobalFrame(const Json& gnss) {
-  if (!Get(gnss, "aligned", false)) {
+/// How the run came to stand in the ENU frame or in that of the position fixes, if it did.
+std::optional<GlobalFrame> ReadGlobalFrame(const Json& run) {
+  const Json gnss = Get(run, "gnss", Json::object());
+  const bool by_gnss = Get(gnss, "aligned", false);
+  const Json json = by_gnss ? gnss : Get(run, "fix", Json::object());
+  if (!Get(json, "aligned", false)) {
     return std::nullopt;
   }
-  return GlobalFrame{EnuFrame::At(GetVector(gnss, "anchor_E")),
-                     GetVector(gnss, "lever_arm_m"),
-                     Get(gnss, "aligned_ns", TimeNs{0}),
-                     Get(gnss, "time_offset_s", 0.0),
-                     Get(gnss, "yaw_rad", 0.0),
-                     Get(gnss, "yaw_std_rad", 0.0)};
+  GlobalFrame global;
+  if (json.contains("anchor_E")) {
+    global.enu = EnuFrame::At(GetVector(json, "anchor_E"));
+  }
+  global.source = by_gnss ? GlobalFrame::Source::kGnss : GlobalFrame::Source::kFixes;
+  global.p_BA = GetVector(json, "lever_arm_m");
+  global.stamp_ns = Get(json, "aligned_ns", TimeNs{0});
+  global.time_offset_s = Get(json, "time_offset_s", 0.0);
+  global.yaw_rad = Get(json, "yaw_rad", 0.0);
+  global.yaw_std_rad = Get(json, "yaw_std_rad", 0.0);
+  return global;
 }
 
 Status StatusFromWord(const std::string& word, const std::string& message) {
@@ -141,6 +149,19 @@ Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
   return row.ReadReal(15, "gnss_nis", &s.gnss_nis);
 }
 
+/// With the columns of position fixes.
+Status ReadStatusRowWithFixes(const CsvReader& row, RunRecord* record) {
+  ALIDADE_RETURN_IF_ERROR(ReadStatusRow(row, record));
+  FrameStatistics& s = record->statistics;
+  const std::pair<size_t, int*> counts[] = {{17, &s.fixes_used}, {18, &s.fixes_gated}, {20, &s.fix_nis_dof}};
+  for (const auto& [column, count] : counts) {
+    std::int64_t value = 0;
+    ALIDADE_RETURN_IF_ERROR(row.ReadInt64(column, "count", &value));
+    *count = static_cast<int>(value);
+  }
+  return row.ReadReal(19, "fix_nis", &s.fix_nis);
+}
+
 Status ReadObservabilityRow(const CsvReader& row, RunRecord* record) {
   ObservabilityRecord& read = record->observability.emplace();
   read.stamp_ns = record->estimate.stamp_ns;
@@ -222,10 +243,11 @@ Result<RunResult> ReadRun(const std::string& folder) {
   result.init_report = Get(initialization, "report", std::string());
   result.init_stamp_ns = Get(initialization, "stamp_ns", TimeNs{0});
   result.skip_report = Get(*json, "skip_report", std::string());
+  result.fixes_skipped = Get(Get(*json, "fix", Json::object()), "skipped", 0);
   const Json counts = Get(*json, "counts", Json::object());
   result.frames_skipped = Get(counts, "frames_skipped", 0);
   result.imu_rejected = Get(counts, "imu_rejected", 0);
-  result.global = ReadGlobalFrame(Get(*json, "gnss", Json::object()));
+  result.global = ReadGlobalFrame(*json);
   for (const Json& restart : Get(*json, "restarts", Json::array())) {
     result.restarts.push_back({Get(restart, "lost_ns", TimeNs{0}), Get(restart, "reason", std::string()),
                                Get(restart, "restarted_ns", TimeNs{0}),
@@ -243,7 +265,9 @@ Result<RunResult> ReadRun(const std::string& folder) {
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
-  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "status.csv"), 17, &result, ReadStatusRow));
+  ALIDADE_RETURN_IF_ERROR(json->contains("fix")
+                              ? ReadRows(In(folder, "status.csv"), 21, &result, ReadStatusRowWithFixes)
+                              : ReadRows(In(folder, "status.csv"), 17, &result, ReadStatusRow));
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
   }

@@ -10,6 +10,10 @@ void Add(const FrameStatistics& epoch, FrameStatistics* sum) {
   sum->satellites_gated += epoch.satellites_gated;
   sum->gnss_nis += epoch.gnss_nis;
   sum->gnss_nis_dof += epoch.gnss_nis_dof;
+  sum->fixes_used += epoch.fixes_used;
+  sum->fixes_gated += epoch.fixes_gated;
+  sum->fix_nis += epoch.fix_nis;
+  sum->fix_nis_dof += epoch.fix_nis_dof;
   sum->clock_jump = sum->clock_jump || epoch.clock_jump;
   sum->propagate_ms += epoch.propagate_ms;
   sum->update_ms += epoch.update_ms;
@@ -36,9 +40,11 @@ void RunBuilder::On(const StartedEvent& event) {
 void RunBuilder::On(const StateEvent& event) {
   if (event.source == Sensor::kGnss) {
     ++result_.epochs_used;
+  }
+  if (event.source != Sensor::kCamera) {
     Add(event.statistics, &epochs_);
   }
-  if (camera_ != (event.source == Sensor::kCamera)) {
+  if (event.source != (camera_ ? Sensor::kCamera : Sensor::kGnss)) {
     return;
   }
   if (!result_.records.empty() && event.estimate.stamp_ns <= result_.records.back().estimate.stamp_ns) {
@@ -132,6 +138,11 @@ void RunBuilder::On(const SkippedEvent& event) {
       break;
     case Sensor::kGnss:
       if (result_.epochs_skipped++ == 0 && result_.skip_report.empty()) {
+        result_.skip_report = event.reason;
+      }
+      break;
+    case Sensor::kFix:
+      if (result_.fixes_skipped++ == 0 && result_.skip_report.empty()) {
         result_.skip_report = event.reason;
       }
       break;

@@ -21,8 +21,7 @@ struct RunRecord {
   double backend_ms = 0;  ///< wall time of the estimator for this frame and the IMU samples before it
   std::string status = "ok";
   std::optional<ObservabilityRecord> observability;  ///< of an audited run
-  /// Covariance of (phi, dp) given the data up to this frame alone; of an estimator that looks back and knows
-  /// it.
+  /// Covariance of (phi, dp) given the data up to this frame alone; of the batch estimate.
   std::optional<Matrix6d> filtering_covariance;
   std::optional<ClockState> clock;                 ///< once aligned with GNSS
   std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
@@ -46,10 +45,11 @@ struct RunResult {
   int frames_skipped = 0;                     ///< refused by the estimator after initialisation
   std::string skip_report;                    ///< why the first of them was
   int imu_rejected = 0;                       ///< samples refused by the estimator
-  std::optional<GlobalFrame> global;          ///< once aligned with GNSS
+  std::optional<GlobalFrame> global;          ///< once aligned with GNSS or position fixes
   std::string align_report;                   ///< what the alignment found, or why it did not
   int epochs_used = 0;                        ///< GNSS epochs the estimator took
   int epochs_skipped = 0;                     ///< refused by it
+  int fixes_skipped = 0;                      ///< position fixes that were refused, not gated
   std::vector<GnssResiduals> gnss_residuals;  ///< of the used epochs
   std::vector<Restart> restarts;
   /// Of the last calibration, when the true one is known.

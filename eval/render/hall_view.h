@@ -28,7 +28,7 @@ struct HallHit {
   float x_m = 0, y_m = 0;  ///< place on the surface
 };
 
-/// The hall as seen from one place: everything relative to the camera, what lies behind it left out.
+/// The hall seen from one place, relative to the camera, without objects behind it.
 class HallView {
  public:
   /// A box that rays of a tile may meet.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "core/time.h"
 #include "eval/files/byte_io.h"
 
@@ -28,6 +30,21 @@ inline void PutRosHeader(TimeNs stamp_ns, ByteWriter* out) {
   const TimeNs stamp_ns = TakeRosTime(in);
   static_cast<void>(in->Block());
   return stamp_ns;
+}
+
+/// geometry_msgs/Vector3
+inline void PutRosVector(const Eigen::Vector3d& vector, ByteWriter* out) {
+  for (int i = 0; i < 3; ++i) {
+    out->Write(vector[i]);
+  }
+}
+
+[[nodiscard]] inline Eigen::Vector3d TakeRosVector(ByteReader* in) {
+  Eigen::Vector3d vector;
+  for (int i = 0; i < 3; ++i) {
+    vector[i] = in->Read<double>();
+  }
+  return vector;
 }
 
 }  // namespace alidade

@@ -24,6 +24,16 @@ const std::map<std::string, std::string>& Fields() {
        "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 "
        "step\n"
        "uint8[] data\n"},
+      // Constants come first, as ROS sums them up.
+      {"sensor_msgs/NavSatStatus",
+       "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\nint8 STATUS_GBAS_FIX=2\n"
+       "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\n"
+       "int8 status\nuint16 service\n"},
+      {"sensor_msgs/NavSatFix",
+       "uint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
+       "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\n"
+       "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\n"
+       "float64 altitude\nfloat64[9] position_covariance\nuint8 position_covariance_type\n"},
       {"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
       // GNSS messages of gnss_comm and the trigger of GVINS: github.com/HKUST-Aerial-Robotics
       {"gnss_comm/GnssTimeMsg", "uint32 week\nfloat64 tow\n"},
@@ -56,6 +66,7 @@ const std::map<std::string, std::string>& Fields() {
        "std_msgs/Header header\nuint32 trigger_id\nuint32 event_id\ntime timestamp_host\n"},
       // Ours: what a folder holds and no standard message does.
       {"alidade/Tracks", "std_msgs/Header header\nint64[] track_id\nfloat64[] u_px\nfloat64[] v_px\n"},
+      {"alidade/Position", "std_msgs/Header header\ngeometry_msgs/Vector3 position\nfloat64[9] covariance\n"},
       {"alidade/State",
        "std_msgs/Header header\ngeometry_msgs/Vector3 p_WB\ngeometry_msgs/Quaternion q_WB\nbool "
        "has_velocity\n"

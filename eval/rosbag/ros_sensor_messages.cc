@@ -13,20 +13,6 @@ namespace {
 constexpr int kMaxSidePx = 100000;
 constexpr double kMaxRotationError = 1e-9;
 
-void Put(const Eigen::Vector3d& vector, ByteWriter* out) {
-  for (int i = 0; i < 3; ++i) {
-    out->Write(vector[i]);
-  }
-}
-
-Eigen::Vector3d TakeVector(ByteReader* in) {
-  Eigen::Vector3d vector;
-  for (int i = 0; i < 3; ++i) {
-    vector[i] = in->Read<double>();
-  }
-  return vector;
-}
-
 /// A covariance of 3 x 3 of which nothing is known; -1 at its head says that the quantity itself is missing.
 void PutUnknownCovariance(double head, ByteWriter* out) {
   out->Write(head);
@@ -72,9 +58,9 @@ std::string EncodeImu(const ImuSample& sample) {
     out.Write(q);
   }
   PutUnknownCovariance(-1, &out);
-  Put(sample.gyro, &out);
+  PutRosVector(sample.gyro, &out);
   PutUnknownCovariance(0, &out);
-  Put(sample.accel, &out);
+  PutRosVector(sample.accel, &out);
   PutUnknownCovariance(0, &out);
   return std::move(out.bytes());
 }
@@ -85,9 +71,9 @@ std::optional<ImuSample> DecodeImu(std::string_view bytes) {
   sample.stamp_ns = TakeRosHeader(&in);
   constexpr std::size_t kCovariance = 9 * sizeof(double);
   static_cast<void>(in.Take(4 * sizeof(double) + kCovariance));
-  sample.gyro = TakeVector(&in);
+  sample.gyro = TakeRosVector(&in);
   static_cast<void>(in.Take(kCovariance));
-  sample.accel = TakeVector(&in);
+  sample.accel = TakeRosVector(&in);
   static_cast<void>(in.Take(kCovariance));
   const bool fine = in.ok() && sample.gyro.allFinite() && sample.accel.allFinite();
   return fine ? std::optional(sample) : std::nullopt;
@@ -196,14 +182,14 @@ std::optional<TrackFrame> DecodeTracks(std::string_view bytes) {
 std::string EncodeState(const TrajectoryPoint& point, bool has_velocity) {
   ByteWriter out;
   PutRosHeader(point.stamp_ns, &out);
-  Put(point.nav.p_WB, &out);
+  PutRosVector(point.nav.p_WB, &out);
   for (int i = 0; i < 9; ++i) {
     out.Write(point.nav.R_WB(i / 3, i % 3));
   }
   out.Write(static_cast<std::uint8_t>(has_velocity));
-  Put(point.nav.v_WB, &out);
-  Put(point.bias.gyro, &out);
-  Put(point.bias.accel, &out);
+  PutRosVector(point.nav.v_WB, &out);
+  PutRosVector(point.bias.gyro, &out);
+  PutRosVector(point.bias.accel, &out);
   return std::move(out.bytes());
 }
 
@@ -212,15 +198,15 @@ std::optional<DecodedState> DecodeState(std::string_view bytes) {
   DecodedState state;
   TrajectoryPoint& point = state.point;
   point.stamp_ns = TakeRosHeader(&in);
-  point.nav.p_WB = TakeVector(&in);
+  point.nav.p_WB = TakeRosVector(&in);
   Eigen::Matrix3d& R_WB = point.nav.R_WB;
   for (int i = 0; i < 9; ++i) {
     R_WB(i / 3, i % 3) = in.Read<double>();
   }
   state.has_velocity = in.Read<std::uint8_t>() != 0;
-  point.nav.v_WB = TakeVector(&in);
-  point.bias.gyro = TakeVector(&in);
-  point.bias.accel = TakeVector(&in);
+  point.nav.v_WB = TakeRosVector(&in);
+  point.bias.gyro = TakeRosVector(&in);
+  point.bias.accel = TakeRosVector(&in);
   const bool finite = point.nav.p_WB.allFinite() && point.nav.v_WB.allFinite() &&
                       point.bias.gyro.allFinite() && point.bias.accel.allFinite();
   const bool is_rotation = (R_WB.transpose() * R_WB).isIdentity(kMaxRotationError) && R_WB.determinant() > 0;

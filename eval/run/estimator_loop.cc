@@ -8,14 +8,18 @@
 namespace alidade {
 namespace {
 
-/// Satellites, innovations and times of an epoch: what a smoother's solve says of vision is not the epoch's.
-FrameStatistics OfEpoch(const FrameStatistics& all) {
+/// What an epoch or a fix says of itself: what a smoother's solve says of vision is not theirs.
+FrameStatistics BetweenFrames(const FrameStatistics& all) {
   FrameStatistics epoch;
   epoch.satellites_used = all.satellites_used;
   epoch.satellites_gated = all.satellites_gated;
   epoch.gnss_nis = all.gnss_nis;
   epoch.gnss_nis_dof = all.gnss_nis_dof;
   epoch.clock_jump = all.clock_jump;
+  epoch.fixes_used = all.fixes_used;
+  epoch.fixes_gated = all.fixes_gated;
+  epoch.fix_nis = all.fix_nis;
+  epoch.fix_nis_dof = all.fix_nis_dof;
   epoch.propagate_ms = all.propagate_ms;
   epoch.update_ms = all.update_ms;
   return epoch;
@@ -37,6 +41,9 @@ EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration
   }
   if (config.gnss.enabled && options.gnss) {
     gnss_.emplace(config, rig, *options.gnss, estimator, events);
+  }
+  if (config.fix.enabled && !rig.fixes.empty()) {
+    fixes_.emplace(config, rig, gnss_.has_value(), estimator, events);
   }
 }
 
@@ -83,14 +90,7 @@ void EstimatorLoop::ProcessEpochWithCamera() {
   if (gnss_->aligned()) {
     DeliverImu(stamp_ns);
   }
-  const Result<bool> taken = gnss_->TakeEpoch(running());
-  if (taken.code() == StatusCode::kDiverged) {
-    GiveUp(estimator_.Latest().stamp_ns, taken.status());
-  } else if (!taken.ok()) {
-    Fail(stamp_ns, taken.status());
-  } else if (*taken) {
-    ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
-  }
+  ReportTaken(Sensor::kGnss, gnss_->TakeEpoch(running()), stamp_ns, stopwatch);
 }
 
 void EstimatorLoop::ProcessEpochAlone() {
@@ -106,6 +106,27 @@ void EstimatorLoop::ProcessEpochAlone() {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
     ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
+  }
+}
+
+void EstimatorLoop::ProcessFix() {
+  const Stopwatch stopwatch;
+  const TimeNs stamp_ns = fixes_->feed().Next()->stamp_ns;
+  if (fixes_->aligned()) {
+    DeliverImu(stamp_ns);
+  }
+  ReportTaken(Sensor::kFix, fixes_->TakeFix(running()), stamp_ns, stopwatch);
+  TrimImu();
+}
+
+void EstimatorLoop::ReportTaken(Sensor source, const Result<bool>& taken, TimeNs stamp_ns,
+                                const Stopwatch& stopwatch) {
+  if (taken.code() == StatusCode::kDiverged) {
+    GiveUp(estimator_.Latest().stamp_ns, taken.status());
+  } else if (!taken.ok()) {
+    Fail(stamp_ns, taken.status());
+  } else if (*taken) {
+    ReportState(source, stamp_ns, 0, stopwatch);
   }
 }
 
@@ -174,10 +195,9 @@ void EstimatorLoop::TryRestart(const TrackFrame& frame) {
   }
   events_.emplace_back(RestartedEvent{recovery_.lost_ns(), *start, recovery_.method(), recovery_.report()});
   recovery_.Started(*start);
-  if (gnss_) {
-    if (Status status = gnss_->Realign(); !status.ok()) {
-      Fail(start->stamp_ns, std::move(status));
-    }
+  Status status = gnss_ ? gnss_->Realign() : fixes_ ? fixes_->Realign() : Status::Ok();
+  if (!status.ok()) {
+    Fail(start->stamp_ns, std::move(status));
   }
 }
 
@@ -194,6 +214,8 @@ void EstimatorLoop::StartWithEpoch() {
   events_.emplace_back(StartedEvent{start->estimate, "gnss", gnss_->start_report()});
   if (Status status = gnss_->AlignAtStart(*start); !status.ok()) {
     Fail(start->estimate.stamp_ns, std::move(status));
+  } else if (fixes_) {
+    fixes_->AlignedByGnss(gnss_->enu());
   }
 }
 
@@ -229,11 +251,19 @@ void EstimatorLoop::AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch
   ReportState(Sensor::kCamera, frame.stamp_ns, frame.frontend_ms, stopwatch);
 }
 
-void EstimatorLoop::AlignAfterFrame(TimeNs stamp_ns) {
+Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_ns) {
   if (!gnss_) {
-    return;
+    return fixes_ ? fixes_->Align(stamp_ns) : Result<std::optional<GnssAlignment>>(std::nullopt);
   }
-  const Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
+  Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
+  if (fixes_ && alignment.ok() && *alignment) {
+    fixes_->AlignedByGnss(gnss_->enu());
+  }
+  return alignment;
+}
+
+void EstimatorLoop::AlignAfterFrame(TimeNs stamp_ns) {
+  const Result<std::optional<GnssAlignment>> alignment = FindAlignment(stamp_ns);
   if (!alignment.ok()) {
     Fail(stamp_ns, alignment.status());
   } else if (*alignment) {
@@ -254,7 +284,7 @@ void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double fronten
     return;
   }
   state_ns_ = event.estimate.stamp_ns;
-  event.statistics = is_frame ? estimator_.last_statistics() : OfEpoch(estimator_.last_statistics());
+  event.statistics = is_frame ? estimator_.last_statistics() : BetweenFrames(estimator_.last_statistics());
   event.clock = estimator_.LatestClock();
   event.calibration = estimator_.LatestCalibration();
   event.frontend_ms = frontend_ms;
@@ -288,7 +318,7 @@ void EstimatorLoop::PassTime(TimeNs now_ns) {
   if (running()) {
     if (SecondsBetween(state_ns_, now_ns) > options_.max_silence_s) {
       GiveUp(state_ns_ + SecondsToNs(options_.max_silence_s),
-             Status::Diverged(Format("no frame or epoch was used for %g s", options_.max_silence_s)));
+             Status::Diverged(Format("no frame, epoch or fix was used for %g s", options_.max_silence_s)));
     }
     return;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/stopwatch.h"
+#include "eval/run/fix_run.h"
 #include "eval/run/gnss_run.h"
 #include "eval/run/imu_stream.h"
 #include "eval/run/recovery.h"
@@ -14,8 +15,8 @@
 namespace alidade {
 
 /// Drives one estimator over messages that come in the order of their IMU time: finds the first state, hands
-/// over IMU, frames and epochs, judges the state, and after a loss finds a new start. Reports all of it as
-/// events.
+/// over IMU, frames, epochs and position fixes, judges the state, and after a loss finds a new start. Reports
+/// all of it as events.
 class EstimatorLoop {
  public:
   /// All must outlive the object.
@@ -25,6 +26,8 @@ class EstimatorLoop {
   [[nodiscard]] ImuStream& imu() { return imu_; }
   /// Null without GNSS.
   [[nodiscard]] GnssFeed* epochs() { return gnss_ ? &gnss_->feed() : nullptr; }
+  /// Null without position fixes.
+  [[nodiscard]] FixFeed* fixes() { return fixes_ ? &fixes_->feed() : nullptr; }
 
   /// IMU time of a camera stamp, as far as the time offset is known now.
   [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const;
@@ -35,6 +38,8 @@ class EstimatorLoop {
   void ProcessFrame(const TrackFrame& frame);
   /// The next one of epochs().
   void ProcessEpoch();
+  /// The next one of fixes().
+  void ProcessFix();
   /// No message before `now_ns` will come: an estimate that is too old is given up, and IMU samples that no
   /// start will look back to are let go.
   void PassTime(TimeNs now_ns);
@@ -61,6 +66,9 @@ class EstimatorLoop {
   bool Begin(const NavEstimate& start);
   void AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch);
   void AlignAfterFrame(TimeNs stamp_ns);
+  Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
+  /// The state after an epoch or a fix with a camera, if the estimator took it, or why it is lost.
+  void ReportTaken(Sensor source, const Result<bool>& taken, TimeNs stamp_ns, const Stopwatch& stopwatch);
   void ReportState(Sensor source, TimeNs message_ns, double frontend_ms, const Stopwatch& stopwatch);
   void GiveUp(TimeNs stamp_ns, const Status& status);
   void Fail(TimeNs stamp_ns, Status status);
@@ -75,6 +83,7 @@ class EstimatorLoop {
   std::unique_ptr<Initializer> initializer_;  ///< until the first start
   Recovery recovery_;
   std::optional<GnssRun> gnss_;
+  std::optional<FixRun> fixes_;
   Phase phase_ = Phase::kSeeking;
   Eigen::Vector3d gyro_radps_ = Eigen::Vector3d::Zero();  ///< of the last delivered sample
   TimeNs state_ns_ = 0;                                   ///< of the newest state

@@ -83,8 +83,8 @@ void GnssRun::ReportAligned(const GnssAlignment& alignment, TimeNs stamp_ns, dou
   alignment_ = alignment;
   feed_.ShiftTime(alignment.time_offset_s);
   AlignedEvent event;
-  event.global = {alignment.enu,         receiver_.p_BA,    stamp_ns,
-                  feed_.time_offset_s(), alignment.yaw_rad, yaw_std_rad};
+  event.global = {alignment.enu,         GlobalFrame::Source::kGnss, receiver_.p_BA, stamp_ns,
+                  feed_.time_offset_s(), alignment.yaw_rad,          yaw_std_rad};
   event.alignment = alignment;
   event.estimate = estimator_.Latest();
   event.clock = estimator_.LatestClock();
@@ -96,13 +96,8 @@ Status GnssRun::Realign() {
   if (!alignment_) {
     return Status::Ok();
   }
-  // The state stands in the ENU frame already, its uncertainty there included.
-  GnssAlignment identity = *alignment_;
-  identity.yaw_rad = 0;
-  identity.p_NW.setZero();
-  identity.covariance = 1e-12 * Eigen::Matrix4d::Identity();
+  GnssAlignment identity = AlreadyAligned(*alignment_, clock_ns_);
   identity.clock = clock_;
-  identity.stamp_ns = clock_ns_;
   return estimator_.Align(identity);
 }
 

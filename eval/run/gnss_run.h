@@ -23,6 +23,8 @@ class GnssRun {
 
   [[nodiscard]] GnssFeed& feed() { return feed_; }
   [[nodiscard]] bool aligned() const { return alignment_.has_value(); }
+  /// Precondition: aligned.
+  [[nodiscard]] const EnuFrame& enu() const { return *alignment_->enu; }
 
   /// The next epoch; `running`: there is an estimate. The IMU reaches the epoch when the run is aligned. True
   /// when the estimator took it.
@@ -30,7 +32,7 @@ class GnssRun {
   /// A frame was taken at `stamp_ns`. Hands the aligner the state there, and the estimator the alignment as
   /// soon as there is one, which is then returned. `gyro_radps`: of that time.
   Result<std::optional<GnssAlignment>> Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps);
-  /// The estimator has begun anew with a state that stands in the ENU frame already.
+  /// The estimator has restarted with a state in the ENU frame.
   Status Realign();
   /// Reports what became of satellites since the last call.
   void CollectResiduals();

@@ -123,6 +123,44 @@ void Session::AddGnss(std::shared_ptr<const ObservationEpoch> epoch) {
   }
 }
 
+void Session::AddFix(const PositionFix& fix) {
+  if (failed()) {
+    return;
+  }
+  FixFeed* feed = loop_.fixes();
+  if (feed == nullptr) {
+    Skip(Sensor::kFix, fix.stamp_ns, "the session is one without position fixes");
+    return;
+  }
+  if (feed->HasSensor(fix.sensor) && feed->ImuTime(fix) < processed_ns_) {
+    RefuseLate(Sensor::kFix, fix.stamp_ns, processed_ns_ - feed->ImuTime(fix));
+    return;
+  }
+  switch (feed->Add(fix)) {
+    case FixFeed::Arrival::kNoSensor:
+      Skip(Sensor::kFix, fix.stamp_ns, Format("the rig has no fix sensor %d", fix.sensor));
+      return;
+    case FixFeed::Arrival::kUnrelated:
+      Skip(Sensor::kFix, fix.stamp_ns,
+           Format("the frame of fix sensor %d is not related to that of the run", fix.sensor));
+      return;
+    case FixFeed::Arrival::kTwice:
+      Skip(Sensor::kFix, fix.stamp_ns, "there is one with this stamp already");
+      return;
+    case FixFeed::Arrival::kTooLate:
+      RefuseLate(Sensor::kFix, fix.stamp_ns, feed->last_ns() - feed->ImuTime(fix));
+      return;
+    case FixFeed::Arrival::kTaken:
+      break;
+  }
+  Process();
+  if (feed->size() > options_.max_waiting) {
+    const TimeNs oldest_ns = feed->next_stamp_ns();
+    feed->Pop();
+    Skip(Sensor::kFix, oldest_ns, Format("the IMU does not reach it, and %zu fixes wait", feed->size()));
+  }
+}
+
 void Session::AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCatalog> catalog) {
   if (GnssFeed* feed = loop_.epochs()) {
     feed->AddCatalog(from_tag_ns, std::move(catalog));
@@ -141,7 +179,8 @@ TimeNs Session::Watermark() {
   }
   const double camera_s = options_.camera ? options_.lateness.camera_s : 0;
   const double gnss_s = loop_.epochs() != nullptr ? options_.lateness.gnss_s : 0;
-  return std::max(advanced_ns_, newest_ns - SecondsToNs(std::max(camera_s, gnss_s)));
+  const double fix_s = loop_.fixes() != nullptr ? options_.lateness.fix_s : 0;
+  return std::max(advanced_ns_, newest_ns - SecondsToNs(std::max({camera_s, gnss_s, fix_s})));
 }
 
 Session::Due Session::NextDue() {
@@ -155,6 +194,12 @@ Session::Due Session::NextDue() {
       due = {Sensor::kGnss, epoch->stamp_ns};
     }
   }
+  FixFeed* fixes = loop_.fixes();
+  if (const PositionFix* fix = fixes != nullptr ? fixes->Next() : nullptr) {
+    if (fix->stamp_ns < due.imu_ns) {
+      due = {Sensor::kFix, fix->stamp_ns};
+    }
+  }
   return due;
 }
 
@@ -163,8 +208,8 @@ bool Session::IsReady(const Due& due) {
   if (is_frame && frames_.empty()) {
     return false;
   }
-  const TimeNs needed_ns = due.imu_ns + (is_frame ? 0 : loop_.EpochLead());
-  // Another message of the same time would be an epoch: it comes after the frame.
+  const TimeNs needed_ns = due.imu_ns + (due.sensor == Sensor::kGnss ? loop_.EpochLead() : 0);
+  // Another message of the same time would be an epoch or a fix: it comes after the frame.
   const auto passed = [&](TimeNs watermark) {
     return is_frame ? needed_ns <= watermark : needed_ns < watermark;
   };
@@ -188,11 +233,17 @@ void Session::Process() {
       return;
     }
     processed_ns_ = std::max(processed_ns_, due.imu_ns);
-    if (due.sensor == Sensor::kCamera) {
-      ProcessNextFrame();
-    } else {
-      ProcessNextEpoch();
-    }
+    ProcessNext(due.sensor);
+  }
+}
+
+void Session::ProcessNext(Sensor sensor) {
+  if (sensor == Sensor::kCamera) {
+    ProcessNextFrame();
+  } else if (sensor == Sensor::kGnss) {
+    ProcessNextEpoch();
+  } else {
+    loop_.ProcessFix();
   }
 }
 
@@ -235,7 +286,9 @@ Result<NewestState> Session::Newest() {
 
 size_t Session::held() {
   const GnssFeed* feed = loop_.epochs();
-  return loop_.imu().size() + frames_.size() + (feed != nullptr ? feed->size() : 0) + events_.size();
+  const FixFeed* fixes = loop_.fixes();
+  return loop_.imu().size() + frames_.size() + (feed != nullptr ? feed->size() : 0) +
+         (fixes != nullptr ? fixes->size() : 0) + events_.size();
 }
 
 void Session::Skip(Sensor sensor, TimeNs stamp_ns, std::string reason) {

@@ -22,14 +22,16 @@ struct NewestState {
 ///
 /// Messages of each sensor and between sensors may come in any order within SessionOptions::lateness; they
 /// are processed in the order of their IMU time (camera stamp + time offset; receiver's tag - receiver clock
-/// + offset), a frame before an epoch of the same time. In time means: when the message is added, the newest
-/// IMU stamp is less than the sensor's lateness ahead of its IMU time. The same messages in whatever order in
-/// time give the same estimates, bit by bit. A later one is used while nothing newer was processed, else
-/// refused with a TooLateEvent. Stamps of a sensor are unique: a second message of one stamp is skipped.
+/// + offset; fix's stamp + its sensor's offset), a frame before an epoch before a fix of the same time. In
+/// time means: when the message is added, the newest IMU stamp is less than the sensor's lateness ahead of
+/// its IMU time. The same messages in whatever order in time give the same estimates, bit by bit. A later one
+/// is used while nothing newer was processed, else refused with a TooLateEvent. Stamps of a sensor are
+/// unique: a second message of one stamp is skipped.
 ///
 /// The session starts by itself (init.method), judges its estimate, seeks a new start when it is lost, and
-/// aligns with GNSS. A bad message is reported as skipped; nothing of it aborts. Memory is bounded by the
-/// estimator's window, the lateness and SessionOptions::max_silence_s and max_waiting. Not thread-safe.
+/// aligns with GNSS or position fixes. A bad message is reported as skipped; nothing of it aborts. Memory is
+/// bounded by the estimator's window, the lateness and SessionOptions::max_silence_s and max_waiting. Not
+/// thread-safe.
 class Session {
  public:
   /// With the back end that `config` names. kConfig: the configuration contradicts itself, or init.method is
@@ -48,6 +50,8 @@ class Session {
   /// Raw observations of one receiver epoch; stamp: the receiver's tag.
   void AddGnss(ObservationEpoch epoch);
   void AddGnss(std::shared_ptr<const ObservationEpoch> epoch);
+  /// A position fix (core/position_fix.h); stamp and frame of its sensor.
+  void AddFix(const PositionFix& fix);
   /// Ephemerides for the epochs with tags from `from_tag_ns` on; the newest such catalog is the one in use.
   /// To be added before those epochs.
   void AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCatalog> catalog);
@@ -68,7 +72,7 @@ class Session {
   [[nodiscard]] bool running() const { return loop_.running(); }
   /// After a FailedEvent; messages are then ignored.
   [[nodiscard]] bool failed() const { return loop_.failed(); }
-  /// Samples, frames and epochs that are held.
+  /// Samples, frames, epochs and fixes that are held.
   [[nodiscard]] size_t held();
 
  private:
@@ -83,6 +87,7 @@ class Session {
   [[nodiscard]] bool IsReady(const Due& due);
   /// No message before this IMU time is awaited.
   [[nodiscard]] TimeNs Watermark();
+  void ProcessNext(Sensor sensor);
   void ProcessNextFrame();
   void ProcessNextEpoch();
   void Skip(Sensor sensor, TimeNs stamp_ns, std::string reason);

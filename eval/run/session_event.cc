@@ -58,9 +58,11 @@ std::string_view ToString(Sensor sensor) {
     case Sensor::kCamera:
       return "camera";
     case Sensor::kGnss:
+      return "gnss";
+    case Sensor::kFix:
       break;
   }
-  return "gnss";
+  return "fix";
 }
 
 std::string Describe(const SessionEvent& event) {

@@ -12,8 +12,8 @@
 namespace alidade {
 
 /// Who sent a message.
-enum class Sensor { kImu, kCamera, kGnss };
-/// imu | camera | gnss
+enum class Sensor { kImu, kCamera, kGnss, kFix };
+/// imu | camera | gnss | fix
 [[nodiscard]] std::string_view ToString(Sensor sensor);
 
 // What a Session reports. Stamps of messages are those of their sensor: camera time, receiver's tag. Stamps
@@ -26,14 +26,15 @@ struct StartedEvent {
   std::string report;  ///< the figures that let it pass
 };
 
-/// The state after a frame or an epoch that the estimator took.
+/// The state after a frame, an epoch or a position fix that the estimator took.
 struct StateEvent {
   Sensor source = Sensor::kCamera;
-  TimeNs message_ns = 0;  ///< stamp of the frame; IMU time of the epoch
-  /// A smoother may keep an epoch for its next frame: then the state is still that of the last frame.
+  TimeNs message_ns = 0;  ///< stamp of the frame; IMU time of the epoch or fix
+  /// A smoother may keep an epoch or a fix for its next frame: then the state is still that of the last
+  /// frame.
   NavEstimate estimate;
-  FrameStatistics statistics;                      ///< of this frame or epoch
-  std::optional<ClockState> clock;                 ///< once aligned
+  FrameStatistics statistics;                      ///< of this frame, epoch or fix
+  std::optional<ClockState> clock;                 ///< once aligned with GNSS
   std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
   double frontend_ms = 0;                          ///< TrackFrame::frontend_ms
   double backend_ms = 0;  ///< wall time for this message and the IMU samples before it
@@ -59,18 +60,21 @@ struct RestartedEvent {
   std::string report;
 };
 
-/// How the estimates came to stand in the ENU frame.
+/// How the estimates came to stand in the ENU frame, or in the frame of the position fixes.
 struct GlobalFrame {
-  EnuFrame enu;
-  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();
-  TimeNs stamp_ns = 0;       ///< of the first state that stands there
-  double time_offset_s = 0;  ///< IMU time less GPST, as given or estimated
-  double yaw_rad = 0;        ///< by which the local world was turned
+  std::optional<EnuFrame> enu;  ///< nothing: a frame whose place on the Earth is not known
+  /// What the alignment was estimated from.
+  enum class Source { kGnss, kFixes };
+  Source source = Source::kGnss;
+  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();  ///< of GNSS
+  TimeNs stamp_ns = 0;                             ///< of the first state that stands there
+  double time_offset_s = 0;                        ///< IMU time less GPST, as given or estimated; of GNSS
+  double yaw_rad = 0;                              ///< by which the local world was turned
   double yaw_std_rad = 0;
 };
 
-/// The local world was turned into the ENU frame: estimates from now on stand there; TurnIntoEnu with
-/// `alignment` turns earlier ones.
+/// The local world was turned into the ENU frame or that of the position fixes: estimates from now on stand
+/// there; TurnIntoEnu with `alignment` turns earlier ones.
 struct AlignedEvent {
   GlobalFrame global;
   GnssAlignment alignment;

@@ -15,6 +15,7 @@ struct Lateness {
   double imu_s = 0;
   double camera_s = 0;
   double gnss_s = 0;
+  double fix_s = 0;  ///< of position fixes
 };
 
 struct SessionOptions {
@@ -24,10 +25,10 @@ struct SessionOptions {
   /// The first state, asked for at the IMU time of each frame until it answers; read by init.method truth
   /// alone. Such as a known pose of a dock.
   std::function<Result<NavEstimate>(TimeNs imu_ns)> start_state;
-  /// An estimate older than this is given up: no frame or epoch came that could be used. Nor does a start
-  /// look back further.
+  /// An estimate older than this is given up: no frame, epoch or fix came that could be used. Nor does a
+  /// start look back further.
   double max_silence_s = 60;
-  /// Frames or epochs that may wait for the IMU; the oldest is skipped when one more comes.
+  /// Frames, epochs or fixes that may wait for the IMU; the oldest is skipped when one more comes.
   size_t max_waiting = 1000;
   /// False: lateness does not count, and nothing is processed before Session::AdvanceTo or Flush says so.
   bool live = true;

@@ -48,7 +48,7 @@ class FaultSource {
   std::string camera_;
 };
 
-/// Fails what SimulatorConfig::fault says, over [fault_start_s, fault_start_s + fault_duration_s) from
+/// Applies the fault SimulatorConfig::fault, over [fault_start_s, fault_start_s + fault_duration_s) from
 /// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. imu: rates and
 /// specific forces are uniform in +-3 rad/s and +-30 m/s^2. tracks: a frame's ids are shuffled, anew in every
 /// frame.

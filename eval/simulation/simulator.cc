@@ -6,6 +6,7 @@
 #include "eval/simulation/sim_calibration.h"
 #include "eval/simulation/sim_camera.h"
 #include "eval/simulation/sim_fault.h"
+#include "eval/simulation/sim_fix.h"
 #include "eval/simulation/sim_gnss.h"
 #include "eval/simulation/sim_hybrid.h"
 #include "eval/simulation/sim_imu.h"
@@ -68,6 +69,7 @@ Result<Simulation> SimulateSequence(const SimulatorConfig& config, unsigned seed
     ALIDADE_RETURN_IF_ERROR(AddSimulatedTracks(config, trajectory, start_ns, seed, &dataset));
   }
   ALIDADE_RETURN_IF_ERROR(AddSimulatedGnss(config, trajectory, start_ns, seed, &dataset));
+  AddSimulatedFixes(config, trajectory, start_ns, seed, &dataset);
   return simulation;
 }
 

@@ -10,6 +10,7 @@
 #include "eval/dataset/dataset.h"
 #include "eval/simulation/continuous_trajectory.h"
 #include "eval/simulation/render_config.h"
+#include "eval/simulation/sim_fix_config.h"
 #include "eval/simulation/sim_gnss_config.h"
 
 namespace alidade {
@@ -42,7 +43,8 @@ enum class SimFaultKind {
   kTracks,    ///< the tracks of a frame exchange their ids at random
   kBlackoutAndImu,
 };
-/// What is wrong at once. Drift, moving and mixed outliers are whole tracks whatever this says.
+/// Whether single observations or whole tracks are wrong. Drift, moving and mixed outliers always affect
+/// whole tracks.
 enum class SimOutlierUnit { kObservation, kTrack };
 
 /// Value of a path that is not given.
@@ -132,6 +134,7 @@ struct SimulatorConfig {
   double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
 
   SimGnssConfig gnss;
+  SimFixConfig fix;
   RenderConfig render;
 
   [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }

@@ -268,6 +268,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeFaults(this, visitor);
   DescribeLandmarks(this, visitor);
   visitor.Section("gnss", "simulated GNSS receiver", [&] { gnss.Describe(visitor); });
+  visitor.Section("fix", "simulated position fixes", [&] { fix.Describe(visitor); });
   visitor.Section("render", "rendered images", [&] { render.Describe(visitor); });
 }
 

@@ -1,5 +1,8 @@
 #include "eval/trajectory/position_file_reader.h"
 
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "core/format.h"
@@ -60,16 +63,69 @@ Result<Eigen::Vector3d> TakePosition(const PositionLayout& layout, std::string_v
   return position_E;
 }
 
+/// Deviation of a solution of quality Q [m].
+double UsualDeviation(int quality) {
+  switch (quality) {
+    case 1:
+      return 0.02;
+    case 2:
+      return 0.3;
+    case 3:
+    case 4:
+      return 1;
+    case 6:
+      return 0.1;
+    default:
+      return 3;
+  }
+}
+
+/// The covariance of the columns Q, number of satellites, three deviations and the signed roots of the three
+/// covariances.
+Eigen::Matrix3d TakeCovariance(const PositionLayout& layout, const Eigen::Vector3d& position_E,
+                               std::string_view* row) {
+  const int quality = ParseInteger(NextWord(row)).value_or(0);
+  static_cast<void>(NextWord(row));
+  std::array<double, 6> roots{};
+  for (double& root : roots) {
+    root = ParseReal(NextWord(row)).value_or(0);
+  }
+  const auto square = [&](std::size_t i) { return std::copysign(roots[i] * roots[i], roots[i]); };
+  // Of x, y, z in ECEF, else of north, east, up: xy, yz, zx and ne, eu, un.
+  Eigen::Matrix3d covariance;
+  covariance << square(0), square(3), square(5),  //
+      square(3), square(1), square(4),            //
+      square(5), square(4), square(2);
+  const Eigen::Vector3d diagonal = covariance.diagonal();
+  if (!(diagonal.minCoeff() > 0)) {
+    const double deviation = UsualDeviation(quality);
+    return CovarianceFromDeviations(position_E, {deviation, deviation, 2 * deviation});
+  }
+  if (covariance.llt().info() != Eigen::Success) {
+    covariance = diagonal.asDiagonal();  // the file rounds them
+  }
+  if (layout.ecef) {
+    return covariance;
+  }
+  Eigen::Matrix3d enu_from_neu;
+  enu_from_neu << 0, 1, 0, 1, 0, 0, 0, 0, 1;
+  const Eigen::Matrix3d axes = EnuFrame::At(position_E).R_EN * enu_from_neu;
+  return axes * covariance * axes.transpose();
+}
+
 }  // namespace
 
-Result<Trajectory> ReadPositionFile(const std::string& path, double time_offset_s,
-                                    std::optional<Eigen::Vector3d>* anchor_E) {
+Eigen::Matrix3d CovarianceFromDeviations(const Eigen::Vector3d& position_E,
+                                         const Eigen::Vector3d& deviations_enu_m) {
+  const Eigen::Matrix3d R_EN = EnuFrame::At(position_E).R_EN;
+  return R_EN * deviations_enu_m.cwiseAbs2().asDiagonal() * R_EN.transpose();
+}
+
+Result<std::vector<FilePosition>> ReadPositionRows(const std::string& path) {
   const Result<std::string> text = ReadTextFile(path);
   ALIDADE_RETURN_IF_ERROR(text.status());
-  Trajectory trajectory;
-  trajectory.has_orientation = false;
+  std::vector<FilePosition> positions;
   PositionLayout layout;
-  EnuFrame enu;
   LineReader lines(path, *text);
   while (lines.Next()) {
     std::string_view row = lines.trimmed();
@@ -86,19 +142,27 @@ Result<Trajectory> ReadPositionFile(const std::string& path, double time_offset_
     if (!position_E.ok()) {
       return lines.Fault(position_E.message());
     }
-    if (trajectory.points.empty()) {
-      *anchor_E = anchor_E->value_or(*position_E);
-      enu = EnuFrame::At(**anchor_E);
-    }
-    TrajectoryPoint point;
-    point.stamp_ns = *stamp + SecondsToNs(time_offset_s);
-    point.nav.p_WB = enu.FromEcef(*position_E);
-    if (trajectory.points.empty() || point.stamp_ns > trajectory.points.back().stamp_ns) {
-      trajectory.points.push_back(point);
+    if (positions.empty() || *stamp > positions.back().stamp_ns) {
+      positions.push_back({*stamp, *position_E, TakeCovariance(layout, *position_E, &row)});
     }
   }
-  if (trajectory.points.empty()) {
-    return Status::Input(path + ": holds no position, expected at least one row");
+  return positions.empty() ? Status::Input(path + ": holds no position, expected at least one row")
+                           : Result<std::vector<FilePosition>>(std::move(positions));
+}
+
+Result<Trajectory> ReadPositionFile(const std::string& path, double time_offset_s,
+                                    std::optional<Eigen::Vector3d>* anchor_E) {
+  const Result<std::vector<FilePosition>> positions = ReadPositionRows(path);
+  ALIDADE_RETURN_IF_ERROR(positions.status());
+  *anchor_E = anchor_E->value_or(positions->front().position_E);
+  const EnuFrame enu = EnuFrame::At(**anchor_E);
+  Trajectory trajectory;
+  trajectory.has_orientation = false;
+  for (const FilePosition& position : *positions) {
+    TrajectoryPoint point;
+    point.stamp_ns = position.stamp_ns + SecondsToNs(time_offset_s);
+    point.nav.p_WB = enu.FromEcef(position.position_E);
+    trajectory.points.push_back(point);
   }
   return trajectory;
 }

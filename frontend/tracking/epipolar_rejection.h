@@ -27,8 +27,8 @@ struct EpipolarOptions {
 /// Gauss-Newton refinement of t and of a rotation correction delta, R = Exp(delta) R_21, because a gyroscope
 /// without bias correction is wrong by about kGyroError dt; the correction has this as prior, so low parallax
 /// stays well-posed. Without R_21, or when fewer than half the pairs agree with it, a fundamental matrix by
-/// RANSAC decides instead (Hartley and Zisserman 2004, ch. 11). Fewer than kMinPairs pairs: nothing is
-/// rejected, since nothing can be proved.
+/// RANSAC decides instead (Hartley and Zisserman 2004, ch. 11). With fewer than kMinPairs pairs none is
+/// rejected.
 [[nodiscard]] std::vector<bool> FindEpipolarInliers(const std::vector<BearingPair>& pairs,
                                                     const std::optional<Eigen::Matrix3d>& R_21,
                                                     const EpipolarOptions& options);

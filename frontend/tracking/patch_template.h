@@ -32,7 +32,7 @@ class PatchTemplate {
   [[nodiscard]] static bool Fits(const cv::Mat& image, const Eigen::Vector2f& centre, int side_px);
 
   /// Improves `match`, which must lie within a pixel or two. False when the patch leaves the image, is flat,
-  /// or does not settle near where it began.
+  /// or does not converge near its start.
   [[nodiscard]] bool Align(const cv::Mat& image, TemplateMatch* match) const;
 
   /// Whether the deformation is so large that image detail and template no longer compare.

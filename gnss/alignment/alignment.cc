@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kMaxSamples = 40;  // bounds the work; epochs share most errors anyway
-constexpr double kMaxStateGapS = 2;      // no interpolation across a longer silence
 constexpr double kRetryS = 0.5;
 
 bool Refused(const SinglePointSolution& solution, SatelliteId satellite) {
@@ -24,6 +23,14 @@ bool Refused(const SinglePointSolution& solution, SatelliteId satellite) {
 }
 
 }  // namespace
+
+GnssAlignment AlreadyAligned(GnssAlignment alignment, TimeNs stamp_ns) {
+  alignment.stamp_ns = stamp_ns;
+  alignment.yaw_rad = 0;
+  alignment.p_NW.setZero();
+  alignment.covariance = 1e-12 * Eigen::Matrix4d::Identity();
+  return alignment;
+}
 
 NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate) {
   const YawShift transform = alignment.Transform();
@@ -44,15 +51,13 @@ GnssAligner::GnssAligner(const GnssConfig& config, const GnssReceiver& receiver)
 
 void GnssAligner::AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias,
                            const Vector3d& gyro_radps, const Eigen::Matrix3d& velocity_covariance_W) {
-  if (!states_.empty() && stamp_ns <= states_.back().stamp_ns) {
-    return;
-  }
-  AlignmentState state{stamp_ns, nav, bias, gyro_radps, velocity_covariance_W, Vector3d::Zero()};
-  if (!states_.empty()) {
-    state.acceleration_W =
-        (nav.v_WB - states_.back().nav.v_WB) / SecondsBetween(states_.back().stamp_ns, stamp_ns);
-  }
-  states_.push_back(state);
+  AlignmentState state;
+  state.stamp_ns = stamp_ns;
+  state.nav = nav;
+  state.bias = bias;
+  state.gyro_radps = gyro_radps;
+  state.velocity_covariance_W = velocity_covariance_W;
+  states_.Add(state);
   MatchEpochs();
 }
 
@@ -75,42 +80,17 @@ void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>
 
 /// Moves pending epochs that two states embrace to the samples, with the state interpolated between them.
 void GnssAligner::MatchEpochs() {
-  while (!pending_.empty() && !states_.empty() && pending_.front().stamp_ns <= states_.back().stamp_ns) {
-    const TimeNs stamp = pending_.front().stamp_ns;
-    const auto after = std::find_if(states_.begin(), states_.end(),
-                                    [&](const AlignmentState& state) { return state.stamp_ns >= stamp; });
-    const bool embraced = after != states_.begin() || after->stamp_ns == stamp;
-    const AlignmentState& late = *after;
-    const AlignmentState& early = after == states_.begin() ? late : *(after - 1);
-    const double span_s = SecondsBetween(early.stamp_ns, late.stamp_ns);
-    if (embraced && span_s <= kMaxStateGapS) {
-      const double share = span_s > 0 ? SecondsBetween(early.stamp_ns, stamp) / span_s : 0;
-      AlignmentSample sample{late, std::move(pending_.front().measurements)};
-      AlignmentState& state = sample.state;
-      state.stamp_ns = stamp;
-      // Position by the cubic that fits both velocities; the rest linearly.
-      const Vector3d chord = late.nav.p_WB - early.nav.p_WB;
-      const double s2 = share * share;
-      const double s3 = s2 * share;
-      state.nav.p_WB = early.nav.p_WB + (3 * s2 - 2 * s3) * chord +
-                       span_s * ((s3 - 2 * s2 + share) * early.nav.v_WB + (s3 - s2) * late.nav.v_WB);
-      state.nav.v_WB = (1 - share) * early.nav.v_WB + share * late.nav.v_WB;
-      state.nav.R_WB =
-          early.nav.R_WB * so3::Exp(share * so3::Log(early.nav.R_WB.transpose() * late.nav.R_WB));
-      state.gyro_radps = (1 - share) * early.gyro_radps + share * late.gyro_radps;
-      samples_.push_back(std::move(sample));
+  while (!pending_.empty() && states_.Reaches(pending_.front().stamp_ns)) {
+    if (const std::optional<AlignmentState> state = states_.At(pending_.front().stamp_ns)) {
+      samples_.push_back({*state, std::move(pending_.front().measurements)});
       located_ = false;
     }
     pending_.pop_front();
   }
-  const TimeNs newest = states_.empty() ? 0 : states_.back().stamp_ns;
+  const TimeNs newest = states_.empty() ? 0 : states_.newest().stamp_ns;
   const TimeNs oldest = newest - SecondsToNs(config_.align_window_s);
   while (!samples_.empty() && samples_.front().state.stamp_ns < oldest) {
     samples_.pop_front();
-  }
-  // A late epoch still finds its states.
-  while (states_.size() > 2 && SecondsBetween(states_[1].stamp_ns, newest) > kMaxStateGapS) {
-    states_.pop_front();
   }
 }
 
@@ -214,9 +194,9 @@ std::optional<GnssAlignment> GnssAligner::AcceptFit(const AlignmentGuess& guess,
   alignment.enu = enu_;
   alignment.yaw_rad = guess.yaw_rad;
   alignment.p_NW = guess.p_NW;
-  alignment.clock = guess.biases;
-  alignment.clock[ClockState::kClock] = guess.clock_m.back();
-  alignment.clock[ClockState::kDrift] = guess.drift_mps.back();
+  Vector6d& clock = alignment.clock.emplace(guess.biases);
+  clock[ClockState::kClock] = guess.clock_m.back();
+  clock[ClockState::kDrift] = guess.drift_mps.back();
   alignment.time_offset_s = guess.time_offset_s;
   alignment.report =
       report_ + Format(", yaw %.4f rad", guess.yaw_rad) +

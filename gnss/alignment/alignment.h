@@ -9,25 +9,30 @@
 #include "core/measurement_log.h"
 #include "core/yaw_shift.h"
 #include "gnss/alignment/alignment_fit.h"
+#include "gnss/alignment/state_history.h"
 #include "gnss/positioning/single_point.h"
 
 namespace alidade {
 
-/// How the local world W stands in the ENU frame N at an anchor: p_N = Rz(yaw) p_W + p_NW. Both are
-/// gravity-aligned (core/yaw_shift.h).
+/// How the local world W stands in the ENU frame N at an anchor, or in a gravity-aligned frame of position
+/// fixes: p_N = Rz(yaw) p_W + p_NW. Both are gravity-aligned (core/yaw_shift.h).
 struct GnssAlignment {
-  TimeNs stamp_ns = 0;  ///< IMU time of the last epoch used
-  EnuFrame enu;         ///< N
+  TimeNs stamp_ns = 0;          ///< IMU time of the last epoch used
+  std::optional<EnuFrame> enu;  ///< N; nothing: a frame whose place on the Earth is not known
   double yaw_rad = 0;
   Eigen::Vector3d p_NW = Eigen::Vector3d::Zero();
   /// Of (yaw, p_NW): truth = estimate + error.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  Vector6d clock = Vector6d::Zero();  ///< at stamp_ns
-  double time_offset_s = 0;           ///< estimated, to be added to the receiver's
+  std::optional<Vector6d> clock;  ///< of the GNSS receiver at stamp_ns; nothing: from position fixes alone
+  double time_offset_s = 0;       ///< estimated, to be added to the receiver's
   std::string report;
 
   [[nodiscard]] YawShift Transform() const { return {yaw_rad, p_NW}; }
 };
+
+/// The alignment of a state that stands in N already, its uncertainty there included: the same frame, no turn
+/// and no shift.
+[[nodiscard]] GnssAlignment AlreadyAligned(GnssAlignment alignment, TimeNs stamp_ns);
 
 /// An estimate of the local world in the ENU frame, with the alignment's own uncertainty in its covariance.
 [[nodiscard]] NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate);
@@ -48,8 +53,8 @@ class GnssAligner {
   /// stamp; rising stamps.
   void AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias, const Eigen::Vector3d& gyro_radps,
                 const Eigen::Matrix3d& velocity_covariance_W);
-  /// `approximate_E`: an antenna position (kilometres are enough) or nothing; the last one given counts.
-  /// `solution`: the epoch's own, if it has one: satellites that it refused take no part.
+  /// `approximate_E`: an antenna position (kilometres are enough) or empty; the last value is used.
+  /// `solution`: the epoch's single-point solution, if it has one; satellites that it rejected are not used.
   void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E,
                 const std::optional<SinglePointSolution>& solution = std::nullopt);
 
@@ -69,7 +74,7 @@ class GnssAligner {
 
   GnssConfig config_;
   GnssReceiver receiver_;
-  std::deque<AlignmentState> states_;
+  StateHistory states_;
   std::deque<GnssEpoch> pending_;
   std::deque<AlignmentSample> samples_;
   std::optional<Eigen::Vector3d> approximate_E_;

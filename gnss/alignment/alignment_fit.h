@@ -16,6 +16,7 @@ struct AlignmentState {
   Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();
   Eigen::Matrix3d velocity_covariance_W = Eigen::Matrix3d::Zero();
   Eigen::Vector3d acceleration_W = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d position_covariance_W = Eigen::Matrix3d::Zero();
 };
 
 /// An epoch with the estimate at its time.

@@ -12,13 +12,13 @@
 
 namespace alidade {
 
-/// The start of GNSS with IMU and without a camera: a state that stands in the ENU frame at once.
+/// Initialisation from GNSS and IMU without a camera, directly in the ENU frame.
 ///
 /// Least squares over attitude, velocity, position and biases at the first epoch of the window: the IMU,
 /// integrated from there, must pass through the single-point positions and velocities of the others. Attitude
 /// starts from the rotation between specific force, integrated in the first body frame, and change of
 /// velocity less gravity (velocity matching as in Wu and Pan, "Velocity/position integration formula part I",
-/// 2013; solved by SVD). Rest leaves the heading open, so that the start waits for motion.
+/// 2013; solved by SVD). At rest the heading is unobservable, so the start waits for motion.
 class GnssInertialStart {
  public:
   GnssInertialStart(const EstimatorConfig& config, const RigCalibration& rig);

@@ -37,9 +37,9 @@ struct PreciseProducts {
 };
 
 /// Reads an SP3 file of version a to d, plain or gzip (S. Hilla, "The extended standard product 3 orbit
-/// format", 2010 and 2016). Positions and clocks alone: velocities, correlations and deviations are passed
-/// over. What is marked bad (0 0 0, 999999.999999) is left out; the header's counts are not trusted. Errors:
-/// no SP3, an unknown time system, no position.
+/// format", 2010 and 2016). Positions and clocks alone: velocities, correlations and standard deviations are
+/// skipped. Entries marked as bad (0 0 0, 999999.999999) are not used; the header's counts are not trusted.
+/// Errors: no SP3, an unknown time system, no position.
 Result<PreciseProducts> ReadSp3(const std::string& path);
 Result<PreciseProducts> ParseSp3(const std::string& path, std::string_view text);
 

@@ -8,8 +8,8 @@
 namespace alidade {
 
 /// Position and velocity of a satellite's centre of mass by Lagrange interpolation of degree 10 (11 nodes
-/// around `stamp_ns`, turned into axes that stand still), and its clock by linear interpolation plus the
-/// relativistic term -2 r.v / c^2. Nothing outside the nodes, across a gap in them, or without a clock (nodes
+/// around `stamp_ns`, rotated into non-rotating axes), and its clock by linear interpolation plus the
+/// relativistic term -2 r.v / c^2. Empty outside the nodes, across a gap in them, or without a clock (nodes
 /// of CLK 10 min apart at most, of SP3 30 min). Neglected: the offset of the antenna from the centre of mass,
 /// which takes an ANTEX file (0.5 to 3 m towards the Earth, nearly equal within a constellation and then
 /// absorbed by the clock).

@@ -37,10 +37,10 @@ class SatelliteCatalog {
   /// pseudorange: t = tag - P / c - dt_S, whatever the receiver's clock error (IS-GPS-200 20.3.3.3.3.1).
   ///
   /// Of the ephemerides within the message's age (GPS, QZSS 2 h, Galileo 4 h, BeiDou 6 h, GLONASS 30 min 30
-  /// s) that with the nearest reference time is taken, of Galileo I/NAV before F/NAV; the latest of equals.
-  /// When it says that the satellite is unhealthy for `signal`, the satellite is. A single GLONASS signal
-  /// (`ionosphere_free` false) whose delay against the pair of precise clocks is not broadcast keeps to the
-  /// broadcast orbit and clock: those delays are metres.
+  /// s) the one with the nearest reference time is used, of Galileo I/NAV before F/NAV; of equals the latest.
+  /// Its health flag for `signal` applies. A single GLONASS signal (`ionosphere_free` false) whose delay
+  /// against the pair of precise clocks is not broadcast keeps to the broadcast orbit and clock: those delays
+  /// are metres.
   [[nodiscard]] SatelliteFix AtTransmission(SatelliteId satellite, SignalCode signal, TimeNs tag_ns,
                                             double pseudorange_m, bool ionosphere_free = false) const;
 

@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-/// What most measurements agree on, whatever the others say.
+/// Robust fit to the majority of the measurements.
 struct Consensus {
   Eigen::VectorXd step;  ///< unknowns
   double spread = 0;     ///< robust deviation of the whitened residuals of measurements that were not fitted

@@ -12,7 +12,7 @@
 
 namespace alidade {
 
-/// What frames and landmarks that left the window said about those that stay: r = r0 + J xi, unit noise, with
+/// Information of marginalised frames and landmarks about the remaining ones: r = r0 + J xi, unit noise, with
 /// xi the stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed
 /// when the prior is made.
 ///

@@ -10,8 +10,8 @@
 
 namespace alidade {
 
-/// Tracks of the prior's landmarks, in their order; null where the track was lost or refused, so that only
-/// the prior knows of the landmark.
+/// Tracks of the prior's landmarks, in their order; null where the track was lost or refused, then only the
+/// prior has information about the landmark.
 [[nodiscard]] std::vector<const WindowTrack*> PriorTracks(const LinearPrior& prior, const Window& window);
 
 /// States of a window at an evaluation.

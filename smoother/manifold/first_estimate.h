@@ -5,10 +5,9 @@
 namespace alidade {
 
 /// Where the Jacobians of a frame are taken once the prior holds it (first estimates, after Huang, Mourikis
-/// and Roumeliotis, ISER 2008, and Leutenegger et al., IJRR 2015). What the prior says was linearised there
-/// and stays so. Factors that were linearised elsewhere would not leave turns about gravity and shifts of
-/// everything undecided along the same directions as the prior, and their sum would then claim to know them.
-/// Residuals stay at the present state.
+/// and Roumeliotis, ISER 2008, and Leutenegger et al., IJRR 2015). The prior is linearised there permanently.
+/// Factors linearised elsewhere have a different null space for yaw and position than the prior, and their
+/// sum would contain spurious information about them. Residuals are evaluated at the present state.
 struct FirstEstimate {
   ErrorConvention convention = ErrorConvention::kRightInvariant;  ///< of the prior
   NavState state;  ///< its velocity counts once the prior holds it: from when the frame is the oldest

@@ -43,11 +43,11 @@ GnssWindow::GnssWindow(const GnssConfig& config, const GnssReceiver& receiver,
       gate_threshold_(ChiSquareQuantile(1, config.gate_probability)) {}
 
 void GnssWindow::Align(const GnssAlignment& alignment, WindowFrame* frame, LinearPrior* prior) {
-  context_ = GnssFactorContext{config_, {alignment.enu, receiver_.p_BA}, gravity_W_};
+  context_ = GnssFactorContext{config_, {*alignment.enu, receiver_.p_BA}, gravity_W_};
   removed_jumps_m_ = 0;
   clock_lost_ = false;
   const double since_s = std::max(0.0, SecondsBetween(alignment.stamp_ns, frame->stamp_ns));
-  const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * alignment.clock);
+  const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * *alignment.clock);
   frame->clock.emplace();
   Eigen::Map<Vector6d>{frame->clock->data()} = fresh.mean;
   const Eigen::LLT<Matrix6d> factor(fresh.covariance);
@@ -73,30 +73,12 @@ void GnssWindow::PredictClock(const WindowFrame& from, WindowFrame* frame) {
   clock_lost_ = false;
 }
 
-void GnssWindow::Reattach(WindowFrame* dropped, WindowFrame* frame) const {
-  for (FrameEpoch& epoch : dropped->epochs) {
-    std::vector<ImuSample> imu = dropped->imu;
-    if (!epoch.imu.empty()) {
-      imu.insert(imu.end(), epoch.imu.begin() + 1, epoch.imu.end());
-    }
-    epoch.imu = std::move(imu);
-    epoch.preintegration.emplace(frame->imu_bias(), dropped->preintegration->noise());
-    epoch.preintegration->Add(epoch.imu);
-    frame->epochs.push_back(std::move(epoch));
-  }
-  dropped->epochs.clear();
-}
-
 bool GnssWindow::Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise,
                         WindowFrame* frame) {
   FrameEpoch attached;
   attached.stamp_ns = epoch.stamp_ns;
   attached.measurements = epoch.measurements;
-  attached.imu = std::move(imu);
-  if (attached.imu.size() > 1) {
-    attached.preintegration.emplace(frame->imu_bias(), noise);
-    attached.preintegration->Add(attached.imu);
-  }
+  attached.Set(std::move(imu), frame->imu_bias(), noise);
   if (!attached.imu.empty()) {
     attached.gyro_radps = attached.imu.back().gyro;
   }

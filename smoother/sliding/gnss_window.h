@@ -26,11 +26,9 @@ class GnssWindow {
   void Align(const GnssAlignment& alignment, WindowFrame* frame, LinearPrior* prior);
   /// The clock of a frame that was just added, from that of the frame `from` before it.
   void PredictClock(const WindowFrame& from, WindowFrame* frame);
-  /// Epochs of a frame that was taken out move to the one before it, `frame`.
-  void Reattach(WindowFrame* dropped, WindowFrame* frame) const;
 
-  /// Hangs the epoch on the frame; `imu` leads there from the frame, empty at the frame itself. False when
-  /// the epoch was left out since the clock was lost: the next frame finds it anew.
+  /// Links the epoch to the frame; `imu` spans from the frame to the epoch, empty at the frame itself. False
+  /// when the epoch was skipped because the clock was lost; it is re-initialised at the next frame.
   bool Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame);
   /// After a solve: the gate of each row of each epoch; statistics of those that are judged for the first
   /// time.

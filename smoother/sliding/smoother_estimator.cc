@@ -43,6 +43,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       imu_(config.imu.max_gap_s),
       rest_(config.vision, config.init, rig.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
+      fixes_(config.fix, rig.fixes),
       given_(InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s})),
       calibration_{given_.layout, given_.mean} {}
 
@@ -69,6 +70,8 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
   window_.AddFrame(std::move(frame));
   prior_ = std::move(prior);
   gnss_.Reset();
+  fixes_.Reset();
+  aligned_ = false;
   imu_.DropBefore(initial.stamp_ns);
   rest_.Clear();
   latest_ = initial;
@@ -125,7 +128,7 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
   std::unique_ptr<WindowFrame> dropped;
   if (!NewestIsKeyframe()) {
     dropped = window_.RemoveNewest();
-    gnss_.Reattach(dropped.get(), &window_.newest());
+    MoveMeasurements(dropped.get(), &window_.newest());
   } else if (window_.size() > config_.smoother.window) {
     ALIDADE_RETURN_IF_ERROR(MarginalizeOldestFrame());
   }

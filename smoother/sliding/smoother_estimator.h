@@ -7,6 +7,7 @@
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
 #include "core/robust.h"
+#include "smoother/sliding/fix_window.h"
 #include "smoother/sliding/gnss_window.h"
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
@@ -44,6 +45,7 @@ class SmootherEstimator final : public Estimator {
   Status AddFrame(const TrackFrame& frame) override;
   Status Align(const GnssAlignment& alignment) override;
   Status AddGnss(const GnssEpoch& epoch) override;
+  Status AddFix(const PositionFix& fix) override;
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return latest_; }
@@ -61,6 +63,16 @@ class SmootherEstimator final : public Estimator {
   /// The camera as it is known now.
   [[nodiscard]] const CameraCalibration& camera() const { return calibration_.mean; }
   [[nodiscard]] std::vector<FrameGeometry> Geometry() const { return MakeGeometry(window_, camera()); }
+  /// How a measurement between frames hangs on the newest one.
+  struct Hook {
+    bool own_state = false;      ///< the newest frame was made for it
+    std::vector<ImuSample> imu;  ///< from the newest frame to it; the sample there where they coincide
+  };
+  /// Makes a frame at the stamp where the newest one lies more than `max_interpolation_s` before it. `what`
+  /// names the measurement in messages. kDiverged: not aligned. kInput: older than the newest frame.
+  Result<Hook> ReachMeasurement(const char* what, TimeNs stamp_ns, double max_interpolation_s);
+  /// Solves where the measurement has a state of its own.
+  Status SolveWithMeasurement(const Hook& hook);
   [[nodiscard]] bool NewestIsKeyframe() const;
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
@@ -97,6 +109,7 @@ class SmootherEstimator final : public Estimator {
   RestDetector rest_;
   Window window_;
   GnssWindow gnss_;
+  FixWindow fixes_;
   LinearPrior prior_;
   CalibrationEstimate given_;  ///< the calibration a run starts with
   WindowCalibration calibration_;
@@ -107,6 +120,7 @@ class SmootherEstimator final : public Estimator {
   FrameStatistics statistics_;
   std::vector<ImuSample> interval_;
   bool initialized_ = false;
+  bool aligned_ = false;  ///< W is the frame of GNSS and fixes
 };
 
 }  // namespace alidade

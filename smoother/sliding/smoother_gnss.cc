@@ -1,8 +1,12 @@
+#include <string>
+#include <utility>
+
+#include "core/imu_propagation.h"
 #include "core/stopwatch.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother_estimator.h"
 
-// GNSS of SmootherEstimator.
+// GNSS and position fixes of SmootherEstimator.
 
 namespace alidade {
 
@@ -12,41 +16,77 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   }
   // The window begins anew at the newest state in the ENU frame: what it knew is in that state's covariance.
   ALIDADE_RETURN_IF_ERROR(Begin(TurnIntoEnu(alignment, latest_)));
-  gnss_.Align(alignment, &window_.newest(), &prior_);
+  aligned_ = true;
+  if (alignment.clock) {
+    gnss_.Align(alignment, &window_.newest(), &prior_);
+    latest_clock_ = FreshClock(config_.gnss, window_.newest().clock_state());
+  }
   AddCalibrationPrior({calibration_.layout, calibration_.mean, calibration_deviations_}, &prior_);
-  latest_clock_ = FreshClock(config_.gnss, window_.newest().clock_state());
   return Status::Ok();
 }
 
-Status SmootherEstimator::AddGnss(const GnssEpoch& epoch) {
-  if (!initialized_ || !gnss_.aligned()) {
+Result<SmootherEstimator::Hook> SmootherEstimator::ReachMeasurement(const char* what, TimeNs stamp_ns,
+                                                                    double max_interpolation_s) {
+  if (!initialized_ || !aligned_) {
     return Status::Diverged("smoother: not aligned");
   }
   const TimeNs newest_ns = window_.newest().stamp_ns;
-  if (epoch.stamp_ns < newest_ns) {
-    return Status::Input("smoother: the GNSS epoch at " + FormatSeconds(epoch.stamp_ns) +
+  if (stamp_ns < newest_ns) {
+    return Status::Input(std::string("smoother: the ") + what + " at " + FormatSeconds(stamp_ns) +
                          " s is older than the newest frame");
   }
-  const Stopwatch stopwatch;
   statistics_ = {};
-  const double after_s = SecondsBetween(newest_ns, epoch.stamp_ns);
-  const bool own_state =
-      after_s > config_.gnss.max_interpolation_s || (!has_frames_ && epoch.stamp_ns > newest_ns);
-  std::vector<ImuSample> imu;
-  if (own_state) {
-    ALIDADE_RETURN_IF_ERROR(BeginFrame(epoch.stamp_ns));
-    imu = {interval_.back()};
+  const double after_s = SecondsBetween(newest_ns, stamp_ns);
+  Hook hook;
+  hook.own_state = after_s > max_interpolation_s || (!has_frames_ && stamp_ns > newest_ns);
+  if (hook.own_state) {
+    ALIDADE_RETURN_IF_ERROR(BeginFrame(stamp_ns));
+    hook.imu = {interval_.back()};
   } else if (after_s > 0) {
-    ALIDADE_RETURN_IF_ERROR(imu_.Interval(newest_ns, epoch.stamp_ns, &imu));
+    ALIDADE_RETURN_IF_ERROR(imu_.Interval(newest_ns, stamp_ns, &hook.imu));
   } else if (!window_.newest().imu.empty()) {
-    imu = {window_.newest().imu.back()};
+    hook.imu = {window_.newest().imu.back()};
   }
-  gnss_.Attach(epoch, std::move(imu), noise_, &window_.newest());
+  return hook;
+}
+
+Status SmootherEstimator::SolveWithMeasurement(const Hook& hook) {
+  if (!hook.own_state) {
+    return Status::Ok();
+  }
+  std::vector<WindowTrack*> tracks = SelectTracks();
+  return SolveAndGate(&tracks);
+}
+
+Status SmootherEstimator::AddGnss(const GnssEpoch& epoch) {
+  if (!gnss_.aligned()) {
+    return Status::Diverged("smoother: not aligned");
+  }
+  const Stopwatch stopwatch;
+  Result<Hook> hook = ReachMeasurement("GNSS epoch", epoch.stamp_ns, config_.gnss.max_interpolation_s);
+  ALIDADE_RETURN_IF_ERROR(hook.status());
+  gnss_.Attach(epoch, std::move(hook->imu), noise_, &window_.newest());
   statistics_.clock_jump = gnss_.jumped();
-  if (own_state) {
-    std::vector<WindowTrack*> tracks = SelectTracks();
-    ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
+  ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
+  statistics_.update_ms = stopwatch.ElapsedMs();
+  return Status::Ok();
+}
+
+Status SmootherEstimator::AddFix(const PositionFix& fix) {
+  const Result<FixMeasurement> measurement = fixes_.Prepare(fix);
+  ALIDADE_RETURN_IF_ERROR(measurement.status());
+  const Stopwatch stopwatch;
+  Result<Hook> hook = ReachMeasurement("position fix", fix.stamp_ns, config_.fix.max_interpolation_s);
+  ALIDADE_RETURN_IF_ERROR(hook.status());
+  NavEstimate predicted = latest_;
+  const std::vector<ImuSample>& since = hook->own_state ? interval_ : hook->imu;
+  if (since.size() > 1) {
+    if (const Status status = PropagateEstimate(since, noise_, gravity_W_, &predicted); !status.ok()) {
+      return Lost("smoother: " + status.message());
+    }
   }
+  fixes_.Attach(*measurement, predicted, std::move(hook->imu), noise_, &window_.newest(), &statistics_);
+  ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
   statistics_.update_ms = stopwatch.ElapsedMs();
   return Status::Ok();
 }

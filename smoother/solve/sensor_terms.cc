@@ -1,5 +1,6 @@
 #include "smoother/solve/sensor_terms.h"
 
+#include "smoother/factors/fix_factor.h"
 #include "smoother/factors/imu_factor.h"
 #include "smoother/factors/rest_factor.h"
 #include "smoother/solve/factor_term.h"
@@ -48,6 +49,12 @@ Status AddSensorTerms(const SensorContext& context, const WindowFrames& frames, 
   for (int i = 0; i < count; ++i) {
     if (frame(i).rest) {
       terms->push_back(MakeTerm(RestFactor(*frame(i).rest), {NavBlock(frame(i)), BiasBlock(frame(i))}));
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    for (const FrameFix& fix : frame(i).fixes) {
+      terms->push_back(
+          MakeTerm(FixFactor(&fix, context.gravity_W), {NavBlock(frame(i)), BiasBlock(frame(i))}));
     }
   }
   for (int i = 0; context.gnss != nullptr && i < count; ++i) {

@@ -11,9 +11,9 @@ struct SensorContext {
   const GnssFactorContext* gnss = nullptr;  ///< of an aligned window
 };
 
-/// Appends what every sensor but the camera says about the first `count` frames: IMU between them, rest, GNSS
-/// epochs and clocks, in this order. Frames and context must outlive the terms. kDiverged: the covariance of
-/// an IMU interval is not positive definite.
+/// Appends what every sensor but the camera says about the first `count` frames: IMU between them, rest,
+/// position fixes, GNSS epochs and clocks, in this order. Frames and context must outlive the terms.
+/// kDiverged: the covariance of an IMU interval is not positive definite.
 Status AddSensorTerms(const SensorContext& context, const WindowFrames& frames, int count,
                       WindowTerms* terms);
 

@@ -1,20 +1,16 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "core/preintegration.h"
 #include "gnss/model/satellite_measurement.h"
+#include "smoother/window/imu_link.h"
 
 namespace alidade {
 
-/// A GNSS epoch that hangs on a frame of the window: the IMU carries the frame's state on to it. Over the
-/// tenths of a second between them the IMU's noise (millimetres) and the clock's are left out.
-struct FrameEpoch {
+/// A GNSS epoch that hangs on a frame of the window. The clock's noise between them is left out too.
+struct FrameEpoch : ImuLink {
   TimeNs stamp_ns = 0;
   EpochMeasurements measurements;  ///< located
-  std::vector<ImuSample> imu;      ///< from the frame to the epoch; empty at the frame itself
-  std::optional<Preintegration> preintegration;
   Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();
   bool counted = false;    ///< in the statistics
   std::vector<bool> used;  ///< by row of LinearizeEpoch, after the gate; empty: all

@@ -159,6 +159,18 @@ FrameParallax ComputeParallax(const Window& window, const WindowFrame& first, co
   return parallax;
 }
 
+void MoveMeasurements(WindowFrame* dropped, WindowFrame* frame) {
+  const auto move = [&](auto* from, auto* to) {
+    for (auto& measurement : *from) {
+      measurement.Prepend(dropped->imu, frame->imu_bias(), dropped->preintegration->noise());
+      to->push_back(std::move(measurement));
+    }
+    from->clear();
+  };
+  move(&dropped->epochs, &frame->epochs);
+  move(&dropped->fixes, &frame->fixes);
+}
+
 void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame) {
   const ImuBias bias = previous.imu_bias();
   if (frame->preintegration && (frame->preintegration->bias().gyro - bias.gyro).norm() < kMaxGyroBiasShift &&

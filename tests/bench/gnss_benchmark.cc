@@ -43,6 +43,7 @@ void GnssEpochUpdate(benchmark::State& state) {
   GnssAlignment alignment;
   alignment.stamp_ns = kStamp;
   alignment.enu = EnuFrame::At(receiver.position_E);
+  alignment.clock = Vector6d::Zero();
   alignment.covariance = Eigen::Matrix4d::Identity();
   update.Align(alignment, &filter);
   Eigen::VectorXd correction(filter.covariance().dimension());

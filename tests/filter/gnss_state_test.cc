@@ -83,6 +83,24 @@ TEST_P(GnssStateTest, AlignCarriesTheCovariance) {
   EXPECT_TRUE(state.nav().p_WB.isApprox(turned(nav, zero).p_WB, 1e-12));
 }
 
+// GIVEN an alignment from position fixes, WHEN no clock is known, THEN the state is aligned the same and has
+// no clock.
+TEST_P(GnssStateTest, AlignsWithoutAClock) {
+  RandomStates random(8);
+  FilterState with = MakeState(GetParam(), &random);
+  RandomStates again(8);
+  FilterState without = MakeState(GetParam(), &again);
+  const Eigen::Matrix3d R_NW = Eigen::AngleAxisd(2.0, Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix4d covariance = Eigen::Vector4d(0.01, 1, 2, 3).asDiagonal();
+  with.Align(R_NW, Vector3d(1, 2, 3), covariance, Matrix6d(Matrix6d::Identity()));
+  without.Align(R_NW, Vector3d(1, 2, 3), covariance, std::nullopt);
+  EXPECT_EQ(without.CoreOffset(), 0);
+  EXPECT_EQ(without.nav().p_WB, with.nav().p_WB);
+  ASSERT_EQ(without.covariance().dimension() + 6, with.covariance().dimension());
+  EXPECT_TRUE(without.covariance().Covariance().isApprox(
+      with.covariance().Covariance().bottomRightCorner(27, 27), 1e-12));
+}
+
 // GIVEN a clock before the core and a landmark before the clock, WHEN it is propagated, THEN the covariance
 // is the dense one.
 TEST_P(GnssStateTest, ClockPropagatesAsTheDenseCovariance) {

@@ -222,6 +222,8 @@ TEST(RosDefinitions, HaveThePublishedSums) {
   EXPECT_EQ(RosMd5("sensor_msgs/Imu"), "6a62c6daae103f4ff57a132d6f95cec2");
   EXPECT_EQ(RosMd5("sensor_msgs/Image"), "060021388200f6f0f447d0fcd9c64743");
   EXPECT_EQ(RosMd5("sensor_msgs/CompressedImage"), "8f7a12909da2c9d3332d540a0977563f");
+  EXPECT_EQ(RosMd5("sensor_msgs/NavSatStatus"), "331cdbddfa4bc96ffc3b9ad98900a54c");
+  EXPECT_EQ(RosMd5("sensor_msgs/NavSatFix"), "2d3a8cd499b9b4a0249fb98fd05cfa48");
   EXPECT_EQ(RosMd5("sensor_msgs/Nothing"), "");
 }
 

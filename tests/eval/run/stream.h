@@ -18,7 +18,7 @@ struct Delay {
   double jitter_s = 0;
 };
 struct Delays {
-  Delay imu, camera, gnss;
+  Delay imu, camera, gnss, fix;
 };
 
 struct Arrival {
@@ -44,6 +44,11 @@ inline std::vector<Arrival> ArrivalsOf(const Dataset& dataset, const Delays& del
   for (size_t i = 0; dataset.gnss != nullptr && i < dataset.gnss->epochs.size(); ++i) {
     add(Sensor::kGnss, i, dataset.gnss->epochs[i].stamp_ns, delays.gnss);
   }
+  for (size_t i = 0; i < dataset.fixes.size(); ++i) {
+    const PositionFix& fix = dataset.fixes[i];
+    const FixSensor& sensor = dataset.rig.fixes[static_cast<size_t>(fix.sensor)];
+    add(Sensor::kFix, i, fix.stamp_ns + SecondsToNs(sensor.time_offset_s), delays.fix);
+  }
   std::stable_sort(arrivals.begin(), arrivals.end(),
                    [](const Arrival& a, const Arrival& b) { return a.arrival_ns < b.arrival_ns; });
   return arrivals;
@@ -59,6 +64,9 @@ inline void AddTo(Session* session, const Dataset& dataset, const Arrival& messa
       break;
     case Sensor::kGnss:
       session->AddGnss(dataset.gnss->epochs[message.index]);
+      break;
+    case Sensor::kFix:
+      session->AddFix(dataset.fixes[message.index]);
       break;
   }
 }

@@ -144,8 +144,8 @@ TEST(GnssInertialStartTest, GIVEN_exact_epochs_and_IMU_THEN_the_state_is_recover
     EXPECT_LT((found->estimate.bias.accel - body.bias.accel).norm(), 0.05) << p_BA.transpose();
     const Vector15d deviations = ErrorInDeviations(body, *found);
     EXPECT_LT(deviations.cwiseAbs().maxCoeff(), 1) << p_BA.transpose() << ": " << deviations.transpose();
-    EXPECT_NEAR(found->alignment.clock[ClockState::kDrift], 20, 1e-12);
-    EXPECT_TRUE(found->alignment.enu.origin_E.isApprox(body.enu.origin_E, 1e-15));
+    EXPECT_NEAR((*found->alignment.clock)[ClockState::kDrift], 20, 1e-12);
+    EXPECT_TRUE(found->alignment.enu->origin_E.isApprox(body.enu.origin_E, 1e-15));
   }
 }
 

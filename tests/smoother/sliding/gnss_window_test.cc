@@ -57,6 +57,7 @@ TEST(GnssWindowTest, RowsOfASuspectEpochAreScaledToTheGate) {
   GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
   GnssAlignment alignment;
   alignment.enu = fixture.context.mount.enu;
+  alignment.clock = Vector6d::Zero();
   LinearPrior prior;
   ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0),
                                Matrix15d::Identity(), &prior));
@@ -95,6 +96,7 @@ TEST_P(GnssMarginalizationTest, NothingIsLostAndNothingInvented) {
     GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
     GnssAlignment alignment;
     alignment.enu = fixture.context.mount.enu;
+    alignment.clock = Vector6d::Zero();
     LinearPrior prior;
     Matrix15d covariance = 0.1 * Matrix15d::Identity();
     ASSERT_TRUE(MakeInitialPrior(GetParam(), fixture.window.frame(0), covariance, &prior));

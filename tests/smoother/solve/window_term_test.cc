@@ -190,15 +190,22 @@ TEST(WindowTermTest, RowsOfTheSensorsAreThoseOfCeresAndNumeric) {
     GnssFixture fixture(seed);
     fixture.window.frame(1).rest =
         MakeRestMeasurement({true, true}, fixture.random.Vector(0.1), VisionConfig());
+    for (int i = 1; i <= 2; ++i) {  // at the frame, and after it
+      WindowFrame& frame = fixture.window.frame(i);
+      FrameFix& fix = frame.fixes.emplace_back();
+      const PositionFix measured{0, 0, fixture.random.Vector(2), 0.04 * Eigen::Matrix3d::Identity()};
+      fix.measurement = *MakeFixMeasurement(FixConfig(), fixture.random.Vector(0.5), measured);
+      fix.Set(i == 1 ? std::vector<ImuSample>() : frame.epochs[0].imu, frame.imu_bias(), fixture.noise);
+    }
     Disturb(&fixture);
     WindowTerms terms;
     ASSERT_TRUE(AddSensorTerms({fixture.gravity_W}, fixture.window.frames(), 4, &terms).ok());
-    ASSERT_EQ(terms.size(), 3u + 1u);
+    ASSERT_EQ(terms.size(), 3u + 1u + 2u);
     ExpectRowsOfCeres(terms, fixture.window.frames(), fixture.calibration, 1e-4, 1e-6);
     WindowTerms all;
     ASSERT_TRUE(AddSensorTerms({fixture.gravity_W, &fixture.context}, fixture.window.frames(), 4, &all).ok());
-    ASSERT_EQ(all.size(), 4u + 4u + 3u);
-    all.erase(all.begin(), all.begin() + 4);
+    ASSERT_EQ(all.size(), 6u + 4u + 3u);
+    all.erase(all.begin(), all.begin() + 6);
     fixture.context.config.robust_kernel = RobustKernel::kNone;  // its kink is no derivative
     // Ranges of 2e7 m lose digits in differences.
     ExpectRowsOfCeres(all, fixture.window.frames(), fixture.calibration, 1e-2, 1e-4);
@@ -215,6 +222,7 @@ TEST(WindowTermTest, RowsOfAPriorWithClockAndCalibrationAreThoseOfCeresAndNumeri
     GnssWindow gnss(fixture.context.config, {}, fixture.gravity_W);
     GnssAlignment alignment;
     alignment.enu = fixture.context.mount.enu;
+    alignment.clock = Vector6d::Zero();
     gnss.Align(alignment, &fixture.window.frame(0), &prior);
     AddCalibrationPrior(estimate, &prior);
     const SensorContext sensors{fixture.gravity_W, &fixture.context};
@@ -315,6 +323,7 @@ TEST(WindowTermTest, TheBatchTakesGnssTermsAsTheWindowDoes) {
   GnssWindow gnss(fixture.context.config, {}, fixture.gravity_W);
   GnssAlignment alignment;
   alignment.enu = fixture.context.mount.enu;
+  alignment.clock = Vector6d::Zero();
   gnss.Align(alignment, &fixture.window.frame(0), &prior);
   std::vector<WindowTrack*> tracks;
   for (auto& [id, track] : fixture.window.tracks()) {

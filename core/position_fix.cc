@@ -1,0 +1,80 @@
+#include "core/position_fix.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <string>
+
+#include "core/robust.h"
+
+namespace alidade {
+
+void PositionFixModel::Evaluate(const NavState& state, Eigen::Vector3d* residual, Jacobian* jacobian) const {
+  *residual = Predict(state) - p_WA;
+  if (jacobian != nullptr) {
+    jacobian->setZero();
+    jacobian->leftCols<3>() = -state.R_WB * Skew(p_BA);
+    jacobian->middleCols<3>(3).setIdentity();
+  }
+}
+
+void FixMeasurement::Evaluate(const NavState& state, Eigen::Vector3d* residual,
+                              PositionFixModel::Jacobian* jacobian) const {
+  model.Evaluate(state, residual, jacobian);
+  *residual = (sqrt_information * *residual).eval();
+  if (jacobian != nullptr) {
+    *jacobian = (sqrt_information * *jacobian).eval();
+  }
+}
+
+Result<FixMeasurement> MakeFixMeasurement(const FixConfig& config, const Eigen::Vector3d& p_BA,
+                                          const PositionFix& fix) {
+  const auto fault = [&](const char* expected) {
+    return Status::Input("the position fix at " + FormatSeconds(fix.stamp_ns) + " s: expected " + expected);
+  };
+  if (!fix.p_A.allFinite() || !fix.covariance.allFinite()) {
+    return fault("finite numbers");
+  }
+  constexpr double kRounding = 1e-9;
+  const double asymmetry = (fix.covariance - fix.covariance.transpose()).cwiseAbs().maxCoeff();
+  const Eigen::LLT<Eigen::Matrix3d> given(fix.covariance);
+  if (asymmetry > kRounding * fix.covariance.cwiseAbs().maxCoeff() || given.info() != Eigen::Success) {
+    return fault("a covariance that is symmetric and positive definite");
+  }
+  const Eigen::Matrix3d assumed = config.std_scale * config.std_scale * fix.covariance +
+                                  config.std_floor_m * config.std_floor_m * Eigen::Matrix3d::Identity();
+  FixMeasurement measurement;
+  measurement.model = {p_BA, fix.p_A};
+  measurement.sqrt_information = assumed.llt().matrixL().solve(Eigen::Matrix3d::Identity());
+  return measurement;
+}
+
+Result<FixMeasurement> MakeFixMeasurement(const FixConfig& config, const std::vector<FixSensor>& sensors,
+                                          const PositionFix& fix) {
+  const auto sensor = static_cast<std::size_t>(fix.sensor);
+  if (fix.sensor < 0 || sensor >= sensors.size()) {
+    return Status::Input("the position fix at " + FormatSeconds(fix.stamp_ns) + " s: found sensor " +
+                         std::to_string(fix.sensor) + ", expected one of " + std::to_string(sensors.size()));
+  }
+  return MakeFixMeasurement(config, sensors[sensor].p_BA, fix);
+}
+
+double FixNis(const Eigen::Vector3d& residual, const PositionFixModel::Jacobian& jacobian,
+              const Matrix15d& covariance) {
+  const Eigen::Matrix3d innovation_covariance =
+      jacobian * covariance * jacobian.transpose() + Eigen::Matrix3d::Identity();
+  return residual.dot(innovation_covariance.llt().solve(residual));
+}
+
+FixGate::FixGate(const FixConfig& config)
+    : config_(config), threshold_(ChiSquareQuantile(PositionFixModel::kRows, config.gate_probability)) {}
+
+double FixGate::Weigh(double nis) {
+  if (nis <= threshold_) {
+    refused_in_a_row_ = 0;
+    return RobustWeight(config_.robust_kernel, config_.robust_scale_sigma, nis);
+  }
+  ++refused_in_a_row_;
+  return refused_in_a_row_ > config_.max_refused_run && std::isfinite(nis) ? threshold_ / nis : 0;
+}
+
+}  // namespace alidade

@@ -1,0 +1,84 @@
+#include "eval/dataset/dataset_findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+
+namespace alidade {
+namespace {
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void Findings::Fact(std::string text) {
+  list_.push_back({DatasetFinding::Severity::kFact, std::move(text)});
+}
+
+void Findings::Warning(std::string text) {
+  list_.push_back({DatasetFinding::Severity::kWarning, std::move(text)});
+}
+
+void Findings::Error(std::string text) {
+  list_.push_back({DatasetFinding::Severity::kError, std::move(text)});
+}
+
+void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
+                 Findings* findings) {
+  if (stamps.size() < 2) {
+    findings->Warning(Format("%s: %zu stamps", sensor, stamps.size()));
+    return;
+  }
+  std::vector<double> steps;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    steps.push_back(SecondsBetween(stamps[i - 1], stamps[i]));
+  }
+  const double median = Median(steps);
+  int gaps = 0;
+  int short_steps = 0;
+  size_t widest = 0;
+  for (size_t i = 0; i < steps.size(); ++i) {
+    gaps += steps[i] > 3 * median ? 1 : 0;
+    short_steps += steps[i] < 0.1 * median ? 1 : 0;
+    widest = steps[i] > steps[widest] ? i : widest;
+  }
+  const double span = SecondsBetween(stamps.front(), stamps.back());
+  const double mean_rate = static_cast<double>(steps.size()) / span;
+  findings->Fact(Format("%s: %zu stamps over %.3f s, from %s to %s; mean rate %.2f Hz, median step %.3f ms",
+                        sensor, stamps.size(), span, FormatSeconds(stamps.front()).c_str(),
+                        FormatSeconds(stamps.back()).c_str(), mean_rate, 1e3 * median));
+  if (gaps > 0) {
+    findings->Warning(
+        Format("%s: %d gaps (steps above three median steps); the longest is %.3f s after %lld ns", sensor,
+               gaps, steps[widest], static_cast<long long>(stamps[widest])));
+  }
+  if (short_steps > 0) {
+    findings->Warning(
+        Format("%s: %d steps shorter than a tenth of the median step; the rows between may be "
+               "interpolated",
+               sensor, short_steps));
+  }
+  if (stated_rate_hz > 0 && std::abs(mean_rate / stated_rate_hz - 1) > 0.1) {
+    findings->Warning(
+        Format("%s: sensor.yaml states %.2f Hz, the stamps give %.2f Hz", sensor, stated_rate_hz, mean_rate));
+  }
+}
+
+void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
+  const TimeNs imu_first = dataset.imu.front().stamp_ns;
+  const TimeNs imu_last = dataset.imu.back().stamp_ns;
+  findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
+                        SecondsBetween(imu_first, first), SecondsBetween(imu_last, last)));
+  if (last < imu_first || first > imu_last) {
+    const double ratio = static_cast<double>(first) / static_cast<double>(imu_first);
+    findings->Error(Format("%s: shares no time with imu0: %s", sensor,
+                           ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?"));
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eval/dataset/dataset.h"
+
+namespace alidade {
+
+/// What `check` has found so far.
+class Findings {
+ public:
+  void Fact(std::string text);
+  void Warning(std::string text);
+  void Error(std::string text);
+  [[nodiscard]] std::vector<DatasetFinding> Take() { return std::move(list_); }
+
+ private:
+  std::vector<DatasetFinding> list_;
+};
+
+/// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
+/// no sheet says one.
+void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
+                 Findings* findings);
+/// Where a sensor starts and ends against the IMU.
+void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
+/// Rate, gaps, deviations and frames of the position fixes; nothing without them.
+void CheckFixes(const Dataset& dataset, Findings* findings);
+
+}  // namespace alidade

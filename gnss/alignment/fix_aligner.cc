@@ -1,0 +1,252 @@
+#include "gnss/alignment/fix_aligner.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/format.h"
+#include "core/robust.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+constexpr std::size_t kMaxPoints = 40;  // bounds the pairs
+constexpr double kRetryS = 0.5;
+constexpr int kRows = PositionFixModel::kRows;
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+/// A sample as the fit takes it.
+struct FixAligner::Point {
+  Vector3d p_WA;          ///< of the estimate
+  Vector3d p_NA;          ///< measured
+  double since_newest_s;  ///< not positive
+  Matrix3d sqrt_information;
+  Vector3d velocity_variance_W;
+};
+
+struct FixAligner::Guess {
+  YawShift transform;
+  Vector3d dv_W = Vector3d::Zero();
+
+  [[nodiscard]] Vector3d Residual(const Point& point) const {
+    const Vector3d turned = transform.Rotation() * (point.p_WA + point.since_newest_s * dv_W);
+    return point.sqrt_information * (turned + transform.p_NW - point.p_NA);
+  }
+};
+
+struct FixAligner::Fit {
+  bool ok = false;
+  Guess guess;
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of yaw and shift
+  int inside = 0;                                        ///< points inside the gate
+  double scale = 1;                                      ///< robust deviation of the whitened residuals
+};
+
+FixAligner::FixAligner(const FixConfig& config, std::vector<FixSensor> sensors,
+                       const std::optional<EnuFrame>& enu)
+    : config_(config), sensors_(std::move(sensors)), enu_(enu) {}
+
+void FixAligner::AddState(const NavEstimate& estimate) {
+  AlignmentState state;
+  state.stamp_ns = estimate.stamp_ns;
+  state.nav = estimate.nav;
+  state.bias = estimate.bias;
+  state.velocity_covariance_W = estimate.covariance.block<3, 3>(6, 6);
+  state.position_covariance_W = estimate.covariance.block<3, 3>(3, 3);
+  states_.Add(std::move(state));
+  MatchFixes();
+}
+
+void FixAligner::AddFix(const PositionFix& fix) {
+  pending_.push_back(fix);
+  MatchFixes();
+  // Without a state there is nothing to match; what waits is bounded all the same.
+  while (!pending_.empty() &&
+         SecondsBetween(pending_.front().stamp_ns, fix.stamp_ns) > config_.align_window_s) {
+    pending_.pop_front();
+  }
+}
+
+void FixAligner::MatchFixes() {
+  while (!pending_.empty() && states_.Reaches(pending_.front().stamp_ns)) {
+    const PositionFix& fix = pending_.front();
+    const Vector3d& p_BA = sensors_[static_cast<std::size_t>(fix.sensor)].p_BA;
+    const std::optional<AlignmentState> state = states_.At(fix.stamp_ns);
+    const Result<FixMeasurement> measurement = MakeFixMeasurement(config_, p_BA, fix);
+    if (state && measurement.ok()) {
+      samples_.push_back({*state, *measurement, measurement->model.Predict(state->nav)});
+    }
+    pending_.pop_front();
+  }
+  while (!samples_.empty() && !states_.empty() &&
+         SecondsBetween(samples_.front().state.stamp_ns, states_.newest().stamp_ns) >
+             config_.align_window_s) {
+    samples_.pop_front();
+  }
+}
+
+std::vector<FixAligner::Point> FixAligner::Points() const {
+  const std::size_t step = (samples_.size() + kMaxPoints - 1) / kMaxPoints;
+  const AlignmentState& newest = samples_.back().state;
+  std::vector<Point> points;
+  for (std::size_t i = (samples_.size() - 1) % step; i < samples_.size(); i += step) {
+    const Sample& sample = samples_[i];
+    const Matrix3d& root = sample.fix.sqrt_information;
+    const double drift = (newest.position_covariance_W - sample.state.position_covariance_W).trace() / 3;
+    const Matrix3d covariance =
+        (root.transpose() * root).inverse() + std::max(drift, 0.0) * Matrix3d::Identity();
+    points.push_back({sample.p_WA, sample.fix.model.p_WA,
+                      SecondsBetween(newest.stamp_ns, sample.state.stamp_ns),
+                      covariance.llt().matrixL().solve(Matrix3d::Identity()),
+                      sample.state.velocity_covariance_W.diagonal()});
+  }
+  return points;
+}
+
+/// Each pair of points determines yaw and shift; the pair counts whose residuals have the least median.
+FixAligner::Guess FixAligner::FirstGuess(const std::vector<Point>& points) {
+  Guess best;
+  double best_median = INFINITY;
+  std::vector<double> squares(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      const Vector3d chord_W = points[j].p_WA - points[i].p_WA;
+      const Vector3d chord_N = points[j].p_NA - points[i].p_NA;
+      Guess guess;
+      YawShift& transform = guess.transform;
+      transform.yaw_rad = std::atan2(chord_N.y(), chord_N.x()) - std::atan2(chord_W.y(), chord_W.x());
+      transform.p_NW =
+          0.5 * (points[i].p_NA + points[j].p_NA - transform.Rotation() * (points[i].p_WA + points[j].p_WA));
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        squares[k] = guess.Residual(points[k]).squaredNorm();
+      }
+      const double median = Median(squares);
+      if (median < best_median) {
+        best_median = median;
+        best = guess;
+      }
+    }
+  }
+  return best;
+}
+
+FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess) const {
+  constexpr int kIterations = 12;
+  constexpr double kHeld = 1e-9;     // of a velocity that is known
+  constexpr double kAnyYawRad = 10;  // at rest no fix determines the yaw
+  const double gate = std::sqrt(ChiSquareQuantile(kRows, config_.gate_probability));
+  constexpr double kGateScales = 3.5;
+  const double median_norm = std::sqrt(ChiSquareQuantile(kRows, 0.5));  // of a residual of deviation 1
+  Vector3d velocity_variance = Vector3d::Zero();
+  for (const Point& point : points) {
+    velocity_variance += point.velocity_variance_W / static_cast<double>(points.size());
+  }
+  Fit fit;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    std::vector<double> norms;
+    norms.reserve(points.size());
+    for (const Point& point : points) {
+      norms.push_back(guess.Residual(point).norm());
+    }
+    fit.scale = std::max(1.0, Median(norms) / median_norm);
+    fit.inside = 0;
+    Matrix7d hessian = Matrix7d::Zero();
+    Vector7d gradient = Vector7d::Zero();
+    const Matrix3d R_NW = guess.transform.Rotation();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (norms[k] > std::max(gate, kGateScales * median_norm * fit.scale)) {
+        continue;
+      }
+      ++fit.inside;
+      const Point& point = points[k];
+      const Vector3d turned = R_NW * (point.p_WA + point.since_newest_s * guess.dv_W);
+      Eigen::Matrix<double, kRows, 7> jacobian;
+      jacobian << Vector3d::UnitZ().cross(turned), Matrix3d::Identity(), point.since_newest_s * R_NW;
+      jacobian = (point.sqrt_information * jacobian).eval();
+      const double weight =
+          RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma * fit.scale, norms[k] * norms[k]);
+      hessian += weight * jacobian.transpose() * jacobian;
+      gradient += weight * jacobian.transpose() * guess.Residual(point);
+    }
+    hessian(0, 0) += 1 / (kAnyYawRad * kAnyYawRad);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double information = 1 / (std::max(velocity_variance[axis], 0.0) + kHeld * kHeld);
+      hessian(4 + axis, 4 + axis) += information;
+      gradient[4 + axis] += information * guess.dv_W[axis];
+    }
+    const Eigen::LDLT<Matrix7d> solver(hessian);
+    const Vector7d step = solver.solve(-gradient);
+    if (solver.info() != Eigen::Success || !solver.isPositive() || !step.allFinite()) {
+      return fit;
+    }
+    guess.transform.yaw_rad = std::remainder(guess.transform.yaw_rad + step[0], 2 * M_PI);
+    guess.transform.p_NW += step.segment<3>(1);
+    guess.dv_W += step.tail<3>();
+    fit.covariance = solver.solve(Eigen::Matrix<double, 7, 4>::Identity()).topRows<4>();
+  }
+  fit.guess = guess;
+  fit.ok = true;
+  return fit;
+}
+
+std::optional<GnssAlignment> FixAligner::TryAlign() {
+  if (static_cast<int>(samples_.size()) < config_.align_min_fixes) {
+    report_ =
+        Format("%zu position fixes within the window, expected %d", samples_.size(), config_.align_min_fixes);
+    return std::nullopt;
+  }
+  const TimeNs newest = samples_.back().state.stamp_ns;
+  if (tried_ns_ != INT64_MIN && SecondsBetween(tried_ns_, newest) < kRetryS) {
+    return std::nullopt;
+  }
+  tried_ns_ = newest;
+  const std::vector<Point> points = Points();
+  const Fit fit = Refine(points, FirstGuess(points));
+  if (!fit.ok) {
+    report_ = "the position fixes do not determine the alignment";
+    return std::nullopt;
+  }
+  return Judge(fit, points.size());
+}
+
+std::optional<GnssAlignment> FixAligner::Judge(const Fit& fit, std::size_t points) {
+  const double inflation = config_.align_inflation * fit.scale;
+  GnssAlignment alignment;
+  alignment.covariance = inflation * inflation * 0.5 * (fit.covariance + fit.covariance.transpose());
+  const double yaw_std = std::sqrt(alignment.covariance(0, 0));
+  const TimeNs newest = samples_.back().state.stamp_ns;
+  report_ =
+      Format("%d of %zu position fixes over %.1f s agree: yaw to %.3f rad, position to %.3f m, scale %.2f",
+             fit.inside, points, SecondsBetween(samples_.front().state.stamp_ns, newest), yaw_std,
+             std::sqrt(alignment.covariance.bottomRightCorner<3, 3>().trace()), fit.scale);
+  if (fit.inside < config_.align_min_fixes || 2 * static_cast<std::size_t>(fit.inside) <= points) {
+    report_ += Format(", expected at least %d and more than half", config_.align_min_fixes);
+    return std::nullopt;
+  }
+  if (!(yaw_std < config_.align_max_yaw_std_rad)) {
+    report_ += Format(", expected below %.3f rad: too little motion", config_.align_max_yaw_std_rad);
+    return std::nullopt;
+  }
+  alignment.stamp_ns = newest;
+  alignment.enu = enu_;
+  alignment.yaw_rad = fit.guess.transform.yaw_rad;
+  alignment.p_NW = fit.guess.transform.p_NW;
+  alignment.report = report_ + Format(", yaw %.4f rad", fit.guess.transform.yaw_rad);
+  return alignment;
+}
+
+}  // namespace alidade

@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "core/robust.h"
+#include "filter/filter_estimator.h"
+#include "gnss/alignment/alignment.h"
+#include "tests/support/scenario.h"
+
+namespace alidade::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A figure-8 with position fixes and a filter that knows the world frame already.
+class FixFilterTest : public testing::TestWithParam<ErrorConvention> {
+ protected:
+  static SimulatorConfig Scene() {
+    SimulatorConfig config;
+    config.duration_s = 30;
+    config.length_m = 60;
+    config.width_m = 30;
+    config.path_m = 90;
+    config.max_features = 60;
+    config.fix.rate_hz = 2;
+    config.fix.std_m = 0.2;
+    config.fix.time_offset_s = 0.033;
+    return config;
+  }
+
+  /// Runs the sequence; `after` sees the filter after each fix.
+  template <typename After>
+  void Run(const Dataset& dataset, FilterEstimator* filter, const After& after) {
+    ASSERT_TRUE(filter->Initialize(DrawInitialState(dataset, 3)).ok());
+    ASSERT_TRUE(filter->Align(Identity(dataset.imu.front().stamp_ns)).ok());
+    std::size_t imu = 0;
+    std::size_t next = 0;
+    const auto deliver = [&](TimeNs stamp_ns) {
+      for (; imu < dataset.imu.size() && (imu == 0 || dataset.imu[imu - 1].stamp_ns < stamp_ns); ++imu) {
+        ASSERT_TRUE(filter->AddImu(dataset.imu[imu]).ok());
+      }
+    };
+    for (const TrackFrame& frame : dataset.tracks) {
+      for (; next < dataset.fixes.size(); ++next) {
+        PositionFix fix = dataset.fixes[next];
+        fix.stamp_ns += SecondsToNs(dataset.rig.fixes[0].time_offset_s);
+        if (fix.stamp_ns >= frame.stamp_ns) {
+          break;
+        }
+        deliver(fix.stamp_ns);
+        const Status status = filter->AddFix(fix);
+        ASSERT_TRUE(status.ok()) << status.message();
+        after(*filter, fix);
+      }
+      deliver(frame.stamp_ns);
+      ASSERT_TRUE(filter->AddFrame(frame).ok());
+    }
+  }
+
+  static GnssAlignment Identity(TimeNs stamp_ns) {
+    GnssAlignment alignment;
+    alignment.stamp_ns = stamp_ns;
+    alignment.covariance = 1e-12 * Eigen::Matrix4d::Identity();
+    return alignment;
+  }
+};
+
+// GIVEN fixes between frames, a tenth of them wrong, WHEN the filter takes them, THEN the wrong ones are
+// refused, the innovations fit and so do the poses.
+TEST_P(FixFilterTest, RefusesWrongFixesAndIsConsistent) {
+  SimulatorConfig scene = Scene();
+  scene.fix.wrong_rate = 0.1;
+  EstimatorConfig config;
+  config.filter.error = GetParam();
+  config.filter.update = UpdateTiming::kDelayedAll;
+  config.filter.clone_policy = ClonePolicy::kOldest;
+  config.filter.window = 10;
+  int used = 0;
+  int gated = 0;
+  int wrong = 0;
+  double nis = 0;
+  double nees = 0;
+  constexpr unsigned kRuns = 4;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const Dataset dataset = SimulateOrDie(scene, seed);
+    FilterEstimator filter(config, dataset.rig);
+    Run(dataset, &filter, [&](const FilterEstimator& now, const PositionFix& fix) {
+      const FrameStatistics& statistics = now.last_statistics();
+      used += statistics.fixes_used;
+      gated += statistics.fixes_gated;
+      nis += statistics.fix_nis;
+      const NavState& nav = now.state().nav();
+      wrong += (nav.p_WB + nav.R_WB * dataset.rig.fixes[0].p_BA - fix.p_A).norm() > 5 ? 1 : 0;
+      EXPECT_EQ(now.Latest().stamp_ns, fix.stamp_ns);
+    });
+    const NavEstimate last = filter.Latest();
+    const Vector6d error =
+        Local(ErrorConvention::kSo3xRn, last.nav, TruthAt(dataset, last.stamp_ns).nav).head<6>();
+    nees += error.dot(last.covariance.topLeftCorner<6, 6>().ldlt().solve(error));
+    EXPECT_LT((last.covariance.block<3, 3>(3, 3).trace()), 3 * 0.1 * 0.1);
+  }
+  EXPECT_GE(wrong, 8);
+  EXPECT_GE(gated, wrong);
+  EXPECT_LE(gated, wrong + 2) << "a thousandth of the right ones";
+  EXPECT_NEAR(nis / (3 * used), 1, 4 * std::sqrt(2.0 / (3 * used)));
+  EXPECT_LT(nees, ChiSquareQuantile(6 * kRuns, 0.999));
+}
+
+INSTANTIATE_TEST_SUITE_P(Conventions, FixFilterTest,
+                         testing::Values(ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant,
+                                         ErrorConvention::kSo3xRn),
+                         [](const auto& convention) { return std::string(ToString(convention.param)); });
+
+TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_before) {
+  SimulatorConfig scene;
+  scene.duration_s = 2;
+  scene.path_m = 4;
+  scene.max_features = 10;
+  scene.fix.rate_hz = 10;
+  const Dataset dataset = SimulateOrDie(scene, 1);
+  FilterEstimator filter(EstimatorConfig(), dataset.rig);
+  const NavEstimate start = DrawInitialState(dataset, 1);
+  PositionFix fix = dataset.fixes.front();
+  ASSERT_TRUE(filter.Initialize(start).ok());
+  for (const ImuSample& sample : dataset.imu) {
+    ASSERT_TRUE(filter.AddImu(sample).ok());
+  }
+  EXPECT_EQ(filter.AddFix(fix).code(), StatusCode::kDiverged) << "not aligned";
+  GnssAlignment alignment;
+  alignment.covariance = 1e-12 * Eigen::Matrix4d::Identity();
+  ASSERT_TRUE(filter.Align(alignment).ok());
+  EXPECT_FALSE(filter.LatestClock());
+  PositionFix bad = fix;
+  bad.sensor = 1;
+  EXPECT_EQ(filter.AddFix(bad).code(), StatusCode::kInput);
+  bad = fix;
+  bad.covariance.setZero();
+  EXPECT_EQ(filter.AddFix(bad).code(), StatusCode::kInput);
+  bad = fix;
+  bad.stamp_ns = start.stamp_ns - 1;
+  EXPECT_EQ(filter.AddFix(bad).code(), StatusCode::kInput);
+  EXPECT_EQ(filter.Latest().nav.p_WB, start.nav.p_WB);
+  EXPECT_TRUE(filter.AddFix(fix).ok());
+  EXPECT_NE(filter.Latest().nav.p_WB, start.nav.p_WB);
+  ASSERT_TRUE(filter.Initialize(start).ok());
+  EXPECT_EQ(filter.AddFix(fix).code(), StatusCode::kDiverged) << "a new start stands in a local world";
+}
+
+}  // namespace
+}  // namespace alidade::test
