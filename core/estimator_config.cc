@@ -353,11 +353,6 @@ Status EstimatorConfig::Validate() const {
         "gnss.enabled: true, but the batch back end takes no GNSS; expected false, or backend: "
         "filter or smoother");
   }
-  if (fix.enabled && backend == Backend::kBatch) {
-    return Status::Config(
-        "fix.enabled: true, but the batch back end takes no position fixes; expected false, or backend: "
-        "filter or smoother");
-  }
   if (calibration.any() && backend == Backend::kBatch) {
     return Status::Config(
         "calibration: the batch back end takes the camera as given; expected extrinsics, time_offset and "

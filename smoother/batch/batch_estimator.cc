@@ -30,6 +30,10 @@ std::vector<FrameStatistics> CountFeatures(const BatchSequence& sequence) {
     statistics[i].observations_invalid = sequence.invalid_observations(static_cast<int>(i));
     statistics[i].at_rest = sequence.frames()[i]->rest.has_value();
   }
+  for (const BatchFix& fix : sequence.fixes()) {
+    FrameStatistics& frame = statistics[static_cast<size_t>(fix.frame)];
+    ++(fix.weight > 0 ? frame.fixes_used : frame.fixes_gated);
+  }
   return statistics;
 }
 
@@ -50,6 +54,7 @@ Status BatchEstimator::Initialize(const NavEstimate& initial) {
     return Status::Input("batch: initial covariance is not positive semi-definite");
   }
   imu_.DropBefore(initial.stamp_ns);
+  aligned_ = false;
   accepted_.clear();
   tracks_in_.clear();
   return Status::Ok();
@@ -62,19 +67,55 @@ Status BatchEstimator::AddImu(const ImuSample& sample) {
 
 Status BatchEstimator::AddFrame(const TrackFrame& frame) {
   ALIDADE_RETURN_IF_ERROR(initial_->AddFrame(frame));
-  const NavEstimate estimate = initial_->Latest();
-  const TimeNs last_ns = sequence_.frames().back()->stamp_ns;
-  std::vector<ImuSample> interval;
-  if (estimate.stamp_ns != last_ns) {
-    if (const Status status = imu_.Interval(last_ns, estimate.stamp_ns, &interval); !status.ok()) {
-      return Status::Diverged("batch: " + status.message());
-    }
-    imu_.DropBefore(estimate.stamp_ns);
-  }
-  sequence_.AddFrame(estimate, std::move(interval), frame);
+  ALIDADE_RETURN_IF_ERROR(ReachFrame(initial_->Latest()));
+  sequence_.AddTracks(initial_->Latest(), frame);
   accepted_.push_back(sequence_.frames().back()->index);
   tracks_in_.push_back(static_cast<int>(frame.observations.size()));
   return Status::Ok();
+}
+
+Status BatchEstimator::ReachFrame(const NavEstimate& estimate) {
+  const TimeNs last_ns = sequence_.frames().back()->stamp_ns;
+  if (estimate.stamp_ns == last_ns) {
+    return Status::Ok();
+  }
+  std::vector<ImuSample> interval;
+  if (const Status status = imu_.Interval(last_ns, estimate.stamp_ns, &interval); !status.ok()) {
+    return Status::Diverged("batch: " + status.message());
+  }
+  imu_.DropBefore(estimate.stamp_ns);
+  sequence_.AddFrame(estimate, std::move(interval));
+  return Status::Ok();
+}
+
+Status BatchEstimator::Align(const GnssAlignment& alignment) {
+  ALIDADE_RETURN_IF_ERROR(initial_->Align(alignment));
+  if (!sequence_.Align(alignment)) {
+    return Status::Diverged("batch: the aligned prior's covariance is not positive semi-definite");
+  }
+  aligned_ = true;
+  return Status::Ok();
+}
+
+Status BatchEstimator::AddFix(const PositionFix& fix) {
+  if (!aligned_) {
+    return Status::Diverged("batch: not aligned");
+  }
+  ALIDADE_RETURN_IF_ERROR(initial_->AddFix(fix));
+  const NavEstimate estimate = initial_->Latest();
+  const TimeNs last_ns = sequence_.frames().back()->stamp_ns;
+  if (estimate.stamp_ns == fix.stamp_ns &&
+      SecondsBetween(last_ns, fix.stamp_ns) > config_.fix.max_interpolation_s) {
+    ALIDADE_RETURN_IF_ERROR(ReachFrame(estimate));
+  }
+  std::vector<ImuSample> link;
+  const TimeNs frame_ns = sequence_.frames().back()->stamp_ns;
+  if (fix.stamp_ns > frame_ns) {
+    if (const Status status = imu_.Interval(frame_ns, fix.stamp_ns, &link); !status.ok()) {
+      return Status::Diverged("batch: " + status.message());
+    }
+  }
+  return sequence_.AddFix(fix, initial_->last_statistics().fixes_used > 0, std::move(link));
 }
 
 Result<std::vector<FinalizedFrame>> BatchEstimator::TakeFinalized(const std::atomic<bool>* stop) {

@@ -14,6 +14,9 @@ namespace alidade {
 ///
 /// While the sequence runs, `initial`, another estimator on the same input, answers for it; its states are
 /// the initial values, and the frames it accepts are the frames of the batch. TakeFinalized then solves.
+///
+/// Position fixes enter from the alignment on. Those before it have made the alignment, whose covariance is
+/// part of the prior.
 class BatchEstimator final : public Estimator {
  public:
   BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,
@@ -22,6 +25,8 @@ class BatchEstimator final : public Estimator {
   Status Initialize(const NavEstimate& initial) override;
   Status AddImu(const ImuSample& sample) override;
   Status AddFrame(const TrackFrame& frame) override;
+  Status Align(const GnssAlignment& alignment) override;
+  Status AddFix(const PositionFix& fix) override;
   [[nodiscard]] NavEstimate Latest() const override { return initial_->Latest(); }
   [[nodiscard]] bool initialized() const override { return initial_->initialized(); }
   [[nodiscard]] const FrameStatistics& last_statistics() const override {
@@ -32,10 +37,14 @@ class BatchEstimator final : public Estimator {
   [[nodiscard]] const BatchSequence& sequence() const { return sequence_; }
 
  private:
+  /// Appends the frame that the initial estimator has reached, unless it is the newest one.
+  Status ReachFrame(const NavEstimate& estimate);
+
   EstimatorConfig config_;
   std::unique_ptr<Estimator> initial_;
   ImuBuffer imu_;
   BatchSequence sequence_;
+  bool aligned_ = false;
   std::vector<int> accepted_;  ///< index in the sequence of every accepted frame
   std::vector<int> tracks_in_;
 };

@@ -1,8 +1,11 @@
 #include "smoother/batch/batch_sequence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/imu_propagation.h"
+#include "smoother/factors/fix_factor.h"
 #include "smoother/factors/imu_factor.h"
 
 namespace alidade {
@@ -42,19 +45,41 @@ bool BatchSequence::Start(const NavEstimate& initial) {
   invalid_.assign(1, 0);
   tracks_.clear();
   track_of_id_.clear();
+  fixes_.clear();
   rest_.Clear();
   frames_.push_back(MakeFrame(initial, 0));
-  return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial.covariance, &prior_);
+  initial_ = initial;
+  return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial_.covariance, &prior_);
 }
 
-void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu,
-                             const TrackFrame& frame) {
-  if (!imu.empty()) {
-    rest_.AddImu(imu);
-    frames_.push_back(MakeFrame(estimate, static_cast<int>(frames_.size())));
-    frames_.back()->imu = std::move(imu);
-    invalid_.push_back(0);
+bool BatchSequence::Align(const GnssAlignment& alignment) {
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    const NavEstimate local{frame->stamp_ns, frame->nav_state(), frame->imu_bias(), initial_.covariance};
+    PackNavState(TurnIntoEnu(alignment, local).nav, frame->nav.data());
   }
+  initial_ = TurnIntoEnu(alignment, initial_);
+  return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial_.covariance, &prior_);
+}
+
+Status BatchSequence::AddFix(const PositionFix& fix, bool accepted, std::vector<ImuSample> imu) {
+  Result<FixMeasurement> measurement = MakeFixMeasurement(config_.fix, rig_.fixes, fix);
+  ALIDADE_RETURN_IF_ERROR(measurement.status());
+  BatchFix& added = fixes_.emplace_back();
+  added.attached.measurement = *measurement;
+  added.attached.imu = std::move(imu);
+  added.frame = frames_.back()->index;
+  added.weight = accepted ? 1 : 0;
+  return Status::Ok();
+}
+
+void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu) {
+  rest_.AddImu(imu);
+  frames_.push_back(MakeFrame(estimate, static_cast<int>(frames_.size())));
+  frames_.back()->imu = std::move(imu);
+  invalid_.push_back(0);
+}
+
+void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& frame) {
   WindowFrame& node = *frames_.back();
   AddObservations(frame, node);
   if (config_.vision.rest_updates) {
@@ -92,6 +117,37 @@ void BatchSequence::Preintegrate() {
     frames_[i]->preintegration.emplace(frames_[i - 1]->imu_bias(), noise);
     frames_[i]->preintegration->Add(frames_[i]->imu);
   }
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    for (FrameFix& fix : frame->fixes) {
+      fix.Set(std::move(fix.imu), frame->imu_bias(), noise);
+    }
+  }
+}
+
+void BatchSequence::SelectFixes(bool gate, TrackSelection* selection) {
+  for (const std::unique_ptr<WindowFrame>& frame : frames_) {
+    frame->fixes.clear();
+  }
+  const ImuNoise noise = config_.imu.Scaled(rig_.imu_noise);
+  const Eigen::Vector3d gravity_W = GravityInWorld(config_.imu.gravity_mps2);
+  FixGate fix_gate(config_.fix);
+  for (BatchFix& fix : fixes_) {
+    WindowFrame& frame = *frames_[static_cast<size_t>(fix.frame)];
+    fix.attached.Set(std::move(fix.attached.imu), frame.imu_bias(), noise);
+    const bool was_used = fix.weight > 0;
+    if (gate) {
+      const double* const blocks[] = {frame.nav.data(), frame.bias.data()};
+      Eigen::Vector3d residual;
+      FixFactor(&fix.attached, gravity_W).Evaluate(blocks, residual.data(), nullptr);
+      fix.weight = fix_gate.Weigh(residual.squaredNorm());
+    }
+    if (fix.weight > 0) {
+      ++selection->fixes;
+      frame.fixes.push_back(fix.attached);
+      frame.fixes.back().measurement.sqrt_information *= std::sqrt(fix.weight);
+    }
+    selection->changed = selection->changed || was_used != (fix.weight > 0);
+  }
 }
 
 TrackSelection BatchSequence::Select(bool gate) {
@@ -101,6 +157,7 @@ TrackSelection BatchSequence::Select(bool gate) {
     geometry.push_back(MakeGeometry(frame->nav_state(), rig_.T_BC));
   }
   TrackSelection selection;
+  SelectFixes(gate, &selection);
   for (BatchTrack& track : tracks_) {
     if (track.views.size() < kMinViews) {
       continue;

@@ -5,8 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/position_fix.h"
 #include "core/rest_detector.h"
 #include "core/robust.h"
+#include "gnss/alignment/alignment.h"
 #include "smoother/factors/prior_factor.h"
 #include "smoother/tracks/track_system.h"
 
@@ -19,6 +21,13 @@ struct BatchTrack {
   bool selected = false;  ///< enters the estimate
 };
 
+/// A position fix of a whole sequence, in W as it was aligned.
+struct BatchFix {
+  FrameFix attached;  ///< with the noise of the fix, before its weight
+  int frame = 0;      ///< index of the frame that it hangs on
+  double weight = 0;  ///< of its information; 0: refused
+};
+
 /// Counts of one selection.
 struct TrackSelection {
   int tracks = 0;         ///< selected
@@ -26,6 +35,7 @@ struct TrackSelection {
   int without_depth = 0;  ///< tracks of two views or more whose depth is not determined
   int gated = 0;          ///< tracks refused as a whole
   int outliers = 0;       ///< single observations refused
+  int fixes = 0;          ///< used
   bool changed = false;   ///< against the selection before
 };
 
@@ -37,20 +47,29 @@ class BatchSequence {
   /// Starts anew at an initial state, which is the prior. False: its covariance is not positive
   /// semi-definite.
   bool Start(const NavEstimate& initial);
-  /// Appends a frame: its initial values and the IMU samples since the frame before (empty when the frame is
-  /// the initial state's own).
-  void AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu, const TrackFrame& frame);
+  /// Appends a frame: its initial values and the IMU samples since the frame before.
+  void AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu);
+  /// Adds the observations of the newest frame, whose initial values are `estimate`.
+  void AddTracks(const NavEstimate& estimate, const TrackFrame& frame);
+  /// Turns the initial values and the prior into the frame of the alignment, whose covariance the prior
+  /// gains. False: the prior's covariance is not positive semi-definite.
+  bool Align(const GnssAlignment& alignment);
+  /// Hangs a fix on the newest frame; `imu` leads there from the frame, empty at the frame itself.
+  /// `accepted`: the verdict of the initial estimator. kInput: see MakeFixMeasurement.
+  Status AddFix(const PositionFix& fix, bool accepted, std::vector<ImuSample> imu);
 
   /// Which tracks and observations enter, judged at the present states. With `gate` off only the parallax
   /// counts: a depth known to kMaxDepthDeviation, in front of every view. With it on, an observation must lie
   /// in the chi-square gate (2 degrees of freedom) around a robustly estimated landmark, then its track
-  /// (2N-3). The verdicts on one track do not depend on earlier ones.
+  /// (2N-3). The verdicts on one track do not depend on earlier ones. Fixes: the verdicts of the initial
+  /// estimator, then FixGate at the present states.
   TrackSelection Select(bool gate);
   /// Integrates the IMU of every interval anew at the present biases.
   void Preintegrate();
 
   [[nodiscard]] const WindowFrames& frames() const { return frames_; }
   [[nodiscard]] const std::vector<BatchTrack>& tracks() const { return tracks_; }
+  [[nodiscard]] const std::vector<BatchFix>& fixes() const { return fixes_; }
   [[nodiscard]] const LinearPrior& prior() const { return prior_; }
   /// The camera; the batch estimates nothing of it.
   [[nodiscard]] const WindowCalibration& calibration() const { return calibration_; }
@@ -60,6 +79,8 @@ class BatchSequence {
 
  private:
   void AddObservations(const TrackFrame& frame, const WindowFrame& node);
+  /// Puts the fixes of positive weight on their frames.
+  void SelectFixes(bool gate, TrackSelection* selection);
   bool SelectTrack(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
                    BatchTrack* track) const;
   [[nodiscard]] std::vector<WindowView> Inliers(const std::vector<FrameGeometry>& geometry,
@@ -71,10 +92,12 @@ class BatchSequence {
   ChiSquareGate gate_;
   RestDetector rest_;
   WindowCalibration calibration_;
+  NavEstimate initial_;  ///< of the prior
   LinearPrior prior_;
   WindowFrames frames_;
   std::vector<int> invalid_;  ///< observations outside the camera model's domain, a frame
   std::vector<BatchTrack> tracks_;
+  std::vector<BatchFix> fixes_;  ///< in order of time
   std::map<std::int64_t, size_t> track_of_id_;
 };
 

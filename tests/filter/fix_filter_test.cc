@@ -1,74 +1,18 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-
 #include "core/robust.h"
 #include "filter/filter_estimator.h"
-#include "gnss/alignment/alignment.h"
-#include "tests/support/scenario.h"
+#include "tests/support/fix_scenario.h"
 
 namespace alidade::test {
 namespace {
 
-using Eigen::Vector3d;
-
-/// A figure-8 with position fixes and a filter that knows the world frame already.
-class FixFilterTest : public testing::TestWithParam<ErrorConvention> {
- protected:
-  static SimulatorConfig Scene() {
-    SimulatorConfig config;
-    config.duration_s = 30;
-    config.length_m = 60;
-    config.width_m = 30;
-    config.path_m = 90;
-    config.max_features = 60;
-    config.fix.rate_hz = 2;
-    config.fix.std_m = 0.2;
-    config.fix.time_offset_s = 0.033;
-    return config;
-  }
-
-  /// Runs the sequence; `after` sees the filter after each fix.
-  template <typename After>
-  void Run(const Dataset& dataset, FilterEstimator* filter, const After& after) {
-    ASSERT_TRUE(filter->Initialize(DrawInitialState(dataset, 3)).ok());
-    ASSERT_TRUE(filter->Align(Identity(dataset.imu.front().stamp_ns)).ok());
-    std::size_t imu = 0;
-    std::size_t next = 0;
-    const auto deliver = [&](TimeNs stamp_ns) {
-      for (; imu < dataset.imu.size() && (imu == 0 || dataset.imu[imu - 1].stamp_ns < stamp_ns); ++imu) {
-        ASSERT_TRUE(filter->AddImu(dataset.imu[imu]).ok());
-      }
-    };
-    for (const TrackFrame& frame : dataset.tracks) {
-      for (; next < dataset.fixes.size(); ++next) {
-        PositionFix fix = dataset.fixes[next];
-        fix.stamp_ns += SecondsToNs(dataset.rig.fixes[0].time_offset_s);
-        if (fix.stamp_ns >= frame.stamp_ns) {
-          break;
-        }
-        deliver(fix.stamp_ns);
-        const Status status = filter->AddFix(fix);
-        ASSERT_TRUE(status.ok()) << status.message();
-        after(*filter, fix);
-      }
-      deliver(frame.stamp_ns);
-      ASSERT_TRUE(filter->AddFrame(frame).ok());
-    }
-  }
-
-  static GnssAlignment Identity(TimeNs stamp_ns) {
-    GnssAlignment alignment;
-    alignment.stamp_ns = stamp_ns;
-    alignment.covariance = 1e-12 * Eigen::Matrix4d::Identity();
-    return alignment;
-  }
-};
+class FixFilterTest : public testing::TestWithParam<ErrorConvention> {};
 
 // GIVEN fixes between frames, a tenth of them wrong, WHEN the filter takes them, THEN the wrong ones are
 // refused, the innovations fit and so do the poses.
 TEST_P(FixFilterTest, RefusesWrongFixesAndIsConsistent) {
-  SimulatorConfig scene = Scene();
+  SimulatorConfig scene = FixScene();
   scene.fix.wrong_rate = 0.1;
   EstimatorConfig config;
   config.filter.error = GetParam();
@@ -84,14 +28,14 @@ TEST_P(FixFilterTest, RefusesWrongFixesAndIsConsistent) {
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
     const Dataset dataset = SimulateOrDie(scene, seed);
     FilterEstimator filter(config, dataset.rig);
-    Run(dataset, &filter, [&](const FilterEstimator& now, const PositionFix& fix) {
-      const FrameStatistics& statistics = now.last_statistics();
+    RunWithFixes(dataset, DrawInitialState(dataset, 3), &filter, [&](const PositionFix& fix) {
+      const FrameStatistics& statistics = filter.last_statistics();
       used += statistics.fixes_used;
       gated += statistics.fixes_gated;
       nis += statistics.fix_nis;
-      const NavState& nav = now.state().nav();
+      const NavState& nav = filter.state().nav();
       wrong += (nav.p_WB + nav.R_WB * dataset.rig.fixes[0].p_BA - fix.p_A).norm() > 5 ? 1 : 0;
-      EXPECT_EQ(now.Latest().stamp_ns, fix.stamp_ns);
+      EXPECT_EQ(filter.Latest().stamp_ns, fix.stamp_ns);
     });
     const NavEstimate last = filter.Latest();
     const Vector6d error =
@@ -126,9 +70,7 @@ TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_b
     ASSERT_TRUE(filter.AddImu(sample).ok());
   }
   EXPECT_EQ(filter.AddFix(fix).code(), StatusCode::kDiverged) << "not aligned";
-  GnssAlignment alignment;
-  alignment.covariance = 1e-12 * Eigen::Matrix4d::Identity();
-  ASSERT_TRUE(filter.Align(alignment).ok());
+  ASSERT_TRUE(filter.Align(IdentityAlignment(start.stamp_ns)).ok());
   EXPECT_FALSE(filter.LatestClock());
   PositionFix bad = fix;
   bad.sensor = 1;

@@ -90,10 +90,10 @@ TEST_P(GnssStateTest, AlignsWithoutAClock) {
   FilterState with = MakeState(GetParam(), &random);
   RandomStates again(8);
   FilterState without = MakeState(GetParam(), &again);
-  const Eigen::Matrix3d R_NW = Eigen::AngleAxisd(2.0, Vector3d::UnitZ()).toRotationMatrix();
+  const YawShift transform{2.0, {1, 2, 3}};
   const Eigen::Matrix4d covariance = Eigen::Vector4d(0.01, 1, 2, 3).asDiagonal();
-  with.Align(R_NW, Vector3d(1, 2, 3), covariance, Matrix6d(Matrix6d::Identity()));
-  without.Align(R_NW, Vector3d(1, 2, 3), covariance, std::nullopt);
+  with.Align(transform, covariance, Matrix6d(Matrix6d::Identity()));
+  without.Align(transform, covariance, std::nullopt);
   EXPECT_EQ(without.CoreOffset(), 0);
   EXPECT_EQ(without.nav().p_WB, with.nav().p_WB);
   ASSERT_EQ(without.covariance().dimension() + 6, with.covariance().dimension());

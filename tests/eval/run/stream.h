@@ -18,7 +18,7 @@ struct Delay {
   double jitter_s = 0;
 };
 struct Delays {
-  Delay imu, camera, gnss, fix;
+  Delay imu = {}, camera = {}, gnss = {}, fix = {};
 };
 
 struct Arrival {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/smoother/batch/batch_fixture.h"
+#include "tests/support/fix_scenario.h"
 
 namespace alidade {
 namespace {
@@ -177,6 +178,40 @@ TEST(BatchEstimatorTest, BadInputIsAStatus) {
   const Result<std::vector<FinalizedFrame>> nothing = estimator.TakeFinalized(nullptr);
   ASSERT_TRUE(nothing.ok()) << nothing.message();
   EXPECT_TRUE(nothing->empty());
+}
+
+// GIVEN fixes between frames, a tenth of them wrong, WHEN the batch has solved, THEN it refuses the wrong
+// ones, its covariance is that of the errors, and the position is known better than by the fixes alone.
+TEST(BatchEstimatorTest, RefusesWrongFixesAndIsConsistent) {
+  SimulatorConfig scene = test::FixScene();
+  scene.fix.wrong_rate = 0.1;
+  constexpr int kRuns = 3;
+  double nees = 0;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const Dataset dataset = test::SimulateOrDie(scene, seed);
+    BatchEstimator batch(BatchTestConfig(), dataset.rig, MakeSmoother(BatchTestConfig(), dataset.rig));
+    test::RunWithFixes(dataset, test::DrawInitialState(dataset, seed), &batch, [](const PositionFix&) {});
+    const Result<std::vector<FinalizedFrame>> frames = batch.TakeFinalized(nullptr);
+    ASSERT_TRUE(frames.ok()) << frames.message();
+    int wrong = 0;
+    int refused = 0;
+    for (const BatchFix& fix : batch.sequence().fixes()) {
+      const TrajectoryPoint& truth =
+          test::TruthAt(dataset, batch.sequence().frames()[static_cast<size_t>(fix.frame)]->stamp_ns);
+      const bool is_wrong = (fix.attached.measurement.model.p_WA - truth.nav.p_WB).norm() > 5;
+      wrong += is_wrong ? 1 : 0;
+      refused += fix.weight > 0 ? 0 : 1;
+      EXPECT_FALSE(is_wrong && fix.weight > 0);
+    }
+    EXPECT_GE(wrong, 2);
+    EXPECT_LE(refused, wrong + 1) << "a thousandth of the right ones";
+    EXPECT_LT(RmsePosition(dataset, *frames), 0.1);
+    const NavEstimate& middle = (*frames)[frames->size() / 2].estimate;
+    const Vector15d error = test::ErrorOf(dataset, middle);
+    nees += error.dot(middle.covariance.llt().solve(error));
+  }
+  EXPECT_GT(nees, ChiSquareQuantile(15 * kRuns, 0.001));
+  EXPECT_LT(nees, ChiSquareQuantile(15 * kRuns, 0.999));
 }
 
 }  // namespace
