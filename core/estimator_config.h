@@ -165,7 +165,7 @@ struct CalibrationConfig {
   void Describe(ConfigVisitor& visitor);
 };
 
-/// When an estimate is given up and a new start is sought (core/health_monitor.h); shared by both back ends.
+/// When an estimate is given up and a new start is sought; shared by both back ends.
 struct RecoveryConfig {
   bool enabled = true;
   double max_speed_mps = 100.0;

@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/camera_model.h"
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
+#include "core/track_frame.h"
 
 namespace alidade {
 

@@ -2,10 +2,11 @@
 
 #include <vector>
 
-#include "core/estimator.h"
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
+#include "estimator/estimator.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
 #include "filter/fix_update.h"

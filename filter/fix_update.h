@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/estimator.h"
 #include "core/position_fix.h"
+#include "estimator/estimator.h"
 #include "filter/filter_state.h"
 
 namespace alidade {

@@ -3,8 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
+#include "estimator/estimator.h"
 #include "filter/filter_state.h"
 #include "gnss/alignment/alignment.h"
 #include "gnss/model/epoch_rows.h"

@@ -6,7 +6,7 @@ root=${1:-$(dirname "$0")/..}
 cd "$root"
 
 folders=()
-for folder in core gnss frontend filter smoother eval; do
+for folder in core gnss frontend estimator filter smoother eval; do
   [[ -d $folder ]] && folders+=("$folder")
 done
 grep -rn --include='*.h' --include='*.cc' -E '^ *# *include *["<]' "${folders[@]}" | awk '

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "estimator/measurement_log.h"
 #include "eval/rosbag/rosbag_record.h"
 #include "eval/trajectory/trajectory.h"
 

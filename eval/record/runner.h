@@ -3,8 +3,8 @@
 #include <atomic>
 #include <functional>
 
-#include "core/estimator.h"
-#include "core/measurement_log.h"
+#include "estimator/estimator.h"
+#include "estimator/measurement_log.h"
 #include "eval/record/run_result.h"
 #include "eval/run/make_estimator.h"
 

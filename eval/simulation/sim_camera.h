@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "estimator/measurement_log.h"
 #include "eval/simulation/continuous_trajectory.h"
 #include "eval/simulation/sim_landmarks.h"
 #include "eval/simulation/sim_rig.h"

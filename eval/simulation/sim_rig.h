@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "estimator/measurement_log.h"
 #include "eval/simulation/simulator.h"
 
 namespace alidade {

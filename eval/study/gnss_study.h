@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/gnss_config.h"
-#include "core/measurement_log.h"
+#include "estimator/measurement_log.h"
 #include "eval/record/run_result.h"
 #include "eval/simulation/sim_gnss_config.h"
 

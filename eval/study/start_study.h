@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
 #include "core/status.h"
+#include "estimator/measurement_log.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {

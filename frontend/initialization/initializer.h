@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
 #include "core/navigation_state.h"
+#include "core/rig_calibration.h"
 #include "core/status.h"
+#include "core/track_frame.h"
 
 namespace alidade {
 

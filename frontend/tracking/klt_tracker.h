@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
+#include "core/rig_calibration.h"
 #include "core/status.h"
+#include "core/track_frame.h"
 
 namespace alidade {
 

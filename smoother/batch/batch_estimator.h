@@ -3,8 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimator.h"
 #include "core/imu_buffer.h"
+#include "core/rig_calibration.h"
+#include "estimator/estimator.h"
 #include "smoother/batch/batch_sequence.h"
 
 namespace alidade {

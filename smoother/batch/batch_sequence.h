@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rest_detector.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "smoother/factors/prior_factor.h"
 #include "smoother/tracks/track_system.h"

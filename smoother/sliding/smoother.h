@@ -2,7 +2,8 @@
 
 #include <memory>
 
-#include "core/estimator.h"
+#include "core/rig_calibration.h"
+#include "estimator/estimator.h"
 
 namespace alidade {
 

@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
+#include "estimator/estimator.h"
 #include "smoother/sliding/fix_window.h"
 #include "smoother/sliding/gnss_window.h"
 #include "smoother/solve/prior_terms.h"

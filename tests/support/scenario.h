@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/error_convention.h"
-#include "core/estimator.h"
 #include "core/random.h"
+#include "estimator/estimator.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_interpolation.h"

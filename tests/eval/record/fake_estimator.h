@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
+#include "estimator/estimator.h"
+#include "estimator/measurement_log.h"
 
 namespace alidade::test {
 

@@ -1,9 +1,10 @@
-#include "core/health_monitor.h"
+#include "eval/run/health_monitor.h"
 
 #include <cmath>
 
 #include "core/format.h"
 #include "core/yaw_shift.h"
+#include "estimator/estimator.h"
 
 namespace alidade {
 namespace {

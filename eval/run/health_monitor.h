@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/estimator.h"
+#include "estimator/estimator.h"
 
 namespace alidade {
 
