@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "eval/cli/command.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/compare/compare_input.h"
+#include "eval/compare/plan_parser.h"
 #include "eval/config/config_yaml.h"
 #include "eval/record/recorder.h"
 

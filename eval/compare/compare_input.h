@@ -9,7 +9,7 @@
 #include "eval/frontend_run/frontend_summary.h"
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/frontend_run/log_cache.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

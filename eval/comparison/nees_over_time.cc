@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/numbers.h"
-#include "eval/comparison/aggregate.h"
+#include "eval/comparison/cell_group.h"
 #include "eval/metrics/metrics.h"
 
 namespace alidade {

@@ -1,7 +1,8 @@
+#include "eval/dataset/dataset_reader.h"
+
 #include <filesystem>
 #include <utility>
 
-#include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"

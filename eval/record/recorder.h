@@ -2,7 +2,9 @@
 
 #include <string>
 
-#include "eval/record/runner.h"
+#include "core/estimator_config.h"
+#include "core/status.h"
+#include "eval/record/run_result.h"
 
 namespace alidade {
 

@@ -8,6 +8,7 @@
 #include "core/estimator_config.h"
 #include "gnss/model/gnss_epoch.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 

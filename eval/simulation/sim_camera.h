@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "estimator/measurement_log.h"
+#include "eval/dataset/dataset.h"
 #include "eval/simulation/continuous_trajectory.h"
 #include "eval/simulation/sim_landmarks.h"
 #include "eval/simulation/sim_rig.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

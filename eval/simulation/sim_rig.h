@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "estimator/measurement_log.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -8,7 +8,7 @@
 #include "core/rig_calibration.h"
 #include "core/status.h"
 #include "core/track_frame.h"
-#include "frontend/initialization/initializer.h"
+#include "frontend/initialization/initializer_window.h"
 
 namespace alidade {
 

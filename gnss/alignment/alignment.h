@@ -10,7 +10,7 @@
 #include "core/yaw_shift.h"
 #include "gnss/alignment/alignment_fit.h"
 #include "gnss/alignment/state_history.h"
-#include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 

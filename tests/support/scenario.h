@@ -10,8 +10,10 @@
 #include "core/error_convention.h"
 #include "core/random.h"
 #include "estimator/estimator.h"
+#include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
 namespace alidade::test {

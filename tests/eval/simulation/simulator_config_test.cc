@@ -1,9 +1,10 @@
+#include "eval/simulation/simulator_config.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "eval/config/config_yaml.h"
-#include "eval/simulation/simulator.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "tests/support/scenario.h"
 
 namespace alidade {
