@@ -13,7 +13,7 @@
 #include "eval/rosbag/gnss_receiver_messages.h"
 #include "eval/rosbag/ros_sensor_messages.h"
 #include "eval/rosbag/rosbag_writer.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 #include "gnss/base/anchor_llh.h"
 #include "gnss/model/gnss_epoch.h"
 

@@ -7,6 +7,7 @@
 #include "eval/cli/support.h"
 #include "eval/compare/plan_parser.h"
 #include "eval/config/config_json.h"
+#include "eval/config/config_writer.h"
 #include "eval/config/config_yaml.h"
 #include "eval/simulation/simulator_config.h"
 

@@ -9,6 +9,7 @@
 #include "eval/cli/flags.h"
 #include "eval/cli/split_words.h"
 #include "eval/cli/support.h"
+#include "eval/metrics/evaluate_format.h"
 #include "eval/metrics/evaluation_export.h"
 #include "eval/trajectory/external_trajectory.h"
 

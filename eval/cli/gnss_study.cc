@@ -11,7 +11,8 @@
 #include "eval/compare/compare_input.h"
 #include "eval/compare/plan_parser.h"
 #include "eval/config/config_yaml.h"
-#include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
+#include "eval/study/gnss_study_tables.h"
 
 namespace alidade::cli {
 namespace {

@@ -17,7 +17,6 @@
 #include "eval/compare/compare_cell.h"
 #include "eval/compare/compare_configs.h"
 #include "eval/comparison/cell_score.h"
-#include "eval/config/config_yaml.h"
 #include "eval/report/report.h"
 #include "eval/report/tables.h"
 

@@ -9,6 +9,7 @@
 #include "eval/comparison/distinct.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/output_file.h"
+#include "eval/metrics/nees.h"
 
 namespace alidade {
 namespace {

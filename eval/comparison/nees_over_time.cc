@@ -7,7 +7,7 @@
 
 #include "core/numbers.h"
 #include "eval/comparison/cell_group.h"
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/nees.h"
 
 namespace alidade {
 namespace {

@@ -8,6 +8,7 @@
 #include "eval/dataset/dataset_gnss.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/csv.h"
+#include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
 namespace {

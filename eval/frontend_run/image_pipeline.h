@@ -6,6 +6,7 @@
 
 #include "core/estimator_config.h"
 #include "eval/dataset/dataset.h"
+#include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"
 
 namespace alidade {

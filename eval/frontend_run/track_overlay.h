@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/track_frame.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

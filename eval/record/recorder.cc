@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/config/config_json.h"
-#include "eval/config/config_yaml.h"
+#include "eval/config/config_writer.h"
 #include "eval/files/csv_text.h"
 #include "eval/files/output_file.h"
 #include "eval/files/sha256.h"

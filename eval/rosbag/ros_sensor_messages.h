@@ -8,7 +8,7 @@
 #include "core/imu_sample.h"
 #include "core/track_frame.h"
 #include "eval/trajectory/trajectory.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

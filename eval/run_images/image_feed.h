@@ -4,6 +4,7 @@
 
 #include "core/estimator_config.h"
 #include "eval/run/session.h"
+#include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"
 
 namespace alidade {

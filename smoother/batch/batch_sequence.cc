@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "smoother/factors/imu_factor.h"
+#include "smoother/tracks/track_landmark.h"
+#include "smoother/tracks/track_system.h"
 
 namespace alidade {
 namespace {

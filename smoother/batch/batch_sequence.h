@@ -9,7 +9,7 @@
 #include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "smoother/factors/prior_factor.h"
-#include "smoother/tracks/track_system.h"
+#include "smoother/window/frame_geometry.h"
 
 namespace alidade {
 

@@ -13,7 +13,6 @@
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/window_system.h"
-#include "smoother/tracks/track_system.h"
 
 namespace alidade {
 

@@ -18,7 +18,7 @@
 #include "eval/rosbag/ros_header.h"
 #include "eval/rosbag/ros_sensor_messages.h"
 #include "eval/rosbag/rosbag_writer.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 #include "gnss/model/gnss_epoch.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"

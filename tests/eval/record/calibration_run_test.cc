@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "eval/config/config_yaml.h"
 #include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
 #include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"

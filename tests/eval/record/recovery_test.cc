@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"

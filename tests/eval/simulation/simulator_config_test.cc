@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "eval/config/config_writer.h"
 #include "eval/config/config_yaml.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "eval/simulation/simulator_config.h"
+#include "eval/study/gnss_study_tables.h"
 #include "tests/support/scenario.h"
 
 namespace alidade {
