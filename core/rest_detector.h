@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "core/camera_model.h"
-#include "core/estimator_config.h"
+#include "core/imu_sample.h"
+#include "core/init_config.h"
 #include "core/track_frame.h"
+#include "core/vision_config.h"
 
 namespace alidade {
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/estimator_config.h"
 #include "core/rig_calibration.h"
 #include "estimator/estimator.h"
 #include "filter/filter_observer.h"

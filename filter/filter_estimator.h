@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/estimator_config.h"
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"

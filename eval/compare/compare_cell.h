@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "core/estimator_config.h"
 #include "eval/compare/compare_input.h"
 #include "eval/compare/compare_options.h"
 #include "eval/compare/plan.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "eval/compare/plan.h"
 #include "eval/frontend_run/frontend_summary.h"
 #include "eval/frontend_run/image_pipeline.h"

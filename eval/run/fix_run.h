@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/estimator_config.h"
 #include "core/rig_calibration.h"
 #include "estimator/estimator.h"
 #include "eval/run/fix_feed.h"

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "core/estimator_config.h"
 #include "gnss/model/gnss_epoch.h"
 #include "gnss/positioning/single_point.h"
 #include "gnss/positioning/single_point_solution.h"

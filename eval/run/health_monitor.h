@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/recovery_config.h"
 #include "estimator/estimator.h"
 
 namespace alidade {

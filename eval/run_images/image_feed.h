@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "eval/run/session.h"
 #include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"

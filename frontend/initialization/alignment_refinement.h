@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/estimator_config.h"
 #include "core/navigation_state.h"
 #include "core/status.h"
 #include "frontend/initialization/dynamic_window.h"

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "core/rig_calibration.h"
 #include "core/status.h"
 #include "core/track_frame.h"

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/estimator_config.h"
 #include "core/imu_buffer.h"
 #include "core/rig_calibration.h"
 #include "estimator/estimator.h"

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/estimator_config.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
 #include "core/robust.h"

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/estimator_config.h"
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
