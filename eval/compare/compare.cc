@@ -19,6 +19,7 @@
 #include "eval/comparison/cell_score.h"
 #include "eval/report/report.h"
 #include "eval/report/tables.h"
+#include "eval/run/make_estimator.h"
 
 namespace alidade {
 namespace {

@@ -11,6 +11,7 @@
 #include "eval/files/output_file.h"
 #include "eval/files/sha256.h"
 #include "eval/record/recorder_gnss.h"
+#include "eval/run/make_estimator.h"
 #include "eval/trajectory/trajectory_export.h"
 
 namespace alidade {
