@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/estimator_config.h"
+#include "core/calibration_config.h"
 #include "core/visual_observation.h"
 
 namespace alidade {

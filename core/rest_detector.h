@@ -4,8 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "core/estimator_config.h"
-#include "core/measurement_log.h"
+#include "core/camera_model.h"
+#include "core/imu_sample.h"
+#include "core/init_config.h"
+#include "core/track_frame.h"
+#include "core/vision_config.h"
 
 namespace alidade {
 

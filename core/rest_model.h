@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/estimator_config.h"
 #include "core/navigation_state.h"
 #include "core/rest_detector.h"
+#include "core/vision_config.h"
 
 namespace alidade {
 

@@ -3,8 +3,9 @@
 #include <vector>
 
 #include "core/check.h"
-#include "core/estimator_config.h"
+#include "core/filter_config.h"
 #include "core/landmark_solver.h"
+#include "core/vision_config.h"
 #include "filter/filter_state.h"
 #include "filter/track_memory.h"
 #include "filter/track_store.h"

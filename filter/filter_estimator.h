@@ -2,9 +2,11 @@
 
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/estimator_config.h"
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"

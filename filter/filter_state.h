@@ -8,7 +8,6 @@
 #include "core/calibration.h"
 #include "core/error_convention.h"
 #include "core/imu_propagation.h"
-#include "core/measurement_log.h"
 #include "core/yaw_shift.h"
 #include "filter/filter_observer.h"
 #include "filter/landmark_error.h"

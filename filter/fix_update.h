@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
 #include "core/position_fix.h"
 #include "filter/filter_state.h"
 

@@ -3,7 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "filter/filter_state.h"
 #include "gnss/alignment/alignment.h"

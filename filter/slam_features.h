@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/filter_config.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
 #include "filter/track_store.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/filter_config.h"
 #include "filter/filter_state.h"
 
 namespace alidade {

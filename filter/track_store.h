@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "core/track_frame.h"
 #include "core/visual_observation.h"
 #include "filter/track_memory.h"
 

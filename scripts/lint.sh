@@ -2,7 +2,7 @@
 # Checks the form of our sources. Usage: scripts/lint.sh [format | fix | layers | tidy [folder or file ...]]
 #   format  (default) clang-format agrees with every file; seconds
 #   fix     makes it agree
-#   layers  no include runs against the order of scripts/layers.txt
+#   layers  no include runs against the order of scripts/layers.txt, and no files of a room include each other in a circle
 #   tidy    clang-tidy finds nothing, in the given folders (default: all); minutes a folder
 # Exit code 77: the tool is not installed.
 set -euo pipefail

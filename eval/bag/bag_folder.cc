@@ -5,6 +5,7 @@
 #include <map>
 
 #include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/png_image.h"
 #include "eval/files/output_file.h"
 

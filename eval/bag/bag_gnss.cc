@@ -5,6 +5,8 @@
 
 #include "core/format.h"
 #include "eval/dataset/dataset_gnss.h"
+#include "eval/rosbag/gnss_messages.h"
+#include "eval/rosbag/gnss_navigation_messages.h"
 #include "gnss/base/geodesy.h"
 #include "gnss/model/gnss_epoch.h"
 

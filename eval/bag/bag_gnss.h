@@ -7,7 +7,7 @@
 
 #include "eval/bag/bag_topics.h"
 #include "eval/dataset/dataset.h"
-#include "eval/rosbag/gnss_messages.h"
+#include "eval/rosbag/gnss_receiver_messages.h"
 #include "eval/rosbag/rosbag_reader.h"
 
 namespace alidade {

@@ -11,7 +11,7 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/rosbag/rosbag_reader.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

@@ -4,7 +4,7 @@
 
 #include "eval/dataset/dataset.h"
 #include "eval/rosbag/rosbag_reader.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

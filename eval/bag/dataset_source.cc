@@ -3,6 +3,8 @@
 #include "eval/bag/bag_import.h"
 #include "eval/dataset/calibration_import.h"
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/digest.h"
 #include "eval/files/sha256.h"
 
 namespace alidade {

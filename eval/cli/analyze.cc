@@ -2,9 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/format.h"
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/split_words.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
 #include "eval/study/reuse_study.h"

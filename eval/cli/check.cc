@@ -1,9 +1,11 @@
 #include <cstdio>
 
-#include "eval/cli/command.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_check.h"
 
 namespace alidade::cli {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flag_description.h"
 #include "eval/cli/flags.h"
 #include "eval/files/suggest.h"
@@ -190,19 +191,6 @@ std::string CommandHelp(const Command& command) {
             (flag.required ? std::string("required") : "default " + fallback) + ")\n";
   }
   return text;
-}
-
-std::vector<std::string> SplitWords(const std::string& text) {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ',') {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  std::erase(words, std::string());
-  return words;
 }
 
 }  // namespace alidade::cli

@@ -25,7 +25,4 @@ Result<Parsed> ParseCommandLine(const std::vector<std::string>& words);
 /// The flags of one command with their defaults.
 [[nodiscard]] std::string CommandHelp(const Command& command);
 
-/// Splits at every comma; no empty words.
-[[nodiscard]] std::vector<std::string> SplitWords(const std::string& text);
-
 }  // namespace alidade::cli

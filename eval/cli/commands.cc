@@ -1,18 +1,8 @@
+#include "eval/cli/commands.h"
+
 #include "eval/cli/command.h"
 
 namespace alidade::cli {
-
-const std::vector<ExitCode>& ExitCodes() {
-  static const std::vector<ExitCode> codes = {{kExitDone, "done"},
-                                              {kExitUsage, "usage"},
-                                              {kExitConfig, "configuration"},
-                                              {kExitInput, "input data"},
-                                              {kExitDiverged, "an estimator diverged or never initialised"},
-                                              {kExitOutput, "output could not be written"},
-                                              {kExitCellsFailed, "some cells of a comparison failed"},
-                                              {kExitInterrupted, "interrupted"}};
-  return codes;
-}
 
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = {

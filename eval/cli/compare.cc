@@ -2,10 +2,13 @@
 
 #include <cstdio>
 
-#include "eval/cli/command.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/report/tables.h"
+#include "eval/compare/compare_options.h"
+#include "eval/compare/plan_parser.h"
+#include "eval/report/tables_terminal.h"
 
 namespace alidade::cli {
 

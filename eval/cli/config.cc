@@ -1,14 +1,15 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/shipped_configs.h"
 #include "eval/cli/support.h"
-#include "eval/compare/plan.h"
+#include "eval/compare/plan_parser.h"
 #include "eval/config/config_json.h"
+#include "eval/config/config_writer.h"
 #include "eval/config/config_yaml.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade::cli {
 namespace {

@@ -3,11 +3,13 @@
 #include "core/format.h"
 #include "eval/bag/bag_export.h"
 #include "eval/bag/bag_folder.h"
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/split_words.h"
 #include "eval/cli/support.h"
 #include "eval/dataset/calibration_import.h"
+#include "eval/dataset/dataset_reader.h"
 #include "eval/files/output_file.h"
 
 namespace alidade::cli {

@@ -4,10 +4,12 @@
 #include <cstdio>
 
 #include "core/format.h"
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/split_words.h"
 #include "eval/cli/support.h"
+#include "eval/metrics/evaluate_format.h"
 #include "eval/metrics/evaluation_export.h"
 #include "eval/trajectory/external_trajectory.h"
 

@@ -4,12 +4,15 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "eval/cli/command.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/compare/compare_input.h"
+#include "eval/compare/plan_parser.h"
 #include "eval/config/config_yaml.h"
-#include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
+#include "eval/study/gnss_study_tables.h"
 
 namespace alidade::cli {
 namespace {

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "eval/cli/command_line.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 

@@ -1,5 +1,7 @@
 #include <cstdio>
 
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flag_description.h"
 
 namespace alidade::cli {

@@ -4,7 +4,8 @@
 #include <iostream>
 #include <iterator>
 
-#include "eval/cli/command.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/files/input_file.h"

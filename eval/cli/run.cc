@@ -1,14 +1,17 @@
 #include <cstdio>
 
 #include "core/format.h"
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
+#include "eval/dataset/digest.h"
 #include "eval/files/sha256.h"
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/record/recorder.h"
+#include "eval/record/run_options.h"
+#include "eval/record/runner.h"
 
 namespace alidade::cli {
 namespace {

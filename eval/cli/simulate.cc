@@ -1,11 +1,15 @@
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/render/rendered_sequence.h"
+#include "eval/simulation/simulation.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade::cli {
 namespace {

@@ -2,9 +2,9 @@
 #include <functional>
 
 #include "core/format.h"
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/split_words.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
 #include "eval/files/output_file.h"
@@ -12,6 +12,8 @@
 #include "gnss/orbits/gnss_files.h"
 #include "gnss/positioning/position_file.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_options.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade::cli {
 namespace {

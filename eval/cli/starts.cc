@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "eval/cli/command.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/compare/compare_input.h"
+#include "eval/compare/plan_parser.h"
 #include "eval/config/config_yaml.h"
 #include "eval/files/output_file.h"
 #include "eval/study/start_study.h"

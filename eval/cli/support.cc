@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/split_words.h"
 #include "eval/dataset/dataset.h"
 
 namespace alidade::cli {

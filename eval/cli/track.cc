@@ -1,11 +1,13 @@
 #include <cstdio>
 
 #include "eval/bag/dataset_images.h"
-#include "eval/cli/command.h"
-#include "eval/cli/command_line.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
 #include "eval/files/output_file.h"
 #include "eval/frontend_run/frontend_summary.h"
 #include "eval/frontend_run/image_pipeline.h"

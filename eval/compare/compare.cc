@@ -17,9 +17,9 @@
 #include "eval/compare/compare_cell.h"
 #include "eval/compare/compare_configs.h"
 #include "eval/comparison/cell_score.h"
-#include "eval/config/config_yaml.h"
 #include "eval/report/report.h"
 #include "eval/report/tables.h"
+#include "eval/run/make_estimator.h"
 
 namespace alidade {
 namespace {

@@ -1,25 +1,10 @@
 #pragma once
 
-#include <atomic>
-#include <functional>
-#include <string>
-
+#include "eval/compare/compare_options.h"
 #include "eval/compare/plan.h"
 #include "eval/comparison/comparison.h"
-#include "eval/report/figure_files.h"
 
 namespace alidade {
-
-struct CompareOptions {
-  std::string output;
-  int jobs = 1;  ///< runs at a time; results do not depend on it, but their times do
-  /// Keep the cells that are complete and were made from the same input and configuration.
-  bool resume = false;
-  FigureFormats figures;  ///< for papers, into figures/
-  std::string command;    ///< command line that repeats it, for the report
-  const std::atomic<bool>* stop = nullptr;
-  std::function<void(const std::string& line)> progress;  ///< called by one thread at a time
-};
 
 struct CompareOutcome {
   Comparison comparison;

@@ -5,7 +5,11 @@
 
 #include "eval/compare/external_cell.h"
 #include "eval/comparison/cell_score.h"
+#include "eval/dataset/digest.h"
 #include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
+#include "eval/record/run_options.h"
+#include "eval/record/runner.h"
 
 namespace alidade {
 namespace {

@@ -3,8 +3,11 @@
 #include <functional>
 #include <string>
 
-#include "eval/compare/compare.h"
+#include "core/estimator_config.h"
 #include "eval/compare/compare_input.h"
+#include "eval/compare/compare_options.h"
+#include "eval/compare/plan.h"
+#include "eval/comparison/comparison.h"
 
 namespace alidade {
 

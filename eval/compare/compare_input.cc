@@ -1,8 +1,11 @@
 #include "eval/compare/compare_input.h"
 
-#include "eval/config/config_yaml.h"
+#include "eval/config/config_writer.h"
+#include "eval/dataset/digest.h"
 #include "eval/files/sha256.h"
 #include "eval/render/rendered_sequence.h"
+#include "eval/simulation/simulator.h"
+#include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
 

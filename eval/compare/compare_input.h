@@ -4,12 +4,12 @@
 #include <optional>
 #include <string>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "eval/compare/plan.h"
 #include "eval/frontend_run/frontend_summary.h"
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/frontend_run/log_cache.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

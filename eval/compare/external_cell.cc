@@ -5,6 +5,8 @@
 
 #include "eval/bag/bag_export.h"
 #include "eval/bag/bag_import.h"
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/external_trajectory.h"

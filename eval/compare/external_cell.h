@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/measurement_log.h"
+#include "core/estimator/measurement_log.h"
 #include "eval/compare/external_run.h"
 #include "eval/compare/plan.h"
 

@@ -6,8 +6,10 @@
 #include <set>
 
 #include "core/numbers.h"
+#include "eval/comparison/distinct.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/output_file.h"
+#include "eval/metrics/nees.h"
 
 namespace alidade {
 namespace {
@@ -152,19 +154,6 @@ void RelateToBaseline(const std::string& baseline, const std::vector<Figure>& fi
   }
 }
 
-/// Distinct values in order of first appearance.
-template <typename Items, typename Project>
-std::vector<std::string> Distinct(const Items& items, Project project) {
-  std::vector<std::string> names;
-  for (const auto& item : items) {
-    const std::string name = project(item);
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 std::vector<Figure> ListFigures(const Comparison& comparison) {
@@ -252,41 +241,6 @@ std::optional<size_t> FindFigure(const std::vector<Figure>& figures, const std::
     }
   }
   return std::nullopt;
-}
-
-std::string LabelOf(const Comparison& comparison, const CellResult& cell) {
-  for (const CellResult& other : comparison.cells) {
-    const bool both_known = !other.backend.empty() && !cell.backend.empty();
-    if (other.estimator == cell.estimator && both_known && other.backend != cell.backend) {
-      return cell.estimator + " (" + cell.backend + ")";
-    }
-  }
-  return cell.estimator;
-}
-
-std::vector<CellGroup> GroupCells(const Comparison& comparison) {
-  std::vector<std::string> of_cell;  // a label costs a walk over all cells: once each
-  for (const CellResult& cell : comparison.cells) {
-    of_cell.push_back(LabelOf(comparison, cell));
-  }
-  const std::vector<std::string> labels = Distinct(of_cell, [](const std::string& label) { return label; });
-  const std::vector<std::string> sequences =
-      Distinct(comparison.cells, [](const CellResult& cell) { return cell.sequence; });
-  std::vector<CellGroup> groups;
-  for (const std::string& sequence : sequences) {
-    for (const std::string& label : labels) {
-      CellGroup group{label, sequence, {}};
-      for (size_t i = 0; i < of_cell.size(); ++i) {
-        if (of_cell[i] == label && comparison.cells[i].sequence == sequence) {
-          group.cells.push_back(&comparison.cells[i]);
-        }
-      }
-      if (!group.cells.empty()) {
-        groups.push_back(std::move(group));
-      }
-    }
-  }
-  return groups;
 }
 
 std::vector<AggregateRow> Aggregate(const Comparison& comparison, const std::vector<Figure>& figures) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/comparison/cell_group.h"
 #include "eval/comparison/comparison.h"
 
 namespace alidade {
@@ -79,18 +80,6 @@ struct AggregateRow {
 
 /// Place of the figure `key` in the list; none when it is not there.
 [[nodiscard]] std::optional<size_t> FindFigure(const std::vector<Figure>& figures, const std::string& key);
-
-/// The cells of one aggregate row.
-struct CellGroup {
-  std::string label;
-  std::string sequence;
-  std::vector<const CellResult*> cells;
-};
-/// By sequence, then label, both in order of first appearance; they point into `comparison`.
-[[nodiscard]] std::vector<CellGroup> GroupCells(const Comparison& comparison);
-
-/// The label of a cell's aggregate row.
-[[nodiscard]] std::string LabelOf(const Comparison& comparison, const CellResult& cell);
 
 /// How far a value is from ideal; smaller is better, NaN without an ideal or a value.
 [[nodiscard]] double Badness(const Figure& figure, double value);

@@ -12,7 +12,8 @@
 #include "core/numbers.h"
 #include "eval/comparison/series_rows.h"
 #include "eval/comparison/sky_tracks.h"
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/nees.h"
 
 namespace alidade {
 namespace {

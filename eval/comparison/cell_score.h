@@ -2,6 +2,7 @@
 
 #include "eval/comparison/comparison.h"
 #include "eval/metrics/evaluate.h"
+#include "eval/record/run_result.h"
 
 namespace alidade {
 

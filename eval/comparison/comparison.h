@@ -8,7 +8,6 @@
 
 #include "eval/frontend_run/frontend_summary.h"
 #include "eval/metrics/metrics.h"
-#include "eval/record/runner.h"
 
 namespace alidade {
 

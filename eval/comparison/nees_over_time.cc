@@ -6,8 +6,8 @@
 #include <map>
 
 #include "core/numbers.h"
-#include "eval/comparison/aggregate.h"
-#include "eval/metrics/metrics.h"
+#include "eval/comparison/cell_group.h"
+#include "eval/metrics/nees.h"
 
 namespace alidade {
 namespace {

@@ -1,6 +1,7 @@
+#include "eval/config/config_writer.h"
+
 #include <algorithm>
 
-#include "eval/config/config_yaml.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {

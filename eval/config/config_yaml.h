@@ -24,10 +24,6 @@ Status ApplySettings(const std::vector<std::string>& settings,
 /// The flag's text "a.b=1,c=[1,2,3]" -> its settings; commas inside brackets do not split.
 [[nodiscard]] std::vector<std::string> SplitSettings(std::string_view list);
 
-/// The resolved configuration as YAML that ReadConfigFile reads back to the same values; with_docs adds unit,
-/// range and reason as a comment to every key.
-[[nodiscard]] std::string ConfigToYaml(const std::function<void(ConfigVisitor&)>& describe, bool with_docs);
-
 /// ReadConfigFile + ApplySettings + Validate for an estimator.
 Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path,
                                             const std::vector<std::string>& settings);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "core/estimator/measurement_log.h"
 #include "eval/rosbag/rosbag_record.h"
 #include "eval/trajectory/trajectory.h"
 
@@ -42,31 +42,5 @@ struct Dataset {
       truth;  ///< state_groundtruth_estimate0/{data.csv | data_pose.csv | data_position.csv}
   std::string truth_path;
 };
-
-/// Reads everything but pixels of a folder; a ROS bag: ReadDataset of eval/bag/dataset_source.h. Every fault
-/// is kInput naming file, line, value and expectation: missing file, wrong header, torn row, non-finite
-/// number, stamps not increasing, non-rigid T_BS, unknown distortion model, wrong resolution.
-Result<Dataset> ReadDataset(const std::string& path);
-
-/// Writes imu0, cam0 (tracks, stamps) and truth under `path`. Numbers are the shortest text that reads back
-/// equal.
-Status WriteDataset(const Dataset& dataset, const std::string& path);
-/// sensor.yaml of extra_cameras[k].
-[[nodiscard]] std::string ExtraCameraYaml(const Dataset& dataset, size_t k);
-/// Writes cam0/tracks.csv (and its sensor.yaml) alone: the output of the `track` command.
-Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path);
-
-/// SHA-256 (hex) over the log's calibration, IMU and tracks and, where it has GNSS, receiver, observations
-/// (pseudorange, Doppler, C/N0) and broadcast ephemerides: equal digests mean identical input to every
-/// estimator. Of GNSS it leaves out reported deviations, ionosphere parameters and precise products.
-[[nodiscard]] std::string DigestOf(const MeasurementLog& log);
-
-/// A finding of `check`: an error, a warning or a fact about a sequence.
-struct DatasetFinding {
-  enum class Severity { kFact, kWarning, kError } severity = Severity::kFact;
-  std::string text;
-};
-/// Rates, gaps, units (gravity magnitude, gyro in rad/s), time spans, offsets between sensors, duplicates.
-[[nodiscard]] std::vector<DatasetFinding> CheckDataset(const Dataset& dataset);
 
 }  // namespace alidade

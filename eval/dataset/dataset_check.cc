@@ -1,3 +1,5 @@
+#include "eval/dataset/dataset_check.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -5,7 +7,6 @@
 #include <string>
 
 #include "core/format.h"
-#include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
 #include "gnss/model/gnss_epoch.h"

@@ -8,6 +8,12 @@
 
 namespace alidade {
 
+/// A finding of `check`: an error, a warning or a fact about a sequence.
+struct DatasetFinding {
+  enum class Severity { kFact, kWarning, kError } severity = Severity::kFact;
+  std::string text;
+};
+
 /// What `check` has found so far.
 class Findings {
  public:

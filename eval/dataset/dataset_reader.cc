@@ -1,12 +1,14 @@
+#include "eval/dataset/dataset_reader.h"
+
 #include <filesystem>
 #include <utility>
 
-#include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/csv.h"
+#include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
 namespace {

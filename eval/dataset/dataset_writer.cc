@@ -1,7 +1,8 @@
+#include "eval/dataset/dataset_writer.h"
+
 #include <charconv>
 #include <filesystem>
 
-#include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"
 #include "eval/dataset/sensor_yaml.h"

@@ -1,8 +1,9 @@
+#include "eval/dataset/digest.h"
+
 #include <bit>
 #include <cstdint>
 #include <string>
 
-#include "eval/dataset/dataset.h"
 #include "eval/files/sha256.h"
 #include "gnss/model/gnss_epoch.h"
 

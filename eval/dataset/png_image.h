@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/status.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/measurement_log.h"
+#include "core/rig_calibration.h"
 #include "core/status.h"
 
 namespace alidade {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "core/track_frame.h"
 #include "frontend/tracking/klt_tracker.h"
 
 namespace alidade {

@@ -2,7 +2,7 @@
 
 #include "core/stopwatch.h"
 #include "eval/bag/dataset_images.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade {

@@ -4,8 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "eval/dataset/dataset.h"
+#include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"
 
 namespace alidade {

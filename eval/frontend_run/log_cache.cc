@@ -3,8 +3,8 @@
 #include <iterator>
 #include <map>
 
-#include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/dataset_writer.h"
 #include "eval/files/csv.h"
 #include "eval/files/csv_text.h"
 #include "eval/files/input_file.h"

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/measurement_log.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "core/track_frame.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

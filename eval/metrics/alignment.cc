@@ -1,7 +1,7 @@
+#include "eval/metrics/alignment.h"
+
 #include <Eigen/Geometry>
 #include <cmath>
-
-#include "eval/metrics/metrics.h"
 
 namespace alidade {
 namespace {

@@ -1,9 +1,10 @@
+#include "eval/metrics/association.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/format.h"
-#include "eval/metrics/metrics.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
 namespace alidade {

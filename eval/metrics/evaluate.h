@@ -1,10 +1,13 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/association.h"
 #include "eval/metrics/metrics.h"
+#include "eval/metrics/nees.h"
+#include "eval/metrics/state_pair.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {
@@ -41,12 +44,5 @@ struct Evaluation {
 /// Associate; kUsage: anchor_at_first without orientation.
 Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
                             const EvaluationOptions& options);
-
-/// Text of a few lines, six significant digits.
-[[nodiscard]] std::string FormatEvaluationText(const Evaluation& evaluation);
-
-/// One JSON object with keys in a fixed order and numbers rounded to nine significant digits (the same text
-/// on every machine); NaN becomes null.
-[[nodiscard]] std::string FormatEvaluationJson(const Evaluation& evaluation);
 
 }  // namespace alidade

@@ -1,3 +1,5 @@
+#include "eval/metrics/evaluate_format.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -5,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/format.h"
-#include "eval/metrics/evaluate.h"
 
 namespace alidade {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/alignment.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {

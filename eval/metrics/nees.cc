@@ -1,10 +1,11 @@
+#include "eval/metrics/nees.h"
+
 #include <Eigen/Cholesky>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 
 #include "core/numbers.h"
-#include "eval/metrics/metrics.h"
 
 namespace alidade {
 namespace {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "core/estimator/estimator.h"
+#include "core/estimator/measurement_log.h"
 #include "eval/record/run_builder.h"
-#include "eval/record/runner.h"
+#include "eval/record/run_options.h"
 #include "eval/run/session.h"
 
 namespace alidade {

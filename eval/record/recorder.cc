@@ -6,11 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/config/config_json.h"
-#include "eval/config/config_yaml.h"
+#include "eval/config/config_writer.h"
 #include "eval/files/csv_text.h"
 #include "eval/files/output_file.h"
 #include "eval/files/sha256.h"
 #include "eval/record/recorder_gnss.h"
+#include "eval/run/make_estimator.h"
 #include "eval/trajectory/trajectory_export.h"
 
 namespace alidade {

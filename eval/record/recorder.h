@@ -2,7 +2,9 @@
 
 #include <string>
 
-#include "eval/record/runner.h"
+#include "core/estimator_config.h"
+#include "core/status.h"
+#include "eval/record/run_result.h"
 
 namespace alidade {
 
@@ -26,13 +28,5 @@ struct RunIdentity {
 /// and the object `times` of run.json. A run.json that was there is removed first, so that a folder with one
 /// is always complete. Errors: kOutput.
 Status WriteRun(const RunIdentity& identity, const RunResult& result, const std::string& folder);
-
-/// What WriteRun wrote, read back: states (rotations to rounding), pose covariances, timing, statistics and
-/// status. kInput: the folder holds no complete run, or a file is not as written.
-Result<RunResult> ReadRun(const std::string& folder);
-
-/// True when `folder` holds a complete run of this identity (audited if it asks for that) that neither was
-/// interrupted nor failed for want of input.
-[[nodiscard]] bool HoldsRun(const std::string& folder, const RunIdentity& identity);
 
 }  // namespace alidade

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "eval/record/runner.h"
+#include "eval/record/run_result.h"
 
 namespace alidade {
 

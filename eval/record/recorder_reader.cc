@@ -1,3 +1,5 @@
+#include "eval/record/recorder_reader.h"
+
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -5,7 +7,7 @@
 
 #include "eval/files/csv.h"
 #include "eval/files/input_file.h"
-#include "eval/record/recorder.h"
+#include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
 namespace {

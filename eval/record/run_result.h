@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
 #include "eval/audit/observability.h"
 #include "eval/record/calibration_record.h"
 #include "eval/run/session_event.h"

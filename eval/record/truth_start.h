@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/estimator_config.h"
+#include "core/init_config.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {

@@ -8,7 +8,7 @@
 #include "eval/render/hall_view.h"
 #include "eval/render/render_hall.h"
 #include "eval/render/render_texture.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

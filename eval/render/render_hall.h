@@ -7,7 +7,7 @@
 
 #include "core/status.h"
 #include "eval/simulation/continuous_trajectory.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

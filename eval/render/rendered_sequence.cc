@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "core/lie.h"
-#include "eval/config/config_yaml.h"
+#include "eval/config/config_writer.h"
+#include "eval/dataset/digest.h"
 #include "eval/dataset/png_image.h"
 #include "eval/files/output_file.h"
 #include "eval/files/parallel_for.h"

@@ -5,7 +5,8 @@
 
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/render/hall_renderer.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulation.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

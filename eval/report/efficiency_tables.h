@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "eval/report/table_layout.h"
+#include "eval/report/text_table.h"
 
 namespace alidade {
 

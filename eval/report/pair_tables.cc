@@ -11,7 +11,6 @@ namespace alidade {
 namespace {
 
 const char* const kMinus = "\u2212";
-const char* const kDash = "\u2013";
 
 /// The same pair seen from the other side.
 PairedDifference Reversed(const PairedDifference& pair) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "eval/comparison/paired.h"
-#include "eval/report/table_layout.h"
+#include "eval/report/text_table.h"
 
 namespace alidade {
 

@@ -11,6 +11,7 @@
 #include "eval/comparison/aggregate.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/output_file.h"
+#include "eval/metrics/nees.h"
 #include "eval/report/report_json.h"
 #include "eval/report/svg_plot.h"
 

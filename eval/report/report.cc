@@ -7,7 +7,7 @@
 #include "eval/files/output_file.h"
 #include "eval/report/report_assets.h"
 #include "eval/report/report_data.h"
-#include "eval/report/tables.h"
+#include "eval/report/tables_terminal.h"
 
 namespace alidade {
 namespace {

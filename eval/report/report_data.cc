@@ -11,6 +11,7 @@
 #include "eval/comparison/efficiency.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/comparison/paired.h"
+#include "eval/metrics/nees.h"
 #include "eval/report/report_json.h"
 #include "eval/report/report_series.h"
 

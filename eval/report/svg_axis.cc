@@ -1,7 +1,7 @@
+#include "eval/report/svg_axis.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "eval/report/svg_plot.h"
 
 namespace alidade {
 namespace {

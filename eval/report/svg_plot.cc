@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/format.h"
+#include "eval/report/svg_axis.h"
 
 namespace alidade {
 namespace {

@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <tuple>
 
+#include "core/format.h"
 #include "eval/report/efficiency_tables.h"
 #include "eval/report/pair_tables.h"
 
 namespace alidade {
 namespace {
-
-const char* const kDash = "\u2013";
-
-std::string Print(const char* format, int precision, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof(buffer), format, precision, value);
-  return buffer;
-}
 
 std::string Heading(const Figure& figure) {
   return figure.unit.empty() ? figure.label : figure.label + " [" + figure.unit + "]";
@@ -77,7 +69,7 @@ double ReferenceValue(const ReferenceFigure& reference, const std::string& key) 
 }
 
 std::string Percent(double share) {
-  return std::isnan(share) ? kDash : Print("%.*f", 1, 100 * share) + " %";
+  return std::isnan(share) ? kDash : Format("%.1f %%", 100 * share);
 }
 
 /// What the columns after the figures say, in the order of SummaryHeadings.
@@ -231,30 +223,6 @@ TextTable FrontendTable(const std::vector<FrontendSummary>& frontends) {
 }
 
 }  // namespace
-
-std::string FormatValue(double value, int decimals) {
-  if (std::isnan(value)) {
-    return kDash;
-  }
-  const double magnitude = std::abs(value);
-  if (magnitude >= 1e6 || (magnitude > 0 && magnitude < std::pow(10.0, 1 - decimals))) {
-    return Print("%.*g", 2, value);
-  }
-  return Print("%.*f", decimals, value);
-}
-
-std::string FormatStatistic(const Statistic& statistic, int decimals, const std::string& plus_minus) {
-  const std::string mean = FormatValue(statistic.mean, decimals);
-  if (std::isnan(statistic.standard_error)) {
-    return mean;
-  }
-  // The error shows the digits that the mean shows, unless the mean itself needs more.
-  const double magnitude = std::abs(statistic.mean);
-  const bool fixed = magnitude < 1e6 && magnitude >= std::pow(10.0, 1 - decimals);
-  return mean + plus_minus +
-         (fixed ? Print("%.*f", decimals, statistic.standard_error)
-                : FormatValue(statistic.standard_error, decimals));
-}
 
 std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::string& plus_minus) {
   const std::vector<Figure> figures = ListFigures(comparison);

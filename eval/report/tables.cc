@@ -12,6 +12,7 @@
 #include "eval/report/report_data.h"
 #include "eval/report/table_layout.h"
 #include "eval/report/tables_text.h"
+#include "eval/report/text_table.h"
 
 namespace alidade {
 namespace {

@@ -11,7 +11,4 @@ namespace alidade {
 /// into `folder` (docs/plans.md). Errors: kOutput.
 Status WriteTables(const Comparison& comparison, const std::string& folder);
 
-/// The tables of a comparison for a terminal.
-[[nodiscard]] std::string FormatTable(const Comparison& comparison);
-
 }  // namespace alidade

@@ -1,9 +1,11 @@
+#include "eval/report/tables_terminal.h"
+
 #include <algorithm>
 
 #include "eval/report/pair_tables.h"
 #include "eval/report/table_layout.h"
-#include "eval/report/tables.h"
 #include "eval/report/tables_text.h"
+#include "eval/report/text_table.h"
 
 namespace alidade {
 namespace {

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "core/status.h"
-#include "gnss/formats/ephemeris.h"
 #include "gnss/formats/observation.h"
 
 namespace alidade {
@@ -28,36 +27,5 @@ namespace alidade {
 /// is completed from the frequencies. A signal with an unknown code is identified by its frequency, or
 /// skipped; of several in one message the first counts.
 Result<ObservationEpoch> DecodeMeasurements(std::string_view bytes, std::map<int, int>* glonass_channels);
-
-/// GnssEphemMsg and GnssGloEphemMsg. Times are GPST for every system. Empty for a satellite without a number.
-[[nodiscard]] std::optional<std::string> EncodeEphemeris(const KeplerEphemeris& ephemeris);
-[[nodiscard]] std::optional<std::string> EncodeEphemeris(const GlonassEphemeris& ephemeris);
-Result<KeplerEphemeris> DecodeKeplerEphemeris(std::string_view bytes);
-Result<GlonassEphemeris> DecodeGlonassEphemeris(std::string_view bytes);
-
-/// StampedFloat64Array with the eight Klobuchar parameters.
-[[nodiscard]] std::string EncodeIonosphere(TimeNs stamp_ns, const KlobucharParameters& parameters);
-Result<KlobucharParameters> DecodeIonosphere(std::string_view bytes);
-
-/// GnssPVTSolnMsg: the receiver's own solution.
-struct ReceiverSolution {
-  TimeNs stamp_ns = 0;  ///< GPST
-  bool valid = false;
-  int carrier = 0;  ///< 0 no carrier phase, 1 float, 2 fixed
-  double latitude_deg = 0;
-  double longitude_deg = 0;
-  double height_m = 0;  ///< above the ellipsoid
-  double horizontal_accuracy_m = 0;
-  double vertical_accuracy_m = 0;
-};
-[[nodiscard]] std::string EncodeSolution(const ReceiverSolution& solution);
-Result<ReceiverSolution> DecodeSolution(std::string_view bytes);
-
-/// GnssTimePulseInfoMsg: GPST of the next pulse. An external trigger is LocalSensorExternalTrigger: the time
-/// of the pulse in the clock of camera and IMU.
-[[nodiscard]] std::string EncodeTimePulse(TimeNs pulse_ns);
-Result<TimeNs> DecodeTimePulse(std::string_view bytes);
-[[nodiscard]] std::string EncodeTrigger(TimeNs stamp_ns);
-Result<TimeNs> DecodeTrigger(std::string_view bytes);
 
 }  // namespace alidade

@@ -1,3 +1,5 @@
+#include "eval/rosbag/gnss_navigation_messages.h"
+
 #include <algorithm>
 #include <cmath>
 

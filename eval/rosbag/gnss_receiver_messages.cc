@@ -1,9 +1,10 @@
+#include "eval/rosbag/gnss_receiver_messages.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/format.h"
 #include "eval/rosbag/gnss_message_time.h"
-#include "eval/rosbag/gnss_messages.h"
 #include "eval/rosbag/ros_header.h"
 
 namespace alidade {

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "core/imu_sample.h"
-#include "core/measurement_log.h"
+#include "core/track_frame.h"
 #include "eval/trajectory/trajectory.h"
-#include "frontend/tracking/klt_tracker.h"
+#include "frontend/tracking/image_reader.h"
 
 namespace alidade {
 

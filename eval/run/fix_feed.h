@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "core/rig_calibration.h"
 #include "gnss/base/geodesy.h"
 
 namespace alidade {

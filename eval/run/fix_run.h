@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
-#include "core/measurement_log.h"
+#include "core/estimator/estimator.h"
+#include "core/estimator_config.h"
+#include "core/rig_calibration.h"
 #include "eval/run/fix_feed.h"
 #include "eval/run/session_event.h"
 #include "gnss/alignment/fix_aligner.h"

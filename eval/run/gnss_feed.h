@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "core/estimator_config.h"
 #include "gnss/model/gnss_epoch.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 

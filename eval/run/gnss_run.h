@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/rig_calibration.h"
 #include "eval/run/gnss_feed.h"
 #include "eval/run/session_event.h"
 #include "gnss/alignment/alignment.h"

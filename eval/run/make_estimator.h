@@ -3,8 +3,9 @@
 #include <memory>
 #include <string_view>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
 #include "core/estimator_config.h"
+#include "core/rig_calibration.h"
 
 namespace alidade {
 

@@ -4,9 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "core/health_monitor.h"
-#include "core/measurement_log.h"
+#include "core/estimator/estimator.h"
+#include "core/rig_calibration.h"
 #include "eval/run/dead_reckoning.h"
+#include "eval/run/health_monitor.h"
 #include "frontend/initialization/initializer.h"
 #include "gnss/alignment/alignment.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <variant>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
 #include "gnss/alignment/alignment.h"
 #include "gnss/model/gnss_epoch.h"
 

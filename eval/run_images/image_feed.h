@@ -2,8 +2,9 @@
 
 #include <map>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "eval/run/session.h"
+#include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"
 
 namespace alidade {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "eval/simulation/jet.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/format.h"
+#include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/status.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "eval/simulation/spline_trajectory.h"
 #include "eval/trajectory/trajectory.h"
 

@@ -2,7 +2,8 @@
 
 #include <cstdint>
 
-#include "eval/simulation/simulator.h"
+#include "core/rig_calibration.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

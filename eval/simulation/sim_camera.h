@@ -3,11 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/measurement_log.h"
+#include "core/estimator/measurement_log.h"
+#include "eval/dataset/dataset.h"
 #include "eval/simulation/continuous_trajectory.h"
 #include "eval/simulation/sim_landmarks.h"
 #include "eval/simulation/sim_rig.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "core/random.h"
-#include "eval/simulation/simulator.h"
+#include "eval/dataset/dataset.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

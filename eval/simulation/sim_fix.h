@@ -4,7 +4,7 @@
 
 #include "eval/dataset/dataset.h"
 #include "eval/simulation/continuous_trajectory.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/dataset/dataset_reader.h"
 #include "eval/simulation/gyro_agreement.h"
 #include "eval/simulation/recorded_motion.h"
 #include "eval/simulation/sim_camera.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/status.h"
-#include "eval/dataset/dataset.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulation.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

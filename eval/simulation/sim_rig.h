@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/measurement_log.h"
-#include "eval/simulation/simulator.h"
+#include "core/estimator/measurement_log.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "core/camera_model.h"
-#include "core/measurement_log.h"
+#include "core/navigation_state.h"
 #include "core/random.h"
+#include "core/track_frame.h"
 #include "eval/simulation/sim_fault.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -1,7 +1,8 @@
+#include "eval/simulation/simulator_config.h"
+
 #include <filesystem>
 
 #include "eval/config/config_yaml.h"
-#include "eval/simulation/simulator.h"
 
 namespace alidade {
 namespace {

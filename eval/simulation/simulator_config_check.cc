@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "core/format.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "core/status.h"
 #include "eval/simulation/continuous_trajectory.h"
+#include "eval/simulation/spline_equations.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {
@@ -47,15 +48,13 @@ class SplineTrajectory final : public ContinuousTrajectory {
   [[nodiscard]] const SplineFit& fit() const { return fit_; }
 
  private:
-  class NormalEquations;
-
   SplineTrajectory() = default;
 
   [[nodiscard]] Kinematics Inside(double time_s) const;
   void PlaceControlPoints(const Trajectory& samples);
   Status Solve(const Trajectory& samples);
-  void SolvePosition(const Trajectory& samples, NormalEquations* equations);
-  Status SolveRotation(const Trajectory& samples, NormalEquations* equations);
+  void SolvePosition(const Trajectory& samples, SplineEquations* equations);
+  Status SolveRotation(const Trajectory& samples, SplineEquations* equations);
   void MeasureFit(const Trajectory& samples);
 
   TimeNs start_ns_ = 0;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <memory>
 
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/nees.h"
+#include "eval/metrics/state_pair.h"
 #include "eval/run/gnss_feed.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 

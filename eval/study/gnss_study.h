@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/estimator/measurement_log.h"
 #include "core/gnss_config.h"
-#include "core/measurement_log.h"
 #include "eval/record/run_result.h"
 #include "eval/simulation/sim_gnss_config.h"
 
@@ -51,25 +51,5 @@ struct GnssRunFigures {
 /// rig's anchor; NaN without an anchor or a solution.
 [[nodiscard]] double SinglePointRmse(const GnssConfig& config, const MeasurementLog& log,
                                      const Trajectory& truth);
-
-/// One seed of an estimator on a sequence.
-struct GnssStudyRun {
-  unsigned seed = 0;
-  GnssRunFigures figures;
-  GnssRunFigures odometry;  ///< over the same time, by the plan's estimator without GNSS
-  double single_point_m = GnssRunFigures::kNone;
-};
-
-struct GnssStudyRow {
-  std::string sequence;
-  std::string estimator;
-  GnssScenario scenario;
-  std::vector<GnssStudyRun> runs;
-};
-
-/// Markdown: figures of the runs, and a table each for outages and clock jumps if there are any. An outage
-/// with remaining satellites is compared with an outage of the same time without satellites, if there is one.
-/// A row without runs is omitted. Ratios are those of means, to the same estimator on the first sequence.
-[[nodiscard]] std::string GnssStudyTables(const std::vector<GnssStudyRow>& rows);
 
 }  // namespace alidade

@@ -1,10 +1,11 @@
+#include "eval/study/gnss_study_tables.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/format.h"
 #include "eval/comparison/aggregate.h"
-#include "eval/metrics/metrics.h"
-#include "eval/study/gnss_study.h"
+#include "eval/metrics/nees.h"
 
 // The tables of the GNSS study.
 

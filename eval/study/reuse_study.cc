@@ -1,7 +1,10 @@
 #include "eval/study/reuse_study.h"
 
 #include "eval/audit/covariance_analysis.h"
+#include "eval/dataset/dataset.h"
+#include "eval/record/run_options.h"
 #include "eval/record/runner.h"
+#include "eval/simulation/simulator.h"
 #include "filter/filter.h"
 
 namespace alidade {

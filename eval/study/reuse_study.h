@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/estimator/measurement_log.h"
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
 #include "core/status.h"
 #include "eval/trajectory/trajectory.h"
 

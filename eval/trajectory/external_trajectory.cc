@@ -7,6 +7,7 @@
 #include "eval/files/decimal_stamp.h"
 #include "eval/files/input_file.h"
 #include "eval/trajectory/position_file_reader.h"
+#include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
 namespace {

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "core/measurement_log.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {

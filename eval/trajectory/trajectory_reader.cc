@@ -1,9 +1,10 @@
+#include "eval/trajectory/trajectory_reader.h"
+
 #include <cmath>
 #include <string>
 
 #include "eval/files/csv.h"
 #include "eval/files/decimal_stamp.h"
-#include "eval/trajectory/trajectory.h"
 
 namespace alidade {
 namespace {

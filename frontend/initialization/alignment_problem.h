@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "frontend/initialization/alignment_refinement.h"
+#include "frontend/initialization/dynamic_window.h"
+#include "frontend/initialization/refinement_settings.h"
 
 namespace alidade {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/estimator_config.h"
 #include "core/navigation_state.h"
 #include "core/status.h"
 #include "frontend/initialization/dynamic_window.h"
+#include "frontend/initialization/refinement_settings.h"
 
 namespace alidade {
 
@@ -19,16 +19,6 @@ struct RefinedAlignment {
   int tracks = 0;               ///< accepted
   int rejected_tracks = 0;
   int iterations = 0;
-};
-
-/// What the refinement needs to know about the noise and the world.
-struct RefinementSettings {
-  Pose T_BC;
-  double gravity_mps2 = 9.81;
-  double accel_bias_std_mps2 = 0.1;
-  double gyro_bias_std_radps = 0.1;
-  double yaw_std_rad = 1e-3;     ///< gauge: of the newest state's yaw
-  double position_std_m = 1e-3;  ///< gauge: of the newest state's position
 };
 
 /// Levenberg-Marquardt on all states (phi, dp, dv, dbg, dba per frame) of the window: preintegration

@@ -5,9 +5,10 @@
 
 #include "core/estimator_config.h"
 #include "core/imu_buffer.h"
-#include "core/measurement_log.h"
+#include "core/rig_calibration.h"
 #include "core/status.h"
-#include "frontend/initialization/initializer.h"
+#include "core/track_frame.h"
+#include "frontend/initialization/initializer_window.h"
 
 namespace alidade {
 

@@ -5,8 +5,8 @@
 
 #include "core/estimator_config.h"
 #include "core/imu_buffer.h"
-#include "core/measurement_log.h"
 #include "core/preintegration.h"
+#include "core/track_frame.h"
 #include "core/visual_observation.h"
 
 namespace alidade {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/rig_calibration.h"
 #include "frontend/initialization/dynamic_window.h"
 
 namespace alidade {

@@ -2,21 +2,15 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
 #include "core/navigation_state.h"
+#include "core/rig_calibration.h"
 #include "core/status.h"
+#include "core/track_frame.h"
+#include "frontend/initialization/initializer_window.h"
 
 namespace alidade {
-
-/// The states a dynamic initialisation found over its window, in the world of the returned state.
-struct InitializerWindow {
-  std::vector<TimeNs> stamps_ns;  ///< IMU time of the camera frames used, the returned one last
-  std::vector<NavState> states;
-  double relative_scale_std = 0;  ///< of the window's size
-};
 
 /// Finds the first state from IMU and tracks alone; shared by both back ends.
 ///

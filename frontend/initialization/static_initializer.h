@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "core/estimator_config.h"
 #include "core/imu_statistics.h"
+#include "core/init_config.h"
 #include "core/navigation_state.h"
 #include "frontend/initialization/track_motion.h"
 

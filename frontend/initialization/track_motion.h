@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/measurement_log.h"
+#include "core/track_frame.h"
 
 namespace alidade {
 

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 
 namespace alidade {
 

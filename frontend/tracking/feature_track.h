@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/camera_model.h"
-#include "core/estimator_config.h"
+#include "core/frontend_config.h"
 #include "frontend/tracking/patch_template.h"
 
 namespace alidade {

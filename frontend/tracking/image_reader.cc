@@ -1,10 +1,10 @@
+#include "frontend/tracking/image_reader.h"
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <system_error>
-
-#include "frontend/tracking/klt_tracker.h"
 
 namespace alidade {
 namespace {

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <span>
-#include <string>
-#include <vector>
 
-#include "core/estimator_config.h"
-#include "core/measurement_log.h"
+#include "core/frontend_config.h"
+#include "core/rig_calibration.h"
 #include "core/status.h"
+#include "core/track_frame.h"
 
 namespace alidade {
 
@@ -43,15 +41,5 @@ class KltTracker {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-/// Decodes an 8-bit or 16-bit image file to grey. kInput: missing, or does not decode, naming the path.
-struct GreyImage {
-  int width_px = 0;
-  int height_px = 0;
-  std::vector<unsigned char> pixels;
-};
-Result<GreyImage> ReadGreyImage(const std::string& path);
-/// The same of the bytes of such a file; `name` stands in messages.
-Result<GreyImage> DecodeGreyImage(std::span<const unsigned char> bytes, const std::string& name);
 
 }  // namespace alidade

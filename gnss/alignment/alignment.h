@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/clock_state.h"
-#include "core/measurement_log.h"
+#include "core/rig_calibration.h"
 #include "core/yaw_shift.h"
 #include "gnss/alignment/alignment_fit.h"
 #include "gnss/alignment/state_history.h"
-#include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 

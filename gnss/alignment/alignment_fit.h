@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/measurement_log.h"
 #include "gnss/model/epoch_rows.h"
 
 namespace alidade {

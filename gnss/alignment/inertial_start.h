@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/measurement_log.h"
 #include "core/preintegration.h"
+#include "core/rig_calibration.h"
 #include "gnss/alignment/alignment.h"
 
 namespace alidade {

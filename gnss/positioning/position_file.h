@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 

@@ -7,7 +7,6 @@
 #include "gnss/base/constants.h"
 #include "gnss/model/measurement_model.h"
 #include "gnss/positioning/robust_fit.h"
-#include "gnss/positioning/single_point_state.h"
 #include "gnss/positioning/velocity_fit.h"
 
 namespace alidade {
@@ -18,25 +17,6 @@ constexpr double kKnownBiasFloorM = 1;  // multipath is correlated in time: a ca
 constexpr double kRelocateM = 1;        // the troposphere changes by 0.3 mm a metre of height
 
 }  // namespace
-
-void SinglePointOptions::Describe(ConfigVisitor& visitor) {
-  visitor.Enumeration(
-      {"kernel", "-", "robust kernel of the residuals"}, &kernel,
-      {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
-  visitor.Real({"kernel_scale_sigma", "sigma", "whitened residual above which the kernel reduces the weight"},
-               &kernel_scale_sigma, 0.1, 100);
-  visitor.Real(
-      {"gate_probability", "-", "chi-square gate of one satellite at the epoch's robust scale; 1 = no gate"},
-      &gate_probability, 0.5, 1);
-  visitor.Real({"inter_system_walk", "m/sqrt(s)",
-                "random walk of the inter-system biases that are carried between epochs"},
-               &inter_system_walk, 0, 1e6);
-  visitor.Real({"max_position_std_m", "m",
-                "largest position standard deviation of a solution; with weaker geometry an epoch has none"},
-               &max_position_std_m, 1, 1e6);
-  visitor.Integer({"max_iterations", "-", "largest number of iterations of the robust least squares"},
-                  &max_iterations, 2, 1000);
-}
 
 SinglePointSolver::SinglePointSolver(MeasurementBuilder builder, SinglePointOptions options,
                                      std::optional<Eigen::Vector3d> initial_E)
@@ -64,7 +44,7 @@ Result<SinglePointSolution> SinglePointSolver::Solve(EpochMeasurements prepared)
     return Status::Input(FormatGpsTime(prepared.tag_ns, 3) + ": no satellite can be used (" +
                          Describe(prepared.left_out) + ")");
   }
-  State state;
+  SinglePointState state;
   Status status = SolveFrom(last_E_.value_or(Eigen::Vector3d::Zero()), &prepared, &state);
   if (!status.ok() && last_E_ && SolveFrom(Eigen::Vector3d::Zero(), &prepared, &state).ok()) {
     status = Status::Ok();  // the start was wrong
@@ -81,8 +61,8 @@ Result<SinglePointSolution> SinglePointSolver::Solve(EpochMeasurements prepared)
 }
 
 Status SinglePointSolver::SolveFrom(const Eigen::Vector3d& start_E, EpochMeasurements* epoch,
-                                    State* state) const {
-  *state = State();
+                                    SinglePointState* state) const {
+  *state = SinglePointState();
   state->position_E = start_E;
   state->active.assign(epoch->satellites.size(), true);
   if (start_E.norm() < 6e6) {  // not on the Earth: no direction, no atmosphere yet
@@ -117,7 +97,7 @@ Status SinglePointSolver::SolveFrom(const Eigen::Vector3d& start_E, EpochMeasure
 }
 
 /// Columns of the unknowns: position, clock, then a bias for each active system but the datum.
-Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, State* state) const {
+Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, SinglePointState* state) const {
   std::array<int, kGnssSystems> count{};
   int active = 0;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
@@ -147,7 +127,7 @@ Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, State* state) 
   return Status::Ok();
 }
 
-WhitenedRows SinglePointSolver::PositionRows(const EpochMeasurements& epoch, State* state) const {
+WhitenedRows SinglePointSolver::PositionRows(const EpochMeasurements& epoch, SinglePointState* state) const {
   const auto active = std::count(state->active.begin(), state->active.end(), true);
   WhitenedRows rows;
   rows.measurements = active;
@@ -186,7 +166,7 @@ WhitenedRows SinglePointSolver::PositionRows(const EpochMeasurements& epoch, Sta
   return rows;
 }
 
-Status SinglePointSolver::Iterate(const EpochMeasurements& epoch, State* state) const {
+Status SinglePointSolver::Iterate(const EpochMeasurements& epoch, SinglePointState* state) const {
   ALIDADE_RETURN_IF_ERROR(Arrange(epoch, state));
   constexpr double kConvergedM = 1e-4;
   for (int i = 0; i < options_.max_iterations; ++i) {
@@ -214,7 +194,7 @@ Status SinglePointSolver::Iterate(const EpochMeasurements& epoch, State* state) 
   return Status::Ok();
 }
 
-void SinglePointSolver::CarryBiases(const State& state, TimeNs stamp_ns) {
+void SinglePointSolver::CarryBiases(const SinglePointState& state, TimeNs stamp_ns) {
   biases_[Index(state.datum)] = {true, 0, 0, stamp_ns};
   for (std::size_t i = 0; i < state.column.size(); ++i) {
     if (const int column = state.column[i]; column >= 0) {
@@ -225,7 +205,7 @@ void SinglePointSolver::CarryBiases(const State& state, TimeNs stamp_ns) {
 }
 
 SinglePointSolution SinglePointSolver::MakeSolution(const EpochMeasurements& epoch,
-                                                    const State& state) const {
+                                                    const SinglePointState& state) const {
   SinglePointSolution solution;
   solution.tag_ns = epoch.tag_ns;
   solution.stamp_ns = epoch.tag_ns - SecondsToNs(state.clock_m / kSpeedOfLight);

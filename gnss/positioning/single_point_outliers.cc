@@ -2,21 +2,21 @@
 #include <cmath>
 
 #include "gnss/positioning/consensus.h"
-#include "gnss/positioning/single_point_state.h"
+#include "gnss/positioning/single_point.h"
 
 namespace alidade {
 
 /// Many reflections, which are all late, pull Huber's minimum by metres, where good satellites look no better
 /// than they. Where the residuals are far larger than their deviations and most satellites agree far better
 /// elsewhere, those that do are fitted.
-void SinglePointSolver::Agree(const EpochMeasurements& epoch, State* state) const {
+void SinglePointSolver::Agree(const EpochMeasurements& epoch, SinglePointState* state) const {
   constexpr double kSuspiciousScale = 1.5;
   constexpr double kBetter = 0.5;
   constexpr double kAgreeSigma = 4;
   if (state->scale < kSuspiciousScale) {
     return;
   }
-  State other = *state;
+  SinglePointState other = *state;
   const WhitenedRows rows = PositionRows(epoch, &other);
   std::vector<int> group;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
@@ -41,7 +41,7 @@ void SinglePointSolver::Agree(const EpochMeasurements& epoch, State* state) cons
 }
 
 /// Takes out satellites beyond the gate, the worst first as long as the rest has one to spare; true if any.
-bool SinglePointSolver::Gate(const EpochMeasurements& epoch, State* state) const {
+bool SinglePointSolver::Gate(const EpochMeasurements& epoch, SinglePointState* state) const {
   std::vector<std::pair<double, std::size_t>> refused;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
     const double squared = state->residual_m[k] * state->residual_m[k] /

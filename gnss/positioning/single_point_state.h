@@ -1,15 +1,16 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
+#include "gnss/base/satellite_id.h"
 #include "gnss/base/system_index.h"
-#include "gnss/positioning/single_point.h"
 
 namespace alidade {
 
 /// Where an epoch's iteration stands.
-struct SinglePointSolver::State {
+struct SinglePointState {
   Eigen::Vector3d position_E = Eigen::Vector3d::Zero();
   double clock_m = 0;
   std::array<double, kGnssSystems> bias_m{};

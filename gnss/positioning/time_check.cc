@@ -7,6 +7,8 @@
 #include "core/format.h"
 #include "gnss/base/gnss_time.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_options.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 namespace {

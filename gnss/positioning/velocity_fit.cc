@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gnss/model/measurement_model.h"
+#include "gnss/positioning/robust_fit.h"
 
 namespace alidade {
 namespace {

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "gnss/positioning/single_point.h"
+#include "core/robust.h"
+#include "gnss/positioning/single_point_options.h"
+#include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
 

@@ -23,7 +23,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "bash-completion, libalidade-dev, librsvg2-bin")
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "These are the libraries: headers, archives and the CMake package;
-find_package(alidade CONFIG) gives alidade::core, gnss, frontend, filter, smoother and eval.")
+find_package(alidade CONFIG) gives alidade::core, gnss, frontend, estimator, filter, smoother and eval.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libalidade-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # What alidadeConfig.cmake looks for; the program's package holds the configurations.

@@ -3,8 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/estimator_config.h"
 #include "core/imu_buffer.h"
+#include "core/rig_calibration.h"
 #include "smoother/batch/batch_sequence.h"
 
 namespace alidade {

@@ -7,6 +7,8 @@
 #include "core/imu_propagation.h"
 #include "smoother/factors/fix_factor.h"
 #include "smoother/factors/imu_factor.h"
+#include "smoother/tracks/track_landmark.h"
+#include "smoother/tracks/track_system.h"
 
 namespace alidade {
 namespace {

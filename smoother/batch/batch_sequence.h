@@ -5,12 +5,14 @@
 #include <memory>
 #include <vector>
 
+#include "core/estimator_config.h"
 #include "core/position_fix.h"
 #include "core/rest_detector.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "gnss/alignment/alignment.h"
 #include "smoother/factors/prior_factor.h"
-#include "smoother/tracks/track_system.h"
+#include "smoother/window/frame_geometry.h"
 
 namespace alidade {
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "core/estimator_config.h"
 #include "smoother/batch/batch_sequence.h"
 #include "smoother/batch/sequence_covariance.h"
 

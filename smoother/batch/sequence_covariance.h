@@ -1,11 +1,9 @@
 #pragma once
 
-#include <memory>
-#include <span>
 #include <vector>
 
 #include "core/status.h"
-#include "smoother/solve/window_term.h"
+#include "smoother/batch/sequence_problem.h"
 
 namespace alidade {
 
@@ -19,12 +17,6 @@ struct SequenceCovariance {
   /// distance to the minimum of the linearised problem in standard deviations. By Cauchy-Schwarz no single
   /// state, nor any combination of states, is farther away than its square root.
   double newton_decrement = 0;
-};
-
-struct SequenceProblem {
-  std::span<const std::unique_ptr<WindowFrame>> frames;
-  /// Each concerns one frame and landmarks, or two consecutive frames.
-  std::span<const std::unique_ptr<WindowTerm>> terms;
 };
 
 /// Block-sparse Cholesky factorisation of the information in time order and selected inversion.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "smoother/batch/sequence_covariance.h"
+#include "smoother/batch/sequence_problem.h"
 
 namespace alidade {
 

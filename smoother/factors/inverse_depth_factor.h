@@ -3,8 +3,10 @@
 #include <array>
 #include <span>
 
+#include "core/landmark_solver.h"
 #include "smoother/manifold/lifted_cost.h"
-#include "smoother/tracks/track_system.h"
+#include "smoother/window/window.h"
+#include "smoother/window/window_calibration.h"
 
 namespace alidade {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "smoother/tracks/track_landmark.h"
+
 namespace alidade {
 namespace {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "smoother/tracks/track_system.h"
+
 namespace alidade {
 namespace {
 

@@ -3,7 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/rig_calibration.h"
 #include "gnss/alignment/alignment.h"
 #include "smoother/factors/gnss_factors.h"
 #include "smoother/factors/prior_factor.h"

@@ -2,7 +2,9 @@
 
 #include <memory>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/estimator_config.h"
+#include "core/rig_calibration.h"
 
 namespace alidade {
 

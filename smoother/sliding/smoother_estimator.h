@@ -3,16 +3,17 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/estimator_config.h"
 #include "core/imu_buffer.h"
 #include "core/rest_detector.h"
+#include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "smoother/sliding/fix_window.h"
 #include "smoother/sliding/gnss_window.h"
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/window_system.h"
-#include "smoother/tracks/track_system.h"
 
 namespace alidade {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/estimator_config.h"
+#include "core/smoother_config.h"
 #include "core/status.h"
 #include "smoother/solve/window_term.h"
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "smoother/tracks/track_system.h"
+#include "smoother/tracks/track_landmark.h"
 
 namespace alidade {
 

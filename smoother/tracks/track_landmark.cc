@@ -1,9 +1,7 @@
+#include "smoother/tracks/track_landmark.h"
+
 #include <cmath>
 #include <vector>
-
-#include "smoother/tracks/track_system.h"
-
-// The landmark of a track, the poses held fixed.
 
 namespace alidade {
 namespace {

@@ -67,25 +67,12 @@ struct TrackWorkspace {
   std::vector<Eigen::Matrix<double, 6, 3>> reduced;  ///< coupling times L^-T, so that H -= reduced reduced^T
 };
 
-/// Landmark of the track with the poses held fixed (core/landmark_solver.h).
-bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                   const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,
-                   const DepthPrior& prior = {});
-
 /// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its
 /// optimum is stepped there to first order. rho <= 0 (a point at infinity, or beyond) is regular.
 /// False (system untouched): behind a view, or the landmark is not determined.
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior = {});
-
-/// Sum of whitened squared residuals (no kernel) at the landmark; infinite when behind a view.
-[[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,
-                                    std::span<const FrameGeometry> geometry, const Eigen::Vector3d& landmark);
-
-/// First value of a landmark from its pose-only depth. False without parallax (TriangulateLandmark).
-bool InitializeLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                        double max_relative_deviation, Eigen::Vector3d* landmark);
 
 /// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H
 /// (lower triangle given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.

@@ -9,9 +9,9 @@
 
 #include "core/clock_state.h"
 #include "core/landmark_solver.h"
-#include "core/measurement_log.h"
 #include "core/preintegration.h"
 #include "core/rest_model.h"
+#include "core/track_frame.h"
 #include "core/visual_observation.h"
 #include "smoother/manifold/first_estimate.h"
 #include "smoother/window/frame_epoch.h"

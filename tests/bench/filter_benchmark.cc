@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "eval/config/config_yaml.h"
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "filter/filter.h"
 #include "tests/support/scenario.h"
 #include "tests/support/short_figure_eight.h"

@@ -4,6 +4,7 @@
 
 #include "filter/gnss_update.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_options.h"
 #include "tests/gnss/model/synthetic_sky.h"
 
 namespace alidade {

@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 namespace {

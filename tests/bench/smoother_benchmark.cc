@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "smoother/sliding/smoother.h"
 #include "tests/support/scenario.h"
 #include "tests/support/short_figure_eight.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/lie.h"
 #include "core/random.h"
 
 namespace alidade {

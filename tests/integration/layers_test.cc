@@ -49,6 +49,26 @@ TEST_F(LayersTest, GivenAPackageWhereItMustNotBeThenItIsNamed) {
   EXPECT_THAT(result.output, testing::Not(HasSubstr("smoother/window")));
 }
 
+TEST_F(LayersTest, GivenUnitsOfARoomThatIncludeEachOtherThenTheCircleIsNamed) {
+  tree_.Write("core/lie.h", "#pragma once\n#include \"core/time.h\"\n");
+  tree_.Write("core/time.cc", "#include \"core/time.h\"\n\n#include \"core/lie.h\"\n");
+  const CommandResult result = Check();
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.output,
+              HasSubstr("circle of units: core/lie -> core/time (core/lie.h) -> core/lie (core/time.cc)"));
+}
+
+TEST_F(LayersTest, GivenASourceWithoutAHeaderOfItsNameThenItBelongsToTheFirstHeaderOfTheRoom) {
+  tree_.Write("core/camera_lens.cc",
+              "#include \"core/camera.h\"\n#include \"core/format.h\"\n#include \"core/lens.h\"\n");
+  tree_.Write("core/lens.h", "#pragma once\n#include \"core/camera.h\"\n");
+  tree_.Write("core/format.cc", "#include \"core/format.h\"\n\n#include \"core/time.h\"\n");
+  EXPECT_THAT(
+      Check().output,
+      testing::Eq(
+          "circle of units: core/camera -> core/lens (core/camera_lens.cc) -> core/camera (core/lens.h)\n"));
+}
+
 TEST_F(LayersTest, GivenAFolderThatIsNotListedThenItIsNamed) {
   tree_.Write("eval/attic/old.h", "#include <vector>\n");
   const CommandResult result = Check();

@@ -8,10 +8,12 @@
 #include <string>
 
 #include "core/error_convention.h"
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
 #include "core/random.h"
+#include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
 namespace alidade::test {

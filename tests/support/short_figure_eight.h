@@ -1,6 +1,6 @@
 #pragma once
 
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade::test {
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "filter/feature_update.h"
 #include "filter/filter.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "eval/compare/plan_parser.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "eval/config/config_writer.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "tests/support/temporary_folder.h"

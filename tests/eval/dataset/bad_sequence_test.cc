@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

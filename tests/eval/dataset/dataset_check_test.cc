@@ -1,7 +1,11 @@
+#include "eval/dataset/dataset_check.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
 #include "gnss/model/gnss_epoch.h"
 #include "tests/gnss/model/synthetic_sky.h"
 #include "tests/support/shared_data.h"

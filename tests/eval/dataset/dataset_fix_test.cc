@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "eval/dataset/dataset_check.h"
+#include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/digest.h"
 #include "gnss/base/anchor_llh.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,6 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eval/dataset/dataset_check.h"
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,8 +1,12 @@
+#include "eval/metrics/alignment.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "eval/metrics/metrics.h"
+#include "eval/metrics/nees.h"
+#include "eval/metrics/state_pair.h"
 #include "tests/eval/trajectory/synthetic_trajectory.h"
 
 namespace alidade {

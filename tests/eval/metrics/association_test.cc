@@ -1,3 +1,5 @@
+#include "eval/metrics/association.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/state_pair.h"
 #include "tests/eval/trajectory/synthetic_trajectory.h"
 
 namespace alidade {

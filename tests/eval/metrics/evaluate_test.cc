@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "eval/metrics/evaluate_format.h"
 #include "tests/eval/trajectory/synthetic_trajectory.h"
 
 namespace alidade {

@@ -1,10 +1,12 @@
+#include "eval/metrics/nees.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <random>
 
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/state_pair.h"
 #include "tests/eval/trajectory/synthetic_trajectory.h"
 
 namespace alidade {

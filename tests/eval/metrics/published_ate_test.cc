@@ -4,6 +4,7 @@
 #include <string>
 
 #include "eval/metrics/evaluate.h"
+#include "eval/trajectory/trajectory_reader.h"
 #include "tests/support/shared_data.h"
 
 namespace alidade {

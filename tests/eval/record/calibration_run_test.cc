@@ -2,10 +2,12 @@
 
 #include <filesystem>
 
-#include "eval/config/config_yaml.h"
 #include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
+#include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
 

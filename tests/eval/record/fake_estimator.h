@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/estimator/measurement_log.h"
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
 

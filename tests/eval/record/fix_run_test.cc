@@ -5,6 +5,7 @@
 
 #include "core/yaw_shift.h"
 #include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
 #include "tests/support/scenario.h"
 
 // Runs with position fixes.

@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/files/input_file.h"
+#include "eval/record/recorder_reader.h"
+#include "eval/record/run_options.h"
+#include "eval/record/runner.h"
 #include "tests/eval/record/fake_estimator.h"
 #include "tests/support/temporary_folder.h"
 

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "eval/record/recorder.h"
+#include "eval/record/recorder_reader.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"

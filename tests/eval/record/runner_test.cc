@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/error_convention.h"
+#include "eval/record/run_options.h"
 #include "eval/record/truth_start.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 #include "tests/eval/record/fake_estimator.h"

@@ -10,7 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
 #include "eval/files/sha256.h"
+#include "eval/simulation/simulator.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "eval/report/figure_files.h"
+#include "eval/report/svg_axis.h"
 #include "eval/report/svg_plot.h"
 #include "tests/eval/report/synthetic_comparison.h"
 #include "tests/support/read_file.h"

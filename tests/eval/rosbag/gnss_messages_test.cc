@@ -7,6 +7,8 @@
 #include <random>
 
 #include "eval/rosbag/gnss_message_time.h"
+#include "eval/rosbag/gnss_navigation_messages.h"
+#include "eval/rosbag/gnss_receiver_messages.h"
 #include "gnss/formats/rinex_writer.h"
 
 namespace alidade {

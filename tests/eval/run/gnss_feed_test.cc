@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 namespace {

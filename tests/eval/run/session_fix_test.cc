@@ -6,6 +6,7 @@
 #include "eval/record/runner.h"
 #include "eval/record/truth_start.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "tests/eval/run/stream.h"
 
 // Sessions with position fixes.

@@ -3,6 +3,7 @@
 #include "eval/record/runner.h"
 #include "eval/record/truth_start.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "tests/eval/run/stream.h"
 
 // The order in which messages arrive.

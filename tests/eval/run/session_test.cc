@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 #include "tests/eval/run/stream.h"
 

@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_writer.h"
 #include "eval/simulation/sim_imu.h"
+#include "eval/simulation/simulator.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

@@ -6,6 +6,10 @@
 #include <utility>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
+#include "eval/simulation/simulator.h"
 #include "tests/eval/simulation/sim_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/digest.h"
+#include "eval/simulation/simulation.h"
+#include "eval/simulation/simulator.h"
 
 namespace alidade {
 namespace {

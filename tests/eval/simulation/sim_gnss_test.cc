@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
+#include "eval/simulation/simulator.h"
 #include "gnss/model/gnss_epoch.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_solution.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

@@ -6,9 +6,13 @@
 #include <cmath>
 #include <optional>
 
+#include "eval/dataset/dataset_reader.h"
+#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/digest.h"
 #include "eval/simulation/gyro_agreement.h"
 #include "eval/simulation/recorded_motion.h"
 #include "eval/simulation/sim_camera.h"
+#include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"

@@ -1,9 +1,11 @@
+#include "eval/simulation/simulator_config.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "eval/config/config_writer.h"
 #include "eval/config/config_yaml.h"
-#include "eval/simulation/simulator.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {

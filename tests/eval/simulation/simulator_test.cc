@@ -7,6 +7,8 @@
 #include <functional>
 #include <set>
 
+#include "eval/simulation/simulator_config.h"
+
 namespace alidade {
 namespace {
 

@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "eval/simulation/sim_imu.h"
 #include "eval/simulation/sim_trajectory.h"
+#include "eval/trajectory/trajectory_reader.h"
 #include "tests/support/shared_data.h"
 
 namespace alidade {

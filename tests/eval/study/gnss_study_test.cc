@@ -5,7 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
+#include "eval/study/gnss_study_tables.h"
 #include "tests/support/scenario.h"
 
 namespace alidade {

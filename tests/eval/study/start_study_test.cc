@@ -7,6 +7,7 @@
 
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 namespace {

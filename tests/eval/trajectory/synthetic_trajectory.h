@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "eval/metrics/metrics.h"
+#include "eval/metrics/state_pair.h"
 
 namespace alidade::test {
 

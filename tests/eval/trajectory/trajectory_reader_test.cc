@@ -1,3 +1,5 @@
+#include "eval/trajectory/trajectory_reader.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "tests/frontend/initialization/initializer_scenario.h"
 
 namespace alidade {

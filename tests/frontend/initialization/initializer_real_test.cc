@@ -3,6 +3,7 @@
 
 #include <iostream>
 
+#include "eval/dataset/dataset_reader.h"
 #include "tests/frontend/initialization/initializer_scenario.h"
 #include "tests/support/shared_data.h"
 

@@ -5,6 +5,7 @@
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 namespace {

@@ -1,3 +1,5 @@
+#include "frontend/tracking/image_reader.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -5,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "frontend/tracking/klt_tracker.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 

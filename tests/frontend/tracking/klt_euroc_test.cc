@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"
 #include "tests/frontend/tracking/synthetic_scene.h"
 #include "tests/support/shared_data.h"

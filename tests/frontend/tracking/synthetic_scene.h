@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/camera_model.h"
-#include "core/measurement_log.h"
+#include "core/rig_calibration.h"
 
 namespace alidade::test {
 

@@ -6,6 +6,8 @@
 #include "gnss/formats/rinex_observation.h"
 #include "gnss/orbits/gnss_files.h"
 #include "gnss/positioning/single_point.h"
+#include "gnss/positioning/single_point_options.h"
+#include "gnss/positioning/single_point_solution.h"
 #include "tests/gnss/positioning/position_track.h"
 #include "tests/support/shared_data.h"
 

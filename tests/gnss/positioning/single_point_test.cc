@@ -6,6 +6,8 @@
 #include <set>
 
 #include "gnss/positioning/position_file.h"
+#include "gnss/positioning/single_point_options.h"
+#include "gnss/positioning/single_point_solution.h"
 #include "tests/gnss/model/synthetic_sky.h"
 
 namespace alidade {

@@ -3,8 +3,10 @@
 
 #include "eval/config/config_yaml.h"
 #include "eval/metrics/evaluate.h"
+#include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
 #include "filter/filter_estimator.h"
 
 // Runs the filter of one shipped preset on a short simulated flight and prints its error.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "smoother/tracks/track_system.h"
 #include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/calibrated_window.h"
 #include "tests/support/jacobian_checker.h"

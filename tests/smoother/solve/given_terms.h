@@ -11,6 +11,7 @@
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/window_system.h"
+#include "smoother/tracks/track_system.h"
 
 namespace alidade::test {
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/landmark_reduction.h"
+#include "smoother/tracks/track_landmark.h"
 #include "tests/smoother/window/window_fixture.h"
 
 namespace alidade {

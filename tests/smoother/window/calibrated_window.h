@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
 #include "tests/smoother/window/window_fixture.h"
 

@@ -7,7 +7,8 @@
 #include "core/imu_propagation.h"
 #include "smoother/factors/imu_factor.h"
 #include "smoother/manifold/nav_state_manifold.h"
-#include "smoother/tracks/track_system.h"
+#include "smoother/window/frame_geometry.h"
+#include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
 #include "tests/support/random_states.h"
 

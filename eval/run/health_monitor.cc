@@ -1,7 +1,8 @@
-#include "core/health_monitor.h"
+#include "eval/run/health_monitor.h"
 
 #include <cmath>
 
+#include "core/estimator/estimator.h"
 #include "core/format.h"
 #include "core/yaw_shift.h"
 

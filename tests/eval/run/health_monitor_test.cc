@@ -1,4 +1,4 @@
-#include "core/health_monitor.h"
+#include "eval/run/health_monitor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/estimator/estimator.h"
 #include "tests/support/random_states.h"
 
 namespace alidade {

@@ -2,7 +2,8 @@
 
 #include <string>
 
-#include "core/estimator.h"
+#include "core/estimator/estimator.h"
+#include "core/recovery_config.h"
 
 namespace alidade {
 

@@ -1,23 +1,20 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/calibration.h"
 #include "core/clock_state.h"
-#include "core/estimator_config.h"
-#include "core/measurement_log.h"
+#include "core/imu_sample.h"
 #include "core/navigation_state.h"
+#include "core/position_fix.h"
 #include "core/status.h"
+#include "core/track_frame.h"
+#include "gnss/alignment/alignment.h"
+#include "gnss/model/gnss_epoch.h"
 
 namespace alidade {
-
-struct GnssAlignment;  // gnss/alignment/alignment.h
-struct GnssEpoch;      // gnss/model/gnss_epoch.h
-struct GnssResiduals;  // gnss/model/gnss_epoch.h
 
 /// What one frame did to an estimator: what was used, refused and why, and how well the innovations fit.
 struct FrameStatistics {
@@ -78,15 +75,13 @@ class Estimator {
   /// and what later frames refer to. Called once, before the first AddGnss or AddFix, at the time
   /// of the state.
   /// kConfig: the back end takes no GNSS.
-  virtual Status Align(const GnssAlignment& /*alignment*/) { return NoGnss(); }
+  virtual Status Align(const GnssAlignment& alignment);
   /// Updates with an epoch; the same rules as AddFrame. A frame may follow at the same stamp or later.
-  virtual Status AddGnss(const GnssEpoch& /*epoch*/) { return NoGnss(); }
+  virtual Status AddGnss(const GnssEpoch& epoch);
   /// Updates with a position of IMU time that stands in W as Align turned it; the same rules as AddGnss.
   /// kInput also: a sensor that the rig does not have, or no covariance. kConfig: the back end takes no
   /// position fixes.
-  virtual Status AddFix(const PositionFix& /*fix*/) {
-    return Status::Config("fix.enabled: this back end takes no position fixes; expected false");
-  }
+  virtual Status AddFix(const PositionFix& fix);
   /// Receiver clock after the last epoch; nothing before Align.
   [[nodiscard]] virtual std::optional<ClockState> LatestClock() const { return std::nullopt; }
   /// What became of the last epoch's satellites; null before Align.
@@ -104,14 +99,7 @@ class Estimator {
   /// Called once, when the log is at its end: revised estimates of all accepted frames, in their order; empty
   /// for an online estimator. `stop` (may be null) is polled: when it is set the result is empty. kDiverged:
   /// no estimate was found; those of Latest remain valid.
-  virtual Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* /*stop*/) {
-    return std::vector<FinalizedFrame>();
-  }
-
- private:
-  static Status NoGnss() {
-    return Status::Config("gnss.enabled: this back end takes no GNSS; expected false");
-  }
+  virtual Result<std::vector<FinalizedFrame>> TakeFinalized(const std::atomic<bool>* stop);
 };
 
 }  // namespace alidade

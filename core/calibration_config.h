@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/config_schema.h"
+
+namespace alidade {
+
+/// Which parameters of the camera are estimated along with the motion (core/calibration.h). The standard
+/// deviations say how far the given calibration is trusted, one for each axis or coefficient.
+struct CalibrationConfig {
+  bool extrinsics = false;
+  bool time_offset = false;
+  bool intrinsics = false;
+  double rotation_std_rad = 0.035;
+  double translation_std_m = 0.03;
+  double time_offset_std_s = 0.01;
+  double focal_std_px = 5.0;
+  double center_std_px = 5.0;
+  double distortion_std = 0.02;
+
+  [[nodiscard]] bool any() const { return extrinsics || time_offset || intrinsics; }
+  void Describe(ConfigVisitor& visitor);
+};
+
+}  // namespace alidade

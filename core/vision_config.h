@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/config_schema.h"
+#include "core/robust_kernel.h"
+
+namespace alidade {
+
+/// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not
+/// settings.
+struct VisionConfig {
+  double pixel_noise_px = 1.0;
+  double gate_probability = 0.99;
+  double max_gated_share = 0.5;
+  double max_relative_depth_deviation = 0.1;
+  double min_depth_m = 0.1;
+  double max_depth_m = 300.0;
+  RobustKernel robust_kernel = RobustKernel::kHuber;
+  double robust_scale_sigma = 2.0;
+  // Standing still (core/rest_detector.h).
+  bool rest_updates = true;
+  double rest_window_s = 0.5;
+  double rest_max_flow_px = 1.0;
+  double rest_max_accel_std_mps2 = 1.0;
+  double rest_velocity_std_mps = 0.02;
+  double rest_rate_std_radps = 0.005;
+
+  void Describe(ConfigVisitor& visitor);
+};
+
+}  // namespace alidade

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/comparison/comparison.h"
+
+namespace alidade {
+
+/// The cells of one aggregate row.
+struct CellGroup {
+  std::string label;
+  std::string sequence;
+  std::vector<const CellResult*> cells;
+};
+/// By sequence, then label, both in order of first appearance; they point into `comparison`.
+[[nodiscard]] std::vector<CellGroup> GroupCells(const Comparison& comparison);
+
+/// The label of a cell's aggregate row.
+[[nodiscard]] std::string LabelOf(const Comparison& comparison, const CellResult& cell);
+
+}  // namespace alidade

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "eval/metrics/state_pair.h"
+
+namespace alidade {
+
+/// NEES of (phi, dp) in the canonical chart: phi = Log(R_est^T R_truth), dp = p_truth - p_est. Unaligned.
+struct NeesResult {
+  std::vector<double> pose, orientation, position;  ///< one a pair; NaN where the covariance is singular
+  /// Means over the regular covariances; NaN when there is none.
+  double mean_pose = 0, mean_orientation = 0, mean_position = 0;
+  double coverage_3sigma = 0;  ///< share of the six error components inside +-3 sigma; NaN likewise
+};
+[[nodiscard]] NeesResult ComputeNees(const std::vector<StatePair>& pairs);
+
+/// Two-sided chi-square band of the mean of `samples` independent NEES values with `dof` degrees of freedom.
+/// Successive frames are correlated: count runs, not frames. NaN for invalid arguments.
+[[nodiscard]] std::pair<double, double> NeesBand(int dof, double samples, double probability = 0.95);
+
+}  // namespace alidade
