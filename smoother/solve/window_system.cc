@@ -1,65 +1,73 @@
 #include "smoother/solve/window_system.h"
 
-#include <Eigen/Cholesky>
+#include "smoother/solve/row_elimination.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
-/// Calibration, clocks, states: the newest state comes last.
-ColumnMap ColumnsOf(const WindowFrames& frames, const WindowTerms& terms) {
-  const Unknown calibration{Unknown::Kind::kCalibration, 0};
-  Index width = 0;
+/// A frame's own columns: its state and, in an aligned window, its clock.
+void AddOwn(const WindowFrame& frame, ColumnMap* columns) {
+  if (frame.clock) {
+    columns->AddClock(frame.index);
+  }
+  columns->AddState(frame.index);
+}
+
+Index CalibrationSize(const WindowTerms& terms) {
   for (const std::unique_ptr<WindowTerm>& term : terms) {
     for (const TermPart& part : term->parts()) {
-      width = part.of.kind == calibration.kind ? part.width : width;
+      if (part.of.kind == Unknown::Kind::kCalibration) {
+        return part.width;
+      }
     }
   }
-  ColumnMap columns;
-  columns.Add(calibration, width);
-  for (const std::unique_ptr<WindowFrame>& frame : frames) {
-    if (frame->clock) {
-      columns.AddClock(frame->index);
-    }
-  }
-  for (const std::unique_ptr<WindowFrame>& frame : frames) {
-    columns.AddState(frame->index);
-  }
-  return columns;
+  return 0;
 }
 
 }  // namespace
 
 bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest) {
-  const ColumnMap columns = ColumnsOf(frames, terms);
-  MatrixXd hessian = MatrixXd::Zero(columns.size(), columns.size());
-  VectorXd gradient = VectorXd::Zero(columns.size());
+  // In time order, so that a step touches few columns. The last group is what is asked for: calibration,
+  // clock and state of the newest frame.
+  ColumnMap columns;
+  std::vector<Index> ends;
+  for (size_t i = 0; i + 1 < frames.size(); ++i) {
+    AddOwn(*frames[i], &columns);
+    ends.push_back(columns.size());
+  }
+  const Index last = columns.size();
+  columns.AddCalibration(CalibrationSize(terms));
+  AddOwn(*frames.back(), &columns);
+  ends.push_back(columns.size());
+  RowElimination elimination(columns);
   LinearTerm linear;
   for (const std::unique_ptr<WindowTerm>& term : terms) {
     if (!term->Linearize(&linear).ok()) {
       return false;
     }
-    linear.AddTo(columns, &hessian, &gradient);
+    elimination.Add(&linear);
   }
-  const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(hessian);
-  if (factor.info() != Eigen::Success) {
-    return false;
+  for (const Index end : ends) {
+    if (!elimination.EliminateUpTo(end)) {
+      return false;
+    }
   }
-  // The newest frame comes last, so its own corner of the factor holds its marginal information.
-  const Matrix15d corner = hessian.bottomRightCorner<15, 15>().triangularView<Eigen::Lower>();
-  const Matrix15d inverse = corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
-  newest->covariance = inverse.transpose() * inverse;
+  const Index size = columns.size() - last;
+  const MatrixXd inverse =
+      elimination.root().triangularView<Eigen::Upper>().solve(MatrixXd::Identity(size, size));
+  const auto covariance = [&](const ColumnMap::Range& of) -> MatrixXd {
+    const auto rows = inverse.middleRows(of.first - last, of.size);
+    return rows * rows.transpose();
+  };
+  newest->covariance = covariance(columns.Frame(frames.back()->index));
   const ColumnMap::Range clock = columns.Clock(frames.back()->index);
   if (clock.size > 0) {
-    MatrixXd unit = MatrixXd::Zero(hessian.rows(), clock.size);
-    unit.middleRows<kClockColumns>(clock.first).setIdentity();
-    newest->clock_covariance = MatrixXd(factor.solve(unit)).middleRows<kClockColumns>(clock.first);
+    newest->clock_covariance = covariance(clock);
   }
-  const MatrixXd unit = MatrixXd::Identity(hessian.rows(), columns.Calibration().size);
-  newest->calibration_deviations = MatrixXd(factor.solve(unit)).diagonal().cwiseSqrt();
+  newest->calibration_deviations = inverse.topRows(columns.Calibration().size).rowwise().norm();
   return newest->covariance.allFinite();
 }
 

@@ -14,8 +14,9 @@ struct NewestEstimate {
   Eigen::VectorXd calibration_deviations;  ///< of what of the calibration is estimated
 };
 
-/// The same from the Gauss-Newton Hessian of `terms` over the frames at their present states; landmarks must
-/// be eliminated within the terms. False when it is not positive definite, or a term is undefined there.
+/// The same from the whitened rows of `terms` over the frames at their present states, of which QR eliminates
+/// the older frames; landmarks must be eliminated within the terms. False when the rows do not determine the
+/// unknowns, or a term is undefined there.
 bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest);
 
 }  // namespace alidade
