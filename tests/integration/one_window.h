@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/error_convention.h"
+#include "core/estimator/measurement_log.h"
 #include "core/imu_propagation.h"
-#include "core/measurement_log.h"
 #include "core/random.h"
 
 namespace alidade::test {
