@@ -1,10 +1,16 @@
-# alidade_add_room(<folder> <room> [TEXT] SOURCES ... [PUBLIC target ...] [PRIVATE target ...] [INTERNAL header ...]): the library of
-# one room, target alidade_<folder>_<room>, exported as alidade::<folder>_<room>. What a room may include: scripts/layers.txt.
-# TEXT: see alidade_compile_fast.
+# alidade_sources(<variable>): the sources of the current folder, in alphabetical order; a new one is found by itself.
+macro(alidade_sources variable)
+  file(GLOB ${variable} CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cc)
+endmacro()
+
+# alidade_add_room(<folder> <room> [TEXT] [PUBLIC target ...] [PRIVATE target ...] [INTERNAL header ...]): the library of one room from the
+# sources of its folder, target alidade_<folder>_<room>, exported as alidade::<folder>_<room>. What a room may include:
+# scripts/layers.txt. TEXT: see alidade_compile_fast.
 function(alidade_add_room folder room)
-  cmake_parse_arguments(ARG "TEXT" "" "SOURCES;PUBLIC;PRIVATE;INTERNAL" ${ARGN})
+  cmake_parse_arguments(ARG "TEXT" "" "PUBLIC;PRIVATE;INTERNAL" ${ARGN})
   set(target alidade_${folder}_${room})
-  add_library(${target} STATIC ${ARG_SOURCES})
+  alidade_sources(sources)
+  add_library(${target} STATIC ${sources})
   add_library(alidade::${folder}_${room} ALIAS ${target})
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:alidade_options> ${ARG_PRIVATE})
   if(ARG_TEXT)
