@@ -4,9 +4,9 @@
 
 #include "core/format.h"
 #include "eval/bag/bag_fixes.h"
+#include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"
-#include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/rosbag/gnss_messages.h"
 #include "eval/rosbag/gnss_navigation_messages.h"

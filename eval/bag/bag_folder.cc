@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <map>
 
-#include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/png_image.h"
+#include "eval/dataset/sensor_table.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {

@@ -8,7 +8,7 @@
 #include "eval/bag/bag_gnss.h"
 #include "eval/bag/bag_sheets.h"
 #include "eval/dataset/calibration_import.h"
-#include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/sensor_table.h"
 #include "eval/rosbag/ros_sensor_messages.h"
 
 namespace alidade {

@@ -30,14 +30,8 @@ ExternalContext ContextOf(const ExternalCell& cell) {
   return context;
 }
 
-Dataset DatasetOf(const ExternalCell& cell) {
-  Dataset dataset;
-  dataset.rig = cell.log.rig;
-  dataset.imu = cell.log.imu;
-  dataset.tracks = cell.log.frames;
-  dataset.extra_cameras = cell.log.extra_cameras;
-  dataset.gnss = cell.log.gnss;
-  dataset.fixes = cell.log.fixes;
+Dataset InputOf(const ExternalCell& cell) {
+  Dataset dataset = DatasetOf(cell.log);
   if (cell.truth != nullptr) {
     dataset.truth = *cell.truth;
   }
@@ -51,7 +45,7 @@ Status PrepareInput(const ExternalCell& cell, const fs::path& output,
   const std::string dataset =
       simulated ? (output / "dataset").string() : fs::absolute(cell.sequence.dataset.path).string();
   if (simulated) {
-    ALIDADE_RETURN_IF_ERROR(WriteDataset(DatasetOf(cell), dataset));
+    ALIDADE_RETURN_IF_ERROR(WriteDataset(InputOf(cell), dataset));
   }
   (*values)["dataset"] = dataset;
   (*values)["bag"] = (output / "dataset.bag").string();

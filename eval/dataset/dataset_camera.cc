@@ -1,35 +1,20 @@
 #include "eval/dataset/dataset_camera.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <utility>
 
+#include "eval/dataset/dataset_tracks.h"
+#include "eval/dataset/log_hasher.h"
+#include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/files/output_file.h"
 
 namespace alidade {
 namespace {
 
 namespace fs = std::filesystem;
-
-Status CloseFrame(TrackFrame* frame, const std::string& place) {
-  std::vector<TrackObservation>& observations = frame->observations;
-  const auto by_id = [](const TrackObservation& a, const TrackObservation& b) {
-    return a.track_id < b.track_id;
-  };
-  if (!std::is_sorted(observations.begin(), observations.end(), by_id)) {
-    std::stable_sort(observations.begin(), observations.end(), by_id);
-  }
-  for (size_t i = 1; i < observations.size(); ++i) {
-    if (observations[i].track_id == observations[i - 1].track_id) {
-      return Status::Input(place + ": track_id " + std::to_string(observations[i].track_id) +
-                           " occurs twice at stamp " + std::to_string(frame->stamp_ns) +
-                           ", expected each track at most once a frame");
-    }
-  }
-  return Status::Ok();
-}
 
 Result<std::vector<TimeNs>> ReadStamps(const std::string& path) {
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}});
@@ -161,49 +146,9 @@ double MeasuredCameraRate(const Dataset& dataset) {
                       dataset.camera_stamps.size());
 }
 
-}  // namespace
-
-Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
-  const std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
-  Result<CsvReader> csv = OpenTable(path, header);
-  if (!csv.ok()) {
-    return csv.status();
-  }
-  std::vector<TrackFrame> frames;
-  std::string place;
-  while (csv->NextRow()) {
-    ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
-    TimeNs stamp = 0;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp));
-    if (frames.empty() || stamp != frames.back().stamp_ns) {
-      if (!frames.empty()) {
-        ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frames.back().stamp_ns, &stamp));
-        ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
-      }
-      frames.push_back({stamp, {}, 0});
-      place = csv->Place();
-    }
-    TrackObservation observation;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(1, "track_id", &observation.track_id));
-    if (observation.track_id < 0) {
-      return csv->Fault(1, "track_id", "a number that is not negative");
-    }
-    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(2, "u", &observation.pixel.x()));
-    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(3, "v", &observation.pixel.y()));
-    frames.back().observations.push_back(observation);
-  }
-  if (frames.empty()) {
-    return Status::Input(path + ": holds no track, expected at least one row");
-  }
-  ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
-  return frames;
-}
-
-Status ReadCameraFolder(const std::string& folder, Dataset* dataset) {
-  const Result<CameraSensor> sensor = ReadCameraSensor((fs::path(folder) / "sensor.yaml").string());
-  if (!sensor.ok()) {
-    return sensor.status();
-  }
+Status ReadFirstCamera(const fs::path& folder, Dataset* dataset) {
+  const Result<CameraSensor> sensor = ReadCameraSensor((folder / "sensor.yaml").string());
+  ALIDADE_RETURN_IF_ERROR(sensor.status());
   dataset->rig.camera = sensor->camera;
   dataset->rig.T_BC = sensor->T_BC;
   dataset->rig.camera_time_offset_s = sensor->time_offset_s;
@@ -212,6 +157,7 @@ Status ReadCameraFolder(const std::string& folder, Dataset* dataset) {
   return Status::Ok();
 }
 
+/// cam1, cam2, ... where they hold tracks.csv.
 Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
   for (int k = 1; fs::is_directory(fs::path(mav) / ("cam" + std::to_string(k))); ++k) {
     const fs::path folder = fs::path(mav) / ("cam" + std::to_string(k));
@@ -228,20 +174,107 @@ Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
   return Status::Ok();
 }
 
-Result<CsvReader> OpenTable(const std::string& path, const std::vector<CsvColumn>& header) {
-  Result<CsvReader> csv = CsvReader::Open(path);
-  if (csv.ok()) {
-    csv->NextRow();
-    if (Status matches = csv->ExpectHeader(header); !matches.ok()) {
-      return matches;
-    }
+std::string StampsCsv(const std::vector<TimeNs>& stamps) {
+  std::string text = "#timestamp [ns]\n";
+  for (const TimeNs stamp : stamps) {
+    text += std::to_string(stamp) + "\n";
   }
-  return csv;
+  return text;
 }
 
-/// Mean rate of the stamps [Hz]; 0 when there are fewer than two.
-double MeasuredRate(TimeNs first, TimeNs last, size_t count) {
-  return count < 2 ? 0 : static_cast<double>(count - 1) / SecondsBetween(first, last);
+/// The stamps that timestamps.csv must hold: those given, or all frames when some frame saw nothing and
+/// tracks.csv alone would lose it.
+std::vector<TimeNs> StampsToWrite(const Dataset& dataset) {
+  if (!dataset.camera_stamps.empty()) {
+    return dataset.camera_stamps;
+  }
+  std::vector<TimeNs> stamps;
+  bool some_empty = false;
+  for (const TrackFrame& frame : dataset.tracks) {
+    stamps.push_back(frame.stamp_ns);
+    some_empty = some_empty || frame.observations.empty();
+  }
+  return some_empty ? stamps : std::vector<TimeNs>();
+}
+
+bool HasCamera(const Dataset& dataset) {
+  return !dataset.tracks.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
+}
+
+/// Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
+void AddFrames(const std::vector<TrackFrame>& frames, LogHasher* hasher) {
+  hasher->Add(static_cast<std::uint64_t>(frames.size()));
+  for (const TrackFrame& frame : frames) {
+    hasher->Add(std::int64_t{frame.stamp_ns});
+    hasher->Add(static_cast<std::uint64_t>(frame.observations.size()));
+    for (const TrackObservation& observation : frame.observations) {
+      hasher->Add(observation.track_id);
+      hasher->Add(observation.pixel);
+    }
+  }
+}
+
+}  // namespace
+
+Status ReadCameraFolders(const std::string& mav, Dataset* dataset) {
+  const fs::path first = fs::path(mav) / "cam0";
+  if (!fs::is_directory(first)) {
+    return Status::Ok();
+  }
+  ALIDADE_RETURN_IF_ERROR(ReadFirstCamera(first, dataset));
+  return ReadExtraCameras(mav, dataset);
+}
+
+std::string ExtraCameraYaml(const Dataset& dataset, size_t k) {
+  const ExtraCamera& extra = dataset.extra_cameras[k];
+  RigCalibration rig = dataset.rig;
+  rig.camera = extra.camera;
+  rig.T_BC = extra.T_BC;
+  rig.camera_time_offset_s = extra.camera_time_offset_s;
+  return CameraSensorYaml(rig, dataset.camera_rate_hz);
+}
+
+Status WriteCameraFolders(const Dataset& dataset, const std::string& mav) {
+  const fs::path first = fs::path(mav) / "cam0";
+  if (HasCamera(dataset) || dataset.gnss == nullptr) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((first / "sensor.yaml").string(),
+                                                CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));
+  }
+  if (!dataset.tracks.empty()) {
+    ALIDADE_RETURN_IF_ERROR(WriteTracks(dataset.tracks, (first / "tracks.csv").string()));
+  }
+  if (const std::vector<TimeNs> stamps = StampsToWrite(dataset); !stamps.empty()) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((first / "timestamps.csv").string(), StampsCsv(stamps)));
+  }
+  for (size_t k = 0; k < dataset.extra_cameras.size(); ++k) {
+    const fs::path folder = fs::path(mav) / ("cam" + std::to_string(k + 1));
+    ALIDADE_RETURN_IF_ERROR(
+        WriteFileAtomically((folder / "sensor.yaml").string(), ExtraCameraYaml(dataset, k)));
+    ALIDADE_RETURN_IF_ERROR(WriteTracks(dataset.extra_cameras[k].frames, (folder / "tracks.csv").string()));
+  }
+  return Status::Ok();
+}
+
+void DigestCamera(const CameraModel& camera, const Pose& T_BC, LogHasher* hasher) {
+  hasher->Add(static_cast<std::int64_t>(camera.model()));
+  hasher->Add(std::int64_t{camera.width_px()});
+  hasher->Add(std::int64_t{camera.height_px()});
+  hasher->Add(camera.intrinsics());
+  hasher->Add(Eigen::Vector4d(camera.coefficients().head<4>()));
+  if (camera.model() == DistortionModel::kMei) {
+    hasher->Add(camera.coefficients()[4]);
+  }
+  hasher->Add(T_BC.rotation);
+  hasher->Add(T_BC.translation);
+}
+
+void DigestTracks(const MeasurementLog& log, LogHasher* hasher) {
+  AddFrames(log.frames, hasher);
+  for (const ExtraCamera& extra : log.extra_cameras) {
+    DigestCamera(extra.camera, extra.T_BC, hasher);
+    hasher->Add(extra.camera_time_offset_s);
+    AddFrames(extra.frames, hasher);
+  }
 }
 
 }  // namespace alidade

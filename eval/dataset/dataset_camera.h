@@ -1,29 +1,36 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "core/status.h"
 #include "eval/dataset/dataset.h"
-#include "eval/files/csv.h"
 
 namespace alidade {
 
-/// A CSV file after its checked header row. Errors (kInput): missing file, empty file, another header.
-Result<CsvReader> OpenTable(const std::string& path, const std::vector<CsvColumn>& header);
+class Findings;
+class LogHasher;
 
-/// Mean rate of `count` stamps between the first and the last [Hz]; 0 when there are fewer than two.
-[[nodiscard]] double MeasuredRate(TimeNs first, TimeNs last, size_t count);
+// The cameras' part of a sequence: folders cam0, cam1, ... of `mav`.
 
-/// tracks.csv, grouped by stamp, each frame sorted by track id. Errors (kInput): torn rows, stamps out of
-/// order, a track twice in a frame, no row.
-Result<std::vector<TrackFrame>> ReadTracks(const std::string& path);
+/// Reads cam0, if it exists: sensor.yaml and those of tracks.csv, timestamps.csv and data.csv (with its
+/// images) that exist; then cam1, cam2, ..., consecutively numbered, where they hold tracks.csv. A further
+/// camera with images alone is skipped, because the front end tracks cam0 only. Errors (kInput) as
+/// ReadDataset's.
+Status ReadCameraFolders(const std::string& mav, Dataset* dataset);
+/// Writes tracks and stamps; images are not written. Without camera and with GNSS there is no cam0.
+Status WriteCameraFolders(const Dataset& dataset, const std::string& mav);
 
-/// Reads cam0: sensor.yaml and those of tracks.csv, timestamps.csv and data.csv (with its images) that exist,
-/// into the camera's part of `dataset`. Errors (kInput) as ReadDataset's.
-Status ReadCameraFolder(const std::string& folder, Dataset* dataset);
+/// sensor.yaml of extra_cameras[k].
+[[nodiscard]] std::string ExtraCameraYaml(const Dataset& dataset, size_t k);
 
-/// Reads cam1, cam2, ... of the folder `mav`, consecutively numbered, where they hold tracks.csv; a camera
-/// with images alone is skipped, because the front end tracks cam0 only. Errors (kInput) as ReadDataset's.
-Status ReadExtraCameras(const std::string& mav, Dataset* dataset);
+/// Model and extrinsics of a camera.
+void DigestCamera(const CameraModel& camera, const Pose& T_BC, LogHasher* hasher);
+/// The tracks of all cameras and the calibration of those after the first, which is part of the rig.
+void DigestTracks(const MeasurementLog& log, LogHasher* hasher);
+
+/// Rate, gaps and tracks of cam0.
+void CheckCamera(const Dataset& dataset, Findings* findings);
+/// What the further cameras are used for.
+void CheckExtraCameras(const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

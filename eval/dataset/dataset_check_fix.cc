@@ -4,6 +4,7 @@
 
 #include "core/format.h"
 #include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/dataset_fix.h"
 
 namespace alidade {
 namespace {

@@ -32,7 +32,5 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
                  Findings* findings);
 /// Where a sensor starts and ends against the IMU.
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
-/// Rate, gaps, deviations and frames of the position fixes; nothing without them.
-void CheckFixes(const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

@@ -6,9 +6,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/log_hasher.h"
 #include "eval/dataset/sensor_file.h"
-#include "eval/files/csv.h"
+#include "eval/dataset/sensor_table.h"
+#include "eval/dataset/sensor_yaml.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/nmea_reader.h"
 #include "eval/trajectory/position_file_reader.h"
@@ -154,19 +155,15 @@ Result<std::vector<PositionFix>> ReadPositions(const fs::path& path, const std::
   return InEnu(*positions, sensor, sheet);
 }
 
-std::string VectorText(const Eigen::Vector3d& v) {
-  return "[" + ShortestDouble(v.x()) + ", " + ShortestDouble(v.y()) + ", " + ShortestDouble(v.z()) + "]";
-}
-
 }  // namespace
 
 std::string FixSensorYaml(const FixSensor& sensor) {
   std::string text =
-      "sensor_type: position\np_BA: " + VectorText(sensor.p_BA) +
+      "sensor_type: position\np_BA: " + VectorYaml(sensor.p_BA) +
       "  # measured point in the body frame [m]\ntime_offset_s: " + ShortestDouble(sensor.time_offset_s) +
       "  # t_imu = t_fix + offset\n";
   if (sensor.anchor_llh_deg) {
-    text += "anchor_llh_deg: " + VectorText(*sensor.anchor_llh_deg) +
+    text += "anchor_llh_deg: " + VectorYaml(*sensor.anchor_llh_deg) +
             "  # origin of the ENU frame: latitude [deg], longitude [deg], height [m]\n";
   }
   return text;
@@ -227,6 +224,24 @@ Status WriteFixFolders(const Dataset& dataset, const std::string& mav) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((folder / "data.csv").string(), text));
   }
   return Status::Ok();
+}
+
+void DigestFixes(const MeasurementLog& log, LogHasher* hasher) {
+  if (log.fixes.empty()) {
+    return;
+  }
+  for (const FixSensor& sensor : log.rig.fixes) {
+    hasher->Add(sensor.p_BA);
+    hasher->Add(sensor.time_offset_s);
+    hasher->Add(std::int64_t{sensor.anchor_llh_deg.has_value()});
+    hasher->Add(sensor.anchor_llh_deg.value_or(Eigen::Vector3d::Zero()));
+  }
+  for (const PositionFix& fix : log.fixes) {
+    hasher->Add(std::int64_t{fix.stamp_ns});
+    hasher->Add(std::int64_t{fix.sensor});
+    hasher->Add(fix.p_A);
+    hasher->Add(fix.covariance);
+  }
 }
 
 }  // namespace alidade

@@ -7,6 +7,9 @@
 
 namespace alidade {
 
+class Findings;
+class LogHasher;
+
 /// Reads the folders fix0, fix1, ... of `mav`, without a gap in their numbers, into rig.fixes and fixes of
 /// `dataset`. Keys of sensor.yaml:
 ///
@@ -33,6 +36,12 @@ Status WriteFixFolders(const Dataset& dataset, const std::string& mav);
 /// What a sensor.yaml says about the sensor; the file it names does not matter. `where` stands for the file
 /// in messages.
 Result<FixSensor> ParseFixSheet(const std::string& text, const std::string& where);
+
+/// Sensors and fixes; nothing for a log without fixes.
+void DigestFixes(const MeasurementLog& log, LogHasher* hasher);
+
+/// Rate, gaps, deviations and frames of the position fixes; nothing without them.
+void CheckFixes(const Dataset& dataset, Findings* findings);
 
 /// Puts the fixes into the order of MeasurementLog::fixes.
 void SortFixes(const std::vector<FixSensor>& sensors, std::vector<PositionFix>* fixes);

@@ -4,7 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "eval/files/csv.h"
+#include "core/format.h"
+#include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/sensor_table.h"
+#include "eval/dataset/sensor_yaml.h"
 #include "eval/files/output_file.h"
 #include "eval/files/strict_yaml.h"
 #include "gnss/formats/rinex_observation.h"
@@ -114,8 +117,15 @@ std::vector<std::string> InFolder(const std::string& folder, std::vector<std::st
   return names;
 }
 
-std::string VectorText(const Eigen::Vector3d& v) {
-  return "[" + ShortestDouble(v.x()) + ", " + ShortestDouble(v.y()) + ", " + ShortestDouble(v.z()) + "]";
+/// Whether the ephemerides serve at the epochs' times.
+void CheckEphemerides(const GnssLog& log, Findings* findings) {
+  const GnssCoverage coverage = CheckCoverage(log);
+  if (coverage.usable_epochs < coverage.epochs) {
+    findings->Warning(Format("gnss0: %d of %d sampled epochs have no satellite that can be used (",
+                             coverage.epochs - coverage.usable_epochs, coverage.epochs) +
+                      Describe(coverage.faults) +
+                      Format("); the nearest ephemeris is %.1f h away", coverage.nearest_s / 3600));
+  }
 }
 
 }  // namespace
@@ -123,15 +133,15 @@ std::string VectorText(const Eigen::Vector3d& v) {
 std::string GnssSensorYaml(const GnssReceiver& receiver,
                            const std::optional<Eigen::Vector3d>& approximate_position_E) {
   std::string text =
-      "sensor_type: gnss\np_BA: " + VectorText(receiver.p_BA) +
+      "sensor_type: gnss\np_BA: " + VectorYaml(receiver.p_BA) +
       "  # antenna in the body frame [m]\ntime_offset_s: " + ShortestDouble(receiver.time_offset_s) +
       "  # t_imu = t_GPST + offset\n";
   if (receiver.anchor_E) {
-    text += "anchor_E: " + VectorText(*receiver.anchor_E) + "  # origin of the truth's ENU frame, ECEF [m]\n";
+    text += "anchor_E: " + VectorYaml(*receiver.anchor_E) + "  # origin of the truth's ENU frame, ECEF [m]\n";
   }
   if (approximate_position_E) {
     text +=
-        "approximate_position_E: " + VectorText(*approximate_position_E) + "  # start of positioning [m]\n";
+        "approximate_position_E: " + VectorYaml(*approximate_position_E) + "  # start of positioning [m]\n";
   }
   return text + "observations: obs.rnx\nnavigation: nav.rnx\n";
 }
@@ -142,7 +152,11 @@ Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& whe
   return GnssSheet(*sensor);
 }
 
-Status ReadGnssFolder(const std::string& folder, Dataset* dataset) {
+Status ReadGnssFolder(const std::string& mav, Dataset* dataset) {
+  const std::string folder = (fs::path(mav) / "gnss0").string();
+  if (!fs::is_directory(folder)) {
+    return Status::Ok();
+  }
   const std::string sheet = (fs::path(folder) / "sensor.yaml").string();
   const Result<GnssSensor> sensor = MakeGnssSensor(ParseYamlFile(sheet, StatusCode::kInput), sheet);
   ALIDADE_RETURN_IF_ERROR(sensor.status());
@@ -169,8 +183,11 @@ Status ReadGnssFolder(const std::string& folder, Dataset* dataset) {
   return Status::Ok();
 }
 
-Status WriteGnssFolder(const Dataset& dataset, const std::string& folder) {
-  const fs::path path(folder);
+Status WriteGnssFolder(const Dataset& dataset, const std::string& mav) {
+  if (dataset.gnss == nullptr) {
+    return Status::Ok();
+  }
+  const fs::path path = fs::path(mav) / "gnss0";
   ObservationFile file;
   file.marker = "ALIDADE";
   file.approximate_position_E = dataset.gnss->approximate_position_E;
@@ -181,6 +198,26 @@ Status WriteGnssFolder(const Dataset& dataset, const std::string& folder) {
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "obs.rnx").string(), FormatRinexObservation(file)));
   return WriteFileAtomically((path / "nav.rnx").string(),
                              FormatRinexNavigation(dataset.gnss->catalog->navigation()));
+}
+
+void CheckGnss(const Dataset& dataset, Findings* findings) {
+  if (dataset.gnss == nullptr) {
+    return;
+  }
+  const std::vector<ObservationEpoch>& epochs = dataset.gnss->epochs;
+  size_t satellites = 0;
+  for (const ObservationEpoch& epoch : epochs) {
+    satellites += epoch.satellites.size();
+  }
+  const TimeNs first_ns = epochs.front().stamp_ns;
+  const TimeNs last_ns = epochs.back().stamp_ns;
+  findings->Fact(Format("gnss0: %zu epochs, %.1f Hz, %.1f satellites each, %zu ephemerides", epochs.size(),
+                        MeasuredRate(first_ns, last_ns, epochs.size()),
+                        static_cast<double>(satellites) / static_cast<double>(epochs.size()),
+                        dataset.gnss->catalog->navigation().ephemerides()));
+  const TimeNs offset_ns = SecondsToNs(dataset.rig.gnss.time_offset_s);
+  CheckSpan("gnss0", first_ns + offset_ns, last_ns + offset_ns, dataset, findings);
+  CheckEphemerides(*dataset.gnss, findings);
 }
 
 }  // namespace alidade

@@ -7,8 +7,11 @@
 
 namespace alidade {
 
-/// Reads gnss0: sensor.yaml and the RINEX files it names (default obs.rnx and nav.rnx) into the GNSS part of
-/// `dataset`. Keys of sensor.yaml:
+class Findings;
+class LogHasher;
+
+/// Reads folder gnss0 of `mav`, if it exists: sensor.yaml and the RINEX files it names (default obs.rnx and
+/// nav.rnx) into the GNSS part of `dataset`. Keys of sensor.yaml:
 ///
 ///   p_BA            antenna in the body frame [m], three numbers; `unknown` counts as zero
 ///   time_offset_s   t_imu = t_GPST + offset, default 0
@@ -17,10 +20,11 @@ namespace alidade {
 ///   observations    file; navigation, orbits (SP3), clocks (CLK): file or list of files, in the folder
 ///
 /// Other keys are remarks. Errors (kInput): a key's value, a file that cannot be read.
-Status ReadGnssFolder(const std::string& folder, Dataset* dataset);
+Status ReadGnssFolder(const std::string& mav, Dataset* dataset);
 
-/// Writes sensor.yaml, obs.rnx and nav.rnx. The navigation file holds broadcast ephemerides only.
-Status WriteGnssFolder(const Dataset& dataset, const std::string& folder);
+/// Writes sensor.yaml, obs.rnx and nav.rnx, if there is GNSS. The navigation file holds broadcast ephemerides
+/// only.
+Status WriteGnssFolder(const Dataset& dataset, const std::string& mav);
 
 /// The text of sensor.yaml with the file names that WriteGnssFolder uses.
 [[nodiscard]] std::string GnssSensorYaml(const GnssReceiver& receiver,
@@ -33,5 +37,12 @@ struct GnssSheet {
 };
 /// kInput as ReadGnssFolder; `where` stands for the file in messages.
 Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& where);
+
+/// Receiver, observations and broadcast ephemerides; precise products are not part of it. Nothing without
+/// GNSS.
+void DigestGnss(const MeasurementLog& log, LogHasher* hasher);
+
+/// Rate, satellites, span, and whether the ephemerides serve; nothing without GNSS.
+void CheckGnss(const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

@@ -189,4 +189,9 @@ std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
   return text;
 }
 
+std::string VectorYaml(const Eigen::Vector3d& vector) {
+  return "[" + ShortestDouble(vector.x()) + ", " + ShortestDouble(vector.y()) + ", " +
+         ShortestDouble(vector.z()) + "]";
+}
+
 }  // namespace alidade

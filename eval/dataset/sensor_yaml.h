@@ -37,5 +37,7 @@ Result<CameraSensor> ParseCameraSensor(const std::string& text, const std::strin
 /// The text of both files; reading it back gives equal values. A rate of 0 is omitted.
 [[nodiscard]] std::string ImuSensorYaml(const ImuNoise& noise, double rate_hz);
 [[nodiscard]] std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz);
+/// Three numbers as a list.
+[[nodiscard]] std::string VectorYaml(const Eigen::Vector3d& vector);
 
 }  // namespace alidade

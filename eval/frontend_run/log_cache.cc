@@ -3,8 +3,7 @@
 #include <iterator>
 #include <map>
 
-#include "eval/dataset/dataset_camera.h"
-#include "eval/dataset/dataset_writer.h"
+#include "eval/dataset/dataset_tracks.h"
 #include "eval/files/csv.h"
 #include "eval/files/csv_text.h"
 #include "eval/files/input_file.h"

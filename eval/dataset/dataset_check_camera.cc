@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <map>
+
+#include "core/format.h"
+#include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/dataset_findings.h"
+
+namespace alidade {
+namespace {
+
+void CheckTracks(const Dataset& dataset, Findings* findings) {
+  struct Life {
+    size_t last_frame = 0;
+    int observations = 0;
+  };
+  std::map<std::int64_t, Life> lives;
+  size_t total = 0;
+  size_t outside = 0;
+  size_t returned = 0;
+  for (size_t i = 0; i < dataset.tracks.size(); ++i) {
+    for (const TrackObservation& observation : dataset.tracks[i].observations) {
+      Life& life = lives[observation.track_id];
+      returned += life.observations > 0 && life.last_frame + 1 < i ? 1 : 0;
+      life = {i, life.observations + 1};
+      outside += dataset.rig.camera.InImage(observation.pixel) ? 0 : 1;
+      ++total;
+    }
+  }
+  size_t useful = 0;
+  for (const auto& [id, life] : lives) {
+    useful += life.observations >= 3 ? 1 : 0;
+  }
+  findings->Fact(
+      Format("cam0: %zu observations of %zu tracks, %.1f a frame, mean length %.2f; %zu tracks of 3 or more",
+             total, lives.size(), static_cast<double>(total) / static_cast<double>(dataset.tracks.size()),
+             static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
+  if (outside > 0) {
+    const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
+                                    dataset.rig.camera.width_px(), dataset.rig.camera.height_px());
+    // A few per mille sit on the border; more means the resolution is not that of the tracks.
+    if (outside * 20 > total) {
+      findings->Error(text + ": wrong resolution?");
+    } else {
+      findings->Warning(text);
+    }
+  }
+  if (returned > 0) {
+    findings->Warning(
+        Format("cam0: %zu times a track is missing in some frames and reappears with the same id", returned));
+  }
+}
+
+std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
+  if (!dataset.camera_stamps.empty()) {
+    return dataset.camera_stamps;
+  }
+  std::vector<TimeNs> stamps;
+  for (const TrackFrame& frame : dataset.tracks) {
+    stamps.push_back(frame.stamp_ns);
+  }
+  if (stamps.empty()) {
+    for (const ImageEntry& image : dataset.images) {
+      stamps.push_back(image.stamp_ns);
+    }
+  }
+  return stamps;
+}
+
+}  // namespace
+
+void CheckCamera(const Dataset& dataset, Findings* findings) {
+  const std::vector<TimeNs> stamps = CameraStamps(dataset);
+  if (stamps.empty()) {
+    findings->Warning(dataset.gnss == nullptr ? "cam0: none; estimators need a camera or GNSS"
+                                              : "cam0: none; only GNSS and IMU");
+  } else {
+    CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
+    CheckSpan("cam0", stamps.front(), stamps.back(), dataset, findings);
+  }
+  if (!dataset.tracks.empty()) {
+    CheckTracks(dataset, findings);
+  } else if (!dataset.images.empty()) {
+    findings->Fact(Format("cam0: %zu images, no tracks: the front end runs on them", dataset.images.size()));
+  } else if (!stamps.empty()) {
+    findings->Warning("cam0: only stamps, neither images nor tracks");
+  }
+}
+
+void CheckExtraCameras(const Dataset& dataset, Findings* findings) {
+  if (!dataset.extra_cameras.empty()) {
+    findings->Fact(Format("%zu more cameras with tracks: recorded, but estimators read only cam0",
+                          dataset.extra_cameras.size()));
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "eval/dataset/dataset.h"
+
+namespace alidade {
+
+class Findings;
+class LogHasher;
+
+/// What a sequence has of one sensor, or its truth. Null: this part has nothing to do there.
+struct DatasetPart {
+  /// Reads the part's folders below `mav` into the dataset. Ok without them, unless every sequence has them.
+  Status (*read)(const std::string& mav, Dataset* dataset);
+  /// Writes the part's folders below `mav`; nothing when the dataset has none of it.
+  Status (*write)(const Dataset& dataset, const std::string& mav);
+  /// Adds the part to the digest of a log; nothing when the log has none of it.
+  void (*digest)(const MeasurementLog& log, LogHasher* hasher);
+  /// What `check` says about it.
+  void (*check)(const Dataset& dataset, Findings* findings);
+};
+
+/// All parts, in the order in which they are read, written, digested and checked; the IMU is the first.
+[[nodiscard]] const std::vector<DatasetPart>& DatasetParts();
+
+}  // namespace alidade

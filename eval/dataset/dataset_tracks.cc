@@ -1,0 +1,82 @@
+#include "eval/dataset/dataset_tracks.h"
+
+#include <algorithm>
+
+#include "eval/dataset/sensor_table.h"
+#include "eval/files/output_file.h"
+
+namespace alidade {
+namespace {
+
+Status CloseFrame(TrackFrame* frame, const std::string& place) {
+  std::vector<TrackObservation>& observations = frame->observations;
+  const auto by_id = [](const TrackObservation& a, const TrackObservation& b) {
+    return a.track_id < b.track_id;
+  };
+  if (!std::is_sorted(observations.begin(), observations.end(), by_id)) {
+    std::stable_sort(observations.begin(), observations.end(), by_id);
+  }
+  for (size_t i = 1; i < observations.size(); ++i) {
+    if (observations[i].track_id == observations[i - 1].track_id) {
+      return Status::Input(place + ": track_id " + std::to_string(observations[i].track_id) +
+                           " occurs twice at stamp " + std::to_string(frame->stamp_ns) +
+                           ", expected each track at most once a frame");
+    }
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
+  const std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
+  Result<CsvReader> csv = OpenTable(path, header);
+  if (!csv.ok()) {
+    return csv.status();
+  }
+  std::vector<TrackFrame> frames;
+  std::string place;
+  while (csv->NextRow()) {
+    ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
+    TimeNs stamp = 0;
+    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp));
+    if (frames.empty() || stamp != frames.back().stamp_ns) {
+      if (!frames.empty()) {
+        ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frames.back().stamp_ns, &stamp));
+        ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
+      }
+      frames.push_back({stamp, {}, 0});
+      place = csv->Place();
+    }
+    TrackObservation observation;
+    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(1, "track_id", &observation.track_id));
+    if (observation.track_id < 0) {
+      return csv->Fault(1, "track_id", "a number that is not negative");
+    }
+    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(2, "u", &observation.pixel.x()));
+    ALIDADE_RETURN_IF_ERROR(csv->ReadReal(3, "v", &observation.pixel.y()));
+    frames.back().observations.push_back(observation);
+  }
+  if (frames.empty()) {
+    return Status::Input(path + ": holds no track, expected at least one row");
+  }
+  ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
+  return frames;
+}
+
+Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path) {
+  std::string text = "#timestamp [ns],track_id,u [px],v [px]\n";
+  for (const TrackFrame& frame : tracks) {
+    const std::string stamp = std::to_string(frame.stamp_ns) + ",";
+    for (const TrackObservation& observation : frame.observations) {
+      text += stamp;
+      text += std::to_string(observation.track_id);
+      AppendField(observation.pixel.x(), &text);
+      AppendField(observation.pixel.y(), &text);
+      text.push_back('\n');
+    }
+  }
+  return WriteFileAtomically(csv_path, text);
+}
+
+}  // namespace alidade

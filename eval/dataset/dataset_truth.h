@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "core/status.h"
+#include "eval/dataset/dataset.h"
+
+namespace alidade {
+
+class Findings;
+
+// The truth of a sequence: folder state_groundtruth_estimate0 of `mav`; mocap0 is read too.
+
+/// Reads the first of data.csv, data_pose.csv and data_position.csv. Errors (kInput): those of
+/// ReadTrajectory; a folder without any of them.
+Status ReadTruthFolder(const std::string& mav, Dataset* dataset);
+Status WriteTruthFolder(const Dataset& dataset, const std::string& mav);
+
+/// Rate, gaps, the covered part of the IMU's time, length of the path; a warning without truth.
+void CheckTruth(const Dataset& dataset, Findings* findings);
+
+}  // namespace alidade
