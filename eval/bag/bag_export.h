@@ -4,14 +4,13 @@
 #include <functional>
 #include <string>
 
-#include "eval/bag/bag_topics.h"
 #include "eval/dataset/dataset.h"
 #include "eval/rosbag/rosbag_chunk.h"
 
 namespace alidade {
 
 struct BagExportOptions {
-  BagTopics topics;
+  std::string topics;  ///< names, as MakeBagTopics takes them
   BagCompression compression = BagCompression::kNone;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(std::size_t done, std::size_t messages)> progress;
@@ -21,7 +20,7 @@ struct BagExportOptions {
 /// every second and its trigger, from which GVINS computes the time offset). Tracks, truth and the sensor
 /// sheets have no standard message and become messages of type alidade/*. Reading back loses only what
 /// docs/bags.md lists. Messages are in the order of their stamps; those without a stamp are first. Errors: an
-/// image that does not decode; kDiverged: stopped.
+/// image that does not decode; those of MakeBagTopics; kDiverged: stopped.
 Status WriteBag(const Dataset& dataset, const BagExportOptions& options, const std::string& path);
 
 }  // namespace alidade

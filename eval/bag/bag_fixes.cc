@@ -1,7 +1,5 @@
 #include "eval/bag/bag_fixes.h"
 
-#include <algorithm>
-
 #include "eval/dataset/dataset_fix.h"
 #include "gnss/base/anchor_llh.h"
 
@@ -9,15 +7,6 @@ namespace alidade {
 namespace {
 
 constexpr std::size_t kMaxSensors = 16;
-
-template <typename Entry>
-void SortByStamp(std::vector<Entry>* entries) {
-  std::stable_sort(entries->begin(), entries->end(),
-                   [](const Entry& a, const Entry& b) { return a.stamp_ns < b.stamp_ns; });
-  entries->erase(std::unique(entries->begin(), entries->end(),
-                             [](const Entry& a, const Entry& b) { return a.stamp_ns == b.stamp_ns; }),
-                 entries->end());
-}
 
 /// In ENU at the sheet's anchor, or at the first of them.
 void AddOnEarth(const std::vector<NavSatFix>& messages, int sensor, FixSensor* sheet,
@@ -33,39 +22,45 @@ void AddOnEarth(const std::vector<NavSatFix>& messages, int sensor, FixSensor* s
   }
 }
 
-}  // namespace
-
 std::string NavSatFixTopic(const BagTopics& topics, std::size_t index) {
-  return index == 0 ? topics.fix : "/fix" + std::to_string(index) + "/fix";
+  return index == 0 ? topics["fix"] : "/fix" + std::to_string(index) + "/fix";
 }
 
 std::string PositionTopic(std::size_t index) {
   return "/fix" + std::to_string(index) + "/position";
 }
 
-Result<bool> BagFixes::Take(const BagTopics& topics, const BagMessage& message) {
+NavSatFix OnEarth(const PositionFix& fix, const Eigen::Vector3d& anchor_llh_deg) {
+  const EnuFrame enu = EnuFrameAtLlh(anchor_llh_deg);
+  const Eigen::Vector3d position_E = enu.ToEcef(fix.p_A);
+  const Eigen::Matrix3d turn = EnuFrame::At(position_E).R_EN.transpose() * enu.R_EN;
+  return {fix.stamp_ns, LlhDegOf(position_E), turn * fix.covariance * turn.transpose()};
+}
+
+}  // namespace
+
+std::vector<BagTopic> FixTopics() {
+  return {{"fix", "/fix0/fix", {"sensor_msgs/NavSatFix"}, BagTopic::Search::kWhenNamed}};
+}
+
+Result<bool> BagFixes::Take(const BagMessage& message, BagContext* bag) {
   const std::string& topic = message.connection->topic;
   const bool is_position = message.connection->type == "alidade/Position";
   if (!is_position && message.connection->type != "sensor_msgs/NavSatFix") {
     return false;
   }
   for (std::size_t index = 0; index < kMaxSensors; ++index) {
-    if (topic != (is_position ? PositionTopic(index) : NavSatFixTopic(topics, index))) {
+    if (topic != (is_position ? PositionTopic(index) : NavSatFixTopic(bag->topics, index))) {
       continue;
     }
     if (is_position) {
-      const std::optional<PositionFix> fix = DecodePosition(message.data);
-      if (!fix) {
-        return Status::Input("does not decode");
-      }
-      sensors_[index].local.push_back(*fix);
+      KeepDecoded(DecodePosition(message.data), topic, &sensors_[index].local, &bag->remarks);
       return true;
     }
     const DecodedNavSatFix decoded = DecodeNavSatFix(message.data);
     if (!decoded.sound) {
-      return Status::Input("does not decode, or holds no position on Earth");
-    }
-    if (decoded.fix) {
+      bag->remarks.AddSkipped(topic, "does not decode, or holds no position on Earth");
+    } else if (decoded.fix) {
       sensors_[index].on_earth.push_back(*decoded.fix);
     }
     return true;
@@ -74,11 +69,10 @@ Result<bool> BagFixes::Take(const BagTopics& topics, const BagMessage& message) 
   return true;
 }
 
-Status BagFixes::Assemble(const std::string& path, const BagSheets& sheets, Dataset* dataset,
-                          std::vector<std::string>* remarks) {
+Status BagFixes::Assemble(BagContext* bag) {
+  Dataset* dataset = &bag->dataset;
   for (const std::string& topic : others_) {
-    remarks->push_back(path + ": " + topic + ": position fixes passed over; --topics=fix=" + topic +
-                       " takes them");
+    bag->remarks.Add(topic + ": position fixes passed over; --topics=fix=" + topic + " takes them");
   }
   for (auto& [index, messages] : sensors_) {
     if (messages.on_earth.empty() && messages.local.empty()) {
@@ -86,13 +80,13 @@ Status BagFixes::Assemble(const std::string& path, const BagSheets& sheets, Data
     }
     const std::string name = "fix" + std::to_string(index);
     FixSensor sheet;
-    if (const std::string* text = sheets.Text(name)) {
-      const Result<FixSensor> parsed = ParseFixSheet(*text, path + ": " + SheetTopic(name));
+    if (const std::string* text = bag->sheets.Text(name)) {
+      const Result<FixSensor> parsed = ParseFixSheet(*text, bag->path + ": " + SheetTopic(name));
       ALIDADE_RETURN_IF_ERROR(parsed.status());
       sheet = *parsed;
     } else {
-      remarks->push_back(
-          path + ": " + name +
+      bag->remarks.Add(
+          name +
           ": lever arm and time offset are not in it and taken as zero; set p_BA and time_offset_s in " +
           name + "/sensor.yaml");
     }
@@ -111,6 +105,30 @@ Status BagFixes::Assemble(const std::string& path, const BagSheets& sheets, Data
   }
   SortFixes(dataset->rig.fixes, &dataset->fixes);
   return Status::Ok();
+}
+
+void ScheduleFixes(const Dataset& dataset, const BagTopics& topics, BagSchedule* schedule) {
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(dataset.rig.fixes.size());
+  for (std::size_t k = 0; k < dataset.rig.fixes.size(); ++k) {
+    numbers.push_back(dataset.rig.fixes[k].anchor_llh_deg
+                          ? schedule->AddTopic(NavSatFixTopic(topics, k), "sensor_msgs/NavSatFix")
+                          : schedule->AddTopic(PositionTopic(k), "alidade/Position"));
+  }
+  for (const PositionFix& fix : dataset.fixes) {
+    const auto k = static_cast<std::size_t>(fix.sensor);
+    const FixSensor& sensor = dataset.rig.fixes[k];
+    schedule->Add(fix.stamp_ns + SecondsToNs(sensor.time_offset_s), numbers[k], [&fix, &sensor] {
+      return sensor.anchor_llh_deg ? EncodeNavSatFix(OnEarth(fix, *sensor.anchor_llh_deg))
+                                   : EncodePosition(fix);
+    });
+  }
+}
+
+void ScheduleFixSheets(const Dataset& dataset, BagSchedule* schedule) {
+  for (std::size_t k = 0; k < dataset.rig.fixes.size(); ++k) {
+    schedule->AddSheet("fix" + std::to_string(k), FixSensorYaml(dataset.rig.fixes[k]));
+  }
 }
 
 }  // namespace alidade

@@ -5,24 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "eval/bag/bag_topics.h"
-#include "eval/dataset/dataset.h"
+#include "eval/bag/bag_collector.h"
+#include "eval/bag/bag_schedule.h"
 #include "eval/rosbag/gnss_receiver_messages.h"
-#include "eval/rosbag/rosbag_reader.h"
 
 namespace alidade {
 
-/// Collects the GNSS messages of a bag.
-class BagGnss {
- public:
-  /// kInput: a message of one of its topics that does not decode. Messages of other topics are ignored.
-  Status Take(const BagTopics& topics, const BagMessage& message);
+// GNSS in a bag: messages of gnss_comm.
 
-  /// Adds the collected messages to the dataset: observations and navigation data; the receiver from `sheet`
-  /// (a sensor.yaml, may be empty), else the time offset from pulses and triggers and a zero lever arm.
-  /// Without other truth the fixed solutions become the truth. kInput: a sheet that does not parse.
-  Status Assemble(const std::string& path, const std::string& sheet, Dataset* dataset,
-                  std::vector<std::string>* remarks);
+[[nodiscard]] std::vector<BagTopic> GnssTopics();
+
+/// Observations and navigation data; the receiver from the sheet, else the time offset from pulses and
+/// triggers and a zero lever arm. Without other truth the fixed solutions become the truth. kInput: a sheet
+/// that does not parse.
+class BagGnss : public BagCollector {
+ public:
+  Result<bool> Take(const BagMessage& message, BagContext* bag) override;
+  Status Assemble(BagContext* bag) override;
 
  private:
   /// A trigger with the last announced pulse.
@@ -31,10 +30,12 @@ class BagGnss {
     TimeNs pulse_ns = 0;
   };
 
-  Status AssembleReceiver(const std::string& path, const std::string& sheet, Dataset* dataset,
-                          std::vector<std::string>* remarks) const;
+  /// kInput: does not decode.
+  Result<bool> Decode(const BagTopics& topics, const BagMessage& message);
+  /// `sheet` may be empty.
+  Status AssembleReceiver(const std::string& sheet, BagContext* bag) const;
   [[nodiscard]] std::optional<double> TimeOffset() const;
-  void AssembleTruth(const std::string& path, Dataset* dataset, std::vector<std::string>* remarks);
+  void AssembleTruth(BagContext* bag);
 
   std::vector<ObservationEpoch> epochs_;
   std::map<int, int> glonass_channels_;
@@ -43,5 +44,8 @@ class BagGnss {
   std::optional<TimeNs> pulse_ns_;
   std::vector<Sync> syncs_;
 };
+
+void ScheduleGnss(const Dataset& dataset, const BagTopics& topics, BagSchedule* schedule);
+void ScheduleGnssSheet(const Dataset& dataset, BagSchedule* schedule);
 
 }  // namespace alidade

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <sstream>
-#include <utility>
-#include <vector>
 
+#include "core/check.h"
 #include "eval/files/suggest.h"
 
 namespace alidade {
@@ -20,98 +19,85 @@ std::string Inventory(const Found& found) {
   return text;
 }
 
-/// One sensor's part of BagTopics::Resolve.
-Status ResolveOne(const std::string& path, const Found& found, const char* word,
-                  const std::vector<std::string>& types, const std::string& by_default, std::string* topic) {
+/// One topic's part of BagTopics::Resolve.
+Status ResolveOne(const std::string& path, const Found& found, const BagTopic& topic, std::string* name) {
   const auto fits = [&](const std::string& type) {
-    return std::find(types.begin(), types.end(), type) != types.end();
+    return std::find(topic.types.begin(), topic.types.end(), type) != topic.types.end();
   };
-  const auto named = found.find(*topic);
+  const auto named = found.find(*name);
   if (named != found.end() && fits(named->second)) {
     return Status::Ok();
   }
-  if (*topic != by_default) {
-    return Status::Input(path + ": no topic " + *topic + " of type " + types.front() + "; found " +
+  if (*name != topic.usual_name) {
+    return Status::Input(path + ": no topic " + *name + " of type " + topic.types.front() + "; found " +
                          Inventory(found));
   }
   std::vector<std::string> candidates;
-  for (const auto& [name, type] : found) {
+  for (const auto& [candidate, type] : found) {
     if (fits(type)) {
-      candidates.push_back(name);
+      candidates.push_back(candidate);
     }
   }
   if (candidates.size() > 1) {
     return Status::Input(path + ": " + std::to_string(candidates.size()) + " topics of type " +
-                         types.front() + ", expected --topics=" + word + "=TOPIC to name one; found " +
-                         Inventory(found));
+                         topic.types.front() + ", expected --topics=" + topic.word +
+                         "=TOPIC to name one; found " + Inventory(found));
   }
-  *topic = candidates.empty() ? std::string() : candidates.front();
+  *name = candidates.empty() ? std::string() : candidates.front();
   return Status::Ok();
 }
 
 }  // namespace
 
+BagTopics::BagTopics(const std::vector<BagTopic>& topics) {
+  for (const BagTopic& topic : topics) {
+    topics_.push_back({topic, topic.usual_name});
+  }
+}
+
 Status BagTopics::Set(const std::string& list) {
-  const std::vector<std::pair<std::string, std::string*>> words = {{"imu", &imu},
-                                                                   {"cam0", &camera},
-                                                                   {"tracks", &tracks},
-                                                                   {"truth", &truth},
-                                                                   {"range", &range},
-                                                                   {"ephem", &ephemeris},
-                                                                   {"glo_ephem", &glonass_ephemeris},
-                                                                   {"iono", &ionosphere},
-                                                                   {"pvt", &solution},
-                                                                   {"pulse", &time_pulse},
-                                                                   {"trigger", &trigger},
-                                                                   {"fix", &fix}};
-  std::vector<std::string> names;
-  for (const auto& [name, topic] : words) {
-    names.push_back(name);
+  std::vector<std::string> words;
+  for (const Named& topic : topics_) {
+    words.push_back(topic.word);
   }
   std::istringstream entries(list);
   for (std::string entry; std::getline(entries, entry, ',');) {
     const std::size_t equals = entry.find('=');
-    const std::string name = entry.substr(0, equals);
+    const std::string word = entry.substr(0, equals);
     if (equals == std::string::npos || equals + 1 == entry.size()) {
       return Status::Usage("--topics: found '" + entry + "', expected sensor=/topic");
     }
-    bool known = false;
-    for (const auto& [word, topic] : words) {
-      if (word == name) {
-        *topic = entry.substr(equals + 1);
-        known = true;
-      }
+    const auto named = std::find(words.begin(), words.end(), word);
+    if (named == words.end()) {
+      return Status::Usage("--topics: unknown sensor '" + word + "'" + Suggestion(word, words));
     }
-    if (!known) {
-      return Status::Usage("--topics: unknown sensor '" + name + "'" + Suggestion(name, names));
-    }
+    topics_[static_cast<std::size_t>(named - words.begin())].name = entry.substr(equals + 1);
   }
   return Status::Ok();
 }
 
 Status BagTopics::Resolve(const std::string& path, const std::map<std::string, std::string>& found) {
-  const BagTopics usual;
-  const struct {
-    const char* word;
-    std::vector<std::string> types;
-    const std::string& by_default;
-    std::string* topic;
-  } sensors[] = {{"imu", {"sensor_msgs/Imu"}, usual.imu, &imu},
-                 {"cam0", {"sensor_msgs/Image", "sensor_msgs/CompressedImage"}, usual.camera, &camera},
-                 {"range", {"gnss_comm/GnssMeasMsg"}, usual.range, &range},
-                 {"ephem", {"gnss_comm/GnssEphemMsg"}, usual.ephemeris, &ephemeris},
-                 {"glo_ephem", {"gnss_comm/GnssGloEphemMsg"}, usual.glonass_ephemeris, &glonass_ephemeris},
-                 {"pvt", {"gnss_comm/GnssPVTSolnMsg"}, usual.solution, &solution},
-                 {"pulse", {"gnss_comm/GnssTimePulseInfoMsg"}, usual.time_pulse, &time_pulse}};
-  for (const auto& sensor : sensors) {
-    ALIDADE_RETURN_IF_ERROR(
-        ResolveOne(path, found, sensor.word, sensor.types, sensor.by_default, sensor.topic));
+  for (Named& topic : topics_) {
+    const bool left_alone = topic.search == BagTopic::Search::kNone ||
+                            (topic.search == BagTopic::Search::kWhenNamed && topic.name == topic.usual_name);
+    if (!left_alone) {
+      ALIDADE_RETURN_IF_ERROR(ResolveOne(path, found, topic, &topic.name));
+    }
   }
-  if (fix != usual.fix) {
-    ALIDADE_RETURN_IF_ERROR(ResolveOne(path, found, "fix", {"sensor_msgs/NavSatFix"}, usual.fix, &fix));
+  for (const Named& topic : topics_) {
+    if (topic.search == BagTopic::Search::kRequired && topic.name.empty()) {
+      return Status::Input(path + ": no topic of type " + topic.types.front() + "; found " +
+                           Inventory(found));
+    }
   }
-  return imu.empty() ? Status::Input(path + ": no topic of type sensor_msgs/Imu; found " + Inventory(found))
-                     : Status::Ok();
+  return Status::Ok();
+}
+
+const std::string& BagTopics::operator[](std::string_view word) const {
+  const auto topic =
+      std::find_if(topics_.begin(), topics_.end(), [&](const Named& named) { return named.word == word; });
+  CHECK(topic != topics_.end()) << "topic '" << word << "' is in no list";
+  return topic->name;
 }
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
 #include "eval/bag/dataset_source.h"
 
 #include "eval/bag/bag_import.h"
+#include "eval/bag/bag_parts.h"
 #include "eval/dataset/calibration_import.h"
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_reader.h"
@@ -18,7 +19,8 @@ Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string
                                "own sensor.yaml");
   }
   BagImportOptions options;
-  ALIDADE_RETURN_IF_ERROR(options.topics.Set(source.topics));
+  ALIDADE_RETURN_IF_ERROR(MakeBagTopics(source.topics).status());  // before the calibration's errors
+  options.topics = source.topics;
   if (!source.calibration.empty()) {
     Result<ImportedCalibration> calibration = ImportCalibration(source.calibration, source.camera);
     ALIDADE_RETURN_IF_ERROR(calibration.status());

@@ -13,7 +13,7 @@ struct Dataset;
 /// the bag lacks.
 struct DatasetSource {
   std::string path;
-  std::string topics;                    ///< of a bag, as BagTopics::Set takes them
+  std::string topics;                    ///< of a bag, as MakeBagTopics takes them
   std::vector<std::string> calibration;  ///< files of other programs, before the sheets in a bag
   std::string camera = "cam0";           ///< camera to use in those files
 };

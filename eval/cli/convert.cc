@@ -3,6 +3,7 @@
 #include "core/format.h"
 #include "eval/bag/bag_export.h"
 #include "eval/bag/bag_folder.h"
+#include "eval/bag/bag_parts.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -15,7 +16,7 @@
 namespace alidade::cli {
 namespace {
 
-int FolderToBag(const BagTopics& topics, BagCompression compression) {
+int FolderToBag(BagCompression compression) {
   const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
   if (!dataset.ok()) {
     return Report(dataset.status());
@@ -23,19 +24,19 @@ int FolderToBag(const BagTopics& topics, BagCompression compression) {
   if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output)) {
     return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
   }
-  BagExportOptions options{topics, compression, InstallInterruptHandler(), {}};
+  BagExportOptions options{FLAGS_topics, compression, InstallInterruptHandler(), {}};
   ProgressLine progress("messages");
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   const Status written = WriteBag(*dataset, options, FLAGS_output);
   return options.stop->load() ? kExitInterrupted : Report(written);
 }
 
-int BagToFolder(const BagTopics& topics, const ImportedCalibration& calibration) {
+int BagToFolder(const ImportedCalibration& calibration) {
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }
   BagImportOptions options;
-  options.topics = topics;
+  options.topics = FLAGS_topics;
   options.imu = calibration.imu;
   options.imu_is_per_sample = calibration.imu_is_per_sample;
   options.camera = calibration.camera;
@@ -94,8 +95,7 @@ Result<ImportedCalibration> CalibrationFromFlags() {
 }  // namespace
 
 int RunConvert(const std::vector<std::string>&) {
-  BagTopics topics;
-  if (const Status status = topics.Set(FLAGS_topics); !status.ok()) {
+  if (const Status status = MakeBagTopics(FLAGS_topics).status(); !status.ok()) {
     return Report(Status(status.code(), "convert: " + status.message()));
   }
   const std::optional<BagCompression> compression = ParseBagCompression(FLAGS_compression);
@@ -108,7 +108,7 @@ int RunConvert(const std::vector<std::string>&) {
     return Report(calibration.status());
   }
   if (IsBag(FLAGS_dataset)) {
-    return BagToFolder(topics, *calibration);
+    return BagToFolder(*calibration);
   }
   if (FLAGS_dataset.empty() == FLAGS_calibration.empty()) {
     return Report(Status::Usage(
@@ -122,7 +122,7 @@ int RunConvert(const std::vector<std::string>&) {
         "convert: --output: found '" + FLAGS_output +
         "', expected a name that ends in .bag (convert turns a folder into a bag, or a bag into a folder)"));
   }
-  return FolderToBag(topics, *compression);
+  return FolderToBag(*compression);
 }
 
 }  // namespace alidade::cli

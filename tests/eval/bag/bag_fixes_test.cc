@@ -64,7 +64,7 @@ TEST(BagFixes, WHEN_written_and_read_THEN_own_frames_are_equal_and_geodetic_ones
 TEST(BagFixes, GIVEN_a_topic_of_another_name_THEN_it_is_read_when_it_is_named_and_else_remarked) {
   const test::TemporaryFolder folder;
   BagExportOptions options;
-  options.topics.fix = "/gps/fix";
+  options.topics = "fix=/gps/fix";
   const std::string path = folder.File("named.bag");
   Dataset dataset = WithFixes();
   dataset.rig.fixes.resize(1);
@@ -75,12 +75,12 @@ TEST(BagFixes, GIVEN_a_topic_of_another_name_THEN_it_is_read_when_it_is_named_an
   EXPECT_TRUE(unnamed->dataset.fixes.empty());
   EXPECT_THAT(unnamed->remarks, Contains(HasSubstr("--topics=fix=/gps/fix")));
   BagImportOptions named;
-  ASSERT_TRUE(named.topics.Set("fix=/gps/fix").ok());
+  named.topics = "fix=/gps/fix";
   const Result<BagImport> import = ReadBag(path, named);
   ASSERT_TRUE(import.ok()) << import.message();
   EXPECT_EQ(import->dataset.fixes.size(), 3u);
   BagImportOptions missing;
-  ASSERT_TRUE(missing.topics.Set("fix=/gps/none").ok());
+  missing.topics = "fix=/gps/none";
   EXPECT_THAT(ReadBag(path, missing).message(), HasSubstr("no topic /gps/none"));
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "eval/bag/bag_folder.h"
+#include "eval/bag/bag_parts.h"
 #include "eval/bag/dataset_images.h"
 #include "eval/bag/dataset_source.h"
 #include "eval/dataset/dataset_reader.h"
@@ -260,19 +261,20 @@ TEST_F(ForeignBag, NamesWhatIsMissing) {
   EXPECT_THAT(ReadBag(path_, options).message(), HasSubstr("noise of the IMU"));
   options.imu = Noise();
   EXPECT_THAT(ReadBag(path_, options).message(), HasSubstr("calibration of the camera"));
-  ASSERT_TRUE(options.topics.Set("imu=/imu/data").ok());
+  options.topics = "imu=/imu/data";
   EXPECT_THAT(ReadBag(path_, options).message(),
               testing::AllOf(HasSubstr("no topic /imu/data"), HasSubstr("/imu0 (sensor_msgs/Imu)")));
 }
 
 TEST(BagTopicsTest, NamesAreChecked) {
-  BagTopics topics;
-  EXPECT_TRUE(topics.Set("imu=/a,cam0=/b").ok());
-  EXPECT_EQ(topics.imu, "/a");
-  EXPECT_EQ(topics.camera, "/b");
-  EXPECT_THAT(topics.Set("imy=/a").message(), HasSubstr("imu"));
-  EXPECT_FALSE(topics.Set("imu").ok());
-  EXPECT_FALSE(topics.Set("imu=").ok());
+  const Result<BagTopics> topics = MakeBagTopics("imu=/a,cam0=/b");
+  ASSERT_TRUE(topics.ok()) << topics.message();
+  EXPECT_EQ((*topics)["imu"], "/a");
+  EXPECT_EQ((*topics)["cam0"], "/b");
+  EXPECT_EQ((*topics)["fix"], "/fix0/fix");
+  EXPECT_THAT(MakeBagTopics("imy=/a").message(), HasSubstr("imu"));
+  EXPECT_FALSE(MakeBagTopics("imu").ok());
+  EXPECT_FALSE(MakeBagTopics("imu=").ok());
 }
 
 TEST(BagTopicsTest, OfTwoThatCouldBeMeantNoneIsGuessed) {
@@ -292,7 +294,7 @@ TEST(BagTopicsTest, OfTwoThatCouldBeMeantNoneIsGuessed) {
   BagImportOptions options;
   options.imu = Noise();
   EXPECT_THAT(ReadBag(path, options).message(), HasSubstr("--topics=imu=TOPIC"));
-  ASSERT_TRUE(options.topics.Set("imu=/right/imu").ok());
+  options.topics = "imu=/right/imu";
   EXPECT_EQ(ReadBag(path, options)->dataset.imu.size(), 2u);
 }
 
