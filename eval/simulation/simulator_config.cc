@@ -268,8 +268,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   DescribeTracks(this, visitor);
   DescribeFaults(this, visitor);
   DescribeLandmarks(this, visitor);
-  visitor.Section("gnss", "simulated GNSS receiver", [&] { gnss.Describe(visitor); });
-  visitor.Section("fix", "simulated position fixes", [&] { fix.Describe(visitor); });
+  DescribeSensors(visitor);
   visitor.Section("render", "rendered images", [&] { render.Describe(visitor); });
 }
 

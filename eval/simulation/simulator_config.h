@@ -10,8 +10,7 @@
 #include "core/imu_sample.h"
 #include "core/status.h"
 #include "eval/simulation/render_config.h"
-#include "eval/simulation/sim_fix_config.h"
-#include "eval/simulation/sim_gnss_config.h"
+#include "eval/simulation/sim_sensor_config.h"
 
 namespace alidade {
 
@@ -55,7 +54,7 @@ inline constexpr std::string_view kRequiredPath = "required";
 /// A simulated sequence: trajectory (analytic or recorded), IMU as its exact derivative, landmarks around the
 /// path, feature tracks. The noise defaults are those of the simulation in the Po-InVIO paper. With
 /// hybrid_dataset only the tracks are simulated.
-struct SimulatorConfig {
+struct SimulatorConfig : SimSensorConfig {
   std::string name = "figure8";
   int start_time_s = 1000;  ///< stamp of the first sample
 
@@ -133,8 +132,6 @@ struct SimulatorConfig {
   Eigen::Vector3d room_margin_m = Eigen::Vector3d(2, 2, 1);  ///< from the path's bounding box to the walls
   double room_depth_m = 0.5;  ///< landmarks stand out from their wall by up to this much
 
-  SimGnssConfig gnss;
-  SimFixConfig fix;
   RenderConfig render;
 
   [[nodiscard]] bool IsHybrid() const { return hybrid_dataset != kNoPath; }

@@ -50,8 +50,7 @@ Status SimulatorConfig::Validate() const {
   ALIDADE_RETURN_IF_ERROR(Expect(trajectory != SimTrajectory::kWander || path_m < 1e4 * (length_m + width_m),
                                  "path_m", path_m, "less than 1e4 times length_m + width_m"));
   ALIDADE_RETURN_IF_ERROR(ValidateRecording(*this));
-  ALIDADE_RETURN_IF_ERROR(gnss.Validate());
-  ALIDADE_RETURN_IF_ERROR(fix.Validate());
+  ALIDADE_RETURN_IF_ERROR(ValidateSensors());
   // GPST began in 1980; readers know the years to 2099.
   ALIDADE_RETURN_IF_ERROR(Expect(
       gnss.rate_hz == 0 || trajectory == SimTrajectory::kFile || IsHybrid() || start_time_s >= 400000000,
