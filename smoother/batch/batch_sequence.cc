@@ -20,9 +20,9 @@ constexpr int kMaxLandmarkIterations = 50;
 constexpr size_t kMinViews = 2;
 // Deviations of the alignment in the prior [rad, m]. The alignment holds at its own time, and the odometry
 // has drifted since the first state, so that its covariance says too much there; the fixes determine yaw and
-// position anyway.
+// position anyway. Much more would be lost beside the information between frames.
 constexpr double kFreeYawStd = 1;
-constexpr double kFreeShiftStd = 1e3;
+constexpr double kFreeShiftStd = 10;
 
 std::unique_ptr<WindowFrame> MakeFrame(const NavEstimate& estimate, int index) {
   auto frame = std::make_unique<WindowFrame>();
