@@ -37,7 +37,7 @@ Dataset DatasetOf(const ExternalCell& cell) {
   dataset.tracks = cell.log.frames;
   dataset.extra_cameras = cell.log.extra_cameras;
   dataset.gnss = cell.log.gnss;
-  dataset.fixes = cell.log.fixes;
+  CopyMeasurements(cell.log, &dataset);
   if (cell.truth != nullptr) {
     dataset.truth = *cell.truth;
   }

@@ -17,8 +17,8 @@ namespace alidade {
 /// While the sequence runs, `initial`, another estimator on the same input, answers for it; its states are
 /// the initial values, and the frames it accepts are the frames of the batch. TakeFinalized then solves.
 ///
-/// Position fixes enter from the alignment on. Those before it have made the alignment, whose covariance is
-/// part of the prior.
+/// Measurements between frames enter from the alignment on. Position fixes before it have made the alignment,
+/// whose covariance is part of the prior.
 class BatchEstimator final : public Estimator {
  public:
   BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,
@@ -28,7 +28,7 @@ class BatchEstimator final : public Estimator {
   Status AddImu(const ImuSample& sample) override;
   Status AddFrame(const TrackFrame& frame) override;
   Status Align(const GnssAlignment& alignment) override;
-  Status AddFix(const PositionFix& fix) override;
+  Status AddMeasurement(const Measurement& measurement) override;
   [[nodiscard]] NavEstimate Latest() const override { return initial_->Latest(); }
   [[nodiscard]] bool initialized() const override { return initial_->initialized(); }
   [[nodiscard]] const FrameStatistics& last_statistics() const override {

@@ -195,10 +195,11 @@ TEST(BatchEstimatorTest, RefusesWrongFixesAndIsConsistent) {
     ASSERT_TRUE(frames.ok()) << frames.message();
     int wrong = 0;
     int refused = 0;
-    for (const BatchFix& fix : batch.sequence().fixes()) {
+    for (const BatchMeasurement& fix : batch.sequence().measurements()) {
       const TrajectoryPoint& truth =
           test::TruthAt(dataset, batch.sequence().frames()[static_cast<size_t>(fix.frame)]->stamp_ns);
-      const bool is_wrong = (fix.attached.measurement.model.p_WA - truth.nav.p_WB).norm() > 5;
+      const bool is_wrong =
+          (std::get<FixMeasurement>(fix.attached.measurement).model.p_WA - truth.nav.p_WB).norm() > 5;
       wrong += is_wrong ? 1 : 0;
       refused += fix.weight > 0 ? 0 : 1;
       EXPECT_FALSE(is_wrong && fix.weight > 0);
