@@ -17,8 +17,8 @@ namespace alidade {
 /// While the sequence runs, `initial`, another estimator on the same input, answers for it; its states are
 /// the initial values, and the frames it accepts are the frames of the batch. TakeFinalized then solves.
 ///
-/// Measurements between frames enter from the alignment on. Position fixes before it have made the alignment,
-/// whose covariance is part of the prior.
+/// Measurements between frames enter from the alignment on, which gives initial values and leaves yaw and
+/// position of the prior free. The few before it are not used.
 class BatchEstimator final : public Estimator {
  public:
   BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,

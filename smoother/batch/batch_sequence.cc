@@ -18,6 +18,11 @@ namespace {
 constexpr double kMaxDepthDeviation = 1.0;
 constexpr int kMaxLandmarkIterations = 50;
 constexpr size_t kMinViews = 2;
+// Deviations of the alignment in the prior [rad, m]. The alignment holds at its own time, and the odometry
+// has drifted since the first state, so that its covariance says too much there; the fixes determine yaw and
+// position anyway.
+constexpr double kFreeYawStd = 1;
+constexpr double kFreeShiftStd = 1e3;
 
 std::unique_ptr<WindowFrame> MakeFrame(const NavEstimate& estimate, int index) {
   auto frame = std::make_unique<WindowFrame>();
@@ -73,7 +78,10 @@ bool BatchSequence::Align(const GnssAlignment& alignment) {
     const NavEstimate local{frame->stamp_ns, frame->nav_state(), frame->imu_bias(), initial_.covariance};
     PackNavState(TurnIntoEnu(alignment, local).nav, frame->nav.data());
   }
-  initial_ = TurnIntoEnu(alignment, initial_);
+  GnssAlignment free = alignment;
+  free.covariance =
+      Eigen::Vector4d(kFreeYawStd, kFreeShiftStd, kFreeShiftStd, kFreeShiftStd).cwiseAbs2().asDiagonal();
+  initial_ = TurnIntoEnu(free, initial_);
   return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial_.covariance, &prior_);
 }
 

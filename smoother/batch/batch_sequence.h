@@ -52,8 +52,8 @@ class BatchSequence {
   void AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu);
   /// Adds the observations of the newest frame, whose initial values are `estimate`.
   void AddTracks(const NavEstimate& estimate, const TrackFrame& frame);
-  /// Turns the initial values and the prior into the frame of the alignment, whose covariance the prior
-  /// gains. False: the prior's covariance is not positive semi-definite.
+  /// Turns the initial values and the prior into the frame of the alignment; yaw and position of the prior
+  /// are free then. False: the prior's covariance is not positive semi-definite.
   bool Align(const GnssAlignment& alignment);
   /// Hangs a measurement on the newest frame; `imu` leads there from the frame, empty at the frame itself.
   /// `accepted`: the verdict of the initial estimator. kInput: see Whiten.
