@@ -37,7 +37,7 @@ Dataset DatasetOf(const ExternalCell& cell) {
   dataset.tracks = cell.log.frames;
   dataset.extra_cameras = cell.log.extra_cameras;
   dataset.gnss = cell.log.gnss;
-  CopyMeasurements(cell.log, &dataset);
+  dataset.fixes = cell.log.fixes;
   if (cell.truth != nullptr) {
     dataset.truth = *cell.truth;
   }

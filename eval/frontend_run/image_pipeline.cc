@@ -64,8 +64,8 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
 
 Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
                                const PipelineOptions& options) {
-  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras, dataset.gnss};
-  CopyMeasurements(dataset, &log);
+  MeasurementLog log{dataset.rig,           dataset.imu,  dataset.tracks,
+                     dataset.extra_cameras, dataset.gnss, dataset.fixes};
   const bool no_camera = dataset.images.empty() && dataset.camera_stamps.empty();
   if (!log.frames.empty() || (log.gnss != nullptr && no_camera)) {
     return log;
