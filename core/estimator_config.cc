@@ -7,22 +7,9 @@ void EstimatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Enumeration(
       {"backend", "-", "which back end runs"}, &backend,
       {{"filter", Backend::kFilter}, {"smoother", Backend::kSmoother}, {"batch", Backend::kBatch}});
-  visitor.Section("vision", "noise, gates and kernels, shared by both back ends",
-                  [&] { vision.Describe(visitor); });
-  visitor.Section("imu", "gravity and factors on the noise of the sensor sheet",
-                  [&] { imu.Describe(visitor); });
-  visitor.Section("init", "initialisation, shared by both back ends", [&] { init.Describe(visitor); });
-  visitor.Section("frontend", "images to tracks", [&] { frontend.Describe(visitor); });
-  visitor.Section("filter", "the sliding-window invariant EKF", [&] { filter.Describe(visitor); });
-  visitor.Section("smoother", "the Ceres sliding window", [&] { smoother.Describe(visitor); });
-  visitor.Section("batch", "estimate from the whole sequence at once; a bound",
-                  [&] { batch.Describe(visitor); });
-  visitor.Section("calibration", "camera parameters estimated online, by both back ends",
-                  [&] { calibration.Describe(visitor); });
-  visitor.Section("recovery", "detection of divergence and re-initialisation, shared by both back ends",
-                  [&] { recovery.Describe(visitor); });
-  visitor.Section("gnss", "raw GNSS", [&] { gnss.Describe(visitor); });
-  visitor.Section("fix", "position fixes", [&] { fix.Describe(visitor); });
+  ForEachSection([&](const char* key, const char* purpose, auto& section) {
+    visitor.Section(key, purpose, [&] { section.Describe(visitor); });
+  });
 }
 
 Status EstimatorConfig::Validate() const {

@@ -36,7 +36,22 @@ struct EstimatorConfig {
   GnssConfig gnss;
   FixConfig fix;
 
-  /// Lists every key with unit, range and reason; the order is the order of configs/base.yaml.
+  /// Calls visit(name, purpose, section) for every section, in the order of configs/base.yaml.
+  template <typename Visit>
+  void ForEachSection(const Visit& visit) {
+    visit("vision", "noise, gates and kernels, shared by both back ends", vision);
+    visit("imu", "gravity and factors on the noise of the sensor sheet", imu);
+    visit("init", "initialisation, shared by both back ends", init);
+    visit("frontend", "images to tracks", frontend);
+    visit("filter", "the sliding-window invariant EKF", filter);
+    visit("smoother", "the Ceres sliding window", smoother);
+    visit("batch", "estimate from the whole sequence at once; a bound", batch);
+    visit("calibration", "camera parameters estimated online, by both back ends", calibration);
+    visit("recovery", "detection of divergence and re-initialisation, shared by both back ends", recovery);
+    visit("gnss", "raw GNSS", gnss);
+    visit("fix", "position fixes", fix);
+  }
+  /// Lists every key with unit, range and reason.
   void Describe(ConfigVisitor& visitor);
   /// Relations between keys that no single range can state.
   [[nodiscard]] Status Validate() const;

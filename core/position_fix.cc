@@ -1,10 +1,7 @@
 #include "core/position_fix.h"
 
 #include <Eigen/Cholesky>
-#include <cmath>
 #include <string>
-
-#include "core/robust.h"
 
 namespace alidade {
 
@@ -17,8 +14,7 @@ void PositionFixModel::Evaluate(const NavState& state, Eigen::Vector3d* residual
   }
 }
 
-void FixMeasurement::Evaluate(const NavState& state, Eigen::Vector3d* residual,
-                              PositionFixModel::Jacobian* jacobian) const {
+void FixMeasurement::Evaluate(const NavState& state, Residual* residual, Jacobian* jacobian) const {
   model.Evaluate(state, residual, jacobian);
   *residual = (sqrt_information * *residual).eval();
   if (jacobian != nullptr) {
@@ -58,23 +54,11 @@ Result<FixMeasurement> MakeFixMeasurement(const FixConfig& config, const std::ve
   return MakeFixMeasurement(config, sensors[sensor].p_BA, fix);
 }
 
-double FixNis(const Eigen::Vector3d& residual, const PositionFixModel::Jacobian& jacobian,
-              const Matrix15d& covariance) {
-  const Eigen::Matrix3d innovation_covariance =
-      jacobian * covariance * jacobian.transpose() + Eigen::Matrix3d::Identity();
-  return residual.dot(innovation_covariance.llt().solve(residual));
-}
-
-FixGate::FixGate(const FixConfig& config)
-    : config_(config), threshold_(ChiSquareQuantile(PositionFixModel::kRows, config.gate_probability)) {}
-
-double FixGate::Weigh(double nis) {
-  if (nis <= threshold_) {
-    refused_in_a_row_ = 0;
-    return RobustWeight(config_.robust_kernel, config_.robust_scale_sigma, nis);
-  }
-  ++refused_in_a_row_;
-  return refused_in_a_row_ > config_.max_refused_run && std::isfinite(nis) ? threshold_ / nis : 0;
+MeasurementGate MakeFixGate(const FixConfig& config) {
+  return {PositionFixModel::kRows,
+          config.gate_probability,
+          config.max_refused_run,
+          {config.robust_kernel, config.robust_scale_sigma}};
 }
 
 }  // namespace alidade

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/fix_config.h"
+#include "core/measurement_gate.h"
 #include "core/navigation_state.h"
 #include "core/status.h"
 
@@ -51,11 +52,17 @@ struct PositionFixModel {
 
 /// PositionFixModel with its noise: what filter, smoother and batch use of a fix.
 struct FixMeasurement {
+  static constexpr int kRows = PositionFixModel::kRows;
+  using Residual = Eigen::Vector3d;
+  using Jacobian = PositionFixModel::Jacobian;
+
   PositionFixModel model;
   Eigen::Matrix3d sqrt_information = Eigen::Matrix3d::Identity();  ///< lower triangular
 
   /// Whitened.
-  void Evaluate(const NavState& state, Eigen::Vector3d* residual, PositionFixModel::Jacobian* jacobian) const;
+  void Evaluate(const NavState& state, Residual* residual, Jacobian* jacobian) const;
+  /// Multiplies the information by the square of `root`.
+  void ScaleSqrtInformation(double root) { sqrt_information *= root; }
 };
 
 /// The fix with the noise that the configuration assumes: covariance std_scale^2 C + std_floor_m^2 I. kInput:
@@ -68,29 +75,7 @@ struct FixMeasurement {
                                                         const std::vector<FixSensor>& sensors,
                                                         const PositionFix& fix);
 
-/// Normalised innovation squared of a whitened residual and its Jacobian, 3x15, over the errors that
-/// `covariance` is of.
-[[nodiscard]] double FixNis(const Eigen::Vector3d& residual, const PositionFixModel::Jacobian& jacobian,
-                            const Matrix15d& covariance);
-
-/// Gate and kernel of fixes in their order of time, shared by the back ends.
-///
-/// A fix inside the gate has its kernel's weight; one outside has none. When more than max_refused_run of
-/// them are refused in a row, the state is suspect and not the fixes: they are used, scaled down to the gate,
-/// until one is inside again.
-class FixGate {
- public:
-  explicit FixGate(const FixConfig& config);
-
-  /// The weight of a fix's information, in [0, 1]; 0: refused. `nis`: normalised innovation squared, 3
-  /// degrees of freedom.
-  double Weigh(double nis);
-  void Reset() { refused_in_a_row_ = 0; }
-
- private:
-  FixConfig config_;
-  double threshold_;
-  int refused_in_a_row_ = 0;
-};
+/// Gate and kernel of the fixes of one run.
+[[nodiscard]] MeasurementGate MakeFixGate(const FixConfig& config);
 
 }  // namespace alidade

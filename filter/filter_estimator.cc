@@ -24,7 +24,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone,
               state_.layout().size()),
       gnss_(config.gnss, rig.gnss),
-      fixes_(config.fix, rig.fixes),
+      measurements_(config),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
       correction_(state_.covariance().capacity()) {
@@ -39,7 +39,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(state_.Reset(initial));
   tracks_.Clear();
   gnss_.Reset();
-  fixes_.Reset();
+  measurements_.Reset();
   aligned_ = false;
   rest_.Clear();
   imu_.DropBefore(initial.stamp_ns);
@@ -54,7 +54,7 @@ void FilterEstimator::SetObserver(FilterObserver* observer) {
   observer_ = observer;
   state_.SetObserver(observer);
   gnss_.SetObserver(observer);
-  fixes_.SetObserver(observer);
+  measurements_.SetObserver(observer);
   update_.SetTracing(observer != nullptr);
 }
 

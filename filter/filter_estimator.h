@@ -10,8 +10,8 @@
 #include "core/robust.h"
 #include "filter/feature_update.h"
 #include "filter/filter_state.h"
-#include "filter/fix_update.h"
 #include "filter/gnss_update.h"
+#include "filter/measurement_update.h"
 #include "filter/slam_features.h"
 #include "filter/track_store.h"
 
@@ -28,7 +28,7 @@ class FilterEstimator : public Estimator {
   Status AddFrame(const TrackFrame& frame) override;
   Status Align(const GnssAlignment& alignment) override;
   Status AddGnss(const GnssEpoch& epoch) override;
-  Status AddFix(const PositionFix& fix) override;
+  Status AddMeasurement(const Measurement& measurement) override;
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return state_.Estimate(); }
@@ -83,14 +83,14 @@ class FilterEstimator : public Estimator {
   SlamFeatures slam_;
   TrackStore tracks_;
   GnssUpdate gnss_;
-  FixUpdate fixes_;
+  MeasurementUpdate measurements_;
   RestDetector rest_;
   ImuBuffer imu_;
   FrameStatistics statistics_;
   FilterObserver* observer_ = nullptr;
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
-  bool aligned_ = false;               ///< W is the frame of GNSS and fixes
+  bool aligned_ = false;               ///< W stands as Align turned it
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame

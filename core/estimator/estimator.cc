@@ -1,5 +1,7 @@
 #include "core/estimator/estimator.h"
 
+#include <string>
+
 namespace alidade {
 namespace {
 
@@ -17,8 +19,10 @@ Status Estimator::AddGnss(const GnssEpoch& /*epoch*/) {
   return NoGnss();
 }
 
-Status Estimator::AddFix(const PositionFix& /*fix*/) {
-  return Status::Config("fix.enabled: this back end takes no position fixes; expected false");
+Status Estimator::AddMeasurement(const Measurement& measurement) {
+  const Sensor sensor = SensorOf(measurement);
+  return Status::Config(std::string(ToString(sensor)) + ".enabled: this back end takes no " +
+                        PluralNameOf(sensor) + "; expected false");
 }
 
 Result<std::vector<FinalizedFrame>> Estimator::TakeFinalized(const std::atomic<bool>* /*stop*/) {

@@ -6,15 +6,23 @@
 
 #include "core/calibration.h"
 #include "core/clock_state.h"
+#include "core/estimator/measurement.h"
 #include "core/imu_sample.h"
 #include "core/navigation_state.h"
-#include "core/position_fix.h"
 #include "core/status.h"
 #include "core/track_frame.h"
 #include "gnss/alignment/alignment.h"
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade {
+
+/// What became of the measurements of one sensor since the frame before.
+struct SensorStatistics {
+  int used = 0;
+  int gated = 0;
+  double nis = 0;  ///< normalised innovation squared of the used ones
+  int nis_dof = 0;
+};
 
 /// What one frame did to an estimator: what was used, refused and why, and how well the innovations fit.
 struct FrameStatistics {
@@ -33,11 +41,8 @@ struct FrameStatistics {
   int nis_dof = 0;       ///< rows applied, vision's
   double gnss_nis = 0;   ///< the same of the epochs since the frame before
   int gnss_nis_dof = 0;
-  int fixes_used = 0;  ///< position fixes since the frame before
-  int fixes_gated = 0;
-  double fix_nis = 0;  ///< normalised innovation squared of the used ones
-  int fix_nis_dof = 0;
-  bool clock_jump = false;  ///< the receiver clock was set anew
+  PerSensor<SensorStatistics> sensors;  ///< of SensorEntries; IMU, camera and GNSS are counted above
+  bool clock_jump = false;              ///< the receiver clock was set anew
   double propagate_ms = 0;
   double update_ms = 0;
 };
@@ -72,16 +77,15 @@ class Estimator {
   virtual Status AddFrame(const TrackFrame& frame) = 0;
 
   /// Turns the local world into the ENU frame of `alignment`: states, covariance (with the alignment's own)
-  /// and what later frames refer to. Called once, before the first AddGnss or AddFix, at the time
-  /// of the state.
+  /// and what later frames refer to. Called once, before the first AddGnss or AddMeasurement, at
+  /// the time of the state.
   /// kConfig: the back end takes no GNSS.
   virtual Status Align(const GnssAlignment& alignment);
   /// Updates with an epoch; the same rules as AddFrame. A frame may follow at the same stamp or later.
   virtual Status AddGnss(const GnssEpoch& epoch);
-  /// Updates with a position of IMU time that stands in W as Align turned it; the same rules as AddGnss.
-  /// kInput also: a sensor that the rig does not have, or no covariance. kConfig: the back end takes no
-  /// position fixes.
-  virtual Status AddFix(const PositionFix& fix);
+  /// Updates with a measurement of IMU time that stands in W as Align turned it; the same rules as AddGnss.
+  /// kInput also: see Whiten. kConfig: the back end takes none of this sensor.
+  virtual Status AddMeasurement(const Measurement& measurement);
   /// Receiver clock after the last epoch; nothing before Align.
   [[nodiscard]] virtual std::optional<ClockState> LatestClock() const { return std::nullopt; }
   /// What became of the last epoch's satellites; null before Align.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/estimator/measurement.h"
 #include "core/rig_calibration.h"
 #include "core/track_frame.h"
 #include "gnss/model/gnss_epoch.h"
@@ -32,5 +33,11 @@ struct MeasurementLog {
   /// strictly increasing stamps.
   std::vector<PositionFix> fixes = {};
 };
+
+/// Copies the measurements of SensorEntries. `From`, `To`: MeasurementLog, or what has its fields.
+template <typename From, typename To>
+void CopyMeasurements(const From& from, To* to) {
+  ForEachSensorEntry([&](auto entry, Sensor) { entry.Measurements(*to) = entry.Measurements(from); });
+}
 
 }  // namespace alidade

@@ -55,9 +55,12 @@ RunResult LogPlayer::Play() {
   const double cpu_start = ThreadCpuSeconds();
   if (config_.gnss.enabled && log_.gnss == nullptr) {
     result_.align_report = "the sequence has no GNSS";
-  } else if (config_.fix.enabled && log_.rig.fixes.empty()) {
-    result_.align_report = "the sequence has no position fixes";
   }
+  ForEachSensorEntry([&](auto entry, Sensor) {
+    if (result_.align_report.empty() && entry.Config(config_).enabled && entry.Sensors(log_.rig).empty()) {
+      result_.align_report = std::string("the sequence has no ") + entry.kPluralName;
+    }
+  });
   if (camera_) {
     PlayFrames();
   } else {
@@ -101,7 +104,7 @@ void LogPlayer::PlayFrames() {
     const TimeNs imu_ns = session_.ImuTime(frame.stamp_ns);
     AddImuUntil(imu_ns + kImuAheadNs);
     AddEpochsUntil(imu_ns + kEpochsAheadNs);
-    AddFixesUntil(imu_ns + kImuAheadNs);
+    AddMeasurementsUntil(imu_ns + kImuAheadNs);
     session_.AddFrame(frame);
     session_.AdvanceTo(imu_ns);
     TakeEvents();
@@ -122,7 +125,7 @@ void LogPlayer::PlayEpochs() {
   while (next_epoch_ < total && result_.status.ok() && !result_.interrupted) {
     const TimeNs tag_ns = log_.gnss->epochs[next_epoch_].stamp_ns;
     AddEpoch(next_epoch_++);
-    AddFixesUntil(tag_ns + SecondsToNs(log_.rig.gnss.time_offset_s) + kImuAheadNs);
+    AddMeasurementsUntil(tag_ns + SecondsToNs(log_.rig.gnss.time_offset_s) + kImuAheadNs);
     AddImuUntil(tag_ns + SecondsToNs(log_.rig.gnss.time_offset_s));
     TakeEvents();
     if (options_.progress) {
@@ -131,7 +134,7 @@ void LogPlayer::PlayEpochs() {
     result_.interrupted = Stopped();
   }
   if (result_.status.ok() && !result_.interrupted) {
-    AddFixesUntil(std::numeric_limits<TimeNs>::max());
+    AddMeasurementsUntil(std::numeric_limits<TimeNs>::max());
     AddImuUntil(std::numeric_limits<TimeNs>::max());
     session_.Flush();
     TakeEvents();
@@ -155,15 +158,19 @@ void LogPlayer::AddEpoch(size_t index) {
   session_.AddGnss(std::shared_ptr<const ObservationEpoch>(log_.gnss, &log_.gnss->epochs[index]));
 }
 
-void LogPlayer::AddFixesUntil(TimeNs imu_ns) {
-  for (; config_.fix.enabled && next_fix_ < log_.fixes.size(); ++next_fix_) {
-    const PositionFix& fix = log_.fixes[next_fix_];
-    const FixSensor& sensor = log_.rig.fixes[static_cast<size_t>(fix.sensor)];
-    if (fix.stamp_ns + SecondsToNs(sensor.time_offset_s) >= imu_ns) {
-      return;
+void LogPlayer::AddMeasurementsUntil(TimeNs imu_ns) {
+  ForEachSensorEntry([&](auto entry, Sensor sensor) {
+    const auto& measurements = entry.Measurements(log_);
+    for (size_t& next = next_measurement_[sensor];
+         entry.Config(config_).enabled && next < measurements.size(); ++next) {
+      const auto& measurement = measurements[next];
+      const auto& sheet = entry.Sensors(log_.rig)[static_cast<size_t>(measurement.sensor)];
+      if (measurement.stamp_ns + SecondsToNs(sheet.time_offset_s) >= imu_ns) {
+        return;
+      }
+      session_.AddMeasurement(measurement);
     }
-    session_.AddFix(fix);
-  }
+  });
 }
 
 void LogPlayer::TakeEvents() {

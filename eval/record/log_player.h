@@ -30,8 +30,8 @@ class LogPlayer {
   void AddImuUntil(TimeNs stamp_ns);
   void AddEpochsUntil(TimeNs tag_ns);
   void AddEpoch(size_t index);
-  /// Position fixes with an IMU time before `imu_ns`.
-  void AddFixesUntil(TimeNs imu_ns);
+  /// What all of SensorEntries measured at an IMU time before `imu_ns`.
+  void AddMeasurementsUntil(TimeNs imu_ns);
   void TakeEvents();
   [[nodiscard]] bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
   /// What the status becomes when the log is at its end.
@@ -49,7 +49,7 @@ class LogPlayer {
   RunResult& result_;
   size_t next_imu_ = 0;
   size_t next_epoch_ = 0;
-  size_t next_fix_ = 0;
+  PerSensor<size_t> next_measurement_;
 };
 
 }  // namespace alidade

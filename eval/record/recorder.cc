@@ -11,6 +11,7 @@
 #include "eval/files/output_file.h"
 #include "eval/files/sha256.h"
 #include "eval/record/recorder_gnss.h"
+#include "eval/record/recorder_sensors.h"
 #include "eval/run/make_estimator.h"
 #include "eval/trajectory/trajectory_export.h"
 
@@ -103,22 +104,13 @@ std::string TimingText(const RunResult& result) {
   return text;
 }
 
-/// Names of the columns of position fixes behind the other columns of status.csv.
-constexpr const char* kFixColumns = ",fixes_used,fixes_gated,fix_nis,fix_nis_dof";
-
-std::string FixFields(const FrameStatistics& s) {
-  return "," + std::to_string(s.fixes_used) + "," + std::to_string(s.fixes_gated) + "," +
-         ShortestDouble(s.fix_nis) + "," + std::to_string(s.fix_nis_dof);
-}
-
-std::string StatusText(const RunResult& result, bool with_fixes) {
+std::string StatusText(const RunResult& result, const EstimatorConfig& config) {
   std::string text =
       "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
       "dof,"
       "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_nis_"
       "dof";
-  text += with_fixes ? kFixColumns : "";
-  text += '\n';
+  text += SensorColumns(config) + "\n";
   for (const RunRecord& record : result.records) {
     const FrameStatistics& s = record.statistics;
     text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
@@ -135,8 +127,7 @@ std::string StatusText(const RunResult& result, bool with_fixes) {
     std::replace_if(
         reason.begin(), reason.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
     text += "," + reason + "," + ShortestDouble(s.gnss_nis) + "," + std::to_string(s.gnss_nis_dof);
-    text += with_fixes ? FixFields(s) : "";
-    text += '\n';
+    text += SensorFields(config, s) + "\n";
   }
   return text;
 }
@@ -170,7 +161,7 @@ Json GnssJson(const RunIdentity& identity, const RunResult& result) {
     json = {{"aligned", HasGnss(result)},
             {"report", result.align_report},
             {"epochs_used", result.epochs_used},
-            {"epochs_skipped", result.epochs_skipped}};
+            {"epochs_skipped", result.skipped[Sensor::kGnss]}};
   }
   if (HasGnss(result)) {
     const GlobalFrame& global = *result.global;
@@ -185,20 +176,20 @@ Json GnssJson(const RunIdentity& identity, const RunResult& result) {
   return json;
 }
 
-/// How the run stood with position fixes.
-Json FixJson(const RunResult& result) {
+/// How the run stood with one of SensorEntries.
+Json SensorJson(const RunResult& result, Sensor sensor) {
   int used = 0;
   int gated = 0;
   for (const RunRecord& record : result.records) {
-    used += record.statistics.fixes_used;
-    gated += record.statistics.fixes_gated;
+    used += record.statistics.sensors[sensor].used;
+    gated += record.statistics.sensors[sensor].gated;
   }
   Json json = {{"aligned", result.global.has_value()},
                {"report", result.align_report},
                {"used", used},
                {"gated", gated},
-               {"skipped", result.fixes_skipped}};
-  if (result.global && result.global->source == GlobalFrame::Source::kFixes) {
+               {"skipped", result.skipped[sensor]}};
+  if (sensor == Sensor::kFix && result.global && result.global->source == GlobalFrame::Source::kFixes) {
     const GlobalFrame& global = *result.global;
     json["aligned_ns"] = global.stamp_ns;
     json["yaw_rad"] = global.yaw_rad;
@@ -253,9 +244,11 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   if (identity.config.gnss.enabled || HasGnss(result)) {
     json["gnss"] = GnssJson(identity, result);
   }
-  if (identity.config.fix.enabled) {
-    json["fix"] = FixJson(result);
-  }
+  ForEachSensorEntry([&](auto entry, Sensor sensor) {
+    if (entry.Config(config).enabled) {
+      json[entry.kKey] = SensorJson(result, sensor);
+    }
+  });
   json["config"] = ConfigToJson([&config](ConfigVisitor& visitor) { config.Describe(visitor); });
   json["times"] = {{"wall_s", result.wall_s}, {"cpu_s", result.cpu_s}};
   return json;
@@ -277,7 +270,7 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "states.csv").string(), StatesText(result)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "timing.csv").string(), TimingText(result)));
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically((path / "status.csv").string(), StatusText(result, identity.config.fix.enabled)));
+      WriteFileAtomically((path / "status.csv").string(), StatusText(result, identity.config)));
   if (identity.audited) {
     ALIDADE_RETURN_IF_ERROR(
         WriteFileAtomically((path / "observability.csv").string(), ObservabilityText(result)));

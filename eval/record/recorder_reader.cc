@@ -7,6 +7,7 @@
 
 #include "eval/files/csv.h"
 #include "eval/files/input_file.h"
+#include "eval/record/recorder_sensors.h"
 #include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
@@ -151,17 +152,20 @@ Status ReadStatusRow(const CsvReader& row, RunRecord* record) {
   return row.ReadReal(15, "gnss_nis", &s.gnss_nis);
 }
 
-/// With the columns of position fixes.
-Status ReadStatusRowWithFixes(const CsvReader& row, RunRecord* record) {
-  ALIDADE_RETURN_IF_ERROR(ReadStatusRow(row, record));
-  FrameStatistics& s = record->statistics;
-  const std::pair<size_t, int*> counts[] = {{17, &s.fixes_used}, {18, &s.fixes_gated}, {20, &s.fix_nis_dof}};
-  for (const auto& [column, count] : counts) {
-    std::int64_t value = 0;
-    ALIDADE_RETURN_IF_ERROR(row.ReadInt64(column, "count", &value));
-    *count = static_cast<int>(value);
-  }
-  return row.ReadReal(19, "fix_nis", &s.fix_nis);
+/// status.csv; it has columns for each of SensorEntries that `json` has an object of.
+Status ReadStatusTable(const std::string& folder, const Json& json, RunResult* result) {
+  constexpr size_t kOwnColumns = 17;
+  std::vector<Sensor> sensors;
+  ForEachSensorEntry([&](auto entry, Sensor sensor) {
+    if (json.contains(entry.kKey)) {
+      sensors.push_back(sensor);
+    }
+  });
+  return ReadRows(In(folder, "status.csv"), kOwnColumns + kColumnsPerSensor * sensors.size(), result,
+                  [&](const CsvReader& row, RunRecord* record) {
+                    ALIDADE_RETURN_IF_ERROR(ReadStatusRow(row, record));
+                    return ReadSensorFields(row, kOwnColumns, sensors, &record->statistics);
+                  });
 }
 
 Status ReadObservabilityRow(const CsvReader& row, RunRecord* record) {
@@ -245,7 +249,9 @@ Result<RunResult> ReadRun(const std::string& folder) {
   result.init_report = Get(initialization, "report", std::string());
   result.init_stamp_ns = Get(initialization, "stamp_ns", TimeNs{0});
   result.skip_report = Get(*json, "skip_report", std::string());
-  result.fixes_skipped = Get(Get(*json, "fix", Json::object()), "skipped", 0);
+  ForEachSensorEntry([&](auto entry, Sensor sensor) {
+    result.skipped[sensor] = Get(Get(*json, entry.kKey, Json::object()), "skipped", 0);
+  });
   const Json counts = Get(*json, "counts", Json::object());
   result.frames_skipped = Get(counts, "frames_skipped", 0);
   result.imu_rejected = Get(counts, "imu_rejected", 0);
@@ -267,9 +273,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
-  ALIDADE_RETURN_IF_ERROR(json->contains("fix")
-                              ? ReadRows(In(folder, "status.csv"), 21, &result, ReadStatusRowWithFixes)
-                              : ReadRows(In(folder, "status.csv"), 17, &result, ReadStatusRow));
+  ALIDADE_RETURN_IF_ERROR(ReadStatusTable(folder, *json, &result));
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
   }

@@ -10,10 +10,14 @@ void Add(const FrameStatistics& epoch, FrameStatistics* sum) {
   sum->satellites_gated += epoch.satellites_gated;
   sum->gnss_nis += epoch.gnss_nis;
   sum->gnss_nis_dof += epoch.gnss_nis_dof;
-  sum->fixes_used += epoch.fixes_used;
-  sum->fixes_gated += epoch.fixes_gated;
-  sum->fix_nis += epoch.fix_nis;
-  sum->fix_nis_dof += epoch.fix_nis_dof;
+  ForEachSensorEntry([&](auto, Sensor sensor) {
+    const SensorStatistics& counts = epoch.sensors[sensor];
+    SensorStatistics& total = sum->sensors[sensor];
+    total.used += counts.used;
+    total.gated += counts.gated;
+    total.nis += counts.nis;
+    total.nis_dof += counts.nis_dof;
+  });
   sum->clock_jump = sum->clock_jump || epoch.clock_jump;
   sum->propagate_ms += epoch.propagate_ms;
   sum->update_ms += epoch.update_ms;
@@ -136,13 +140,8 @@ void RunBuilder::On(const SkippedEvent& event) {
     case Sensor::kCamera:
       result_.skip_report = result_.frames_skipped++ == 0 ? event.reason : result_.skip_report;
       break;
-    case Sensor::kGnss:
-      if (result_.epochs_skipped++ == 0 && result_.skip_report.empty()) {
-        result_.skip_report = event.reason;
-      }
-      break;
-    case Sensor::kFix:
-      if (result_.fixes_skipped++ == 0 && result_.skip_report.empty()) {
+    default:
+      if (result_.skipped[event.sensor]++ == 0 && result_.skip_report.empty()) {
         result_.skip_report = event.reason;
       }
       break;

@@ -35,7 +35,7 @@ class RunBuilder {
 
   bool camera_;
   RunResult result_;
-  FrameStatistics epochs_;  ///< of the epochs and fixes since the last record
+  FrameStatistics epochs_;  ///< of the messages between frames since the last record
   bool lost_ = false;
   bool restarted_ = false;  ///< the next record is the first of a new start
   std::string refusal_;     ///< of the last attempt to start again

@@ -48,8 +48,7 @@ struct RunResult {
   std::optional<GlobalFrame> global;          ///< once aligned with GNSS or position fixes
   std::string align_report;                   ///< what the alignment found, or why it did not
   int epochs_used = 0;                        ///< GNSS epochs the estimator took
-  int epochs_skipped = 0;                     ///< refused by it
-  int fixes_skipped = 0;                      ///< position fixes that were refused, not gated
+  PerSensor<int> skipped;                     ///< epochs and measurements that were refused, not gated
   std::vector<GnssResiduals> gnss_residuals;  ///< of the used epochs
   std::vector<Restart> restarts;
   /// Of the last calibration, when the true one is known.

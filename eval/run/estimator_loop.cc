@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-/// What an epoch or a fix says of itself: what a smoother's solve says of vision is not theirs.
+/// What a message between frames says of itself: what a smoother's solve says of vision is not its own.
 FrameStatistics BetweenFrames(const FrameStatistics& all) {
   FrameStatistics epoch;
   epoch.satellites_used = all.satellites_used;
@@ -16,10 +16,7 @@ FrameStatistics BetweenFrames(const FrameStatistics& all) {
   epoch.gnss_nis = all.gnss_nis;
   epoch.gnss_nis_dof = all.gnss_nis_dof;
   epoch.clock_jump = all.clock_jump;
-  epoch.fixes_used = all.fixes_used;
-  epoch.fixes_gated = all.fixes_gated;
-  epoch.fix_nis = all.fix_nis;
-  epoch.fix_nis_dof = all.fix_nis_dof;
+  epoch.sensors = all.sensors;
   epoch.propagate_ms = all.propagate_ms;
   epoch.update_ms = all.update_ms;
   return epoch;
@@ -40,11 +37,22 @@ EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration
     initializer_ = std::make_unique<Initializer>(config, rig);
   }
   if (config.gnss.enabled && options.gnss) {
-    gnss_.emplace(config, rig, *options.gnss, estimator, events);
+    gnss_.emplace(config, rig, *options.gnss, options.lateness.gnss_s, estimator, events);
+    sensors_.push_back(&*gnss_);
   }
-  if (config.fix.enabled && !rig.fixes.empty()) {
-    fixes_.emplace(config, rig, gnss_.has_value(), estimator, events);
+  measurements_ = MakeMeasurementRuns(config, rig, options, gnss_.has_value(), estimator, events);
+  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
+    sensors_.push_back(run.get());
   }
+}
+
+MeasurementRun* EstimatorLoop::measurements(Sensor sensor) {
+  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
+    if (run->sensor() == sensor) {
+      return run.get();
+    }
+  }
+  return nullptr;
 }
 
 TimeNs EstimatorLoop::ImuTime(TimeNs camera_ns) const {
@@ -77,20 +85,11 @@ void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
 
 void EstimatorLoop::ProcessEpoch() {
   if (options_.camera) {
-    ProcessEpochWithCamera();
+    ProcessMessage(&*gnss_);
   } else {
     ProcessEpochAlone();
+    TrimImu();
   }
-  TrimImu();
-}
-
-void EstimatorLoop::ProcessEpochWithCamera() {
-  const Stopwatch stopwatch;
-  const TimeNs stamp_ns = gnss_->feed().Next()->stamp_ns;
-  if (gnss_->aligned()) {
-    DeliverImu(stamp_ns);
-  }
-  ReportTaken(Sensor::kGnss, gnss_->TakeEpoch(running()), stamp_ns, stopwatch);
 }
 
 void EstimatorLoop::ProcessEpochAlone() {
@@ -101,7 +100,7 @@ void EstimatorLoop::ProcessEpochAlone() {
     StartWithEpoch();
     return;
   }
-  const Result<bool> taken = gnss_->TakeEpoch(true);
+  const Result<bool> taken = gnss_->Take(true);
   if (!taken.ok()) {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
@@ -109,25 +108,21 @@ void EstimatorLoop::ProcessEpochAlone() {
   }
 }
 
-void EstimatorLoop::ProcessFix() {
+void EstimatorLoop::ProcessMessage(SensorRun* sensor) {
   const Stopwatch stopwatch;
-  const TimeNs stamp_ns = fixes_->feed().Next()->stamp_ns;
-  if (fixes_->aligned()) {
+  const TimeNs stamp_ns = *sensor->NextImuTime();
+  if (sensor->aligned()) {
     DeliverImu(stamp_ns);
   }
-  ReportTaken(Sensor::kFix, fixes_->TakeFix(running()), stamp_ns, stopwatch);
-  TrimImu();
-}
-
-void EstimatorLoop::ReportTaken(Sensor source, const Result<bool>& taken, TimeNs stamp_ns,
-                                const Stopwatch& stopwatch) {
+  const Result<bool> taken = sensor->Take(running());
   if (taken.code() == StatusCode::kDiverged) {
     GiveUp(estimator_.Latest().stamp_ns, taken.status());
   } else if (!taken.ok()) {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
-    ReportState(source, stamp_ns, 0, stopwatch);
+    ReportState(sensor->sensor(), stamp_ns, 0, stopwatch);
   }
+  TrimImu();
 }
 
 void EstimatorLoop::DeliverImu(TimeNs stamp_ns) {
@@ -172,14 +167,32 @@ void EstimatorLoop::AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch
 }
 
 Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_ns) {
-  if (!gnss_) {
-    return fixes_ ? fixes_->Align(stamp_ns) : Result<std::optional<GnssAlignment>>(std::nullopt);
+  if (gnss_) {
+    Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
+    if (alignment.ok() && *alignment) {
+      TellAligned(gnss_->enu(), nullptr);
+    }
+    return alignment;
   }
-  Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
-  if (fixes_ && alignment.ok() && *alignment) {
-    fixes_->AlignedByGnss(gnss_->enu());
+  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
+    Result<std::optional<GnssAlignment>> alignment = run->Align(stamp_ns);
+    if (!alignment.ok()) {
+      return alignment;
+    }
+    if (*alignment) {
+      TellAligned((*alignment)->enu, run.get());
+      return alignment;
+    }
   }
-  return alignment;
+  return std::optional<GnssAlignment>();
+}
+
+void EstimatorLoop::TellAligned(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
+  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
+    if (run.get() != by) {
+      run->AlignedByAnother(enu);
+    }
+  }
 }
 
 void EstimatorLoop::AlignAfterFrame(TimeNs stamp_ns) {

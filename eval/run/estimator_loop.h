@@ -6,28 +6,32 @@
 #include <vector>
 
 #include "core/stopwatch.h"
-#include "eval/run/fix_run.h"
 #include "eval/run/gnss_run.h"
 #include "eval/run/imu_stream.h"
+#include "eval/run/measurement_runs.h"
 #include "eval/run/recovery.h"
 #include "eval/run/session_options.h"
 
 namespace alidade {
 
 /// Drives one estimator over messages that come in the order of their IMU time: finds the first state, hands
-/// over IMU, frames, epochs and position fixes, judges the state, and after a loss finds a new start. Reports
-/// all of it as events.
+/// over IMU, frames, epochs and other measurements, judges the state, and after a loss finds a new start.
+/// Reports all of it as events.
 class EstimatorLoop {
  public:
   /// All must outlive the object.
   EstimatorLoop(const EstimatorConfig& config, const RigCalibration& rig, const SessionOptions& options,
                 Estimator* estimator, std::vector<SessionEvent>* events);
+  EstimatorLoop(const EstimatorLoop&) = delete;
+  EstimatorLoop& operator=(const EstimatorLoop&) = delete;
 
   [[nodiscard]] ImuStream& imu() { return imu_; }
   /// Null without GNSS.
-  [[nodiscard]] GnssFeed* epochs() { return gnss_ ? &gnss_->feed() : nullptr; }
-  /// Null without position fixes.
-  [[nodiscard]] FixFeed* fixes() { return fixes_ ? &fixes_->feed() : nullptr; }
+  [[nodiscard]] GnssRun* gnss() { return gnss_ ? &*gnss_ : nullptr; }
+  /// Of one of SensorEntries; null where it is not in use.
+  [[nodiscard]] MeasurementRun* measurements(Sensor sensor);
+  /// All that is in use: GNSS, then SensorEntries.
+  [[nodiscard]] const std::vector<SensorRun*>& sensors() const { return sensors_; }
 
   /// IMU time of a camera stamp, as far as the time offset is known now.
   [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const;
@@ -36,10 +40,10 @@ class EstimatorLoop {
 
   /// The IMU that there is reaches the message; what it lacks is the estimator's to refuse.
   void ProcessFrame(const TrackFrame& frame);
-  /// The next one of epochs().
+  /// The next one of gnss().
   void ProcessEpoch();
-  /// The next one of fixes().
-  void ProcessFix();
+  /// The next message of one of sensors(), which has one.
+  void ProcessMessage(SensorRun* sensor);
   /// No message before `now_ns` will come: an estimate that is too old is given up, and IMU samples that no
   /// start will look back to are let go.
   void PassTime(TimeNs now_ns);
@@ -53,7 +57,6 @@ class EstimatorLoop {
  private:
   enum class Phase { kSeeking, kRunning, kLost, kFailed };
 
-  void ProcessEpochWithCamera();
   void ProcessEpochAlone();
   /// Samples up to the first one at or after `stamp_ns`.
   void DeliverImu(TimeNs stamp_ns);
@@ -67,8 +70,8 @@ class EstimatorLoop {
   void AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch);
   void AlignAfterFrame(TimeNs stamp_ns);
   Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
-  /// The state after an epoch or a fix with a camera, if the estimator took it, or why it is lost.
-  void ReportTaken(Sensor source, const Result<bool>& taken, TimeNs stamp_ns, const Stopwatch& stopwatch);
+  /// Tells the measurements of sensors other than `by`, which aligned the run; null: GNSS did.
+  void TellAligned(const std::optional<EnuFrame>& enu, const MeasurementRun* by);
   void ReportState(Sensor source, TimeNs message_ns, double frontend_ms, const Stopwatch& stopwatch);
   void GiveUp(TimeNs stamp_ns, const Status& status);
   void Fail(TimeNs stamp_ns, Status status);
@@ -83,7 +86,8 @@ class EstimatorLoop {
   std::unique_ptr<Initializer> initializer_;  ///< until the first start
   Recovery recovery_;
   std::optional<GnssRun> gnss_;
-  std::optional<FixRun> fixes_;
+  std::vector<std::unique_ptr<MeasurementRun>> measurements_;
+  std::vector<SensorRun*> sensors_;  ///< of the two above
   Phase phase_ = Phase::kSeeking;
   Eigen::Vector3d gyro_radps_ = Eigen::Vector3d::Zero();  ///< of the last delivered sample
   TimeNs state_ns_ = 0;                                   ///< of the newest state

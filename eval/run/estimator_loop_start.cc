@@ -49,7 +49,10 @@ void EstimatorLoop::TryRestart(const TrackFrame& frame) {
   }
   events_.emplace_back(RestartedEvent{recovery_.lost_ns(), *start, recovery_.method(), recovery_.report()});
   recovery_.Started(*start);
-  Status status = gnss_ ? gnss_->Realign() : fixes_ ? fixes_->Realign() : Status::Ok();
+  Status status = gnss_ ? gnss_->Realign() : Status::Ok();
+  for (size_t i = 0; i < measurements_.size() && status.ok(); ++i) {
+    status = measurements_[i]->Realign();
+  }
   if (!status.ok()) {
     Fail(start->stamp_ns, std::move(status));
   }
@@ -68,8 +71,8 @@ void EstimatorLoop::StartWithEpoch() {
   events_.emplace_back(StartedEvent{start->estimate, "gnss", gnss_->start_report()});
   if (Status status = gnss_->AlignAtStart(*start); !status.ok()) {
     Fail(start->estimate.stamp_ns, std::move(status));
-  } else if (fixes_) {
-    fixes_->AlignedByGnss(gnss_->enu());
+  } else {
+    TellAligned(gnss_->enu(), nullptr);
   }
 }
 

@@ -3,17 +3,55 @@
 #include <cmath>
 #include <utility>
 
+#include "core/format.h"
+
 namespace alidade {
 
-FixRun::FixRun(const EstimatorConfig& config, const RigCalibration& rig, bool with_gnss, Estimator* estimator,
-               std::vector<SessionEvent>* events)
-    : estimator_(*estimator),
-      events_(*events),
+FixRun::FixRun(const EstimatorConfig& config, const RigCalibration& rig, double lateness_s, bool with_gnss,
+               Estimator* estimator, std::vector<SessionEvent>* events)
+    : MeasurementRun(Sensor::kFix, lateness_s, events),
+      estimator_(*estimator),
       feed_(rig, with_gnss),
       aligner_(config.fix, rig.fixes, feed_.enu()),
       with_gnss_(with_gnss) {}
 
-Result<bool> FixRun::TakeFix(bool running) {
+bool FixRun::Add(const Measurement& measurement, TimeNs processed_ns) {
+  const auto& fix = std::get<PositionFix>(measurement);
+  if (feed_.HasSensor(fix.sensor) && feed_.ImuTime(fix) < processed_ns) {
+    RefuseLate(fix.stamp_ns, processed_ns - feed_.ImuTime(fix));
+    return false;
+  }
+  switch (feed_.Add(fix)) {
+    case FixFeed::Arrival::kNoSensor:
+      Skip(fix.stamp_ns, Format("the rig has no fix sensor %d", fix.sensor));
+      return false;
+    case FixFeed::Arrival::kUnrelated:
+      Skip(fix.stamp_ns, Format("the frame of fix sensor %d is not related to that of the run", fix.sensor));
+      return false;
+    case FixFeed::Arrival::kTwice:
+      Skip(fix.stamp_ns, "there is one with this stamp already");
+      return false;
+    case FixFeed::Arrival::kTooLate:
+      RefuseLate(fix.stamp_ns, feed_.last_ns() - feed_.ImuTime(fix));
+      return false;
+    case FixFeed::Arrival::kTaken:
+      break;
+  }
+  return true;
+}
+
+std::optional<TimeNs> FixRun::NextImuTime() {
+  const PositionFix* fix = feed_.Next();
+  return fix != nullptr ? std::optional(fix->stamp_ns) : std::nullopt;
+}
+
+void FixRun::SkipNext() {
+  const TimeNs stamp_ns = feed_.next_stamp_ns();
+  feed_.Pop();
+  Skip(stamp_ns, Format("the IMU does not reach it, and %zu fixes wait", feed_.size()));
+}
+
+Result<bool> FixRun::Take(bool running) {
   const PositionFix fix = *feed_.Next();
   const TimeNs stamp_ns = feed_.next_stamp_ns();
   feed_.Pop();
@@ -24,12 +62,12 @@ Result<bool> FixRun::TakeFix(bool running) {
     return false;
   }
   if (!running) {
-    events_.emplace_back(SkippedEvent{Sensor::kFix, stamp_ns, "the estimate is lost"});
+    Skip(stamp_ns, "the estimate is lost");
     return false;
   }
-  const Status status = estimator_.AddFix(fix);
+  const Status status = estimator_.AddMeasurement(fix);
   if (status.code() == StatusCode::kInput) {
-    events_.emplace_back(SkippedEvent{Sensor::kFix, stamp_ns, status.message()});
+    Skip(stamp_ns, status.message());
     return false;
   }
   return status.ok() ? Result<bool>(true) : status;
@@ -46,7 +84,7 @@ Result<std::optional<GnssAlignment>> FixRun::Align(TimeNs stamp_ns) {
   if (!alignment) {
     if (aligner_.report() != waiting_for_) {
       waiting_for_ = aligner_.report();
-      events_.emplace_back(WaitingEvent{Sought::kAlignment, stamp_ns, waiting_for_});
+      events().emplace_back(WaitingEvent{Sought::kAlignment, stamp_ns, waiting_for_});
     }
     return alignment;
   }
@@ -61,12 +99,14 @@ Result<std::optional<GnssAlignment>> FixRun::Align(TimeNs stamp_ns) {
   event.global.yaw_std_rad = std::sqrt(alignment->covariance(0, 0));
   event.alignment = *alignment;
   event.estimate = estimator_.Latest();
-  events_.emplace_back(std::move(event));
+  events().emplace_back(std::move(event));
   return alignment;
 }
 
-void FixRun::AlignedByGnss(const EnuFrame& enu) {
-  feed_.SetFrame(enu);
+void FixRun::AlignedByAnother(const std::optional<EnuFrame>& enu) {
+  if (enu) {
+    feed_.SetFrame(*enu);
+  }
   aligned_ = true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,38 +9,32 @@
 #include "core/estimator_config.h"
 #include "core/rig_calibration.h"
 #include "eval/run/fix_feed.h"
-#include "eval/run/session_event.h"
+#include "eval/run/sensor_run.h"
 #include "gnss/alignment/fix_aligner.h"
 
 namespace alidade {
 
 /// What a session does with its position fixes: before the alignment they go to the aligner, after it to the
-/// estimator. Where raw GNSS is in use it aligns the run, and fixes before that are not used. Statuses it
-/// returns mean that the estimator is lost (kDiverged) or takes no fixes (kConfig).
-class FixRun {
+/// estimator. Where raw GNSS is in use it aligns the run, and fixes before that are not used.
+class FixRun final : public MeasurementRun {
  public:
   /// All must outlive the object. `with_gnss`: raw GNSS is in use too.
-  FixRun(const EstimatorConfig& config, const RigCalibration& rig, bool with_gnss, Estimator* estimator,
-         std::vector<SessionEvent>* events);
+  FixRun(const EstimatorConfig& config, const RigCalibration& rig, double lateness_s, bool with_gnss,
+         Estimator* estimator, std::vector<SessionEvent>* events);
 
-  [[nodiscard]] FixFeed& feed() { return feed_; }
-  [[nodiscard]] bool aligned() const { return aligned_; }
-
-  /// The next fix of feed(); `running`: there is an estimate. The IMU reaches the fix when the run is
-  /// aligned. True when the estimator took it.
-  Result<bool> TakeFix(bool running);
-  /// A frame was taken at `stamp_ns`. Hands the aligner the state there, and the estimator the alignment as
-  /// soon as there is one, which is then returned. Nothing to do where raw GNSS aligns.
-  Result<std::optional<GnssAlignment>> Align(TimeNs stamp_ns);
-  /// Raw GNSS has aligned the run.
-  void AlignedByGnss(const EnuFrame& enu);
-  /// The estimator has begun anew with a state that stands in the frame of the fixes already. Nothing to do
-  /// where raw GNSS aligns.
-  Status Realign();
+  [[nodiscard]] std::optional<TimeNs> NextImuTime() override;
+  [[nodiscard]] std::size_t waiting() const override { return feed_.size(); }
+  void SkipNext() override;
+  [[nodiscard]] bool aligned() const override { return aligned_; }
+  Result<bool> Take(bool running) override;
+  bool Add(const Measurement& measurement, TimeNs processed_ns) override;
+  /// Hands the aligner the state too. Nothing to do where raw GNSS aligns.
+  Result<std::optional<GnssAlignment>> Align(TimeNs stamp_ns) override;
+  void AlignedByAnother(const std::optional<EnuFrame>& enu) override;
+  Status Realign() override;
 
  private:
   Estimator& estimator_;
-  std::vector<SessionEvent>& events_;
   FixFeed feed_;
   FixAligner aligner_;
   const bool with_gnss_;

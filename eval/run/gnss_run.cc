@@ -3,18 +3,51 @@
 #include <cmath>
 #include <utility>
 
+#include "core/format.h"
+
 namespace alidade {
 
 GnssRun::GnssRun(const EstimatorConfig& config, const RigCalibration& rig, const GnssSetup& setup,
-                 Estimator* estimator, std::vector<SessionEvent>* events)
-    : receiver_(rig.gnss),
+                 double lateness_s, Estimator* estimator, std::vector<SessionEvent>* events)
+    : SensorRun(Sensor::kGnss, lateness_s, events),
+      receiver_(rig.gnss),
       estimator_(*estimator),
-      events_(*events),
       feed_(config.gnss, setup, rig.gnss.time_offset_s),
       aligner_(config.gnss, rig.gnss),
       start_(config, rig) {}
 
-Result<bool> GnssRun::TakeEpoch(bool running) {
+bool GnssRun::Add(std::shared_ptr<const ObservationEpoch> epoch, TimeNs processed_ns) {
+  const TimeNs tag_ns = epoch->stamp_ns;
+  const TimeNs expected_ns = feed_.ExpectedStamp(tag_ns).value_or(INT64_MAX);
+  if (expected_ns < processed_ns) {
+    RefuseLate(tag_ns, processed_ns - expected_ns);
+    return false;
+  }
+  switch (feed_.Add(std::move(epoch))) {
+    case GnssFeed::Arrival::kTwice:
+      Skip(tag_ns, "there is one with this tag already");
+      return false;
+    case GnssFeed::Arrival::kTooLate:
+      RefuseLate(tag_ns, feed_.last_tag_ns() - tag_ns);
+      return false;
+    case GnssFeed::Arrival::kTaken:
+      break;
+  }
+  return true;
+}
+
+std::optional<TimeNs> GnssRun::NextImuTime() {
+  const GnssEpoch* epoch = feed_.Next();
+  return epoch != nullptr ? std::optional(epoch->stamp_ns) : std::nullopt;
+}
+
+void GnssRun::SkipNext() {
+  const TimeNs tag_ns = feed_.Next()->measurements.tag_ns;
+  feed_.Pop();
+  Skip(tag_ns, Format("the IMU does not reach it, and %zu epochs wait", feed_.size()));
+}
+
+Result<bool> GnssRun::Take(bool running) {
   const GnssEpoch& epoch = *feed_.Next();
   const TimeNs tag_ns = epoch.measurements.tag_ns;
   Status status;
@@ -26,9 +59,9 @@ Result<bool> GnssRun::TakeEpoch(bool running) {
   const bool taken = aligned() && running && status.ok();
   feed_.Pop();
   if (aligned() && !running) {
-    events_.emplace_back(SkippedEvent{Sensor::kGnss, tag_ns, "the estimate is lost"});
+    Skip(tag_ns, "the estimate is lost");
   } else if (status.code() == StatusCode::kInput) {
-    events_.emplace_back(SkippedEvent{Sensor::kGnss, tag_ns, status.message()});
+    Skip(tag_ns, status.message());
   } else if (!status.ok()) {
     return status;
   }
@@ -42,7 +75,7 @@ void GnssRun::CollectResiduals() {
   const GnssResiduals* residuals = estimator_.last_gnss();
   if (residuals != nullptr && !residuals->satellites.empty() && residuals_ns_ < residuals->stamp_ns) {
     residuals_ns_ = residuals->stamp_ns;
-    events_.emplace_back(SatellitesEvent{*residuals});
+    events().emplace_back(SatellitesEvent{*residuals});
   }
 }
 
@@ -75,7 +108,7 @@ Result<std::optional<GnssAlignment>> GnssRun::Align(TimeNs stamp_ns, const Eigen
 void GnssRun::ReportWaiting(TimeNs stamp_ns) {
   if (aligner_.report() != waiting_for_) {
     waiting_for_ = aligner_.report();
-    events_.emplace_back(WaitingEvent{Sought::kAlignment, stamp_ns, waiting_for_});
+    events().emplace_back(WaitingEvent{Sought::kAlignment, stamp_ns, waiting_for_});
   }
 }
 
@@ -89,7 +122,7 @@ void GnssRun::ReportAligned(const GnssAlignment& alignment, TimeNs stamp_ns, dou
   event.estimate = estimator_.Latest();
   event.clock = estimator_.LatestClock();
   Remember(event.estimate.stamp_ns, event.clock);
-  events_.emplace_back(std::move(event));
+  events().emplace_back(std::move(event));
 }
 
 Status GnssRun::Realign() {

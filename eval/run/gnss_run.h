@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,29 +9,31 @@
 #include "core/estimator/estimator.h"
 #include "core/rig_calibration.h"
 #include "eval/run/gnss_feed.h"
-#include "eval/run/session_event.h"
+#include "eval/run/sensor_run.h"
 #include "gnss/alignment/alignment.h"
 #include "gnss/alignment/inertial_start.h"
 
 namespace alidade {
 
 /// What a session does with its epochs: before the alignment they go to the aligner (or, without a camera, to
-/// the start), after it to the estimator. Statuses it returns mean that the estimator is lost (kDiverged) or
-/// takes no GNSS.
-class GnssRun {
+/// the start), after it to the estimator.
+class GnssRun final : public SensorRun {
  public:
   /// All but `setup` must outlive the object.
-  GnssRun(const EstimatorConfig& config, const RigCalibration& rig, const GnssSetup& setup,
+  GnssRun(const EstimatorConfig& config, const RigCalibration& rig, const GnssSetup& setup, double lateness_s,
           Estimator* estimator, std::vector<SessionEvent>* events);
 
   [[nodiscard]] GnssFeed& feed() { return feed_; }
-  [[nodiscard]] bool aligned() const { return alignment_.has_value(); }
   /// Precondition: aligned.
   [[nodiscard]] const EnuFrame& enu() const { return *alignment_->enu; }
 
-  /// The next epoch; `running`: there is an estimate. The IMU reaches the epoch when the run is aligned. True
-  /// when the estimator took it.
-  Result<bool> TakeEpoch(bool running);
+  /// Takes an epoch in; see MeasurementRun::Add.
+  bool Add(std::shared_ptr<const ObservationEpoch> epoch, TimeNs processed_ns);
+  [[nodiscard]] std::optional<TimeNs> NextImuTime() override;
+  [[nodiscard]] std::size_t waiting() const override { return feed_.size(); }
+  void SkipNext() override;
+  [[nodiscard]] bool aligned() const override { return alignment_.has_value(); }
+  Result<bool> Take(bool running) override;
   /// A frame was taken at `stamp_ns`. Hands the aligner the state there, and the estimator the alignment as
   /// soon as there is one, which is then returned. `gyro_radps`: of that time.
   Result<std::optional<GnssAlignment>> Align(TimeNs stamp_ns, const Eigen::Vector3d& gyro_radps);
@@ -54,7 +58,6 @@ class GnssRun {
 
   GnssReceiver receiver_;
   Estimator& estimator_;
-  std::vector<SessionEvent>& events_;
   GnssFeed feed_;
   GnssAligner aligner_;
   GnssInertialStart start_;

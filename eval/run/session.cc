@@ -91,79 +91,40 @@ void Session::AddGnss(ObservationEpoch epoch) {
 }
 
 void Session::AddGnss(std::shared_ptr<const ObservationEpoch> epoch) {
-  if (failed()) {
-    return;
-  }
-  const TimeNs tag_ns = epoch->stamp_ns;
-  GnssFeed* feed = loop_.epochs();
-  if (feed == nullptr) {
-    Skip(Sensor::kGnss, tag_ns, "the session is one without GNSS");
-    return;
-  }
-  const TimeNs expected_ns = feed->ExpectedStamp(tag_ns).value_or(INT64_MAX);
-  if (expected_ns < processed_ns_) {
-    RefuseLate(Sensor::kGnss, tag_ns, processed_ns_ - expected_ns);
-    return;
-  }
-  switch (feed->Add(std::move(epoch))) {
-    case GnssFeed::Arrival::kTwice:
-      Skip(Sensor::kGnss, tag_ns, "there is one with this tag already");
-      return;
-    case GnssFeed::Arrival::kTooLate:
-      RefuseLate(Sensor::kGnss, tag_ns, feed->last_tag_ns() - tag_ns);
-      return;
-    case GnssFeed::Arrival::kTaken:
-      break;
-  }
-  Process();
-  if (feed->size() > options_.max_waiting) {
-    const TimeNs oldest_ns = feed->Next()->measurements.tag_ns;
-    feed->Pop();
-    Skip(Sensor::kGnss, oldest_ns, Format("the IMU does not reach it, and %zu epochs wait", feed->size()));
+  GnssRun* run = loop_.gnss();
+  if (run == nullptr) {
+    SkipUnused(Sensor::kGnss, epoch->stamp_ns, "GNSS");
+  } else if (!failed() && run->Add(std::move(epoch), processed_ns_)) {
+    ProcessAfter(run);
   }
 }
 
-void Session::AddFix(const PositionFix& fix) {
-  if (failed()) {
-    return;
+void Session::AddMeasurement(const Measurement& measurement) {
+  const Sensor sensor = SensorOf(measurement);
+  MeasurementRun* run = loop_.measurements(sensor);
+  if (run == nullptr) {
+    SkipUnused(sensor, StampOf(measurement), PluralNameOf(sensor));
+  } else if (!failed() && run->Add(measurement, processed_ns_)) {
+    ProcessAfter(run);
   }
-  FixFeed* feed = loop_.fixes();
-  if (feed == nullptr) {
-    Skip(Sensor::kFix, fix.stamp_ns, "the session is one without position fixes");
-    return;
+}
+
+void Session::SkipUnused(Sensor sensor, TimeNs stamp_ns, const char* name) {
+  if (!failed()) {
+    Skip(sensor, stamp_ns, std::string("the session is one without ") + name);
   }
-  if (feed->HasSensor(fix.sensor) && feed->ImuTime(fix) < processed_ns_) {
-    RefuseLate(Sensor::kFix, fix.stamp_ns, processed_ns_ - feed->ImuTime(fix));
-    return;
-  }
-  switch (feed->Add(fix)) {
-    case FixFeed::Arrival::kNoSensor:
-      Skip(Sensor::kFix, fix.stamp_ns, Format("the rig has no fix sensor %d", fix.sensor));
-      return;
-    case FixFeed::Arrival::kUnrelated:
-      Skip(Sensor::kFix, fix.stamp_ns,
-           Format("the frame of fix sensor %d is not related to that of the run", fix.sensor));
-      return;
-    case FixFeed::Arrival::kTwice:
-      Skip(Sensor::kFix, fix.stamp_ns, "there is one with this stamp already");
-      return;
-    case FixFeed::Arrival::kTooLate:
-      RefuseLate(Sensor::kFix, fix.stamp_ns, feed->last_ns() - feed->ImuTime(fix));
-      return;
-    case FixFeed::Arrival::kTaken:
-      break;
-  }
+}
+
+void Session::ProcessAfter(SensorRun* arrival) {
   Process();
-  if (feed->size() > options_.max_waiting) {
-    const TimeNs oldest_ns = feed->next_stamp_ns();
-    feed->Pop();
-    Skip(Sensor::kFix, oldest_ns, Format("the IMU does not reach it, and %zu fixes wait", feed->size()));
+  if (arrival->waiting() > options_.max_waiting) {
+    arrival->SkipNext();
   }
 }
 
 void Session::AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCatalog> catalog) {
-  if (GnssFeed* feed = loop_.epochs()) {
-    feed->AddCatalog(from_tag_ns, std::move(catalog));
+  if (GnssRun* run = loop_.gnss()) {
+    run->feed().AddCatalog(from_tag_ns, std::move(catalog));
   }
 }
 
@@ -177,10 +138,11 @@ TimeNs Session::Watermark() {
   if (!options_.live || newest_ns == INT64_MIN) {
     return advanced_ns_;
   }
-  const double camera_s = options_.camera ? options_.lateness.camera_s : 0;
-  const double gnss_s = loop_.epochs() != nullptr ? options_.lateness.gnss_s : 0;
-  const double fix_s = loop_.fixes() != nullptr ? options_.lateness.fix_s : 0;
-  return std::max(advanced_ns_, newest_ns - SecondsToNs(std::max({camera_s, gnss_s, fix_s})));
+  double lateness_s = options_.camera ? options_.lateness.camera_s : 0;
+  for (const SensorRun* sensor : loop_.sensors()) {
+    lateness_s = std::max(lateness_s, sensor->lateness_s());
+  }
+  return std::max(advanced_ns_, newest_ns - SecondsToNs(lateness_s));
 }
 
 Session::Due Session::NextDue() {
@@ -188,28 +150,23 @@ Session::Due Session::NextDue() {
   if (!frames_.empty()) {
     due.imu_ns = frames_.begin()->first + frame_offset_ns_;
   }
-  GnssFeed* feed = loop_.epochs();
-  if (const GnssEpoch* epoch = feed != nullptr ? feed->Next() : nullptr) {
-    if (epoch->stamp_ns < due.imu_ns) {
-      due = {Sensor::kGnss, epoch->stamp_ns};
-    }
-  }
-  FixFeed* fixes = loop_.fixes();
-  if (const PositionFix* fix = fixes != nullptr ? fixes->Next() : nullptr) {
-    if (fix->stamp_ns < due.imu_ns) {
-      due = {Sensor::kFix, fix->stamp_ns};
+  for (SensorRun* sensor : loop_.sensors()) {
+    const std::optional<TimeNs> imu_ns = sensor->NextImuTime();
+    if (imu_ns && *imu_ns < due.imu_ns) {
+      due = {sensor, *imu_ns};
     }
   }
   return due;
 }
 
 bool Session::IsReady(const Due& due) {
-  const bool is_frame = due.sensor == Sensor::kCamera;
+  const bool is_frame = due.sensor == nullptr;
   if (is_frame && frames_.empty()) {
     return false;
   }
-  const TimeNs needed_ns = due.imu_ns + (due.sensor == Sensor::kGnss ? loop_.EpochLead() : 0);
-  // Another message of the same time would be an epoch or a fix: it comes after the frame.
+  const bool is_epoch = !is_frame && due.sensor->sensor() == Sensor::kGnss;
+  const TimeNs needed_ns = due.imu_ns + (is_epoch ? loop_.EpochLead() : 0);
+  // Another message of the same time would be of another sensor: it comes after the frame.
   const auto passed = [&](TimeNs watermark) {
     return is_frame ? needed_ns <= watermark : needed_ns < watermark;
   };
@@ -237,13 +194,13 @@ void Session::Process() {
   }
 }
 
-void Session::ProcessNext(Sensor sensor) {
-  if (sensor == Sensor::kCamera) {
+void Session::ProcessNext(SensorRun* sensor) {
+  if (sensor == nullptr) {
     ProcessNextFrame();
-  } else if (sensor == Sensor::kGnss) {
+  } else if (sensor->sensor() == Sensor::kGnss) {
     ProcessNextEpoch();
   } else {
-    loop_.ProcessFix();
+    loop_.ProcessMessage(sensor);
   }
 }
 
@@ -285,10 +242,11 @@ Result<NewestState> Session::Newest() {
 }
 
 size_t Session::held() {
-  const GnssFeed* feed = loop_.epochs();
-  const FixFeed* fixes = loop_.fixes();
-  return loop_.imu().size() + frames_.size() + (feed != nullptr ? feed->size() : 0) +
-         (fixes != nullptr ? fixes->size() : 0) + events_.size();
+  size_t count = loop_.imu().size() + frames_.size() + events_.size();
+  for (const SensorRun* sensor : loop_.sensors()) {
+    count += sensor->waiting();
+  }
+  return count;
 }
 
 void Session::Skip(Sensor sensor, TimeNs stamp_ns, std::string reason) {

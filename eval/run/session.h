@@ -22,11 +22,11 @@ struct NewestState {
 ///
 /// Messages of each sensor and between sensors may come in any order within SessionOptions::lateness; they
 /// are processed in the order of their IMU time (camera stamp + time offset; receiver's tag - receiver clock
-/// + offset; fix's stamp + its sensor's offset), a frame before an epoch before a fix of the same time. In
-/// time means: when the message is added, the newest IMU stamp is less than the sensor's lateness ahead of
-/// its IMU time. The same messages in whatever order in time give the same estimates, bit by bit. A later one
-/// is used while nothing newer was processed, else refused with a TooLateEvent. Stamps of a sensor are
-/// unique: a second message of one stamp is skipped.
+/// + offset; another measurement's stamp + its sensor's offset), those of the same time in the order of
+/// frame, epoch and SensorEntries. In time means: when the message is added, the newest IMU stamp is less
+/// than the sensor's lateness ahead of its IMU time. The same messages in whatever order in time give the
+/// same estimates, bit by bit. A later one is used while nothing newer was processed, else refused with a
+/// TooLateEvent. Stamps of a sensor are unique: a second message of one stamp is skipped.
 ///
 /// The session starts by itself (init.method), judges its estimate, seeks a new start when it is lost, and
 /// aligns with GNSS or position fixes. A bad message is reported as skipped; nothing of it aborts. Memory is
@@ -51,7 +51,9 @@ class Session {
   void AddGnss(ObservationEpoch epoch);
   void AddGnss(std::shared_ptr<const ObservationEpoch> epoch);
   /// A position fix (core/position_fix.h); stamp and frame of its sensor.
-  void AddFix(const PositionFix& fix);
+  void AddFix(const PositionFix& fix) { AddMeasurement(fix); }
+  /// A measurement of any of SensorEntries (core/estimator/measurement.h), likewise.
+  void AddMeasurement(const Measurement& measurement);
   /// Ephemerides for the epochs with tags from `from_tag_ns` on; the newest such catalog is the one in use.
   /// To be added before those epochs.
   void AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCatalog> catalog);
@@ -72,22 +74,26 @@ class Session {
   [[nodiscard]] bool running() const { return loop_.running(); }
   /// After a FailedEvent; messages are then ignored.
   [[nodiscard]] bool failed() const { return loop_.failed(); }
-  /// Samples, frames, epochs and fixes that are held.
+  /// Samples, frames, epochs and other measurements that are held.
   [[nodiscard]] size_t held();
 
  private:
   /// A message whose turn it is.
   struct Due {
-    Sensor sensor = Sensor::kCamera;
+    SensorRun* sensor = nullptr;  ///< null: a frame
     TimeNs imu_ns = INT64_MAX;
   };
 
   void Process();
+  /// A message of this sensor has been taken in.
+  void ProcessAfter(SensorRun* arrival);
+  /// A message of a sensor that the session is without.
+  void SkipUnused(Sensor sensor, TimeNs stamp_ns, const char* name);
   [[nodiscard]] Due NextDue();
   [[nodiscard]] bool IsReady(const Due& due);
   /// No message before this IMU time is awaited.
   [[nodiscard]] TimeNs Watermark();
-  void ProcessNext(Sensor sensor);
+  void ProcessNext(SensorRun* sensor);
   void ProcessNextFrame();
   void ProcessNextEpoch();
   void Skip(Sensor sensor, TimeNs stamp_ns, std::string reason);

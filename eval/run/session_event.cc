@@ -51,20 +51,6 @@ struct Describer {
 
 }  // namespace
 
-std::string_view ToString(Sensor sensor) {
-  switch (sensor) {
-    case Sensor::kImu:
-      return "imu";
-    case Sensor::kCamera:
-      return "camera";
-    case Sensor::kGnss:
-      return "gnss";
-    case Sensor::kFix:
-      break;
-  }
-  return "fix";
-}
-
 std::string Describe(const SessionEvent& event) {
   return std::visit(Describer(), event);
 }

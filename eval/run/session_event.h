@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 
 #include "core/estimator/estimator.h"
@@ -10,11 +9,6 @@
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade {
-
-/// Who sent a message.
-enum class Sensor { kImu, kCamera, kGnss, kFix };
-/// imu | camera | gnss | fix
-[[nodiscard]] std::string_view ToString(Sensor sensor);
 
 // What a Session reports. Stamps of messages are those of their sensor: camera time, receiver's tag. Stamps
 // of estimates are IMU time.
@@ -26,14 +20,14 @@ struct StartedEvent {
   std::string report;  ///< the figures that let it pass
 };
 
-/// The state after a frame, an epoch or a position fix that the estimator took.
+/// The state after a frame, an epoch or another measurement that the estimator took.
 struct StateEvent {
   Sensor source = Sensor::kCamera;
-  TimeNs message_ns = 0;  ///< stamp of the frame; IMU time of the epoch or fix
-  /// A smoother may keep an epoch or a fix for its next frame: then the state is still that of the last
-  /// frame.
+  TimeNs message_ns = 0;  ///< stamp of the frame; IMU time of another message
+  /// A smoother may keep what comes between frames for its next frame: then the state is still that of the
+  /// last one.
   NavEstimate estimate;
-  FrameStatistics statistics;                      ///< of this frame, epoch or fix
+  FrameStatistics statistics;                      ///< of this message
   std::optional<ClockState> clock;                 ///< once aligned with GNSS
   std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
   double frontend_ms = 0;                          ///< TrackFrame::frontend_ms

@@ -25,10 +25,11 @@ struct SessionOptions {
   /// The first state, asked for at the IMU time of each frame until it answers; read by init.method truth
   /// alone. Such as a known pose of a dock.
   std::function<Result<NavEstimate>(TimeNs imu_ns)> start_state;
-  /// An estimate older than this is given up: no frame, epoch or fix came that could be used. Nor does a
-  /// start look back further.
+  /// An estimate older than this is given up: no frame, epoch or measurement came that could be used. Nor
+  /// does a start look back further.
   double max_silence_s = 60;
-  /// Frames, epochs or fixes that may wait for the IMU; the oldest is skipped when one more comes.
+  /// Frames, epochs or measurements of one sensor that may wait for the IMU; the oldest is skipped when one
+  /// more comes.
   size_t max_waiting = 1000;
   /// False: lateness does not count, and nothing is processed before Session::AdvanceTo or Flush says so.
   bool live = true;

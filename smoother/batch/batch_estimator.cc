@@ -30,9 +30,10 @@ std::vector<FrameStatistics> CountFeatures(const BatchSequence& sequence) {
     statistics[i].observations_invalid = sequence.invalid_observations(static_cast<int>(i));
     statistics[i].at_rest = sequence.frames()[i]->rest.has_value();
   }
-  for (const BatchFix& fix : sequence.fixes()) {
-    FrameStatistics& frame = statistics[static_cast<size_t>(fix.frame)];
-    ++(fix.weight > 0 ? frame.fixes_used : frame.fixes_gated);
+  for (const BatchMeasurement& measurement : sequence.measurements()) {
+    SensorStatistics& counts = statistics[static_cast<size_t>(measurement.frame)]
+                                   .sensors[SensorOf(measurement.attached.measurement)];
+    ++(measurement.weight > 0 ? counts.used : counts.gated);
   }
   return statistics;
 }
@@ -97,25 +98,28 @@ Status BatchEstimator::Align(const GnssAlignment& alignment) {
   return Status::Ok();
 }
 
-Status BatchEstimator::AddFix(const PositionFix& fix) {
+Status BatchEstimator::AddMeasurement(const Measurement& measurement) {
   if (!aligned_) {
     return Status::Diverged("batch: not aligned");
   }
-  ALIDADE_RETURN_IF_ERROR(initial_->AddFix(fix));
+  ALIDADE_RETURN_IF_ERROR(initial_->AddMeasurement(measurement));
+  const Sensor sensor = SensorOf(measurement);
+  const TimeNs stamp_ns = StampOf(measurement);
   const NavEstimate estimate = initial_->Latest();
   const TimeNs last_ns = sequence_.frames().back()->stamp_ns;
-  if (estimate.stamp_ns == fix.stamp_ns &&
-      SecondsBetween(last_ns, fix.stamp_ns) > config_.fix.max_interpolation_s) {
+  if (estimate.stamp_ns == stamp_ns &&
+      SecondsBetween(last_ns, stamp_ns) > MaxInterpolation(config_, sensor)) {
     ALIDADE_RETURN_IF_ERROR(ReachFrame(estimate));
   }
   std::vector<ImuSample> link;
   const TimeNs frame_ns = sequence_.frames().back()->stamp_ns;
-  if (fix.stamp_ns > frame_ns) {
-    if (const Status status = imu_.Interval(frame_ns, fix.stamp_ns, &link); !status.ok()) {
+  if (stamp_ns > frame_ns) {
+    if (const Status status = imu_.Interval(frame_ns, stamp_ns, &link); !status.ok()) {
       return Status::Diverged("batch: " + status.message());
     }
   }
-  return sequence_.AddFix(fix, initial_->last_statistics().fixes_used > 0, std::move(link));
+  return sequence_.AddMeasurement(measurement, initial_->last_statistics().sensors[sensor].used > 0,
+                                  std::move(link));
 }
 
 Result<std::vector<FinalizedFrame>> BatchEstimator::TakeFinalized(const std::atomic<bool>* stop) {

@@ -17,8 +17,8 @@ namespace alidade {
 /// While the sequence runs, `initial`, another estimator on the same input, answers for it; its states are
 /// the initial values, and the frames it accepts are the frames of the batch. TakeFinalized then solves.
 ///
-/// Position fixes enter from the alignment on, which gives initial values and leaves yaw and position of the
-/// prior free. The few fixes before it are not used.
+/// Measurements between frames enter from the alignment on, which gives initial values and leaves yaw and
+/// position of the prior free. The few before it are not used.
 class BatchEstimator final : public Estimator {
  public:
   BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,
@@ -28,7 +28,7 @@ class BatchEstimator final : public Estimator {
   Status AddImu(const ImuSample& sample) override;
   Status AddFrame(const TrackFrame& frame) override;
   Status Align(const GnssAlignment& alignment) override;
-  Status AddFix(const PositionFix& fix) override;
+  Status AddMeasurement(const Measurement& measurement) override;
   [[nodiscard]] NavEstimate Latest() const override { return initial_->Latest(); }
   [[nodiscard]] bool initialized() const override { return initial_->initialized(); }
   [[nodiscard]] const FrameStatistics& last_statistics() const override {

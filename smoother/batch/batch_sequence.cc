@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/imu_propagation.h"
-#include "smoother/factors/fix_factor.h"
 #include "smoother/factors/imu_factor.h"
+#include "smoother/factors/measurement_factor.h"
 #include "smoother/tracks/track_landmark.h"
 #include "smoother/tracks/track_system.h"
 
@@ -33,6 +33,20 @@ std::unique_ptr<WindowFrame> MakeFrame(const NavEstimate& estimate, int index) {
   return frame;
 }
 
+/// Of the whitened residual at the frame's present state.
+double SquaredNorm(const FrameMeasurement& attached, const WindowFrame& frame,
+                   const Eigen::Vector3d& gravity_W) {
+  const double* const blocks[] = {frame.nav.data(), frame.bias.data()};
+  return std::visit(
+      [&](const auto& kind) {
+        using Kind = std::decay_t<decltype(kind)>;
+        typename Kind::Residual residual;
+        MeasurementFactor<Kind>(&attached, gravity_W).Evaluate(blocks, residual.data(), nullptr);
+        return residual.squaredNorm();
+      },
+      attached.measurement);
+}
+
 }  // namespace
 
 ObservationKernel GuardKernel(const VisionConfig& vision) {
@@ -52,7 +66,7 @@ bool BatchSequence::Start(const NavEstimate& initial) {
   invalid_.assign(1, 0);
   tracks_.clear();
   track_of_id_.clear();
-  fixes_.clear();
+  measurements_.clear();
   rest_.Clear();
   frames_.push_back(MakeFrame(initial, 0));
   initial_ = initial;
@@ -71,11 +85,12 @@ bool BatchSequence::Align(const GnssAlignment& alignment) {
   return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial_.covariance, &prior_);
 }
 
-Status BatchSequence::AddFix(const PositionFix& fix, bool accepted, std::vector<ImuSample> imu) {
-  Result<FixMeasurement> measurement = MakeFixMeasurement(config_.fix, rig_.fixes, fix);
-  ALIDADE_RETURN_IF_ERROR(measurement.status());
-  BatchFix& added = fixes_.emplace_back();
-  added.attached.measurement = *measurement;
+Status BatchSequence::AddMeasurement(const Measurement& measurement, bool accepted,
+                                     std::vector<ImuSample> imu) {
+  const Result<WhitenedMeasurement> whitened = Whiten(config_, rig_, measurement);
+  ALIDADE_RETURN_IF_ERROR(whitened.status());
+  BatchMeasurement& added = measurements_.emplace_back();
+  added.attached.measurement = *whitened;
   added.attached.imu = std::move(imu);
   added.frame = frames_.back()->index;
   added.weight = accepted ? 1 : 0;
@@ -128,35 +143,34 @@ void BatchSequence::Preintegrate() {
     frames_[i]->preintegration->Add(frames_[i]->imu);
   }
   for (const std::unique_ptr<WindowFrame>& frame : frames_) {
-    for (FrameFix& fix : frame->fixes) {
-      fix.Set(std::move(fix.imu), frame->imu_bias(), noise);
+    for (FrameMeasurement& measurement : frame->measurements) {
+      measurement.Set(std::move(measurement.imu), frame->imu_bias(), noise);
     }
   }
 }
 
-void BatchSequence::SelectFixes(bool gate, TrackSelection* selection) {
+void BatchSequence::SelectMeasurements(bool gate, TrackSelection* selection) {
   for (const std::unique_ptr<WindowFrame>& frame : frames_) {
-    frame->fixes.clear();
+    frame->measurements.clear();
   }
   const ImuNoise noise = config_.imu.Scaled(rig_.imu_noise);
   const Eigen::Vector3d gravity_W = GravityInWorld(config_.imu.gravity_mps2);
-  FixGate fix_gate(config_.fix);
-  for (BatchFix& fix : fixes_) {
-    WindowFrame& frame = *frames_[static_cast<size_t>(fix.frame)];
-    fix.attached.Set(std::move(fix.attached.imu), frame.imu_bias(), noise);
-    const bool was_used = fix.weight > 0;
+  MeasurementGates gates(config_);
+  for (BatchMeasurement& measurement : measurements_) {
+    WindowFrame& frame = *frames_[static_cast<size_t>(measurement.frame)];
+    FrameMeasurement& attached = measurement.attached;
+    attached.Set(std::move(attached.imu), frame.imu_bias(), noise);
+    const bool was_used = measurement.weight > 0;
     if (gate) {
-      const double* const blocks[] = {frame.nav.data(), frame.bias.data()};
-      Eigen::Vector3d residual;
-      FixFactor(&fix.attached, gravity_W).Evaluate(blocks, residual.data(), nullptr);
-      fix.weight = fix_gate.Weigh(residual.squaredNorm());
+      measurement.weight =
+          gates.Weigh(SensorOf(attached.measurement), SquaredNorm(attached, frame, gravity_W));
     }
-    if (fix.weight > 0) {
-      ++selection->fixes;
-      frame.fixes.push_back(fix.attached);
-      frame.fixes.back().measurement.sqrt_information *= std::sqrt(fix.weight);
+    if (measurement.weight > 0) {
+      ++selection->measurements;
+      frame.measurements.push_back(attached);
+      frame.measurements.back().ScaleSqrtInformation(std::sqrt(measurement.weight));
     }
-    selection->changed = selection->changed || was_used != (fix.weight > 0);
+    selection->changed = selection->changed || was_used != (measurement.weight > 0);
   }
 }
 
@@ -167,7 +181,7 @@ TrackSelection BatchSequence::Select(bool gate) {
     geometry.push_back(MakeGeometry(frame->nav_state(), rig_.T_BC));
   }
   TrackSelection selection;
-  SelectFixes(gate, &selection);
+  SelectMeasurements(gate, &selection);
   for (BatchTrack& track : tracks_) {
     if (track.views.size() < kMinViews) {
       continue;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/estimator_config.h"
-#include "core/position_fix.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
 #include "core/robust.h"
@@ -23,11 +22,11 @@ struct BatchTrack {
   bool selected = false;  ///< enters the estimate
 };
 
-/// A position fix of a whole sequence, in W as it was aligned.
-struct BatchFix {
-  FrameFix attached;  ///< with the noise of the fix, before its weight
-  int frame = 0;      ///< index of the frame that it hangs on
-  double weight = 0;  ///< of its information; 0: refused
+/// A measurement between frames of a whole sequence, in W as it was aligned.
+struct BatchMeasurement {
+  FrameMeasurement attached;  ///< with its own noise, before its weight
+  int frame = 0;              ///< index of the frame that it hangs on
+  double weight = 0;          ///< of its information; 0: refused
 };
 
 /// Counts of one selection.
@@ -37,7 +36,7 @@ struct TrackSelection {
   int without_depth = 0;  ///< tracks of two views or more whose depth is not determined
   int gated = 0;          ///< tracks refused as a whole
   int outliers = 0;       ///< single observations refused
-  int fixes = 0;          ///< used
+  int measurements = 0;   ///< between frames, used
   bool changed = false;   ///< against the selection before
 };
 
@@ -56,22 +55,22 @@ class BatchSequence {
   /// Turns the initial values and the prior into the frame of the alignment; yaw and position of the prior
   /// are free then. False: the prior's covariance is not positive semi-definite.
   bool Align(const GnssAlignment& alignment);
-  /// Hangs a fix on the newest frame; `imu` leads there from the frame, empty at the frame itself.
-  /// `accepted`: the verdict of the initial estimator. kInput: see MakeFixMeasurement.
-  Status AddFix(const PositionFix& fix, bool accepted, std::vector<ImuSample> imu);
+  /// Hangs a measurement on the newest frame; `imu` leads there from the frame, empty at the frame itself.
+  /// `accepted`: the verdict of the initial estimator. kInput: see Whiten.
+  Status AddMeasurement(const Measurement& measurement, bool accepted, std::vector<ImuSample> imu);
 
   /// Which tracks and observations enter, judged at the present states. With `gate` off only the parallax
   /// counts: a depth known to kMaxDepthDeviation, in front of every view. With it on, an observation must lie
   /// in the chi-square gate (2 degrees of freedom) around a robustly estimated landmark, then its track
-  /// (2N-3). The verdicts on one track do not depend on earlier ones. Fixes: the verdicts of the initial
-  /// estimator, then FixGate at the present states.
+  /// (2N-3). The verdicts on one track do not depend on earlier ones. Measurements between frames: the
+  /// verdicts of the initial estimator, then MeasurementGates at the present states.
   TrackSelection Select(bool gate);
   /// Integrates the IMU of every interval anew at the present biases.
   void Preintegrate();
 
   [[nodiscard]] const WindowFrames& frames() const { return frames_; }
   [[nodiscard]] const std::vector<BatchTrack>& tracks() const { return tracks_; }
-  [[nodiscard]] const std::vector<BatchFix>& fixes() const { return fixes_; }
+  [[nodiscard]] const std::vector<BatchMeasurement>& measurements() const { return measurements_; }
   [[nodiscard]] const LinearPrior& prior() const { return prior_; }
   /// The camera; the batch estimates nothing of it.
   [[nodiscard]] const WindowCalibration& calibration() const { return calibration_; }
@@ -81,8 +80,8 @@ class BatchSequence {
 
  private:
   void AddObservations(const TrackFrame& frame, const WindowFrame& node);
-  /// Puts the fixes of positive weight on their frames.
-  void SelectFixes(bool gate, TrackSelection* selection);
+  /// Puts the measurements of positive weight on their frames.
+  void SelectMeasurements(bool gate, TrackSelection* selection);
   bool SelectTrack(const std::vector<FrameGeometry>& geometry, bool gate, TrackSelection* selection,
                    BatchTrack* track) const;
   [[nodiscard]] std::vector<WindowView> Inliers(const std::vector<FrameGeometry>& geometry,
@@ -99,7 +98,7 @@ class BatchSequence {
   WindowFrames frames_;
   std::vector<int> invalid_;  ///< observations outside the camera model's domain, a frame
   std::vector<BatchTrack> tracks_;
-  std::vector<BatchFix> fixes_;  ///< in order of time
+  std::vector<BatchMeasurement> measurements_;  ///< in order of time
   std::map<std::int64_t, size_t> track_of_id_;
 };
 

@@ -43,7 +43,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       imu_(config.imu.max_gap_s),
       rest_(config.vision, config.init, rig.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
-      fixes_(config.fix, rig.fixes),
+      measurements_(config),
       given_(InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s})),
       calibration_{given_.layout, given_.mean} {}
 
@@ -70,7 +70,7 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
   window_.AddFrame(std::move(frame));
   prior_ = std::move(prior);
   gnss_.Reset();
-  fixes_.Reset();
+  measurements_.Reset();
   aligned_ = false;
   imu_.DropBefore(initial.stamp_ns);
   rest_.Clear();

@@ -9,8 +9,8 @@
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
 #include "core/robust.h"
-#include "smoother/sliding/fix_window.h"
 #include "smoother/sliding/gnss_window.h"
+#include "smoother/sliding/measurement_window.h"
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/window_system.h"
@@ -46,7 +46,7 @@ class SmootherEstimator final : public Estimator {
   Status AddFrame(const TrackFrame& frame) override;
   Status Align(const GnssAlignment& alignment) override;
   Status AddGnss(const GnssEpoch& epoch) override;
-  Status AddFix(const PositionFix& fix) override;
+  Status AddMeasurement(const Measurement& measurement) override;
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return latest_; }
@@ -110,7 +110,7 @@ class SmootherEstimator final : public Estimator {
   RestDetector rest_;
   Window window_;
   GnssWindow gnss_;
-  FixWindow fixes_;
+  MeasurementWindow measurements_;
   LinearPrior prior_;
   CalibrationEstimate given_;  ///< the calibration a run starts with
   WindowCalibration calibration_;
@@ -121,7 +121,7 @@ class SmootherEstimator final : public Estimator {
   FrameStatistics statistics_;
   std::vector<ImuSample> interval_;
   bool initialized_ = false;
-  bool aligned_ = false;  ///< W is the frame of GNSS and fixes
+  bool aligned_ = false;  ///< W stands as Align turned it
 };
 
 }  // namespace alidade

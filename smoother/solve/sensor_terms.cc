@@ -1,7 +1,7 @@
 #include "smoother/solve/sensor_terms.h"
 
-#include "smoother/factors/fix_factor.h"
 #include "smoother/factors/imu_factor.h"
+#include "smoother/factors/measurement_factor.h"
 #include "smoother/factors/rest_factor.h"
 #include "smoother/solve/factor_term.h"
 
@@ -17,6 +17,18 @@ Status AddImuTerm(const SensorContext& context, const WindowFrame& from, const W
   }
   terms->push_back(MakeTerm(factor, {NavBlock(from), BiasBlock(from), NavBlock(to), BiasBlock(to)}));
   return Status::Ok();
+}
+
+void AddMeasurementTerms(const SensorContext& context, const WindowFrame& frame, WindowTerms* terms) {
+  for (const FrameMeasurement& attached : frame.measurements) {
+    std::visit(
+        [&](const auto& kind) {
+          using Factor = MeasurementFactor<std::decay_t<decltype(kind)>>;
+          terms->push_back(
+              MakeTerm(Factor(&attached, context.gravity_W), {NavBlock(frame), BiasBlock(frame)}));
+        },
+        attached.measurement);
+  }
 }
 
 void AddEpochTerms(const GnssFactorContext& gnss, const WindowFrame& frame, WindowTerms* terms) {
@@ -52,10 +64,7 @@ Status AddSensorTerms(const SensorContext& context, const WindowFrames& frames, 
     }
   }
   for (int i = 0; i < count; ++i) {
-    for (const FrameFix& fix : frame(i).fixes) {
-      terms->push_back(
-          MakeTerm(FixFactor(&fix, context.gravity_W), {NavBlock(frame(i)), BiasBlock(frame(i))}));
-    }
+    AddMeasurementTerms(context, frame(i), terms);
   }
   for (int i = 0; context.gnss != nullptr && i < count; ++i) {
     AddEpochTerms(*context.gnss, frame(i), terms);

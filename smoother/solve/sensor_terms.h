@@ -12,8 +12,8 @@ struct SensorContext {
 };
 
 /// Appends what every sensor but the camera says about the first `count` frames: IMU between them, rest,
-/// position fixes, GNSS epochs and clocks, in this order. Frames and context must outlive the terms.
-/// kDiverged: the covariance of an IMU interval is not positive definite.
+/// measurements between frames, GNSS epochs and clocks, in this order. Frames and context must outlive the
+/// terms. kDiverged: the covariance of an IMU interval is not positive definite.
 Status AddSensorTerms(const SensorContext& context, const WindowFrames& frames, int count,
                       WindowTerms* terms);
 

@@ -168,7 +168,7 @@ void MoveMeasurements(WindowFrame* dropped, WindowFrame* frame) {
     from->clear();
   };
   move(&dropped->epochs, &frame->epochs);
-  move(&dropped->fixes, &frame->fixes);
+  move(&dropped->measurements, &frame->measurements);
 }
 
 void UpdatePreintegration(const WindowFrame& previous, const ImuNoise& noise, WindowFrame* frame) {

@@ -15,7 +15,7 @@
 #include "core/visual_observation.h"
 #include "smoother/manifold/first_estimate.h"
 #include "smoother/window/frame_epoch.h"
-#include "smoother/window/frame_fix.h"
+#include "smoother/window/frame_measurement.h"
 
 namespace alidade {
 
@@ -38,9 +38,9 @@ struct WindowFrame {
   std::optional<FirstEstimate> first;
   // Once aligned with GNSS (smoother/sliding/gnss_window.h).
   std::optional<std::array<double, ClockState::kSize>> clock;  ///< a parameter block
-  bool clock_anew = false;         ///< the clock before says nothing about this one
-  std::vector<FrameEpoch> epochs;  ///< from this frame to the next
-  std::vector<FrameFix> fixes;     ///< likewise
+  bool clock_anew = false;                     ///< the clock before says nothing about this one
+  std::vector<FrameEpoch> epochs;              ///< from this frame to the next
+  std::vector<FrameMeasurement> measurements;  ///< likewise, of the other sensors
 
   [[nodiscard]] NavState nav_state() const;
   [[nodiscard]] ImuBias imu_bias() const;
@@ -139,7 +139,7 @@ struct FrameParallax {
 [[nodiscard]] FrameParallax ComputeParallax(const Window& window, const WindowFrame& first,
                                             const WindowFrame& second, const Pose& T_BC);
 
-/// Epochs and fixes of a frame that was taken out move to the one before it, `frame`.
+/// Epochs and measurements of a frame that was taken out move to the one before it, `frame`.
 void MoveMeasurements(WindowFrame* dropped, WindowFrame* frame);
 
 /// Integrates frame.imu anew at the bias `previous` holds now, when the preintegration is missing or the bias

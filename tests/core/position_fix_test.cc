@@ -91,31 +91,16 @@ TEST(PositionFixTest, GIVEN_numbers_that_are_no_measurement_THEN_they_are_refuse
   EXPECT_NE(status.message().find("1.500000000 s"), std::string::npos) << status.message();
 }
 
-TEST(FixGateTest, GIVEN_wrong_fixes_WHEN_they_are_few_THEN_they_are_refused_and_else_scaled_to_the_gate) {
+TEST(PositionFixTest, GIVEN_a_configuration_THEN_the_gate_is_its_quantile_of_three_rows) {
   FixConfig config;
-  config.max_refused_run = 2;
+  config.gate_probability = 0.9;
+  config.max_refused_run = 1;
   config.robust_kernel = RobustKernel::kNone;
-  FixGate gate(config);
-  const double threshold = ChiSquareQuantile(3, config.gate_probability);
-  EXPECT_EQ(gate.Weigh(0.9 * threshold), 1);
-  EXPECT_EQ(gate.Weigh(100), 0);
-  EXPECT_EQ(gate.Weigh(100), 0);
-  EXPECT_DOUBLE_EQ(gate.Weigh(100), threshold / 100);
-  EXPECT_EQ(gate.Weigh(1), 1);
-  EXPECT_EQ(gate.Weigh(100), 0);
-  gate.Weigh(100);
-  gate.Reset();
-  EXPECT_EQ(gate.Weigh(100), 0);
-  gate.Weigh(100);
-  EXPECT_EQ(gate.Weigh(std::numeric_limits<double>::quiet_NaN()), 0);
-}
-
-TEST(FixGateTest, GIVEN_Hubers_kernel_THEN_a_fix_beyond_its_scale_counts_less) {
-  FixConfig config;
-  config.robust_scale_sigma = 2;
-  FixGate gate(config);
-  EXPECT_EQ(gate.Weigh(4), 1);
-  EXPECT_DOUBLE_EQ(gate.Weigh(9), 2.0 / 3);
+  MeasurementGate gate = MakeFixGate(config);
+  const double threshold = ChiSquareQuantile(3, 0.9);
+  EXPECT_EQ(gate.Weigh(0.99 * threshold), 1);
+  EXPECT_EQ(gate.Weigh(1.25 * threshold), 0);
+  EXPECT_DOUBLE_EQ(gate.Weigh(1.25 * threshold), 0.8);
 }
 
 }  // namespace

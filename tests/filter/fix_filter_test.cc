@@ -29,10 +29,10 @@ TEST_P(FixFilterTest, RefusesWrongFixesAndIsConsistent) {
     const Dataset dataset = SimulateOrDie(scene, seed);
     FilterEstimator filter(config, dataset.rig);
     RunWithFixes(dataset, DrawInitialState(dataset, 3), &filter, [&](const PositionFix& fix) {
-      const FrameStatistics& statistics = filter.last_statistics();
-      used += statistics.fixes_used;
-      gated += statistics.fixes_gated;
-      nis += statistics.fix_nis;
+      const SensorStatistics& counts = filter.last_statistics().sensors[Sensor::kFix];
+      used += counts.used;
+      gated += counts.gated;
+      nis += counts.nis;
       const NavState& nav = filter.state().nav();
       wrong += (nav.p_WB + nav.R_WB * dataset.rig.fixes[0].p_BA - fix.p_A).norm() > 5 ? 1 : 0;
       EXPECT_EQ(filter.Latest().stamp_ns, fix.stamp_ns);
@@ -69,23 +69,24 @@ TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_b
   for (const ImuSample& sample : dataset.imu) {
     ASSERT_TRUE(filter.AddImu(sample).ok());
   }
-  EXPECT_EQ(filter.AddFix(fix).code(), StatusCode::kDiverged) << "not aligned";
+  EXPECT_EQ(filter.AddMeasurement(fix).code(), StatusCode::kDiverged) << "not aligned";
   ASSERT_TRUE(filter.Align(IdentityAlignment(start.stamp_ns)).ok());
   EXPECT_FALSE(filter.LatestClock());
   PositionFix bad = fix;
   bad.sensor = 1;
-  EXPECT_EQ(filter.AddFix(bad).code(), StatusCode::kInput);
+  EXPECT_EQ(filter.AddMeasurement(bad).code(), StatusCode::kInput);
   bad = fix;
   bad.covariance.setZero();
-  EXPECT_EQ(filter.AddFix(bad).code(), StatusCode::kInput);
+  EXPECT_EQ(filter.AddMeasurement(bad).code(), StatusCode::kInput);
   bad = fix;
   bad.stamp_ns = start.stamp_ns - 1;
-  EXPECT_EQ(filter.AddFix(bad).code(), StatusCode::kInput);
+  EXPECT_EQ(filter.AddMeasurement(bad).code(), StatusCode::kInput);
   EXPECT_EQ(filter.Latest().nav.p_WB, start.nav.p_WB);
-  EXPECT_TRUE(filter.AddFix(fix).ok());
+  EXPECT_TRUE(filter.AddMeasurement(fix).ok());
   EXPECT_NE(filter.Latest().nav.p_WB, start.nav.p_WB);
   ASSERT_TRUE(filter.Initialize(start).ok());
-  EXPECT_EQ(filter.AddFix(fix).code(), StatusCode::kDiverged) << "a new start stands in a local world";
+  EXPECT_EQ(filter.AddMeasurement(fix).code(), StatusCode::kDiverged)
+      << "a new start stands in a local world";
 }
 
 }  // namespace

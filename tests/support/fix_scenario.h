@@ -49,7 +49,7 @@ void RunWithFixes(const Dataset& dataset, const NavEstimate& initial, Estimator*
         break;
       }
       deliver(fix.stamp_ns);
-      const Status status = estimator->AddFix(fix);
+      const Status status = estimator->AddMeasurement(fix);
       ASSERT_TRUE(status.ok()) << status.message();
       after(fix);
     }

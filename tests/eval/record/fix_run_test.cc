@@ -84,9 +84,10 @@ FixScore Score(const RunResult& run, const Dataset& dataset) {
     const Vector3d error = now.nav.p_WB - TruthAt(dataset, now.stamp_ns).nav.p_WB;
     score.nees_position += error.dot(now.covariance.block<3, 3>(3, 3).ldlt().solve(error));
     score.rmse_m += error.squaredNorm();
-    score.gated += record.statistics.fixes_gated;
-    score.nis += record.statistics.fix_nis;
-    score.nis_dof += record.statistics.fix_nis_dof;
+    const SensorStatistics& counts = record.statistics.sensors[Sensor::kFix];
+    score.gated += counts.gated;
+    score.nis += counts.nis;
+    score.nis_dof += counts.nis_dof;
     ++frames;
   }
   score.nees_position /= std::max(frames, 1);
@@ -103,7 +104,7 @@ void ExpectConsistent(Backend backend, double std_m, unsigned first_seed, int ru
     const Dataset dataset = SimulateOrDie(Scene(std_m), seed);
     const RunResult run = RunWithFixes(Preset(backend), dataset, seed, 0.7 * seed);
     ASSERT_TRUE(run.status.ok()) << run.status.message();
-    EXPECT_EQ(run.fixes_skipped, 0) << run.skip_report;
+    EXPECT_EQ(run.skipped[Sensor::kFix], 0) << run.skip_report;
     const FixScore score = Score(run, dataset);
     EXPECT_GE(score.aligned_s, 0) << "seed " << seed << ": " << run.align_report;
     EXPECT_LT(score.aligned_s, 15) << "seed " << seed;
@@ -154,11 +155,13 @@ TEST_P(FixRunTest, WHEN_a_run_with_fixes_is_written_THEN_it_reads_back_with_what
   int used = 0;
   for (size_t i = 0; i < run.records.size(); ++i) {
     EXPECT_EQ(read->records[i].status, run.records[i].status);
-    EXPECT_EQ(read->records[i].statistics.fixes_used, run.records[i].statistics.fixes_used);
-    EXPECT_EQ(read->records[i].statistics.fixes_gated, run.records[i].statistics.fixes_gated);
-    EXPECT_EQ(read->records[i].statistics.fix_nis, run.records[i].statistics.fix_nis);
-    EXPECT_EQ(read->records[i].statistics.fix_nis_dof, run.records[i].statistics.fix_nis_dof);
-    used += run.records[i].statistics.fixes_used;
+    const SensorStatistics& counts = run.records[i].statistics.sensors[Sensor::kFix];
+    const SensorStatistics& counts_read = read->records[i].statistics.sensors[Sensor::kFix];
+    EXPECT_EQ(counts_read.used, counts.used);
+    EXPECT_EQ(counts_read.gated, counts.gated);
+    EXPECT_EQ(counts_read.nis, counts.nis);
+    EXPECT_EQ(counts_read.nis_dof, counts.nis_dof);
+    used += counts.used;
   }
   EXPECT_GT(used, 10);
   std::filesystem::remove_all(folder);

@@ -226,5 +226,12 @@ TEST(TruthStart, NeverInterpolatesOverAGap) {
   EXPECT_FALSE(InterpolateTruth(Trajectory(), 0).ok());
 }
 
+TEST(EstimatorTest, GIVEN_a_back_end_without_a_sensor_WHEN_it_is_handed_a_measurement_THEN_it_names_the_key) {
+  FakeEstimator estimator;
+  const Status status = estimator.AddMeasurement(PositionFix());
+  EXPECT_EQ(status.code(), StatusCode::kConfig);
+  EXPECT_EQ(status.message(), "fix.enabled: this back end takes no position fixes; expected false");
+}
+
 }  // namespace
 }  // namespace alidade

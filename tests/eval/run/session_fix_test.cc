@@ -73,7 +73,7 @@ TEST_P(SessionFixTest, GIVEN_fixes_that_come_late_THEN_the_session_aligns_and_gi
   const RunResult ordered = RunOrdered(config, dataset);
   ASSERT_TRUE(ordered.status.ok()) << ordered.status.message();
   ASSERT_TRUE(ordered.global.has_value()) << ordered.align_report;
-  EXPECT_EQ(ordered.fixes_skipped, 0) << ordered.skip_report;
+  EXPECT_EQ(ordered.skipped[Sensor::kFix], 0) << ordered.skip_report;
   const std::vector<SessionEvent> events = StreamOf(config, dataset, 1);
   EXPECT_TRUE(Only<TooLateEvent>(events).empty());
   const auto aligned = Only<AlignedEvent>(events);
@@ -96,7 +96,7 @@ TEST_P(SessionFixTest, GIVEN_fixes_that_come_late_THEN_the_session_aligns_and_gi
   EXPECT_GT(test::StatesOf(events, Sensor::kFix).size(), 10u);
   int used = 0;
   for (const RunRecord& record : ordered.records) {
-    used += record.statistics.fixes_used;
+    used += record.statistics.sensors[Sensor::kFix].used;
   }
   EXPECT_GT(used, 10);
 }
@@ -111,12 +111,12 @@ TEST_P(SessionFixTest, GIVEN_raw_GNSS_and_fixes_THEN_there_is_one_alignment_and_
   int fixes = 0;
   int satellites = 0;
   for (const RunRecord& record : run.records) {
-    fixes += record.statistics.fixes_used;
+    fixes += record.statistics.sensors[Sensor::kFix].used;
     satellites += record.statistics.satellites_used;
   }
   EXPECT_GT(fixes, 5);
   EXPECT_GT(satellites, 100);
-  EXPECT_EQ(run.fixes_skipped, 0) << run.skip_report;
+  EXPECT_EQ(run.skipped[Sensor::kFix], 0) << run.skip_report;
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBackEnds, SessionFixTest, testing::Values("gvio", "gvins_class"),

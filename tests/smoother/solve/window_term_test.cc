@@ -55,7 +55,7 @@ TEST(WindowTermTest, RowsOfTheSensorsAreThoseOfCeresAndNumeric) {
         MakeRestMeasurement({true, true}, fixture.random.Vector(0.1), VisionConfig());
     for (int i = 1; i <= 2; ++i) {  // at the frame, and after it
       WindowFrame& frame = fixture.window.frame(i);
-      FrameFix& fix = frame.fixes.emplace_back();
+      FrameMeasurement& fix = frame.measurements.emplace_back();
       const PositionFix measured{0, 0, fixture.random.Vector(2), 0.04 * Eigen::Matrix3d::Identity()};
       fix.measurement = *MakeFixMeasurement(FixConfig(), fixture.random.Vector(0.5), measured);
       fix.Set(i == 1 ? std::vector<ImuSample>() : frame.epochs[0].imu, frame.imu_bias(), fixture.noise);

@@ -1,4 +1,4 @@
-#include "smoother/factors/fix_factor.h"
+#include "smoother/factors/measurement_factor.h"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,11 @@ using test::RandomStates;
 
 const Vector3d kGravity = GravityInWorld(9.81);
 
+using FixFactor = MeasurementFactor<FixMeasurement>;
+
 /// A fix `steps` samples of 5 ms after the frame.
-FrameFix MakeFix(RandomStates* random, int steps) {
-  FrameFix fix;
+FrameMeasurement MakeFix(RandomStates* random, int steps) {
+  FrameMeasurement fix;
   const Eigen::Matrix3d root = Eigen::Matrix3d::NullaryExpr([&] { return random->Uniform(-1, 1); });
   const PositionFix measured{0, 0, random->Vector(5),
                              root * root.transpose() + 0.1 * Eigen::Matrix3d::Identity()};
@@ -44,11 +46,11 @@ Vector3d Residual(const FixFactor& factor, const NavState& nav, const ImuBias& b
   return residual;
 }
 
-TEST(FixFactorTest,
+TEST(MeasurementFactorTest,
      GIVEN_a_fix_at_or_after_the_frame_THEN_the_Jacobian_is_that_of_differences_in_all_conventions) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     RandomStates random(seed);
-    const FrameFix fix = MakeFix(&random, seed % 2 == 0 ? 0 : 30);
+    const FrameMeasurement fix = MakeFix(&random, seed % 2 == 0 ? 0 : 30);
     const FixFactor factor(&fix, kGravity);
     const NavState nav = random.Nav(5);
     // Away from the bias of the integration its correction is of first order.
@@ -79,18 +81,19 @@ TEST(FixFactorTest,
   }
 }
 
-TEST(FixFactorTest, GIVEN_a_fix_where_the_IMU_leads_THEN_it_leaves_no_residual) {
+TEST(MeasurementFactorTest, GIVEN_a_fix_where_the_IMU_leads_THEN_it_leaves_no_residual) {
   RandomStates random(5);
-  FrameFix fix = MakeFix(&random, 40);
+  FrameMeasurement fix = MakeFix(&random, 40);
   const NavState nav = random.Nav(5);
   const ImuBias bias = fix.preintegration->bias();
   NavEstimate carried;
   carried.nav = nav;
   carried.bias = bias;
   ASSERT_TRUE(PropagateEstimate(fix.imu, ImuNoise(), kGravity, &carried).ok());
-  fix.measurement.model.p_WA = fix.measurement.model.Predict(carried.nav);
+  FixMeasurement& measurement = std::get<FixMeasurement>(fix.measurement);
+  measurement.model.p_WA = measurement.model.Predict(carried.nav);
   const FixFactor factor(&fix, kGravity);
-  const Eigen::Matrix3d root = fix.measurement.sqrt_information;
+  const Eigen::Matrix3d root = measurement.sqrt_information;
   EXPECT_LT((root.inverse() * Residual(factor, nav, bias)).norm(), 1e-9);
 }
 

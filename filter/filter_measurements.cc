@@ -3,7 +3,7 @@
 #include "core/stopwatch.h"
 #include "filter/filter_estimator.h"
 
-// GNSS and position fixes of FilterEstimator.
+// Measurements between frames in FilterEstimator.
 
 namespace alidade {
 
@@ -69,13 +69,15 @@ Status FilterEstimator::AddGnss(const GnssEpoch& epoch) {
   return status;
 }
 
-Status FilterEstimator::AddFix(const PositionFix& fix) {
-  const Result<FixMeasurement> measurement = fixes_.Prepare(fix);
-  ALIDADE_RETURN_IF_ERROR(measurement.status());
-  ALIDADE_RETURN_IF_ERROR(BeginMeasurement("position fix", fix.stamp_ns));
+Status FilterEstimator::AddMeasurement(const Measurement& measurement) {
+  const Result<WhitenedMeasurement> whitened = Whiten(config_, rig_, measurement);
+  ALIDADE_RETURN_IF_ERROR(whitened.status());
+  const char* const what = NameOf(SensorOf(measurement));
+  const TimeNs stamp_ns = StampOf(measurement);
+  ALIDADE_RETURN_IF_ERROR(BeginMeasurement(what, stamp_ns));
   const Stopwatch stopwatch;
-  const bool finite = fixes_.Apply(*measurement, &state_, Correction(), &statistics_);
-  const Status status = EndMeasurement("position fix", fix.stamp_ns, finite);
+  const bool finite = measurements_.Apply(*whitened, &state_, Correction(), &statistics_);
+  const Status status = EndMeasurement(what, stamp_ns, finite);
   statistics_.update_ms = stopwatch.ElapsedMs();
   return status;
 }

@@ -6,7 +6,7 @@
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother_estimator.h"
 
-// GNSS and position fixes of SmootherEstimator.
+// Measurements between frames in SmootherEstimator.
 
 namespace alidade {
 
@@ -72,11 +72,13 @@ Status SmootherEstimator::AddGnss(const GnssEpoch& epoch) {
   return Status::Ok();
 }
 
-Status SmootherEstimator::AddFix(const PositionFix& fix) {
-  const Result<FixMeasurement> measurement = fixes_.Prepare(fix);
-  ALIDADE_RETURN_IF_ERROR(measurement.status());
+Status SmootherEstimator::AddMeasurement(const Measurement& measurement) {
+  const Result<WhitenedMeasurement> whitened = Whiten(config_, rig_, measurement);
+  ALIDADE_RETURN_IF_ERROR(whitened.status());
   const Stopwatch stopwatch;
-  Result<Hook> hook = ReachMeasurement("position fix", fix.stamp_ns, config_.fix.max_interpolation_s);
+  const Sensor sensor = SensorOf(measurement);
+  Result<Hook> hook =
+      ReachMeasurement(NameOf(sensor), StampOf(measurement), MaxInterpolation(config_, sensor));
   ALIDADE_RETURN_IF_ERROR(hook.status());
   NavEstimate predicted = latest_;
   const std::vector<ImuSample>& since = hook->own_state ? interval_ : hook->imu;
@@ -85,7 +87,7 @@ Status SmootherEstimator::AddFix(const PositionFix& fix) {
       return Lost("smoother: " + status.message());
     }
   }
-  fixes_.Attach(*measurement, predicted, std::move(hook->imu), noise_, &window_.newest(), &statistics_);
+  measurements_.Attach(*whitened, predicted, std::move(hook->imu), noise_, &window_.newest(), &statistics_);
   ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
   statistics_.update_ms = stopwatch.ElapsedMs();
   return Status::Ok();

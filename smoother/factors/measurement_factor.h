@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <variant>
+
+#include "core/imu_propagation.h"
+#include "smoother/manifold/lifted_cost.h"
+#include "smoother/window/frame_measurement.h"
+
+namespace alidade {
+
+/// A measurement between frames as a factor over blocks nav and bias of its frame. `Kind`: the alternative of
+/// WhitenedMeasurement that it is.
+template <typename Kind>
+class MeasurementFactor {
+ public:
+  static constexpr int kRows = Kind::kRows;
+
+  /// `measurement` must outlive the factor.
+  MeasurementFactor(const FrameMeasurement* measurement, const Eigen::Vector3d& gravity_W)
+      : measurement_(measurement), gravity_W_(gravity_W) {}
+
+  [[nodiscard]] int rows() const { return kRows; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const {
+    NavState nav = UnpackNavState(parameters[0]);
+    Matrix15d carry = Matrix15d::Identity();
+    if (measurement_->preintegration) {
+      nav = CarryState(*measurement_->preintegration, nav, UnpackBias(parameters[1]), gravity_W_, &carry);
+    }
+    typename Kind::Residual whitened;
+    typename Kind::Jacobian jacobian;
+    std::get<Kind>(measurement_->measurement).Evaluate(nav, &whitened, &jacobian);
+    Eigen::Map<typename Kind::Residual>{residual} = whitened;
+    jacobian = (jacobian * carry).eval();
+    if (tangent_jacobians != nullptr && tangent_jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, kRows, 9, Eigen::RowMajor>>{tangent_jacobians[0]} =
+          jacobian.template leftCols<9>();
+    }
+    if (tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, kRows, 6, Eigen::RowMajor>>{tangent_jacobians[1]} =
+          jacobian.template rightCols<6>();
+    }
+    return true;
+  }
+
+ private:
+  static constexpr std::array<BlockKind, 2> kBlocks = {BlockKind::kNavState, BlockKind::kBias};
+  const FrameMeasurement* measurement_;
+  Eigen::Vector3d gravity_W_;
+};
+
+}  // namespace alidade
