@@ -1,12 +1,11 @@
 #include "core/filter_config.h"
 
+#include "core/error_convention_config.h"
+
 namespace alidade {
 
 void FilterConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Enumeration({"error", "-", "error convention of the state"}, &error,
-                      {{"right_invariant", ErrorConvention::kRightInvariant},
-                       {"left_invariant", ErrorConvention::kLeftInvariant},
-                       {"so3xrn", ErrorConvention::kSo3xRn}});
+  DescribeErrorConvention(visitor, "error convention of the state", &error);
   visitor.Enumeration({"landmark", "-", "how the depth at the linearisation point of a track is computed"},
                       &landmark,
                       {{"pose_only_multi", FilterLandmark::kPoseOnlyMulti},

@@ -1,12 +1,11 @@
 #include "core/smoother_config.h"
 
+#include "core/error_convention_config.h"
+
 namespace alidade {
 
 void SmootherConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Enumeration({"error", "-", "error convention of the manifolds"}, &error,
-                      {{"right_invariant", ErrorConvention::kRightInvariant},
-                       {"left_invariant", ErrorConvention::kLeftInvariant},
-                       {"so3xrn", ErrorConvention::kSo3xRn}});
+  DescribeErrorConvention(visitor, "error convention of the manifolds", &error);
   visitor.Enumeration(
       {"landmark", "-", "inverse_depth: explicit in the first frame; pose_only: solved inside the residual"},
       &landmark,
