@@ -104,6 +104,10 @@ VectorXd Local(const CalibrationLayout& layout, const CameraCalibration& estimat
   return error;
 }
 
+Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB) {
+  return (Vector6d() << omega_B, v_WB).finished();
+}
+
 bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
                         Eigen::Matrix<double, 2, 8>* jacobian) {
   Vector2d distorted;

@@ -65,9 +65,7 @@ bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const Eigen::Vect
 
 /// d zeta_B / d t of a moving body in the canonical chart: (omega_B, v_W). A camera with a time-offset error
 /// dt observes from the pose that the body has dt later (Li & Mourikis, IJRR 2014).
-[[nodiscard]] inline Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB) {
-  return (Vector6d() << omega_B, v_WB).finished();
-}
+[[nodiscard]] Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB);
 
 /// d pixel / d (fu, fv, cu, cv, coefficients) at an ideal point, 2 x 8; columns of coefficients that the lens
 /// model has not are zero. False outside the camera's domain.

@@ -6,6 +6,10 @@ namespace alidade {
 
 using Eigen::Matrix3d;
 
+Matrix15d ImuTransition::q() const {
+  return noise_root * noise_root.transpose();
+}
+
 NavState CarryState(const Preintegration& preintegration, const NavState& nav, const ImuBias& bias,
                     const Eigen::Vector3d& gravity_W, Matrix15d* phi) {
   ImuIncrement::BiasJacobian of_bias;

@@ -15,7 +15,7 @@ struct ImuTransition {
   Matrix15d noise_root = Matrix15d::Zero();
 
   /// Covariance of the noise over the interval.
-  [[nodiscard]] Matrix15d q() const { return noise_root * noise_root.transpose(); }
+  [[nodiscard]] Matrix15d q() const;
 };
 
 /// The state at the end of a preintegrated interval that begins at `nav` with `bias`:

@@ -122,5 +122,9 @@ Matrix3d Normalize(const Matrix3d& m) {
   return u * svd.matrixV().transpose();
 }
 
+Matrix3d Between(const Vector3d& from, const Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
 }  // namespace so3
 }  // namespace alidade

@@ -39,8 +39,11 @@ namespace so3 {
 [[nodiscard]] Eigen::Matrix3d Gamma(const Eigen::Vector3d& phi, int m);
 /// d (Gamma_m(phi) v) / d phi, m in 0..2.
 [[nodiscard]] Eigen::Matrix3d GammaDerivative(const Eigen::Vector3d& phi, const Eigen::Vector3d& v, int m);
-/// The rotation matrix nearest to `m` in the Frobenius norm.
+/// The rotation matrix nearest to `m` in the Frobenius norm. Of m = sum_i b_i a_i^T: the one that turns the
+/// a_i into the b_i with the least squares (Kabsch).
 [[nodiscard]] Eigen::Matrix3d Normalize(const Eigen::Matrix3d& m);
+/// The least rotation that turns the direction of `from` into that of `to`.
+[[nodiscard]] Eigen::Matrix3d Between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace so3
 

@@ -6,6 +6,18 @@
 
 namespace alidade {
 
+Eigen::Vector3d Pose::operator*(const Eigen::Vector3d& p) const {
+  return rotation * p + translation;
+}
+
+Pose Pose::operator*(const Pose& other) const {
+  return {rotation * other.rotation, rotation * other.translation + translation};
+}
+
+Pose Pose::Inverse() const {
+  return {rotation.transpose(), -(rotation.transpose() * translation)};
+}
+
 bool IsFinite(const NavEstimate& estimate) {
   return estimate.nav.R_WB.allFinite() && estimate.nav.p_WB.allFinite() && estimate.nav.v_WB.allFinite() &&
          estimate.bias.gyro.allFinite() && estimate.bias.accel.allFinite() && estimate.covariance.allFinite();

@@ -11,13 +11,9 @@ struct Pose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
-  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
-    return rotation * p + translation;
-  }
-  [[nodiscard]] Pose operator*(const Pose& other) const {
-    return {rotation * other.rotation, rotation * other.translation + translation};
-  }
-  [[nodiscard]] Pose Inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const;
+  [[nodiscard]] Pose operator*(const Pose& other) const;
+  [[nodiscard]] Pose Inverse() const;
 };
 
 /// Navigation state of the body (IMU) in the gravity-aligned world W: R_WB, p_WB [m], v_WB [m/s].

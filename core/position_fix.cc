@@ -1,9 +1,14 @@
 #include "core/position_fix.h"
 
-#include <Eigen/Cholesky>
 #include <string>
 
+#include "core/dense_solvers.h"
+
 namespace alidade {
+
+Eigen::Vector3d PositionFixModel::Predict(const NavState& state) const {
+  return state.p_WB + state.R_WB * p_BA;
+}
 
 void PositionFixModel::Evaluate(const NavState& state, Eigen::Vector3d* residual, Jacobian* jacobian) const {
   *residual = Predict(state) - p_WA;
@@ -22,6 +27,10 @@ void FixMeasurement::Evaluate(const NavState& state, Residual* residual, Jacobia
   }
 }
 
+void FixMeasurement::ScaleSqrtInformation(double root) {
+  sqrt_information *= root;
+}
+
 Result<FixMeasurement> MakeFixMeasurement(const FixConfig& config, const Eigen::Vector3d& p_BA,
                                           const PositionFix& fix) {
   const auto fault = [&](const char* expected) {
@@ -32,15 +41,14 @@ Result<FixMeasurement> MakeFixMeasurement(const FixConfig& config, const Eigen::
   }
   constexpr double kRounding = 1e-9;
   const double asymmetry = (fix.covariance - fix.covariance.transpose()).cwiseAbs().maxCoeff();
-  const Eigen::LLT<Eigen::Matrix3d> given(fix.covariance);
-  if (asymmetry > kRounding * fix.covariance.cwiseAbs().maxCoeff() || given.info() != Eigen::Success) {
+  if (asymmetry > kRounding * fix.covariance.cwiseAbs().maxCoeff() || !IsPositiveDefinite(fix.covariance)) {
     return fault("a covariance that is symmetric and positive definite");
   }
   const Eigen::Matrix3d assumed = config.std_scale * config.std_scale * fix.covariance +
                                   config.std_floor_m * config.std_floor_m * Eigen::Matrix3d::Identity();
   FixMeasurement measurement;
   measurement.model = {p_BA, fix.p_A};
-  measurement.sqrt_information = assumed.llt().matrixL().solve(Eigen::Matrix3d::Identity());
+  measurement.sqrt_information = Whitener(assumed);
   return measurement;
 }
 

@@ -44,9 +44,7 @@ struct PositionFixModel {
   Eigen::Vector3d p_WA = Eigen::Vector3d::Zero();  ///< measured
 
   /// The predicted position of A, p_WB + R_WB p_BA.
-  [[nodiscard]] Eigen::Vector3d Predict(const NavState& state) const {
-    return state.p_WB + state.R_WB * p_BA;
-  }
+  [[nodiscard]] Eigen::Vector3d Predict(const NavState& state) const;
   void Evaluate(const NavState& state, Eigen::Vector3d* residual, Jacobian* jacobian) const;
 };
 
@@ -62,7 +60,7 @@ struct FixMeasurement {
   /// Whitened.
   void Evaluate(const NavState& state, Residual* residual, Jacobian* jacobian) const;
   /// Multiplies the information by the square of `root`.
-  void ScaleSqrtInformation(double root) { sqrt_information *= root; }
+  void ScaleSqrtInformation(double root);
 };
 
 /// The fix with the noise that the configuration assumes: covariance std_scale^2 C + std_floor_m^2 I. kInput:

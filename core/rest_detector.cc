@@ -1,9 +1,9 @@
 #include "core/rest_detector.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense_solvers.h"
 #include "core/imu_statistics.h"
 
 namespace alidade {
@@ -118,8 +118,7 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
     normal += design.transpose() * design;
     right += design.transpose() * track.flow;
   }
-  const Eigen::LDLT<Eigen::Matrix4d> solver(normal);
-  const Eigen::Vector4d flow = solver.solve(right);
+  const Eigen::Vector4d flow = SymmetricSolver(normal).Solve(right);
   return flow.allFinite() && flow.cwiseAbs().maxCoeff() < vision_.rest_max_flow_px;
 }
 

@@ -9,6 +9,7 @@ namespace alidade {
 using TimeNs = std::int64_t;
 
 inline constexpr double kNsToSeconds = 1e-9;
+inline constexpr TimeNs kSecondNs = 1'000'000'000;
 
 /// later - earlier [s]; exact to double precision because the subtraction is done on integers.
 [[nodiscard]] constexpr double SecondsBetween(TimeNs earlier, TimeNs later) {

@@ -224,6 +224,13 @@ CalibrationEstimate FilterState::EstimatedCalibration() const {
   return estimate;
 }
 
+void FilterState::FillCalibrationRows(const Clone& clone, const Eigen::Matrix<double, 2, 6>& camera_rows,
+                                      const NormalizedObservation& observation,
+                                      Eigen::Ref<Eigen::MatrixXd> rows) const {
+  const Pose& T_WB = first_estimates_ ? clone.T_WB_first : clone.T_WB;
+  CalibrationRows(given_.layout, calibration_.camera, T_WB.rotation, nullptr, camera_rows, observation, rows);
+}
+
 bool FilterState::AllFinite() const {
   return calibration_is_sound_ && nav_.R_WB.allFinite() && nav_.p_WB.allFinite() && nav_.v_WB.allFinite() &&
          bias_.gyro.allFinite() && bias_.accel.allFinite() && covariance_.AllFinite();

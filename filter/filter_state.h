@@ -124,11 +124,7 @@ class FilterState {
   /// A view's rows over the calibration, 2 x layout().size(); `camera_rows`: over (phi, dp) of the clone's
   /// camera. The time offset acts through the clone's own error.
   void FillCalibrationRows(const Clone& clone, const Eigen::Matrix<double, 2, 6>& camera_rows,
-                           const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows) const {
-    const Pose& T_WB = first_estimates_ ? clone.T_WB_first : clone.T_WB;
-    CalibrationRows(given_.layout, calibration_.camera, T_WB.rotation, nullptr, camera_rows, observation,
-                    rows);
-  }
+                           const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   [[nodiscard]] const std::vector<Clone>& clones() const { return clones_; }           ///< oldest first
   [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarks_; }  ///< oldest first

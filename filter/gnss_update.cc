@@ -1,9 +1,9 @@
 #include "filter/gnss_update.h"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <utility>
 
+#include "core/dense_solvers.h"
 #include "gnss/model/receiver_clock.h"
 
 namespace alidade {
@@ -130,11 +130,9 @@ double GnssUpdate::Compress() {
   if (jacobian_.rows() <= kSeen) {
     return 0;
   }
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian_);
-  innovation_.applyOnTheLeft(qr.householderQ().adjoint());
+  jacobian_ = UpperTriangle(jacobian_, &innovation_);
   const double discarded = innovation_.tail(innovation_.size() - kSeen).squaredNorm();
   innovation_.conservativeResize(kSeen);
-  jacobian_ = qr.matrixQR().topRows(kSeen).triangularView<Eigen::Upper>();
   return discarded;
 }
 

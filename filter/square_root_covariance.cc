@@ -2,11 +2,11 @@
 
 #include <cblas.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "core/blas.h"
 #include "core/check.h"
+#include "core/dense_solvers.h"
 #include "core/semi_definite.h"
 #include "filter/triangularize.h"
 
@@ -53,12 +53,15 @@ void SquareRootCovariance::Assign(int leading, const Eigen::Ref<const MatrixXd>&
   CHECK_GE(root.cols(), n);
   // With the rows reversed, an LQ factorisation gives a lower triangle, which reversed again is an upper one.
   const MatrixXd reversed = root.colwise().reverse().transpose();
-  const Eigen::HouseholderQR<MatrixXd> qr(reversed);
-  const MatrixXd lower = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().toDenseMatrix().transpose();
+  const MatrixXd lower = UpperTriangle(reversed).transpose();
   leading_ = leading;
   origin_ = max_leading_ - leading;
   dimension_ = static_cast<int>(n);
   Part(0, 0, n, n) = lower.reverse();
+}
+
+bool SquareRootCovariance::AllFinite() const {
+  return factor().allFinite();
 }
 
 void SquareRootCovariance::CloneCore(int first, int size) {

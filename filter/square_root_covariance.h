@@ -92,7 +92,7 @@ class SquareRootCovariance {
   [[nodiscard]] Eigen::MatrixXd Block(int first, int size) const;
   /// The whole covariance; for tests and reports, not for a hot path.
   [[nodiscard]] Eigen::MatrixXd Covariance() const;
-  [[nodiscard]] bool AllFinite() const { return factor().allFinite(); }
+  [[nodiscard]] bool AllFinite() const;
 
  private:
   [[nodiscard]] auto Part(Eigen::Index row, Eigen::Index col, Eigen::Index rows, Eigen::Index cols) {

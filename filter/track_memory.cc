@@ -1,10 +1,10 @@
 #include "filter/track_memory.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 
 #include "core/check.h"
+#include "core/dense_solvers.h"
 #include "core/landmark_reduction.h"
 #include "filter/landmark_view.h"
 
@@ -23,21 +23,30 @@ constexpr double kStayFactor = 1.5;
 // track's own averages out.
 constexpr double kStateShare = 0.5;
 
-/// (y_m, y_1, y_2) over the errors (x_m, x_1, x_2) of three clones: in the right-invariant error everything
-/// relative to the yaw and position of clone 1, so that what follows says nothing about the unobservable
-/// directions; y_1 keeps its tilt alone (two rows). Other errors are taken as they are, less clone 1's yaw
-/// and position.
-Eigen::Matrix<double, 14, 18> RelativeErrors(ErrorConvention convention) {
-  Eigen::Matrix<double, 14, 18> rows = Eigen::Matrix<double, 14, 18>::Zero();
-  rows.topLeftCorner<6, 6>().setIdentity();
-  rows.block<2, 2>(6, 6).setIdentity();
-  rows.bottomRightCorner<6, 6>().setIdentity();
+// A clone is predicted from two others by errors relative to one of them, y = (x_m, x_1, x_2) less the yaw
+// and position of clone 1 in the right-invariant error, so that what follows says nothing about the
+// unobservable directions; y_1 keeps its tilt alone. Other errors are taken as they are, less clone 1's yaw
+// and position.
+using ThreePoses = Eigen::Matrix<double, 18, 18>;
+using RelativePoses = Eigen::Matrix<double, 14, 14>;
+
+/// The covariance of y = (y_m, y_1, y_2), of 6, 2 and 6 rows, from that of (x_m, x_1, x_2).
+RelativePoses RelativeCovariance(ErrorConvention convention, const ThreePoses& covariance) {
+  ThreePoses p = covariance;
   if (convention == ErrorConvention::kRightInvariant) {
-    for (const Index first : {Index{0}, Index{8}}) {
-      rows.block<4, 4>(first + 2, 8) -= Eigen::Matrix4d::Identity();
+    for (const Index first : {Index{2}, Index{14}}) {
+      p.middleRows(first, 4) -= p.middleRows(8, 4);
+    }
+    for (const Index first : {Index{2}, Index{14}}) {
+      p.middleCols(first, 4) -= p.middleCols(8, 4);
     }
   }
-  return rows;
+  RelativePoses q;
+  q.topLeftCorner(8, 8) = p.topLeftCorner(8, 8);
+  q.topRightCorner(8, 6) = p.block(0, 12, 8, 6);
+  q.bottomLeftCorner(6, 8) = p.block(12, 0, 6, 8);
+  q.bottomRightCorner(6, 6) = p.bottomRightCorner(6, 6);
+  return q;
 }
 
 }  // namespace
@@ -161,7 +170,7 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
     shift -= memory->clone_rows.rightCols(calibration_) *
              correction.segment(state.CalibrationOffset(), calibration_);
   }
-  const Vector3d move = memory->landmark_rows.partialPivLu().solve(shift);
+  const Vector3d move = SolveRegular(memory->landmark_rows, shift);
   if (error_.anchored()) {
     const int anchor = state.FindClone(memory->anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
@@ -188,23 +197,28 @@ void TrackMemoryKeeper::Condition(const FilterState& state, size_t index,
     second = index + 1;
   }
   const std::array<size_t, 3> blocks = {index, first, second};
-  Eigen::Matrix<double, 18, 18> p;
+  ThreePoses p;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = 0; j < 3; ++j) {
       p.block<6, 6>(6 * static_cast<Index>(i), 6 * static_cast<Index>(j)) =
           state.covariance().PoseBlock(state.CloneOffset(blocks[i]), state.CloneOffset(blocks[j]));
     }
   }
-  const Eigen::Matrix<double, 14, 18> relative = RelativeErrors(convention_);
-  const Eigen::Matrix<double, 14, 14> q = relative * p * relative.transpose();
+  const RelativePoses q = RelativeCovariance(convention_, p);
   const Eigen::Matrix<double, 6, 8> gain =
       q.bottomRightCorner<8, 8>().ldlt().solve(q.bottomLeftCorner<8, 6>()).transpose();
-  // x_m = x_m - y_m + gain (y_1, y_2), the first two terms being free of x_m.
-  Eigen::Matrix<double, 6, 18> mean = gain * relative.bottomRows<8>() - relative.topRows<6>();
+  // x_m = (x_m - y_m) + gain (y_1, y_2); the first term is clone 1's yaw and position.
   conditional->leaving_serial = clones[index].serial;
   conditional->leaving_slot = clones[index].slot;
   conditional->neighbour_slots = {clones[first].slot, clones[second].slot};
-  conditional->gain = mean.rightCols<12>();
+  conditional->gain.leftCols<2>() = gain.leftCols<2>();
+  if (convention_ == ErrorConvention::kRightInvariant) {
+    conditional->gain.middleCols<4>(2) = -gain.rightCols<4>();
+    conditional->gain.block<4, 4>(2, 2) += Eigen::Matrix4d::Identity();
+  } else {
+    conditional->gain.middleCols<4>(2).setZero();
+  }
+  conditional->gain.rightCols<6>() = gain.rightCols<6>();
   const Matrix6d rest = q.topLeftCorner<6, 6>() - gain * q.bottomLeftCorner<8, 6>();
   conditional->covariance = 0.5 * (rest + rest.transpose());
 }
@@ -239,12 +253,12 @@ bool TrackMemoryKeeper::MayStart(
     const Vector3d& camera_W) const {
   const Matrix3d information = point_jacobian.transpose() * point_jacobian;
   const Vector3d ray = p_W - camera_W;
-  return std::sqrt(ray.dot(information.ldlt().solve(ray))) < max_depth_deviation_ * ray.squaredNorm();
+  return std::sqrt(ray.dot(SolveSymmetric(information, ray))) < max_depth_deviation_ * ray.squaredNorm();
 }
 
 bool TrackMemoryKeeper::MayStay(const TrackMemory& memory, const Vector3d& camera_W) const {
   const Vector3d ray = memory.p_W - camera_W;
-  return memory.landmark_rows.transpose().partialPivLu().solve(ray).norm() <
+  return SolveRegular(memory.landmark_rows.transpose(), ray).norm() <
          kStayFactor * max_depth_deviation_ * ray.squaredNorm();
 }
 

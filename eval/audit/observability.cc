@@ -1,12 +1,12 @@
 #include "eval/audit/observability.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
+#include "core/dense_solvers.h"
 #include "filter/filter_state.h"
 
 namespace alidade {
@@ -16,12 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr int kClock = FilterState::kClockSize;
-
-/// Upper triangular factor of a matrix with at least as many rows as columns.
-MatrixXd Triangle(const MatrixXd& matrix) {
-  const Eigen::HouseholderQR<MatrixXd> qr(matrix);
-  return qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
-}
 
 /// `matrix` without rows [first, first + size).
 void EraseRows(Index first, Index size, MatrixXd* matrix) {
@@ -41,8 +35,15 @@ MatrixXd WithoutColumns(Index first, Index size, const MatrixXd& rows) {
 
 /// Orthonormal basis of R^15 whose first four columns span those of `directions`.
 Matrix15d BasisWith(const Eigen::Matrix<double, 15, 4>& directions) {
-  const Eigen::HouseholderQR<Eigen::Matrix<double, 15, 4>> qr(directions);
-  return qr.householderQ() * Matrix15d::Identity();
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(directions);
+  return qr.householderQ() * MatrixXd::Identity(15, 15);
+}
+
+/// The largest singular value of a matrix of at most 15 x 15.
+double LargestSingularValue(const Eigen::Ref<const MatrixXd>& matrix) {
+  Matrix15d padded = Matrix15d::Zero();
+  padded.topLeftCorner(matrix.rows(), matrix.cols()) = matrix;
+  return Eigen::JacobiSVD<Matrix15d>(padded).singularValues()[0];
 }
 
 }  // namespace
@@ -124,7 +125,7 @@ void ObservabilityAudit::EliminateLandmark(size_t index) {
   permuted.leftCols<3>() = factor_.middleCols<3>(column);
   permuted.middleCols(3, column) = factor_.leftCols(column);
   const Index left = factor_.cols() - 3;
-  factor_ = Triangle(permuted).bottomRightCorner(left, left).eval();
+  factor_ = UpperTriangle(permuted).bottomRightCorner(left, left).eval();
   landmark_firsts_.erase(landmark_firsts_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
@@ -140,7 +141,7 @@ void ObservabilityAudit::AddRows(const MatrixXd& jacobian) {
   rows.rightCols<15>().noalias() = jacobian * map_;
   const MatrixXd magnitudes = jacobian.cwiseAbs() * map_.cwiseAbs();
   scale_squared_ += magnitudes.colwise().squaredNorm().transpose();
-  factor_ = Triangle(stacked);
+  factor_ = UpperTriangle(stacked);
 }
 
 void ObservabilityAudit::OnAlign(const MatrixXd& turn, bool has_clock) {
@@ -174,7 +175,7 @@ double ObservabilityAudit::YawGain(const Vector15d& scale) const {
   basis.leftCols<11>() = scale.cwiseInverse().asDiagonal() * BasisWith(scaled_theory).rightCols<11>();
   basis.middleCols<3>(11) = theory_.rightCols<3>();
   basis.col(14) = theory_.col(0);
-  const double left = Triangle(Factor() * basis)(14, 14);
+  const double left = UpperTriangle(Factor() * basis)(14, 14);
   return left * left;
 }
 
@@ -189,16 +190,13 @@ void ObservabilityAudit::OnFrame(const FilterState& state) {
   record.rank = static_cast<int>((values.array() > kObservabilityTolerance * values[0]).count());
   const Eigen::Matrix<double, 15, 4> leaks = factor * theory_;
   record.yaw_leak = leaks.col(0).squaredNorm();
-  const Eigen::Matrix3d position = leaks.rightCols<3>().transpose() * leaks.rightCols<3>();
-  record.position_leak =
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(position).eigenvalues()[2]);
+  record.position_leak = std::pow(LargestSingularValue(leaks.rightCols<3>()), 2);
   record.yaw_gain = YawGain(scale);
   // Sine of the largest principal angle: the part of the weakest directions outside of theory.
   const Matrix15d basis = BasisWith(scale.asDiagonal() * theory_);
   const Eigen::Matrix<double, 11, 4> outside =
       basis.rightCols<11>().transpose() * svd.matrixV().rightCols<4>();
-  const double sine = Eigen::JacobiSVD<Eigen::Matrix<double, 11, 4>>(outside).singularValues()[0];
-  record.null_angle_rad = std::asin(std::min(1.0, sine));
+  record.null_angle_rad = std::asin(std::min(1.0, LargestSingularValue(outside)));
   records_.push_back(record);
 }
 

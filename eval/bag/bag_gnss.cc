@@ -10,6 +10,7 @@
 #include "eval/rosbag/gnss_navigation_messages.h"
 #include "gnss/base/geodesy.h"
 #include "gnss/model/gnss_epoch.h"
+#include "gnss/positioning/time_check.h"
 
 namespace alidade {
 namespace {
@@ -161,6 +162,9 @@ Status BagGnss::Assemble(BagContext* bag) {
     log->approximate_position_E = PositionOf(fixed_.front());
   }
   if (log->catalog->navigation().ephemerides() > 0) {
+    if (const Status tags = CheckTags(*log); !tags.ok()) {
+      return Status::Input(bag->path + ": " + bag->topics["range"] + ": " + tags.message());
+    }
     bag->dataset.gnss = std::move(log);
   }
   AssembleTruth(bag);

@@ -20,8 +20,8 @@ void Fail(const std::string& message, CompareCell* cell) {
 }
 
 /// A program or trajectories that are not ours. True: the program's earlier output was kept.
-bool RunExternal(const Plan& plan, const CompareOptions& options, const CompareInput::Data& data,
-                 CompareCell* cell) {
+bool RunExternalCell(const Plan& plan, const CompareOptions& options, const CompareInput::Data& data,
+                     CompareCell* cell) {
   const Trajectory* truth = data.truth ? &*data.truth : nullptr;
   const ExternalCell external{*cell->estimator,    *cell->sequence, cell->seed, data.log, truth,
                               data.dataset_digest, cell->folder};
@@ -92,7 +92,7 @@ bool Run(const Plan& plan, const CompareOptions& options, const PipelineOptions&
     Fail("the measurement log changed between two estimators", cell);
     return false;
   }
-  return cell->config == nullptr ? RunExternal(plan, options, *data, cell)
+  return cell->config == nullptr ? RunExternalCell(plan, options, *data, cell)
                                  : RunOwn(plan, options, *data, cell);
 }
 

@@ -44,20 +44,8 @@ struct Dataset {
 };
 
 /// What the estimators are given of a sequence; without tracks, if the front end has still to make them.
-[[nodiscard]] inline MeasurementLog MeasurementsOf(const Dataset& dataset) {
-  return {dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras, dataset.gnss, dataset.fixes};
-}
-
+[[nodiscard]] MeasurementLog MeasurementsOf(const Dataset& dataset);
 /// A sequence of these measurements; the rest of it is empty.
-[[nodiscard]] inline Dataset DatasetOf(const MeasurementLog& log) {
-  Dataset dataset;
-  dataset.rig = log.rig;
-  dataset.imu = log.imu;
-  dataset.tracks = log.frames;
-  dataset.extra_cameras = log.extra_cameras;
-  dataset.gnss = log.gnss;
-  dataset.fixes = log.fixes;
-  return dataset;
-}
+[[nodiscard]] Dataset DatasetOf(const MeasurementLog& log);
 
 }  // namespace alidade

@@ -1,11 +1,11 @@
 #include "eval/dataset/dataset_fix.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <utility>
 
+#include "core/dense_solvers.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/sensor_file.h"
 #include "eval/dataset/sensor_table.h"
@@ -115,7 +115,7 @@ Result<std::vector<PositionFix>> ReadFixCsv(const std::string& path, int sensor)
       fix.covariance(kEntries[i].row, kEntries[i].column) = value;
       fix.covariance(kEntries[i].column, kEntries[i].row) = value;
     }
-    if (fix.covariance.llt().info() != Eigen::Success) {
+    if (!IsPositiveDefinite(fix.covariance)) {
       return csv->Fault(4, "c_xx", "the upper triangle of a positive definite covariance");
     }
     fixes.push_back(fix);

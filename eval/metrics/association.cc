@@ -40,7 +40,7 @@ double ToDoubleSeconds(TimeNs stamp_ns) {
 /// keep, have steps of 0.24 us: there stamps that differ by the tolerance exactly are decided as those tools
 /// do.
 bool IsWithin(TimeNs a, TimeNs b, double max_dt_s) {
-  constexpr TimeNs kDoublesHoldNanoseconds = (TimeNs{1} << 22) * 1'000'000'000;
+  constexpr TimeNs kDoublesHoldNanoseconds = (TimeNs{1} << 22) * kSecondNs;
   if (std::max(a, b) < kDoublesHoldNanoseconds) {
     return Distance(a, b) <= SecondsToNs(max_dt_s);
   }

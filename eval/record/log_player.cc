@@ -15,7 +15,7 @@ namespace {
 
 // Messages handed over ahead of a frame, beyond any receiver clock and any error of the camera's time offset.
 constexpr TimeNs kEpochsAheadNs = 10'000'000'000;
-constexpr TimeNs kImuAheadNs = 1'000'000'000;
+constexpr TimeNs kImuAheadNs = kSecondNs;
 
 double ThreadCpuSeconds() {
   timespec now{};

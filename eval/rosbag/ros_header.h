@@ -9,13 +9,13 @@ namespace alidade {
 
 /// A ROS time of a message: seconds, then nanoseconds, 32 bits each.
 inline void PutRosTime(TimeNs stamp_ns, ByteWriter* out) {
-  out->Write(static_cast<std::uint32_t>(stamp_ns / 1'000'000'000));
-  out->Write(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000));
+  out->Write(static_cast<std::uint32_t>(stamp_ns / kSecondNs));
+  out->Write(static_cast<std::uint32_t>(stamp_ns % kSecondNs));
 }
 
 [[nodiscard]] inline TimeNs TakeRosTime(ByteReader* in) {
   const TimeNs seconds = in->Read<std::uint32_t>();
-  return seconds * 1'000'000'000 + in->Read<std::uint32_t>();
+  return seconds * kSecondNs + in->Read<std::uint32_t>();
 }
 
 /// std_msgs/Header; its sequence number and frame are not used.

@@ -1,8 +1,8 @@
 #include "eval/rosbag/ros_position_messages.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "core/dense_solvers.h"
 #include "eval/rosbag/ros_header.h"
 
 namespace alidade {
@@ -74,7 +74,7 @@ DecodedNavSatFix DecodeNavSatFix(std::string_view bytes) {
     fix.covariance_N = Eigen::Matrix3d(fix.covariance_N.diagonal().asDiagonal());
   }
   fix.covariance_N = (0.5 * (fix.covariance_N + fix.covariance_N.transpose())).eval();
-  if (!fix.covariance_N.allFinite() || fix.covariance_N.llt().info() != Eigen::Success) {
+  if (!fix.covariance_N.allFinite() || !IsPositiveDefinite(fix.covariance_N)) {
     return {};
   }
   return {true, fix};
@@ -95,8 +95,7 @@ std::optional<PositionFix> DecodePosition(std::string_view bytes) {
   fix.p_A = TakeRosVector(&in);
   fix.covariance = TakeMatrix(&in);
   const bool fine = in.ok() && fix.p_A.allFinite() && fix.covariance.allFinite() &&
-                    fix.covariance == fix.covariance.transpose() &&
-                    fix.covariance.llt().info() == Eigen::Success;
+                    fix.covariance == fix.covariance.transpose() && IsPositiveDefinite(fix.covariance);
   return fine ? std::optional(fix) : std::nullopt;
 }
 

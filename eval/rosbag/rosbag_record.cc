@@ -3,11 +3,6 @@
 #include "eval/files/byte_io.h"
 
 namespace alidade {
-namespace {
-
-constexpr std::uint64_t kSecondNs = 1'000'000'000;
-
-}  // namespace
 
 std::optional<BagFields> BagFields::Parse(std::string_view header) {
   BagFields fields;
@@ -39,7 +34,7 @@ std::optional<TimeNs> BagFields::Time(std::string_view name) const {
   const TimeNs seconds = reader.Read<std::uint32_t>();
   const TimeNs nanoseconds = reader.Read<std::uint32_t>();
   const bool whole = reader.ok() && reader.left() == 0;
-  return whole ? std::optional(seconds * static_cast<TimeNs>(kSecondNs) + nanoseconds) : std::nullopt;
+  return whole ? std::optional(seconds * kSecondNs + nanoseconds) : std::nullopt;
 }
 
 std::string_view BagFields::Text(std::string_view name) const {
@@ -77,7 +72,8 @@ BagFieldWriter& BagFieldWriter::Time(std::string_view name, TimeNs stamp_ns) {
 
 std::uint64_t PackRosTime(TimeNs stamp_ns) {
   const auto value = static_cast<std::uint64_t>(stamp_ns);
-  return (value / kSecondNs) | ((value % kSecondNs) << 32);
+  constexpr std::uint64_t kSecond = kSecondNs;
+  return (value / kSecond) | ((value % kSecond) << 32);
 }
 
 }  // namespace alidade

@@ -12,7 +12,7 @@ namespace {
 
 /// rosbag's own size of a chunk [bytes].
 constexpr std::size_t kChunkBytes = 768 * 1024;
-constexpr TimeNs kEndOfRosTime = (TimeNs{1} << 32) * 1'000'000'000;
+constexpr TimeNs kEndOfRosTime = (TimeNs{1} << 32) * kSecondNs;
 
 std::string Record(const BagFieldWriter& fields, std::string_view data) {
   ByteWriter bytes;

@@ -1,10 +1,11 @@
 #include "eval/simulation/gyro_agreement.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "core/dense_solvers.h"
 
 namespace alidade {
 namespace {
@@ -66,7 +67,7 @@ class GyroFit {
     // A body at rest says nothing of the offset: the faint prior (1 s for a rate of 1 rad/s) keeps it at 0.
     information(3, 3) += 1;
     gradient(3) -= agreement_.time_offset_s;
-    const Eigen::Vector4d step = information.ldlt().solve(gradient);
+    const Eigen::Vector4d step = SymmetricSolver(information).Solve(gradient);
     agreement_.bias += step.head<3>();
     agreement_.time_offset_s = std::clamp(agreement_.time_offset_s + step(3), -0.4, 0.4);
   }

@@ -1,10 +1,10 @@
 #include "eval/study/start_study.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/dense_solvers.h"
 #include "core/format.h"
 #include "core/lie.h"
 #include "core/numbers.h"
@@ -19,7 +19,8 @@ namespace {
 constexpr double kGoodScale = 0.05;
 
 double Nees(const NavEstimate& estimate, const Vector15d& error, Eigen::Index size) {
-  return error.head(size).dot(estimate.covariance.topLeftCorner(size, size).ldlt().solve(error.head(size)));
+  return error.head(size).dot(
+      SymmetricSolver(estimate.covariance.topLeftCorner(size, size)).Solve(error.head(size)).col(0));
 }
 
 double ScaleError(const InitializerWindow& window, const Trajectory& truth) {

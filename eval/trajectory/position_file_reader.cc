@@ -1,10 +1,10 @@
 #include "eval/trajectory/position_file_reader.h"
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "core/dense_solvers.h"
 #include "core/format.h"
 #include "gnss/base/geodesy.h"
 #include "gnss/base/gnss_time.h"
@@ -101,7 +101,7 @@ Eigen::Matrix3d TakeCovariance(const PositionLayout& layout, const Eigen::Vector
     const double deviation = UsualDeviation(quality);
     return CovarianceFromDeviations(position_E, {deviation, deviation, 2 * deviation});
   }
-  if (covariance.llt().info() != Eigen::Success) {
+  if (!IsPositiveDefinite(covariance)) {
     covariance = diagonal.asDiagonal();  // the file rounds them
   }
   if (layout.ecef) {

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "core/dense_solvers.h"
 #include "frontend/initialization/alignment_problem.h"
 
 namespace alidade {
@@ -11,19 +12,19 @@ using Eigen::Vector3d;
 
 bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covariance) const {
   const Eigen::Index rest = information_.rows() - 15;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(information_.topLeftCorner(rest, rest));
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) {
+  const SymmetricSolver factor(information_.topLeftCorner(rest, rest));
+  if (!(factor.min_pivot() > 0)) {
     return false;
   }
   const Eigen::MatrixXd coupling = information_.bottomLeftCorner(15, rest).transpose();
   Matrix15d marginal =
-      information_.bottomRightCorner<15, 15>() - coupling.transpose() * factor.solve(coupling);
+      information_.bottomRightCorner<15, 15>() - coupling.transpose() * factor.Solve(coupling);
   marginal = marginal / variance_factor + gauge_;
-  const Eigen::LDLT<Matrix15d> newest(marginal);
-  if (newest.info() != Eigen::Success || !(newest.vectorD().minCoeff() > 0)) {
+  const SymmetricSolver newest(marginal);
+  if (!(newest.min_pivot() > 0)) {
     return false;
   }
-  const Matrix15d inverse = newest.solve(Matrix15d::Identity());
+  const Matrix15d inverse = newest.Solve(Matrix15d::Identity());
   *covariance = 0.5 * (inverse + inverse.transpose());
   return covariance->allFinite();
 }

@@ -1,12 +1,12 @@
 #include "frontend/initialization/gyro_alignment.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/dense_solvers.h"
 #include "core/robust.h"
 
 namespace alidade {
@@ -216,7 +216,7 @@ GyroAlignment AlignGyro(const DynamicWindow& window, const std::vector<Preintegr
          CollectPairs(window, preintegrations, R_BC, alignment.gyro_bias)) {
       AddPair(rays, &equations);
     }
-    const Vector3d step = equations.information.ldlt().solve(equations.gradient);
+    const Vector3d step = SolveSymmetric(equations.information, equations.gradient);
     alignment.gyro_bias -= step;
     if (step.norm() < kConvergedRadps) {
       break;

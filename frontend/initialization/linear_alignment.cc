@@ -1,10 +1,10 @@
 #include "frontend/initialization/linear_alignment.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense_solvers.h"
 #include "core/landmark_reduction.h"
 #include "core/robust.h"
 
@@ -131,16 +131,16 @@ Vector3d MinimizeOnSphere(const Matrix3d& S, const Vector3d& s, double magnitude
 /// Solves for (v, g) under |g| = magnitude; false when singular. free_gravity: |g| of the unconstrained
 /// solution.
 bool Solve(const NormalEquations& equations, double magnitude, Vector6d* solution, double* free_gravity) {
-  const Eigen::LDLT<Matrix3d> velocity(equations.matrix.topLeftCorner<3, 3>());
-  if (velocity.info() != Eigen::Success || !(velocity.vectorD().minCoeff() > 0)) {
+  const SymmetricSolver velocity(equations.matrix.topLeftCorner<3, 3>());
+  if (!(velocity.min_pivot() > 0)) {
     return false;
   }
   const Matrix3d cross = equations.matrix.topRightCorner<3, 3>();
-  const Matrix3d coupling = velocity.solve(cross);
-  const Vector3d free_velocity = velocity.solve(equations.right_side.head<3>());
+  const Matrix3d coupling = velocity.Solve(cross);
+  const Vector3d free_velocity = velocity.Solve(equations.right_side.head<3>());
   const Matrix3d S = equations.matrix.bottomRightCorner<3, 3>() - cross.transpose() * coupling;
   const Vector3d s = equations.right_side.tail<3>() - cross.transpose() * free_velocity;
-  *free_gravity = S.ldlt().solve(s).norm();
+  *free_gravity = SolveSymmetric(S, s).norm();
   const Vector3d g = MinimizeOnSphere(0.5 * (S + S.transpose()), s, magnitude);
   *solution << free_velocity - coupling * g, g;
   return solution->allFinite();
@@ -163,7 +163,7 @@ void Reweigh(const std::vector<FramePrediction>& frames, const Vector6d& solutio
       normal += projector;
       right_side += projector * cameras[static_cast<size_t>(ray.frame)];
     }
-    const Vector3d landmark = normal.ldlt().solve(right_side);
+    const Vector3d landmark = SolveSymmetric(normal, right_side);
     for (Ray& ray : bundle.rays) {
       const Vector3d offset = landmark - cameras[static_cast<size_t>(ray.frame)];
       const double depth = offset.dot(ray.direction);
@@ -179,7 +179,7 @@ LinearAlignment ToWorld(const std::vector<FramePrediction>& frames, const Vector
                         const ImuBias& bias) {
   const Vector3d v = solution.head<3>();
   const Vector3d g = solution.tail<3>();
-  const Matrix3d R_W0 = Eigen::Quaterniond::FromTwoVectors(-g, Vector3d::UnitZ()).toRotationMatrix();
+  const Matrix3d R_W0 = so3::Between(-g, Vector3d::UnitZ());
   LinearAlignment alignment;
   alignment.bias = bias;
   for (const FramePrediction& frame : frames) {

@@ -1,10 +1,10 @@
 #include "frontend/initialization/static_initializer.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
+#include "core/dense_solvers.h"
 #include "core/format.h"
 
 namespace alidade {
@@ -144,7 +144,7 @@ NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const Imu
   const double accel_bias_std =
       std::max(config.accel_bias_std_mps2, kShownToHiddenBias * std::abs(magnitude - gravity_mps2));
   information.bottomRightCorner<3, 3>() += Matrix3d::Identity() / (accel_bias_std * accel_bias_std);
-  const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
+  const Matrix6d covariance = SymmetricSolver(information).Solve(Matrix6d::Identity());
   const double walk = noise.gyro_random_walk_radps2_sqrthz;
   const double gyro_variance =
       VarianceOfMean(noise.gyro_noise_density_radps_sqrthz, spread.gyro_mean_std_radps, spread.duration_s) +

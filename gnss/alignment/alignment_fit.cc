@@ -1,10 +1,10 @@
 #include "gnss/alignment/alignment_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/dense_solvers.h"
 #include "core/robust.h"
 #include "core/yaw_shift.h"
 #include "gnss/model/receiver_clock.h"
@@ -224,18 +224,18 @@ AlignmentStep AlignmentFit::Step(const Options& options, AlignmentGuess* guess) 
   }
   AddClockProcess(*guess, &system);
   AddPriors(options, *guess, &system);
-  const Eigen::LDLT<MatrixXd> solver(system.hessian);
-  if (solver.info() != Eigen::Success || !solver.isPositive()) {
+  const SymmetricSolver solver(system.hessian);
+  if (!solver.positive()) {
     return result;
   }
-  const VectorXd step = solver.solve(-system.gradient);
+  const VectorXd step = solver.Solve(-system.gradient);
   if (!step.allFinite()) {
     return result;
   }
   Move(step, guess);
   result.ok = true;
   result.scale = RobustScale(whitened, static_cast<int>(std::min<Index>(kClocks, step.size())));
-  result.covariance = solver.solve(MatrixXd::Identity(step.size(), 4)).topRows<4>();
+  result.covariance = solver.Solve(MatrixXd::Identity(step.size(), 4)).topRows<4>();
   return result;
 }
 

@@ -1,11 +1,11 @@
 #include "gnss/alignment/fix_aligner.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/dense_solvers.h"
 #include "core/format.h"
 #include "core/robust.h"
 
@@ -110,8 +110,7 @@ std::vector<FixAligner::Point> FixAligner::Points() const {
     const Matrix3d covariance =
         (root.transpose() * root).inverse() + std::max(drift, 0.0) * Matrix3d::Identity();
     points.push_back({sample.p_WA, sample.fix.model.p_WA,
-                      SecondsBetween(newest.stamp_ns, sample.state.stamp_ns),
-                      covariance.llt().matrixL().solve(Matrix3d::Identity()),
+                      SecondsBetween(newest.stamp_ns, sample.state.stamp_ns), Whitener(covariance),
                       sample.state.velocity_covariance_W.diagonal()});
   }
   return points;
@@ -188,15 +187,15 @@ FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess
       hessian(4 + axis, 4 + axis) += information;
       gradient[4 + axis] += information * guess.dv_W[axis];
     }
-    const Eigen::LDLT<Matrix7d> solver(hessian);
-    const Vector7d step = solver.solve(-gradient);
-    if (solver.info() != Eigen::Success || !solver.isPositive() || !step.allFinite()) {
+    const SymmetricSolver solver(hessian);
+    const Vector7d step = solver.Solve(-gradient);
+    if (!solver.positive() || !step.allFinite()) {
       return fit;
     }
     guess.transform.yaw_rad = std::remainder(guess.transform.yaw_rad + step[0], 2 * M_PI);
     guess.transform.p_NW += step.segment<3>(1);
     guess.dv_W += step.tail<3>();
-    fit.covariance = solver.solve(Eigen::Matrix<double, 7, 4>::Identity()).topRows<4>();
+    fit.covariance = solver.Solve(Eigen::Matrix<double, 7, 4>::Identity()).topRows<4>();
   }
   fit.guess = guess;
   fit.ok = true;

@@ -1,10 +1,9 @@
 #include "gnss/alignment/inertial_start.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense_solvers.h"
 #include "core/error_convention.h"
 #include "core/format.h"
 #include "core/imu_buffer.h"
@@ -28,7 +27,7 @@ constexpr int kStepsPerIntegration = 5;
 
 Matrix3d InformationRoot(const Matrix3d& covariance, double floor) {
   const Matrix3d widened = covariance + floor * floor * Matrix3d::Identity();
-  return widened.llt().matrixL().solve(Matrix3d::Identity());
+  return Whitener(widened);
 }
 
 /// The rotation that turns the vectors `from` into `to` best (Kabsch).
@@ -37,10 +36,7 @@ Matrix3d RotationBetween(const std::vector<Vector3d>& from, const std::vector<Ve
   for (std::size_t i = 0; i < from.size(); ++i) {
     sum += to[i] * from[i].transpose();
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d sign = Matrix3d::Identity();
-  sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * sign * svd.matrixV().transpose();
+  return so3::Normalize(sum);
 }
 
 }  // namespace
@@ -208,9 +204,9 @@ GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
       fit.nav = FirstGuess(fit);
     }
     const Equations equations = Linearize(fit);
-    const Eigen::LDLT<Matrix15d> solver(equations.hessian);
-    const Vector15d step = solver.solve(-equations.gradient);
-    if (solver.info() != Eigen::Success || !solver.isPositive() || !step.allFinite()) {
+    const SymmetricSolver solver(equations.hessian);
+    const Vector15d step = solver.Solve(-equations.gradient);
+    if (!solver.positive() || !step.allFinite()) {
       return fit;
     }
     fit.nav = Retract(ErrorConvention::kSo3xRn, fit.nav, step.head<9>());
@@ -218,7 +214,7 @@ GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
     fit.bias.gyro += step.segment<3>(9);
     fit.bias.accel += step.segment<3>(12);
     fit.cost = equations.cost;
-    fit.covariance = solver.solve(Matrix15d::Identity());
+    fit.covariance = solver.Solve(Matrix15d::Identity());
   }
   fit.ok = true;
   return fit;

@@ -47,4 +47,12 @@ Direction DirectionTo(const EnuFrame& frame, const Eigen::Vector3d& position_E) 
   return {std::asin(std::clamp(e.z(), -1.0, 1.0)), azimuth < 0 ? azimuth + 2 * M_PI : azimuth};
 }
 
+Eigen::Vector3d EnuFrame::ToEcef(const Eigen::Vector3d& position_N) const {
+  return origin_E + R_EN * position_N;
+}
+
+Eigen::Vector3d EnuFrame::FromEcef(const Eigen::Vector3d& position_E) const {
+  return R_EN.transpose() * (position_E - origin_E);
+}
+
 }  // namespace alidade

@@ -20,12 +20,8 @@ struct EnuFrame {
   Eigen::Matrix3d R_EN = Eigen::Matrix3d::Identity();
 
   [[nodiscard]] static EnuFrame At(const Eigen::Vector3d& origin_E);
-  [[nodiscard]] Eigen::Vector3d ToEcef(const Eigen::Vector3d& position_N) const {
-    return origin_E + R_EN * position_N;
-  }
-  [[nodiscard]] Eigen::Vector3d FromEcef(const Eigen::Vector3d& position_E) const {
-    return R_EN.transpose() * (position_E - origin_E);
-  }
+  [[nodiscard]] Eigen::Vector3d ToEcef(const Eigen::Vector3d& position_N) const;
+  [[nodiscard]] Eigen::Vector3d FromEcef(const Eigen::Vector3d& position_E) const;
 };
 
 /// Where a satellite stands in a receiver's sky.

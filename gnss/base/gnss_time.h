@@ -41,7 +41,6 @@ struct WeekTime {
   TimeNs of_week_ns = 0;  ///< 0 <= of_week_ns < 604800e9
 };
 
-inline constexpr TimeNs kSecondNs = 1'000'000'000;
 inline constexpr TimeNs kDayNs = 86'400 * kSecondNs;
 inline constexpr TimeNs kWeekNs = 7 * kDayNs;
 

@@ -7,7 +7,7 @@
 namespace alidade {
 
 /// Place of a system in an array of kGnssSystems.
-[[nodiscard]] constexpr std::size_t Index(GnssSystem system) {
+[[nodiscard]] constexpr std::size_t SystemIndex(GnssSystem system) {
   return static_cast<std::size_t>(system);
 }
 

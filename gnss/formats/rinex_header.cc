@@ -165,7 +165,7 @@ Status ObservationHeaderParser::ParseTypes3(const LineReader& lines) {
     }
     system3_ = static_cast<int>(*system);
     expected3_ = static_cast<std::size_t>(*count);
-    layout_->types[Index(*system)].clear();
+    layout_->types[SystemIndex(*system)].clear();
   }
   if (system3_ < 0) {
     return lines.Fault("continues a list of observation types that has not begun");
@@ -230,11 +230,11 @@ Status ObservationHeaderParser::ParseScaleFactor(const LineReader& lines) {
   for (std::string_view word = NextWord(&words); word.size() >= 3; word = NextWord(&words)) {
     listed = true;
     const SignalCode signal = CanonicalSignal(*system, {word[1], word[2]}, file_->version);
-    for (ObservationType& type : layout_->types[Index(*system)]) {
+    for (ObservationType& type : layout_->types[SystemIndex(*system)]) {
       type.factor = type.kind == word[0] && type.signal == signal ? *factor : type.factor;
     }
   }
-  for (ObservationType& type : layout_->types[Index(*system)]) {
+  for (ObservationType& type : layout_->types[SystemIndex(*system)]) {
     type.factor = listed ? type.factor : *factor;
   }
   return Status::Ok();

@@ -112,7 +112,7 @@ class EpochReader {
         continue;
       }
       SatelliteObservation satellite{*id, {}};
-      const auto& types = layout_.types[Index(id->system)];
+      const auto& types = layout_.types[SystemIndex(id->system)];
       for (std::size_t k = 0; k < types.size() && 3 + k * kFieldWidth < lines_.line().size(); ++k) {
         ReadField(types[k], 3 + k * kFieldWidth, &satellite);
       }
@@ -136,7 +136,7 @@ class EpochReader {
     for (const std::string& name : names) {
       const std::optional<SatelliteId> id = ParseSatellite(name);
       SatelliteObservation satellite{id.value_or(SatelliteId{}), {}};
-      const auto& types = layout_.types[Index(satellite.satellite.system)];
+      const auto& types = layout_.types[SystemIndex(satellite.satellite.system)];
       for (std::size_t k = 0; k < fields; ++k) {
         if (k % kFieldsALine2 == 0 && !lines_.Next()) {
           return Torn();

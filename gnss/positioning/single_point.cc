@@ -30,7 +30,7 @@ double SinglePointSolver::ElevationMask() const {
 }
 
 double SinglePointSolver::BiasVariance(GnssSystem system, TimeNs stamp_ns) const {
-  const Bias& bias = biases_[Index(system)];
+  const Bias& bias = biases_[SystemIndex(system)];
   if (!bias.known) {
     return kUnknownBiasM * kUnknownBiasM;
   }
@@ -102,7 +102,7 @@ Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, SinglePointSta
   int active = 0;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
     if (state->active[k]) {
-      ++count[Index(epoch.satellites[k].satellite.system)];
+      ++count[SystemIndex(epoch.satellites[k].satellite.system)];
       ++active;
     }
   }
@@ -137,7 +137,7 @@ WhitenedRows SinglePointSolver::PositionRows(const EpochMeasurements& epoch, Sin
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
     const SatelliteMeasurement& m = epoch.satellites[k];
-    const std::size_t system = Index(m.satellite.system);
+    const std::size_t system = SystemIndex(m.satellite.system);
     RowVector3d line;
     double residual = 0;
     PseudorangeModel::Of(m).Evaluate(state->position_E, state->clock_m + state->bias_m[system], &residual,
@@ -195,7 +195,7 @@ Status SinglePointSolver::Iterate(const EpochMeasurements& epoch, SinglePointSta
 }
 
 void SinglePointSolver::CarryBiases(const SinglePointState& state, TimeNs stamp_ns) {
-  biases_[Index(state.datum)] = {true, 0, 0, stamp_ns};
+  biases_[SystemIndex(state.datum)] = {true, 0, 0, stamp_ns};
   for (std::size_t i = 0; i < state.column.size(); ++i) {
     if (const int column = state.column[i]; column >= 0) {
       const double variance = state.scale * state.scale * state.covariance(column, column);

@@ -21,7 +21,7 @@ void SinglePointSolver::Agree(const EpochMeasurements& epoch, SinglePointState* 
   std::vector<int> group;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
     if (other.active[k]) {
-      group.push_back(other.column[Index(epoch.satellites[k].satellite.system)] + 1);
+      group.push_back(other.column[SystemIndex(epoch.satellites[k].satellite.system)] + 1);
     }
   }
   const std::optional<Consensus> consensus = SeekConsensus(rows, group);

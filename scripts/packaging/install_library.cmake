@@ -21,18 +21,30 @@ function(alidade_add_room folder room)
   alidade_install_library(${target} ${folder}_${room} INTERNAL ${ARG_INTERNAL})
 endfunction()
 
-# alidade_compile_fast(<target> [TEXT]): the target's sources start from the precompiled headers of core. TEXT: a room that reads, writes
-# and arranges more than it computes; -O2 compiles it in four fifths of the time of -O3, and it starts from the headers of
-# alidade_text_headers. With ALIDADE_UNITY sources are compiled in groups too, so names in anonymous namespaces must differ within a room.
+# alidade_headers(<target> [LIBRARIES library ...] [HEADERS header ...]): precompiled headers for other targets to start from, those of
+# core and these.
+function(alidade_headers target)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
+  add_library(${target} OBJECT ${CMAKE_SOURCE_DIR}/core/cmake/precompiled.cc)
+  target_link_libraries(${target} PRIVATE alidade_options alidade::core ${ARG_LIBRARIES})
+  target_precompile_headers(${target} PRIVATE ${ALIDADE_CORE_HEADERS} ${ARG_HEADERS})
+endfunction()
+
+# alidade_compile_fast(<target> [TEXT]): the target's sources start from the precompiled headers of the target ALIDADE_HEADERS, by default
+# those of core. TEXT: a room that reads, writes and arranges more than it computes; -O2 compiles it in four fifths of the time of -O3,
+# it starts from alidade_text_headers, and with ALIDADE_UNITY its sources are compiled in groups of eight, which halves the time again:
+# names in anonymous namespaces must differ within such a room.
 function(alidade_compile_fast target)
   cmake_parse_arguments(ARG "TEXT" "" "" ${ARGN})
   if(ARG_TEXT)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
     target_precompile_headers(${target} REUSE_FROM alidade_text_headers)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${ALIDADE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  elseif(DEFINED ALIDADE_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM ${ALIDADE_HEADERS})
   elseif(NOT target STREQUAL alidade_core)
     target_precompile_headers(${target} REUSE_FROM alidade_core)
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ALIDADE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
 # alidade_add_rooms(<folder> room ...): the rooms, lowest first, and alidade::<folder>, which is all of them.

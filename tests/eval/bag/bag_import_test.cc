@@ -96,7 +96,7 @@ class ForeignBag : public testing::Test {
       // Carrier: float, then fixed. The antenna goes north.
       write(pvt, EncodeSolution({gpst, true, i < 2 ? 1 : 2, 22.3 + 1e-5 * i, 114.2, 5.0, 0.01, 0.02}));
       ObservationEpoch epoch;
-      epoch.stamp_ns = gpst;
+      epoch.stamp_ns = gpst + tags_late_ns_;
       epoch.satellites = {{{GnssSystem::kGps, 2}, {{{'1', 'C'}, 2.2e7, {}, 1.0, 45.0, 0, {}, {}}}}};
       write(range, EncodeMeasurements(epoch, {}));
     }
@@ -114,6 +114,7 @@ class ForeignBag : public testing::Test {
   test::TemporaryFolder folder_;
   std::string path_;
   bool with_ephemeris_ = true;
+  TimeNs tags_late_ns_ = 0;
 };
 
 TEST_F(ForeignBag, TheTimeOffsetIsThatOfTheTriggers) {
@@ -254,6 +255,14 @@ TEST_F(ForeignBag, ObservationsWithoutEphemerisAreLeftOut) {
   EXPECT_EQ(import->dataset.gnss, nullptr);
   EXPECT_THAT(import->remarks, Contains(HasSubstr("no ephemeris")));
   EXPECT_TRUE(import->dataset.truth.has_value());
+}
+
+TEST_F(ForeignBag, TagsOfAWeekNumberThatRolledOverAreRefused) {
+  tags_late_ns_ = -1024 * 7 * 86'400 * kSecondNs;
+  Record();
+  const std::string message = Read().message();
+  EXPECT_THAT(message, HasSubstr(path_ + ": /ublox_driver/range_meas: "));
+  EXPECT_THAT(message, HasSubstr("+1024 weeks"));
 }
 
 TEST_F(ForeignBag, NamesWhatIsMissing) {
