@@ -51,7 +51,8 @@ case "$mode" in
       -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
     [[ $# -gt 0 ]] && folders=("$@")
     sources "${folders[@]}" | grep '\.cc$' |
-      xargs -P "$(nproc)" -n 1 "$tool" -p build-tidy --quiet --extra-arg=-Wno-unknown-warning-option
+      xargs -P "$(nproc)" -n 1 "$tool" -p build-tidy --quiet --extra-arg=-Wno-unknown-warning-option \
+        --extra-arg=-Wno-unused-command-line-argument
     ;;
   *)
     echo "usage: $0 [format | fix | layers | tidy [folder or file ...]]" >&2

@@ -186,7 +186,7 @@ void ObservabilityAudit::OnFrame(const FilterState& state) {
   const Vector15d scale = ColumnScale();
   const Matrix15d scaled = factor * scale.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Matrix15d> svd(scaled, Eigen::ComputeFullV);
-  const Vector15d values = svd.singularValues();
+  const Vector15d& values = svd.singularValues();
   record.rank = static_cast<int>((values.array() > kObservabilityTolerance * values[0]).count());
   const Eigen::Matrix<double, 15, 4> leaks = factor * theory_;
   record.yaw_leak = leaks.col(0).squaredNorm();
