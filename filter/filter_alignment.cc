@@ -12,8 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-constexpr int kClockSize = FilterState::kClockSize;
-
 }  // namespace
 
 void FilterState::Align(const YawShift& transform, const Eigen::Matrix4d& covariance,
