@@ -5,8 +5,8 @@
 
 namespace alidade {
 
-// Factorisations of small dense matrices outside of the estimators' inner loops. Each of Eigen's classes
-// costs the compiler seconds in every source that uses it; here they are compiled once.
+// Factorisations of small dense matrices, compiled once: each of Eigen's classes costs the compiler seconds
+// in every source that uses it.
 
 /// L^-1 of a covariance = L L^T: the whitener W with W covariance W^T = I. 3x3.
 [[nodiscard]] Eigen::Matrix3d Whitener(const Eigen::Matrix3d& covariance);

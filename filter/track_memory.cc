@@ -30,7 +30,7 @@ constexpr double kStateShare = 0.5;
 using ThreePoses = Eigen::Matrix<double, 18, 18>;
 using RelativePoses = Eigen::Matrix<double, 14, 14>;
 
-/// The covariance of y = (y_m, y_1, y_2), of 6, 2 and 6 rows, from that of (x_m, x_1, x_2).
+/// Covariance of y = (y_m, y_1, y_2), of 6, 2 and 6 rows, from that of (x_m, x_1, x_2).
 RelativePoses RelativeCovariance(ErrorConvention convention, const ThreePoses& covariance) {
   ThreePoses p = covariance;
   if (convention == ErrorConvention::kRightInvariant) {
@@ -47,6 +47,17 @@ RelativePoses RelativeCovariance(ErrorConvention convention, const ThreePoses& c
   q.bottomLeftCorner(6, 8) = p.block(12, 0, 6, 8);
   q.bottomRightCorner(6, 6) = p.bottomRightCorner(6, 6);
   return q;
+}
+
+/// Gain of x_m = (x_m - y_m) + gain (y_1, y_2) by (x_1, x_2); the first term is clone 1's yaw and position.
+Eigen::Matrix<double, 6, 12> OverClones(ErrorConvention convention, const Eigen::Matrix<double, 6, 8>& gain) {
+  Eigen::Matrix<double, 6, 12> over;
+  over << gain.leftCols<2>(), Eigen::Matrix<double, 6, 4>::Zero(), gain.rightCols<6>();
+  if (convention == ErrorConvention::kRightInvariant) {
+    over.middleCols<4>(2) = -gain.rightCols<4>();
+    over.block<4, 4>(2, 2) += Eigen::Matrix4d::Identity();
+  }
+  return over;
 }
 
 }  // namespace
@@ -207,18 +218,10 @@ void TrackMemoryKeeper::Condition(const FilterState& state, size_t index,
   const RelativePoses q = RelativeCovariance(convention_, p);
   const Eigen::Matrix<double, 6, 8> gain =
       q.bottomRightCorner<8, 8>().ldlt().solve(q.bottomLeftCorner<8, 6>()).transpose();
-  // x_m = (x_m - y_m) + gain (y_1, y_2); the first term is clone 1's yaw and position.
   conditional->leaving_serial = clones[index].serial;
   conditional->leaving_slot = clones[index].slot;
   conditional->neighbour_slots = {clones[first].slot, clones[second].slot};
-  conditional->gain.leftCols<2>() = gain.leftCols<2>();
-  if (convention_ == ErrorConvention::kRightInvariant) {
-    conditional->gain.middleCols<4>(2) = -gain.rightCols<4>();
-    conditional->gain.block<4, 4>(2, 2) += Eigen::Matrix4d::Identity();
-  } else {
-    conditional->gain.middleCols<4>(2).setZero();
-  }
-  conditional->gain.rightCols<6>() = gain.rightCols<6>();
+  conditional->gain = OverClones(convention_, gain);
   const Matrix6d rest = q.topLeftCorner<6, 6>() - gain * q.bottomLeftCorner<8, 6>();
   conditional->covariance = 0.5 * (rest + rest.transpose());
 }

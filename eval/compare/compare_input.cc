@@ -107,11 +107,9 @@ Result<CompareInput::Data> CompareInput::RunSimulation(const PipelineOptions& op
   }
   Data data;
   data.frontend = std::move(frontend);
-  data.log = {dataset->rig, std::move(dataset->imu), std::move(dataset->tracks),
-              std::move(dataset->extra_cameras), dataset->gnss};
-  CopyMeasurements(*dataset, &data.log);
   data.truth = std::move(dataset->truth);
   data.true_rig = dataset->true_rig;
+  data.log = MeasurementsOf(std::move(*dataset));
   SimulatorConfig config = *simulation_;
   data.dataset_digest =
       Sha256Hex(ConfigToYaml([&config](ConfigVisitor& visitor) { config.Describe(visitor); }, false) +

@@ -1,25 +1,23 @@
 #include "eval/dataset/dataset.h"
 
+#include <utility>
+
 namespace alidade {
 
-MeasurementLog MeasurementsOf(const Dataset& dataset) {
-  MeasurementLog log;
-  log.rig = dataset.rig;
-  log.imu = dataset.imu;
-  log.frames = dataset.tracks;
-  log.extra_cameras = dataset.extra_cameras;
-  log.gnss = dataset.gnss;
+MeasurementLog MeasurementsOf(Dataset dataset) {
+  MeasurementLog log{std::move(dataset.rig), std::move(dataset.imu), std::move(dataset.tracks),
+                     std::move(dataset.extra_cameras), std::move(dataset.gnss)};
   CopyMeasurements(dataset, &log);
   return log;
 }
 
-Dataset DatasetOf(const MeasurementLog& log) {
+Dataset DatasetOf(MeasurementLog log) {
   Dataset dataset;
-  dataset.rig = log.rig;
-  dataset.imu = log.imu;
-  dataset.tracks = log.frames;
-  dataset.extra_cameras = log.extra_cameras;
-  dataset.gnss = log.gnss;
+  dataset.rig = std::move(log.rig);
+  dataset.imu = std::move(log.imu);
+  dataset.tracks = std::move(log.frames);
+  dataset.extra_cameras = std::move(log.extra_cameras);
+  dataset.gnss = std::move(log.gnss);
   CopyMeasurements(log, &dataset);
   return dataset;
 }

@@ -44,8 +44,8 @@ struct Dataset {
 };
 
 /// What the estimators are given of a sequence; without tracks, if the front end has still to make them.
-[[nodiscard]] MeasurementLog MeasurementsOf(const Dataset& dataset);
+[[nodiscard]] MeasurementLog MeasurementsOf(Dataset dataset);
 /// A sequence of these measurements; the rest of it is empty.
-[[nodiscard]] Dataset DatasetOf(const MeasurementLog& log);
+[[nodiscard]] Dataset DatasetOf(MeasurementLog log);
 
 }  // namespace alidade

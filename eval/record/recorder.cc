@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "eval/config/config_json.h"
@@ -265,35 +266,28 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   const std::filesystem::path path(folder);
   std::error_code ignored;
   std::filesystem::remove(path / "run.json", ignored);
+  // A file that this run does not have must not stay from an earlier one.
+  const auto write = [&path](const char* name, bool has, const std::function<std::string()>& text) {
+    if (has) {
+      return WriteFileAtomically((path / name).string(), text());
+    }
+    std::error_code absent;
+    std::filesystem::remove(path / name, absent);
+    return Status::Ok();
+  };
+  const bool calibrates = !result.records.empty() && result.records.front().calibration;
+  const bool gnss = HasGnss(result);
+  ALIDADE_RETURN_IF_ERROR(write("trajectory.tum", true, [&] { return FormatTum(TrajectoryOf(result)); }));
+  ALIDADE_RETURN_IF_ERROR(write("states.csv", true, [&] { return StatesText(result); }));
+  ALIDADE_RETURN_IF_ERROR(write("timing.csv", true, [&] { return TimingText(result); }));
+  ALIDADE_RETURN_IF_ERROR(write("status.csv", true, [&] { return StatusText(result, identity.config); }));
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically((path / "trajectory.tum").string(), FormatTum(TrajectoryOf(result))));
-  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "states.csv").string(), StatesText(result)));
-  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "timing.csv").string(), TimingText(result)));
+      write("observability.csv", identity.audited, [&] { return ObservabilityText(result); }));
+  ALIDADE_RETURN_IF_ERROR(write("calibration.csv", calibrates, [&] { return CalibrationText(result); }));
+  ALIDADE_RETURN_IF_ERROR(write("bound.csv", HasBound(result), [&] { return BoundText(result); }));
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically((path / "status.csv").string(), StatusText(result, identity.config)));
-  if (identity.audited) {
-    ALIDADE_RETURN_IF_ERROR(
-        WriteFileAtomically((path / "observability.csv").string(), ObservabilityText(result)));
-  } else {
-    std::filesystem::remove(path / "observability.csv", ignored);
-  }
-  std::filesystem::remove(path / "calibration.csv", ignored);
-  if (!result.records.empty() && result.records.front().calibration) {
-    ALIDADE_RETURN_IF_ERROR(
-        WriteFileAtomically((path / "calibration.csv").string(), CalibrationText(result)));
-  }
-  std::filesystem::remove(path / "bound.csv", ignored);
-  if (HasBound(result)) {
-    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "bound.csv").string(), BoundText(result)));
-  }
-  for (const char* name : {"trajectory.pos", "gnss.csv"}) {
-    std::filesystem::remove(path / name, ignored);
-  }
-  if (HasGnss(result)) {
-    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "trajectory.pos").string(),
-                                                AntennaPositions(result, result.global->time_offset_s)));
-    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "gnss.csv").string(), SatelliteTable(result)));
-  }
+      write("trajectory.pos", gnss, [&] { return AntennaPositions(result, result.global->time_offset_s); }));
+  ALIDADE_RETURN_IF_ERROR(write("gnss.csv", gnss, [&] { return SatelliteTable(result); }));
   const std::string json =
       RunJson(identity, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return WriteFileAtomically((path / "run.json").string(), json);

@@ -48,6 +48,14 @@ struct FixAligner::Guess {
   }
 };
 
+/// Of yaw, shift and velocity's correction, Gauss-Newton.
+struct FixAligner::Normal {
+  Matrix7d hessian = Matrix7d::Zero();
+  Vector7d gradient = Vector7d::Zero();
+  int inside = 0;    ///< points inside the gate
+  double scale = 1;  ///< robust deviation of the whitened residuals
+};
+
 struct FixAligner::Fit {
   bool ok = false;
   Guess guess;
@@ -143,52 +151,55 @@ FixAligner::Guess FixAligner::FirstGuess(const std::vector<Point>& points) {
   return best;
 }
 
-FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess) const {
-  constexpr int kIterations = 12;
+FixAligner::Normal FixAligner::NormalEquations(const std::vector<Point>& points, const Guess& guess) const {
   constexpr double kHeld = 1e-9;     // of a velocity that is known
   constexpr double kAnyYawRad = 10;  // at rest no fix determines the yaw
-  const double gate = std::sqrt(ChiSquareQuantile(kRows, config_.gate_probability));
   constexpr double kGateScales = 3.5;
+  const double gate = std::sqrt(ChiSquareQuantile(kRows, config_.gate_probability));
   const double median_norm = std::sqrt(ChiSquareQuantile(kRows, 0.5));  // of a residual of deviation 1
-  Vector3d velocity_variance = Vector3d::Zero();
+  std::vector<double> norms;
+  norms.reserve(points.size());
   for (const Point& point : points) {
-    velocity_variance += point.velocity_variance_W / static_cast<double>(points.size());
+    norms.push_back(guess.Residual(point).norm());
   }
+  Normal normal;
+  normal.scale = std::max(1.0, Median(norms) / median_norm);
+  const Matrix3d R_NW = guess.transform.Rotation();
+  Vector3d velocity_variance = Vector3d::Zero();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Point& point = points[k];
+    velocity_variance += point.velocity_variance_W / static_cast<double>(points.size());
+    if (norms[k] > std::max(gate, kGateScales * median_norm * normal.scale)) {
+      continue;
+    }
+    ++normal.inside;
+    const Vector3d turned = R_NW * (point.p_WA + point.since_newest_s * guess.dv_W);
+    Eigen::Matrix<double, kRows, 7> jacobian;
+    jacobian << Vector3d::UnitZ().cross(turned), Matrix3d::Identity(), point.since_newest_s * R_NW;
+    jacobian = (point.sqrt_information * jacobian).eval();
+    const double weight =
+        RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma * normal.scale, norms[k] * norms[k]);
+    normal.hessian += weight * jacobian.transpose() * jacobian;
+    normal.gradient += weight * jacobian.transpose() * guess.Residual(point);
+  }
+  normal.hessian(0, 0) += 1 / (kAnyYawRad * kAnyYawRad);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double information = 1 / (std::max(velocity_variance[axis], 0.0) + kHeld * kHeld);
+    normal.hessian(4 + axis, 4 + axis) += information;
+    normal.gradient[4 + axis] += information * guess.dv_W[axis];
+  }
+  return normal;
+}
+
+FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess) const {
+  constexpr int kIterations = 12;
   Fit fit;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::vector<double> norms;
-    norms.reserve(points.size());
-    for (const Point& point : points) {
-      norms.push_back(guess.Residual(point).norm());
-    }
-    fit.scale = std::max(1.0, Median(norms) / median_norm);
-    fit.inside = 0;
-    Matrix7d hessian = Matrix7d::Zero();
-    Vector7d gradient = Vector7d::Zero();
-    const Matrix3d R_NW = guess.transform.Rotation();
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      if (norms[k] > std::max(gate, kGateScales * median_norm * fit.scale)) {
-        continue;
-      }
-      ++fit.inside;
-      const Point& point = points[k];
-      const Vector3d turned = R_NW * (point.p_WA + point.since_newest_s * guess.dv_W);
-      Eigen::Matrix<double, kRows, 7> jacobian;
-      jacobian << Vector3d::UnitZ().cross(turned), Matrix3d::Identity(), point.since_newest_s * R_NW;
-      jacobian = (point.sqrt_information * jacobian).eval();
-      const double weight =
-          RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma * fit.scale, norms[k] * norms[k]);
-      hessian += weight * jacobian.transpose() * jacobian;
-      gradient += weight * jacobian.transpose() * guess.Residual(point);
-    }
-    hessian(0, 0) += 1 / (kAnyYawRad * kAnyYawRad);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double information = 1 / (std::max(velocity_variance[axis], 0.0) + kHeld * kHeld);
-      hessian(4 + axis, 4 + axis) += information;
-      gradient[4 + axis] += information * guess.dv_W[axis];
-    }
-    const SymmetricSolver solver(hessian);
-    const Vector7d step = solver.Solve(-gradient);
+    const Normal normal = NormalEquations(points, guess);
+    fit.scale = normal.scale;
+    fit.inside = normal.inside;
+    const SymmetricSolver solver(normal.hessian);
+    const Vector7d step = solver.Solve(-normal.gradient);
     if (!solver.positive() || !step.allFinite()) {
       return fit;
     }

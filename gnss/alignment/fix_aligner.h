@@ -46,6 +46,7 @@ class FixAligner {
     Eigen::Vector3d p_WA = Eigen::Vector3d::Zero();  ///< of the estimate
   };
   struct Guess;
+  struct Normal;
   struct Fit;
 
   struct Point;
@@ -53,6 +54,7 @@ class FixAligner {
   void MatchFixes();
   [[nodiscard]] std::vector<Point> Points() const;
   [[nodiscard]] static Guess FirstGuess(const std::vector<Point>& points);
+  [[nodiscard]] Normal NormalEquations(const std::vector<Point>& points, const Guess& guess) const;
   [[nodiscard]] Fit Refine(const std::vector<Point>& points, Guess guess) const;
   std::optional<GnssAlignment> Judge(const Fit& fit, std::size_t points);
 

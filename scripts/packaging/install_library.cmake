@@ -31,8 +31,8 @@ function(alidade_headers target)
 endfunction()
 
 # alidade_compile_fast(<target> [TEXT]): the target's sources start from the precompiled headers of the target ALIDADE_HEADERS, by default
-# those of core. TEXT: a room that reads, writes and arranges more than it computes; -O2 compiles it in four fifths of the time of -O3,
-# it starts from alidade_text_headers, and with ALIDADE_UNITY its sources are compiled in groups of eight, which halves the time again:
+# those of core. TEXT: a room that reads, writes and arranges more than it computes; -O2 compiles it faster than -O3,
+# it starts from alidade_text_headers, and with ALIDADE_UNITY its sources are compiled in groups of eight, which parses its headers once a group:
 # names in anonymous namespaces must differ within such a room.
 function(alidade_compile_fast target)
   cmake_parse_arguments(ARG "TEXT" "" "" ${ARGN})
