@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/random.h"
+#include "eval/simulation/path_wander.h"
 
 namespace alidade {
 namespace {
@@ -63,72 +63,55 @@ class Ellipse final : public ClosedShape {
   }
 };
 
-/// sum_i a_i sin(f_i u + c_i) with amplitudes 0.4, 0.3, 0.2, 0.1: within [-1, 1] and never periodic.
-class Drift {
+/// Straight along x; the phase runs from 0 to 2 pi over the whole path.
+class Line final : public PathShape {
  public:
-  explicit Drift(RandomStream* stream) {
-    for (std::size_t i = 0; i < kTerms; ++i) {
-      // Frequencies incommensurate by themselves; the jitter keeps the axes, and the seeds, from marching
-      // together.
-      frequency_[i] = kFrequency[i] * stream->Uniform(0.9, 1.1);
-      offset_[i] = stream->Uniform(0, 2 * std::numbers::pi);
-    }
-  }
+  explicit Line(const SimulatorConfig& config) : metres_per_radian_(config.path_m / (2 * std::numbers::pi)) {}
 
-  [[nodiscard]] Jet At(const Jet& u) const {
-    Jet sum;
-    for (std::size_t i = 0; i < kTerms; ++i) {
-      sum = sum + kAmplitude[i] * Sin(frequency_[i] * u + Jet{offset_[i], 0, 0});
-    }
-    return sum;
-  }
-
- private:
-  static constexpr std::size_t kTerms = 4;
-  static constexpr std::array<double, kTerms> kAmplitude = {0.4, 0.3, 0.2, 0.1};
-  static constexpr std::array<double, kTerms> kFrequency = {0.5, 0.866, 1.414, 2.236};
-
-  std::array<double, kTerms> frequency_ = {};
-  std::array<double, kTerms> offset_ = {};
-};
-
-/// An aimless walk in a box, looking around.
-class Wander final : public PathShape {
- public:
-  Wander(const SimulatorConfig& config, std::uint64_t seed) : Wander(config, RandomStream(seed, "path")) {}
-
-  [[nodiscard]] Jet3 Position(const Jet& u) const override {
-    return {half_length_m_ * x_.At(u), half_width_m_ * y_.At(u), height_m_ * z_.At(u)};
-  }
-  [[nodiscard]] Jet Yaw(const Jet& u) const override { return kYawRange * yaw_.At(u); }
-  [[nodiscard]] Jet Pitch(const Jet& u) const override { return kPitchRange * pitch_.At(u); }
+  [[nodiscard]] Jet3 Position(const Jet& u) const override { return {metres_per_radian_ * u, {}, {}}; }
+  [[nodiscard]] Jet Yaw(const Jet&) const override { return {}; }
+  [[nodiscard]] Jet Pitch(const Jet&) const override { return {}; }
   [[nodiscard]] bool IsClosed() const override { return false; }
 
  private:
-  static constexpr double kYawRange = 1.5 * std::numbers::pi;
-  static constexpr double kPitchRange = 0.3;
+  double metres_per_radian_;
+};
 
-  Wander(const SimulatorConfig& config, RandomStream stream)
-      : half_length_m_(0.5 * config.length_m),
-        half_width_m_(0.5 * config.width_m),
-        height_m_(config.height_m),
-        x_(&stream),
-        y_(&stream),
-        z_(&stream),
-        yaw_(&stream),
-        pitch_(&stream) {}
+/// A helix, travelled along its tangent, whose radius and height grow evenly.
+class Spiral final : public PathShape {
+ public:
+  explicit Spiral(const SimulatorConfig& config)
+      : radius_m_(0.5 * config.length_m),
+        widening_m_(config.spiral_widening_m / (2 * std::numbers::pi)),
+        climb_m_(config.spiral_climb_m / (2 * std::numbers::pi)) {}
 
-  double half_length_m_;
-  double half_width_m_;
-  double height_m_;
-  Drift x_;
-  Drift y_;
-  Drift z_;
-  Drift yaw_;
-  Drift pitch_;
+  [[nodiscard]] Jet3 Position(const Jet& u) const override {
+    const Jet radius = Radius(u);
+    return {radius * Cos(u), radius * Sin(u), climb_m_ * u};
+  }
+  [[nodiscard]] Jet Yaw(const Jet& u) const override {
+    // Of the tangent (r' cos u - r sin u, r' sin u + r cos u); the angle between it and the circle's vanishes
+    // as the radius grows, and is never cut.
+    return u + -1 * Atan2({widening_m_, 0, 0}, Radius(u)) + Jet{0.5 * std::numbers::pi, 0, 0};
+  }
+  [[nodiscard]] Jet Pitch(const Jet& u) const override {
+    return -1 * Atan2({climb_m_, 0, 0}, Hypot({widening_m_, 0, 0}, Radius(u)));
+  }
+  [[nodiscard]] bool IsClosed() const override { return false; }
+
+ private:
+  [[nodiscard]] Jet Radius(const Jet& u) const { return Jet{radius_m_, 0, 0} + widening_m_ * u; }
+
+  double radius_m_;
+  double widening_m_;  ///< a radian
+  double climb_m_;     ///< a radian
 };
 
 }  // namespace
+
+double PathShape::PhaseRate(double path_m, double duration_s) const {
+  return PhaseAtArcLength(path_m) / duration_s;
+}
 
 double PathShape::SpeedOverPhase(double u) const {
   const Jet3 position = Position({u, 1, 0});
@@ -163,7 +146,15 @@ std::unique_ptr<PathShape> MakePathShape(const SimulatorConfig& config, std::uin
     case SimTrajectory::kEllipse:
       return std::make_unique<Ellipse>(config);
     case SimTrajectory::kWander:
-      return std::make_unique<Wander>(config, seed);
+      return MakeWander(config, seed);
+    case SimTrajectory::kHover:
+      return MakeHover(config, seed);
+    case SimTrajectory::kRotation:
+      return MakeRotation(config, seed);
+    case SimTrajectory::kLine:
+      return std::make_unique<Line>(config);
+    case SimTrajectory::kSpiral:
+      return std::make_unique<Spiral>(config);
     case SimTrajectory::kFigureEight:
     case SimTrajectory::kFile:
       break;

@@ -14,7 +14,9 @@
 
 namespace alidade {
 
-enum class SimTrajectory { kFigureEight, kEllipse, kWander, kFile };
+enum class SimTrajectory { kFigureEight, kEllipse, kWander, kHover, kRotation, kLine, kSpiral, kFile };
+/// The point of the rig that travels along the path.
+enum class SimPathPoint { kBody, kCamera };
 enum class SimCameraView { kForward, kSideways, kDataset };
 enum class SimLandmarkLayout {
   kShell,   ///< between two distances around the path
@@ -60,13 +62,23 @@ struct SimulatorConfig : SimSensorConfig {
 
   SimTrajectory trajectory = SimTrajectory::kFigureEight;
   double duration_s = 200;
-  double length_m = 10;      ///< extent along x
-  double width_m = 5;        ///< extent along y
-  double height_m = 0.5;     ///< amplitude of the vertical motion
-  double path_m = 262;       ///< total path length; sets the speed
-  double rest_s = 0;         ///< at rest before the motion starts (smoothly)
-  double rest_ramp_s = 2;    ///< from rest to full speed; no effect without rest
-  double wobble_rad = 0.05;  ///< amplitude of the attitude about the path's tangent
+  double length_m = 10;   ///< extent along x
+  double width_m = 5;     ///< extent along y
+  double height_m = 0.5;  ///< amplitude of the vertical motion
+  double path_m = 262;    ///< total path length; sets the speed
+  SimPathPoint path_point = SimPathPoint::kBody;
+  double rotation_rate_radps = 0.5;  ///< root mean square of the yaw rate of `rotation`
+  double spiral_widening_m = 0;      ///< growth of the radius in a turn
+  double spiral_climb_m = 1;         ///< growth of the height in a turn
+  double speed_variation = 0;        ///< share of the mean speed by which it rises and falls
+  double speed_period_s = 10;
+  double rest_s = 0;       ///< at rest before the motion starts (smoothly)
+  double rest_ramp_s = 2;  ///< from rest to full speed; no effect without rest and pauses
+  double pause_s = 0;      ///< at rest but for a turn, once every pause_period_s; 0: never
+  double pause_period_s = 30;
+  double pause_turn_rad = 0;  ///< yaw in each pause
+  double yaw_rate_radps = 0;  ///< constant turn besides that of the path
+  double wobble_rad = 0.05;   ///< amplitude of the attitude about the path's tangent
   double wobble_hz = 0.3;
 
   std::string trajectory_file = std::string(kNoPath);  ///< for kFile: a trajectory or a dataset folder
