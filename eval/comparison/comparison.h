@@ -68,6 +68,7 @@ struct CellResult {
   std::string align;
   std::vector<RpeResult> rpe;
   std::optional<double> nees_pose, nees_ori, nees_pos, coverage_3sigma;
+  std::optional<double> nees_vel, nees_gyro_bias, nees_accel_bias;  ///< where the truth holds them
   std::optional<double> frontend_ms;  ///< also unknown where the tracks were read from a file
   std::optional<double> backend_ms, backend_ms_p95;
   std::optional<double> features_per_frame;
@@ -110,6 +111,7 @@ struct Comparison {
   /// Of each sequence and seed whose images were tracked.
   std::vector<FrontendSummary> frontends = {};
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
+  std::map<std::string, std::string> groups = {};  ///< of the sequences that have one
 };
 
 }  // namespace alidade

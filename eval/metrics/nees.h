@@ -7,11 +7,13 @@
 
 namespace alidade {
 
-/// NEES of (phi, dp) in the canonical chart: phi = Log(R_est^T R_truth), dp = p_truth - p_est. Unaligned.
+/// NEES of (phi, dp) in the canonical chart: phi = Log(R_est^T R_truth), dp = p_truth - p_est; and of
+/// velocity and biases, truth - estimate. Unaligned.
 struct NeesResult {
   std::vector<double> pose, orientation, position;  ///< one a pair; NaN where the covariance is singular
   /// Means over the regular covariances; NaN when there is none.
   double mean_pose = 0, mean_orientation = 0, mean_position = 0;
+  double mean_velocity = 0, mean_gyro_bias = 0, mean_accel_bias = 0;
   double coverage_3sigma = 0;  ///< share of the six error components inside +-3 sigma; NaN likewise
 };
 [[nodiscard]] NeesResult ComputeNees(const std::vector<StatePair>& pairs);

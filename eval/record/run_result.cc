@@ -22,7 +22,12 @@ Trajectory TrajectoryOf(const RunResult& result) {
   for (const RunRecord& record : result.records) {
     const NavEstimate& estimate = record.estimate;
     trajectory.points.push_back(
-        {estimate.stamp_ns, estimate.nav, estimate.bias, estimate.covariance.topLeftCorner<6, 6>()});
+        {estimate.stamp_ns,
+         estimate.nav,
+         estimate.bias,
+         estimate.covariance.topLeftCorner<6, 6>(),
+         {estimate.covariance.block<3, 3>(6, 6), estimate.covariance.block<3, 3>(9, 9),
+          estimate.covariance.block<3, 3>(12, 12)}});
   }
   return trajectory;
 }

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-
 #include "eval/simulation/jet.h"
-#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 
@@ -32,9 +28,5 @@ class PathShape {
   /// |d Position / d u| [m/rad].
   [[nodiscard]] double SpeedOverPhase(double u) const;
 };
-
-/// The curve that config.trajectory names; sim_trajectory.h states the equations. `seed` matters to wander,
-/// hover and rotation alone. Precondition: the trajectory is an analytic one.
-[[nodiscard]] std::unique_ptr<PathShape> MakePathShape(const SimulatorConfig& config, std::uint64_t seed);
 
 }  // namespace alidade

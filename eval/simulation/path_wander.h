@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "eval/simulation/path_shape.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "eval/simulation/make_path_shape.h"
 #include "eval/simulation/motion_time.h"
-#include "eval/simulation/path_shape.h"
 
 namespace alidade {
 namespace {

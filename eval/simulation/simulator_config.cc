@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "eval/config/config_yaml.h"
-#include "eval/simulation/simulator_motion_keys.h"
 
 namespace alidade {
 namespace {
@@ -201,7 +200,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer(
       {"start_time_s", "s", "stamp of the first sample; not 0, so that a missing offset is detected"},
       &start_time_s, 0, 2000000000);
-  DescribeMotionKeys(this, visitor);
+  DescribeMotion(visitor);
   DescribeImu(this, visitor);
   DescribeCamera(this, visitor);
   DescribeMoreCameras(this, visitor);

@@ -1,9 +1,9 @@
-#include "eval/simulation/simulator_motion_keys.h"
+#include "eval/simulation/sim_motion_config.h"
 
 namespace alidade {
 namespace {
 
-void DescribePath(SimulatorConfig* config, ConfigVisitor& visitor) {
+void DescribePath(SimMotionConfig* config, ConfigVisitor& visitor) {
   visitor.Enumeration(
       {"trajectory", "-",
        "figure8 turns both ways, ellipse one way; wander does not repeat; hover holds its place; rotation "
@@ -46,7 +46,7 @@ void DescribePath(SimulatorConfig* config, ConfigVisitor& visitor) {
 }
 
 /// Speed, rest, pauses and attitude along the path.
-void DescribeTravel(SimulatorConfig* config, ConfigVisitor& visitor) {
+void DescribeTravel(SimMotionConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"speed_variation", "-",
                 "share by which the speed rises above and falls below its mean, as a sine; excites the "
                 "accelerometer on a straight line"},
@@ -77,7 +77,7 @@ void DescribeTravel(SimulatorConfig* config, ConfigVisitor& visitor) {
                &config->wobble_hz, 0, 10);
 }
 
-void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
+void DescribeRecording(SimMotionConfig* config, ConfigVisitor& visitor) {
   visitor.Text({"trajectory_file", "-",
                 "for trajectory: file; a file of EuRoC, TUM or Alidade format, or a dataset folder; relative "
                 "to this file"},
@@ -106,10 +106,10 @@ void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
 
 }  // namespace
 
-void DescribeMotionKeys(SimulatorConfig* config, ConfigVisitor& visitor) {
-  DescribePath(config, visitor);
-  DescribeTravel(config, visitor);
-  DescribeRecording(config, visitor);
+void SimMotionConfig::DescribeMotion(ConfigVisitor& visitor) {
+  DescribePath(this, visitor);
+  DescribeTravel(this, visitor);
+  DescribeRecording(this, visitor);
 }
 
 }  // namespace alidade
