@@ -75,7 +75,8 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
     series.truth_position.push_back(pair.truth.nav.p_WB);
     series.position.push_back(aligned[i].estimate.nav.p_WB);
     series.error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
-    series.sigma.push_back(ErrorCovariance(pair).diagonal().cwiseMax(0).cwiseSqrt());
+    const Matrix6d covariance = evaluation.nees ? ErrorCovariance(pair) : pair.estimate.covariance;
+    series.sigma.push_back(covariance.diagonal().cwiseMax(0).cwiseSqrt());
     series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kNan);
   }
   return series;
