@@ -3,7 +3,7 @@
 
 #include "core/format.h"
 #include "core/numbers.h"
-#include "eval/bag/bag_folder.h"
+#include "eval/bag/bag_import.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
