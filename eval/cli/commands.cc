@@ -85,6 +85,14 @@ const std::vector<Command>& Commands() {
        {"output"},
        0,
        RunConvert},
+      {"refine_truth",
+       "estimate a sequence's motion from its IMU and the poses of its truth: a truth at IMU rate with "
+       "covariance, and what is wrong with the poses",
+       {"dataset", "truth", "truth_rate", "truth_std_deg", "truth_std_m", "set", "output", "json",
+        "overwrite", "quiet"},
+       {"dataset", "output"},
+       0,
+       RunRefineTruth},
       {"config",
        "--show F | --check F | --diff F F2 | --list: print, check or compare configurations; list the "
        "shipped ones",

@@ -18,6 +18,7 @@ int RunGnssStudy(const std::vector<std::string>& arguments);
 int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
 int RunConvert(const std::vector<std::string>& arguments);
+int RunRefineTruth(const std::vector<std::string>& arguments);
 int RunConfig(const std::vector<std::string>& arguments);
 int RunManual(const std::vector<std::string>& arguments);
 int RunCompletion(const std::vector<std::string>& arguments);

@@ -60,4 +60,12 @@ DEFINE_string(
     topics, "",
     "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones (docs/bags.md)");
 DEFINE_string(truth, "", "ground-truth trajectory file");
+DEFINE_double(truth_rate, 0,
+              "largest rate of the poses of the truth that are used [Hz]; 0: all. Their errors should be "
+              "independent of each other");
+DEFINE_double(
+    truth_std_deg, 0,
+    "standard deviation of the orientation of the poses of the truth, one axis [deg]; 0: estimate it");
+DEFINE_double(truth_std_m, 0,
+              "standard deviation of the position of the poses of the truth, one axis [m]; 0: estimate it");
 DEFINE_string(windows, "5,10,15,20,25", "window sizes (number of clones), separated by commas");

@@ -49,4 +49,7 @@ DECLARE_string(sp3);
 DECLARE_int32(starts);
 DECLARE_string(topics);
 DECLARE_string(truth);
+DECLARE_double(truth_rate);
+DECLARE_double(truth_std_deg);
+DECLARE_double(truth_std_m);
 DECLARE_string(windows);

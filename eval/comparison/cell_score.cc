@@ -60,6 +60,7 @@ void FillFigures(const Evaluation& evaluation, CellResult* cell) {
     cell->nees_ori = evaluation.nees->mean_orientation;
     cell->nees_pos = evaluation.nees->mean_position;
     cell->coverage_3sigma = evaluation.nees->coverage_3sigma;
+    cell->truth_has_covariance = evaluation.truth_has_covariance;
   }
 }
 
@@ -74,7 +75,8 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
     series.truth_position.push_back(pair.truth.nav.p_WB);
     series.position.push_back(aligned[i].estimate.nav.p_WB);
     series.error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
-    series.sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
+    const Matrix6d covariance = evaluation.nees ? ErrorCovariance(pair) : pair.estimate.covariance;
+    series.sigma.push_back(covariance.diagonal().cwiseMax(0).cwiseSqrt());
     series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kNan);
   }
   return series;

@@ -66,6 +66,7 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
     ForgetOrientation(&evaluation);
   } else if (estimate.has_covariance) {
     evaluation.nees = ComputeNees(evaluation.pairs);
+    evaluation.truth_has_covariance = truth.has_covariance;
   }
   return evaluation;
 }
