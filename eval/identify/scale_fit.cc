@@ -30,19 +30,22 @@ VectorXd Unit(Index size, Index index, double length) {
   return vector;
 }
 
-/// The Newton step of these scores; `free`: the components that may move.
-VectorXd NewtonStep(const MatrixXd& scores, const std::vector<bool>& free) {
+/// Information of the frames' scores about their mean.
+MatrixXd ScatterOf(const MatrixXd& scores) {
+  const MatrixXd centred = scores.rowwise() - scores.colwise().mean();
+  return centred.transpose() * centred;
+}
+
+/// information^-1 gradient over the components that are `free`.
+VectorXd NewtonStep(MatrixXd information, VectorXd gradient, const std::vector<bool>& free) {
   constexpr double kLongest = 1.5;
-  const Index size = scores.cols();
-  VectorXd gradient = scores.colwise().sum();
-  MatrixXd information = scores.transpose() * scores;
-  for (Index i = 0; i < size; ++i) {
+  for (Index i = 0; i < gradient.size(); ++i) {
     if (!free[static_cast<std::size_t>(i)]) {
       information.row(i).setZero();
       information.col(i).setZero();
       gradient[i] = 0;
     }
-    // One more observation that says nothing: a flat direction must not make a step infinite.
+    // As if by a vague prior: a flat direction must not make a step infinite.
     information(i, i) += 1;
   }
   return SymmetricSolver(information).Solve(gradient).col(0).cwiseMax(-kLongest).cwiseMin(kLongest);
@@ -112,7 +115,8 @@ Status ScaleFit::Maximize(int steps, double tolerance) {
   constexpr int kMostHalvings = 5;
   ALIDADE_RETURN_IF_ERROR(Differentiate());
   for (int step = 0; step < steps; ++step) {
-    VectorXd change = NewtonStep(scores_, std::vector<bool>(sources_.size(), true));
+    VectorXd change =
+        NewtonStep(StepInformation(), scores_.colwise().sum(), std::vector<bool>(sources_.size(), true));
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const auto source = static_cast<std::size_t>(sources_[i]);
       double& part = change[static_cast<Index>(i)];
@@ -185,8 +189,19 @@ Result<double> ScaleFit::LikelihoodBound(NoiseSource source, double side) {
   return log_scales_[of_noise] + side * most;
 }
 
+MatrixXd ScaleFit::StepInformation() const {
+  const MatrixXd scatter = ScatterOf(scores_);
+  VectorXd scale(scatter.rows());
+  for (Index i = 0; i < scale.size(); ++i) {
+    const double curvature = (2 * total_ - plus_[i] - minus_[i]) / (kLogStep * kLogStep);
+    scale[i] = scatter(i, i) > 0 && curvature > 0 ? std::sqrt(curvature / scatter(i, i)) : 1;
+  }
+  return scale.asDiagonal() * scatter * scale.asDiagonal();
+}
+
 VectorXd ScaleFit::StepOfFrames(std::size_t first, std::size_t end, const std::vector<bool>& free) const {
-  return NewtonStep(scores_.middleRows(static_cast<Index>(first), static_cast<Index>(end - first)), free);
+  const MatrixXd scores = scores_.middleRows(static_cast<Index>(first), static_cast<Index>(end - first));
+  return NewtonStep(ScatterOf(scores), scores.colwise().sum(), free);
 }
 
 }  // namespace alidade

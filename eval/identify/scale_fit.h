@@ -9,9 +9,10 @@ namespace alidade {
 
 /// Maximises the innovation likelihood of one recorded system over the logarithms of some noises' factors.
 ///
-/// Scores and observed information come from central differences with kLogStep; the information of a Newton
-/// step is that of the frames' scores, sum g_k g_k^T (Berndt et al. 1974; the innovations of different frames
-/// are independent), which is never indefinite. A step that does not raise the likelihood is halved.
+/// Scores come from central differences with kLogStep, frame by frame. The innovations of different frames
+/// are independent, so the scatter of the frames' scores is the information at the maximum (Berndt et al.
+/// 1974), but not far from it. A Newton step takes from it the correlations alone, and the diagonal from the
+/// second differences. A step that does not raise the likelihood is halved.
 class ScaleFit {
  public:
   static constexpr double kLogStep = 0.1;
@@ -47,6 +48,7 @@ class ScaleFit {
   Result<double> TotalAt(const Eigen::VectorXd& change);
   [[nodiscard]] PerNoise Changed(const Eigen::VectorXd& change) const;
   Status Differentiate();
+  [[nodiscard]] Eigen::MatrixXd StepInformation() const;
 
   const LinearSystem& system_;
   std::vector<NoiseSource> sources_;

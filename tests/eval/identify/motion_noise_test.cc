@@ -26,19 +26,19 @@ const IdentifiedNoise& Find(const MotionNoise& noise, NoiseSource source) {
   return noise.noises.front();
 }
 
-/// Twenty-four seconds of the figure-8, given to a filter whose noises are wrong by a factor of two or three.
+/// Twenty seconds of the figure-8, given to a filter whose noises are wrong by a factor of two or three.
 class ShortMotion : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     SimulatorConfig simulation;
-    simulation.duration_s = 24;
-    simulation.path_m = 31.4;
+    simulation.duration_s = 20;
+    simulation.path_m = 26.2;
     simulation.max_features = 80;
     const Dataset dataset = SimulateOrDie(simulation, 3);
     truth_ = simulation.imu_noise;
     EstimatorConfig config;
     config.init.method = InitMethod::kTruth;
-    config.filter.window = 15;
+    config.filter.window = 10;
     config.vision.pixel_noise_px = 2;
     MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
     log.rig.imu_noise.gyro_noise_density_radps_sqrthz *= 3;
