@@ -30,7 +30,8 @@ DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into f
 DEFINE_bool(interpolate, false,
             "interpolate the truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(jobs, 1,
-             "number of parallel runs, or of images rendered in parallel; parallel runs share the caches, so "
+             "number of parallel runs, of images rendered or of likelihoods evaluated in parallel; parallel "
+             "runs share the caches, so "
              "their times are not comparable");
 DEFINE_bool(json, false, "print the result as JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: kind of the configuration file");
@@ -40,6 +41,9 @@ DEFINE_bool(list, false, "print the names of the shipped configurations of this 
 DEFINE_string(model, "",
               "pose_only | inverse_depth | imu_propagation | preintegration | pseudorange | doppler: the "
               "measurement model");
+DEFINE_bool(
+    motion, false,
+    "identify from the innovations of a filter on a recording in motion, instead of from one at rest");
 DEFINE_string(nav, "", "broadcast orbits, RINEX, separated by commas");
 DEFINE_string(obs, "", "observations, RINEX");
 DEFINE_string(output, "", "output folder or file");

@@ -32,6 +32,7 @@ DECLARE_double(limit);
 DECLARE_double(max_dt);
 DECLARE_bool(list);
 DECLARE_string(model);
+DECLARE_bool(motion);
 DECLARE_string(nav);
 DECLARE_string(obs);
 DECLARE_string(output);
