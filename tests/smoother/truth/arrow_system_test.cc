@@ -18,14 +18,14 @@ constexpr Index kBorderColumns = ArrowSystem::kBorder;
 
 /// Random terms over a chain, and the same normal equations as one dense matrix, constants last.
 struct RandomChain {
-  explicit RandomChain(size_t states) : system(states) {
-    const Index border = kStateColumns * static_cast<Index>(states);
+  explicit RandomChain(size_t count) : system(count) {
+    const Index border = kStateColumns * static_cast<Index>(count);
     hessian = MatrixXd::Zero(border + kBorderColumns, border + kBorderColumns);
     gradient = VectorXd::Zero(border + kBorderColumns);
     system.Reset();
-    for (size_t k = 0; k < states; ++k) {
+    for (size_t k = 0; k < count; ++k) {
       const Index column = kStateColumns * static_cast<Index>(k);
-      if (k + 1 < states) {
+      if (k + 1 < count) {
         const Matrix15d first = Random<15, 15>(), second = Random<15, 15>();
         const Vector15d residual = Random<15, 1>();
         system.AddLink(k, residual, first, second);
@@ -57,14 +57,14 @@ struct RandomChain {
 
   template <int kRows, int kColumns>
   Eigen::Matrix<double, kRows, kColumns> Random() {
-    return Eigen::Matrix<double, kRows, kColumns>::NullaryExpr([this] { return states.Uniform(-1, 1); });
+    return Eigen::Matrix<double, kRows, kColumns>::NullaryExpr([this] { return random.Uniform(-1, 1); });
   }
   void AddDense(const MatrixXd& jacobian, const VectorXd& residual) {
     hessian += jacobian.transpose() * jacobian;
     gradient += jacobian.transpose() * residual;
   }
 
-  test::RandomStates states{5};
+  test::RandomStates random{5};
   ArrowSystem system;
   MatrixXd hessian;
   VectorXd gradient;
