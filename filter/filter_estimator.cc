@@ -198,7 +198,7 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
       (jacobian * ImuChartJacobian(state_.convention(), state_.nav())).topRows(rows);
   rest_innovation_ = -residual.head(rows);
   if (observer_ != nullptr) {
-    observer_->OnUpdate(state_, {rest_rows_, rest_innovation_, {}});
+    observer_->OnUpdate(state_, {rest_rows_, rest_innovation_, {}, RowSource::kRest});
   }
   const PreparedRows prepared = state_.covariance().Prepare(rest_rows_, rest_innovation_);
   if (!state_.covariance().Apply(prepared, Correction(), nullptr)) {

@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "core/imu_sample.h"
 #include "core/lie.h"
 
 namespace alidade {
@@ -21,12 +23,16 @@ struct TracedBlock {
   Eigen::MatrixXd noise;
 };
 
+/// The sensor whose measurements made the rows of an update.
+enum class RowSource { kVision, kRest, kGnss, kMeasurement };
+
 /// The rows of one update as the filter applies them: y = H xi + n, n ~ N(0, I) as the filter believes.
 struct FilterRows {
   Eigen::MatrixXd jacobian;    ///< rows x error dimension, weighted; a refused track's rows are zero
   Eigen::VectorXd innovation;  ///< weighted likewise
   /// Of tracks whose observations alone made their rows: none for rest, or for rows out of a track memory.
   std::vector<TracedBlock> blocks;
+  RowSource source = RowSource::kVision;
 };
 
 /// Receives every linear operation of the filter on its error, with the matrices that the filter uses. The
@@ -39,6 +45,8 @@ class FilterObserver {
 
   /// The error is the core alone again.
   virtual void OnReset(const FilterState& /*state*/) {}
+  /// What the next propagation integrates: consecutive samples from the stamp of `state` on.
+  virtual void OnImu(const FilterState& /*state*/, std::span<const ImuSample> /*samples*/) {}
   /// core <- phi core + w, w ~ N(0, q).
   virtual void OnPropagate(const Matrix15d& /*phi*/, const Matrix15d& /*q*/) {}
   /// A copy of the core's rows [first, first + size) enters directly after the core.
@@ -55,6 +63,8 @@ class FilterObserver {
   /// of yaw and position are along directions that are unobservable anyway. Then six rows of the clock enter
   /// before the core if `has_clock`. There are no landmarks.
   virtual void OnAlign(const Eigen::MatrixXd& /*turn*/, bool /*has_clock*/) {}
+  /// The clock's six rows <- phi times them + w, w ~ N(0, q).
+  virtual void OnPropagateClock(const Matrix6d& /*phi*/, const Matrix6d& /*q*/) {}
   /// An update is about to be applied to `state`.
   virtual void OnUpdate(const FilterState& /*state*/, const FilterRows& /*rows*/) {}
   /// A frame is done.

@@ -54,6 +54,9 @@ Status FilterState::Reset(const NavEstimate& initial) {
 Status FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise& noise,
                               const Eigen::Vector3d& gravity_W) {
   CHECK_GE(samples.size(), 2u);
+  if (observer_ != nullptr) {
+    observer_->OnImu(*this, samples);
+  }
   Matrix15d from_error = ImuChartJacobian(convention_, nav_);
   if (first_estimates_) {
     // The right-invariant transition does not depend on the state; only the charts at its ends do.

@@ -71,7 +71,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     return true;
   }
   if (observer_ != nullptr) {
-    observed_ = {update_.jacobian(), update_.innovation(), update_.traces()};
+    observed_ = {update_.jacobian(), update_.innovation(), update_.traces(), RowSource::kVision};
   }
   PreparedRows rows = update_.Prepare(landmark_rows, &state_.covariance());
   GateBlocks(&rows);

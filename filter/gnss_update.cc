@@ -41,6 +41,9 @@ void GnssUpdate::PropagateClockTo(TimeNs stamp_ns, FilterState* state) {
   const ClockTransition transition = PropagateClock(config_, SecondsBetween(clock_stamp_ns_, stamp_ns));
   clock_ = transition.phi * clock_;
   state->covariance().PropagateLeading(state->ClockOffset(), transition.phi, transition.q);
+  if (observer_ != nullptr) {
+    observer_->OnPropagateClock(transition.phi, transition.q);
+  }
   clock_stamp_ns_ = stamp_ns;
 }
 
@@ -49,6 +52,9 @@ void GnssUpdate::ResetClock(double step_m, FilterState* state) {
   anew.phi(ClockState::kClock, ClockState::kClock) = 0;
   anew.q(ClockState::kClock, ClockState::kClock) = kFreshClockStdM * kFreshClockStdM;
   state->covariance().PropagateLeading(state->ClockOffset(), anew.phi, anew.q);
+  if (observer_ != nullptr) {
+    observer_->OnPropagateClock(anew.phi, anew.q);
+  }
   clock_[ClockState::kClock] += step_m;
   for (GnssRow& row : rows_) {
     row.residual += row.is_rate ? 0 : step_m;
@@ -142,7 +148,7 @@ void GnssUpdate::NotifyObserver(const FilterState& state) const {
   }
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(jacobian_.rows(), state.covariance().dimension());
   rows.middleCols(state.ClockOffset(), kSeen) = jacobian_;
-  observer_->OnUpdate(state, {std::move(rows), innovation_, {}});
+  observer_->OnUpdate(state, {std::move(rows), innovation_, {}, RowSource::kGnss});
 }
 
 }  // namespace alidade

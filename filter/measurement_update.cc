@@ -32,6 +32,7 @@ FilterRows OverTheWholeError(const FilterState& state, const Eigen::Ref<const Ei
   rows.jacobian = Eigen::MatrixXd::Zero(jacobian.rows(), state.covariance().dimension());
   rows.jacobian.middleCols<SquareRootCovariance::kCore>(state.CoreOffset()) = jacobian;
   rows.innovation = innovation;
+  rows.source = RowSource::kMeasurement;
   return rows;
 }
 

@@ -67,9 +67,11 @@ class SquareRootCovariance {
   /// y^T (A A^T + I)^-1 y of the rows [first, first + count) alone; NaN when one is not finite.
   [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
-  /// y, the normalised innovation squared. False, with nothing changed, when a row is not finite, or
-  /// so large that rounding leaves nothing of the identity in M.
-  bool Apply(const PreparedRows& prepared, Eigen::Ref<Eigen::VectorXd> correction, double* nis);
+  /// y, the normalised innovation squared. log_det (nullptr skips): log det(A A^T + I) = log det M, so that
+  /// -(nis + log_det + rows log 2 pi) / 2 is the rows' log-likelihood. False, with nothing changed, when a
+  /// row is not finite, or so large that rounding leaves nothing of the identity in M.
+  bool Apply(const PreparedRows& prepared, Eigen::Ref<Eigen::VectorXd> correction, double* nis,
+             double* log_det = nullptr);
 
   /// Kalman update with unit-noise rows that see the errors [first, first + rows.cols()) alone, as Prepare
   /// and Apply. The work grows with their number times dimension() squared: for rows much fewer than the

@@ -154,7 +154,8 @@ void SquareRootCovariance::DivideTriangle(int first, int begin, int size) {
   DivideTriangle(first, begin + head, tail);
 }
 
-bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<VectorXd> correction, double* nis) {
+bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<VectorXd> correction, double* nis,
+                                 double* log_det) {
   const Eigen::Ref<MatrixXd>& prepared_rows = prepared.rows_;
   const Eigen::Ref<VectorXd>& y = prepared.innovation_;
   const int rows = static_cast<int>(prepared_rows.rows());
@@ -169,6 +170,9 @@ bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<Vector
   correction.setZero();
   if (nis != nullptr) {
     *nis = y.squaredNorm();
+  }
+  if (log_det != nullptr) {
+    *log_det = 0;
   }
   if (active == 0) {
     return true;
@@ -186,6 +190,9 @@ bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<Vector
   LAPACK_dpotrf("U", &active, m, &ldm, &info);
   if (info != 0) {
     return false;
+  }
+  if (log_det != nullptr) {
+    *log_det = 2 * diagonal.array().log().sum();
   }
   auto b = projected_.head(active);
   cblas_dgemv(CblasColMajor, CblasTrans, rows, active, 1.0, a, lda, y.data(), 1, 0.0, b.data(), 1);

@@ -66,7 +66,6 @@ TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones,
     : convention_(filter.error),
       error_(filter.error),
       max_depth_deviation_(filter.memory_depth_deviation),
-      outlives_window_(filter.track_memory == TrackMemoryPolicy::kCarry),
       calibration_(calibration_size),
       columns_(6 * max_clones + calibration_size),
       stacked_(5, columns_),
@@ -105,9 +104,8 @@ void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, con
                               const Eigen::Ref<const MatrixXd>& clone_rows, const std::vector<int>& clones,
                               TrackMemory* memory) {
   const Vector3d ray = p_W - state.clones()[static_cast<size_t>(clones.back())].T_WC.translation;
-  // Within the window the rows are those of a joint update, linearised no earlier than it would be.
-  memory->active = !outlives_window_ || StateDepthDeviation(state, ray, landmark_rows, clone_rows, clones) <
-                                            kStateShare * max_depth_deviation_ * ray.norm();
+  memory->active = StateDepthDeviation(state, ray, landmark_rows, clone_rows, clones) <
+                   kStateShare * max_depth_deviation_ * ray.norm();
   if (!memory->active) {
     return;
   }

@@ -82,7 +82,6 @@ class TrackMemoryKeeper {
   ErrorConvention convention_;
   LandmarkError error_;
   double max_depth_deviation_;
-  bool outlives_window_;
   Eigen::Index calibration_;  ///< size of the calibration's error
   Eigen::Index columns_;
   Eigen::Matrix<double, 5, Eigen::Dynamic> stacked_;

@@ -30,7 +30,8 @@ DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into f
 DEFINE_bool(interpolate, false,
             "interpolate the truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(jobs, 1,
-             "number of parallel runs, or of images rendered in parallel; parallel runs share the caches, so "
+             "number of parallel runs, of images rendered or of likelihoods evaluated in parallel; parallel "
+             "runs share the caches, so "
              "their times are not comparable");
 DEFINE_bool(json, false, "print the result as JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: kind of the configuration file");
@@ -40,6 +41,9 @@ DEFINE_bool(list, false, "print the names of the shipped configurations of this 
 DEFINE_string(model, "",
               "pose_only | inverse_depth | imu_propagation | preintegration | pseudorange | doppler: the "
               "measurement model");
+DEFINE_bool(
+    motion, false,
+    "identify from the innovations of a filter on a recording in motion, instead of from one at rest");
 DEFINE_string(nav, "", "broadcast orbits, RINEX, separated by commas");
 DEFINE_string(obs, "", "observations, RINEX");
 DEFINE_string(output, "", "output folder or file");
@@ -60,4 +64,12 @@ DEFINE_string(
     topics, "",
     "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones (docs/bags.md)");
 DEFINE_string(truth, "", "ground-truth trajectory file");
+DEFINE_double(truth_rate, 0,
+              "largest rate of the poses of the truth that are used [Hz]; 0: all. Their errors should be "
+              "independent of each other");
+DEFINE_double(
+    truth_std_deg, 0,
+    "standard deviation of the orientation of the poses of the truth, one axis [deg]; 0: estimate it");
+DEFINE_double(truth_std_m, 0,
+              "standard deviation of the position of the poses of the truth, one axis [m]; 0: estimate it");
 DEFINE_string(windows, "5,10,15,20,25", "window sizes (number of clones), separated by commas");

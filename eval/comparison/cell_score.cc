@@ -63,6 +63,7 @@ void FillFigures(const Evaluation& evaluation, CellResult* cell) {
     cell->nees_vel = Known(evaluation.nees->mean_velocity);
     cell->nees_gyro_bias = Known(evaluation.nees->mean_gyro_bias);
     cell->nees_accel_bias = Known(evaluation.nees->mean_accel_bias);
+    cell->truth_has_covariance = evaluation.truth_has_covariance;
   }
 }
 
@@ -77,7 +78,8 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
     series.truth_position.push_back(pair.truth.nav.p_WB);
     series.position.push_back(aligned[i].estimate.nav.p_WB);
     series.error.push_back(Local(ErrorConvention::kSo3xRn, pair.estimate.nav.T_WB(), pair.truth.nav.T_WB()));
-    series.sigma.push_back(pair.estimate.covariance.diagonal().cwiseMax(0).cwiseSqrt());
+    const Matrix6d covariance = evaluation.nees ? ErrorCovariance(pair) : pair.estimate.covariance;
+    series.sigma.push_back(covariance.diagonal().cwiseMax(0).cwiseSqrt());
     series.nees_pose.push_back(evaluation.nees ? evaluation.nees->pose[i] : kNan);
   }
   return series;

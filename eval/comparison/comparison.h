@@ -69,6 +69,7 @@ struct CellResult {
   std::vector<RpeResult> rpe;
   std::optional<double> nees_pose, nees_ori, nees_pos, coverage_3sigma;
   std::optional<double> nees_vel, nees_gyro_bias, nees_accel_bias;  ///< where the truth holds them
+  bool truth_has_covariance = false;  ///< which the first four NEES figures then include
   std::optional<double> frontend_ms;  ///< also unknown where the tracks were read from a file
   std::optional<double> backend_ms, backend_ms_p95;
   std::optional<double> features_per_frame;
@@ -100,6 +101,9 @@ struct ReferenceFigure {
 };
 
 struct Comparison {
+  /// Names of the sequences whose truth has a covariance, which their NEES include; sorted.
+  [[nodiscard]] std::vector<std::string> SequencesWithTruthCovariance() const;
+
   std::string title;
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;

@@ -9,6 +9,7 @@
 #include "eval/dataset/sensor_table.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/trajectory_reader.h"
+#include "eval/trajectory/truth_covariance.h"
 
 namespace alidade {
 namespace {
@@ -77,8 +78,14 @@ Status WriteTruthFolder(const Dataset& dataset, const std::string& mav) {
   const char* name = dataset.truth->has_velocity      ? "data.csv"
                      : dataset.truth->has_orientation ? "data_pose.csv"
                                                       : "data_position.csv";
-  return WriteFileAtomically((fs::path(mav) / "state_groundtruth_estimate0" / name).string(),
-                             TruthCsv(*dataset.truth));
+  const std::string path = (fs::path(mav) / "state_groundtruth_estimate0" / name).string();
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(path, TruthCsv(*dataset.truth)));
+  if (dataset.truth->has_covariance) {
+    return WriteFileAtomically(CovariancePath(path), CovarianceCsv(*dataset.truth));
+  }
+  std::error_code ignored;
+  fs::remove(CovariancePath(path), ignored);  // of another truth
+  return Status::Ok();
 }
 
 void CheckTruth(const Dataset& dataset, Findings* findings) {
@@ -100,8 +107,9 @@ void CheckTruth(const Dataset& dataset, Findings* findings) {
   const TimeNs shared_first = std::max(stamps.front(), dataset.imu.front().stamp_ns);
   const TimeNs shared_last = std::min(stamps.back(), dataset.imu.back().stamp_ns);
   const double covered = std::max(0.0, SecondsBetween(shared_first, shared_last)) / imu_span;
-  findings->Fact(Format("truth: covers %.1f %% of the IMU's time, path %.2f m%s", 100 * covered, path,
-                        dataset.truth->has_velocity ? ", with velocity and biases" : ", poses only"));
+  findings->Fact(Format("truth: covers %.1f %% of the IMU's time, path %.2f m%s%s", 100 * covered, path,
+                        dataset.truth->has_velocity ? ", with velocity and biases" : ", poses only",
+                        dataset.truth->has_covariance ? ", with covariances" : ""));
   if (covered < 0.5) {
     findings->Warning(Format("truth: covers only %.1f %% of the IMU's time", 100 * covered));
   }

@@ -12,7 +12,8 @@ class Findings;
 // The truth of a sequence: folder state_groundtruth_estimate0 of `mav`; mocap0 is read too.
 
 /// Reads the first of data.csv, data_pose.csv and data_position.csv. Errors (kInput): those of
-/// ReadTrajectory; a folder without any of them.
+/// ReadTrajectory; a folder without any of them. Covariances beside it are read and written too
+/// (eval/trajectory/truth_covariance.h).
 Status ReadTruthFolder(const std::string& mav, Dataset* dataset);
 Status WriteTruthFolder(const Dataset& dataset, const std::string& mav);
 

@@ -77,6 +77,7 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
   } else if (estimate.has_covariance) {
     evaluation.nees = ComputeNees(evaluation.pairs);
     ForgetUnknownNees(truth, &*evaluation.nees);
+    evaluation.truth_has_covariance = truth.has_covariance;
   }
   return evaluation;
 }

@@ -34,9 +34,10 @@ struct Evaluation {
   double path_m = 0;      ///< truth path through the pairs
   AlignmentTransform transform;
   AteResult unaligned;
-  AteResult ate;                   ///< after the alignment
-  std::vector<RpeResult> rpe;      ///< after the alignment (only its scale matters here)
-  std::optional<NeesResult> nees;  ///< unaligned; absent when the estimate has no covariance
+  AteResult ate;                      ///< after the alignment
+  std::vector<RpeResult> rpe;         ///< after the alignment (only its scale matters here)
+  std::optional<NeesResult> nees;     ///< unaligned; absent when the estimate has no covariance
+  bool truth_has_covariance = false;  ///< which `nees` then includes (ErrorCovariance)
 };
 
 /// Associates, aligns and scores. When one of the two has no orientation, figures of it are NaN and there is

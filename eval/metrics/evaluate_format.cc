@@ -74,7 +74,7 @@ Json RpeJson(const std::vector<RpeResult>& results) {
   return list;
 }
 
-Json NeesJson(const NeesResult& nees) {
+Json NeesJson(const NeesResult& nees, bool truth_has_covariance) {
   Json object = Json::object();
   for (const NeesLine& line : NeesLines(nees)) {
     object[line.name] = {{"mean", Number(line.mean)},
@@ -83,6 +83,7 @@ Json NeesJson(const NeesResult& nees) {
                          {"band_95", {Number(line.band.first), Number(line.band.second)}}};
   }
   object["coverage_3sigma"] = Number(nees.coverage_3sigma);
+  object["truth_covariance"] = truth_has_covariance;
   return object;
 }
 
@@ -128,6 +129,9 @@ std::string FormatEvaluationText(const Evaluation& evaluation) {
                      line.band.first, line.band.second, line.count);
     }
     text += Format("%-22s%14.4f%14s\n", "inside 3 sigma", evaluation.nees->coverage_3sigma, "0.9973");
+    if (evaluation.truth_has_covariance) {
+      text += "NEES and 3 sigma are those of P_estimate + P_truth: the truth has a covariance\n";
+    }
   }
   return text;
 }
@@ -149,7 +153,8 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
   object["unaligned"] = AteJson(evaluation.unaligned);
   object["ate"] = AteJson(evaluation.ate);
   object["rpe"] = RpeJson(evaluation.rpe);
-  object["nees"] = evaluation.nees ? NeesJson(*evaluation.nees) : Json(nullptr);
+  object["nees"] =
+      evaluation.nees ? NeesJson(*evaluation.nees, evaluation.truth_has_covariance) : Json(nullptr);
   return object.dump(2) + "\n";
 }
 

@@ -52,13 +52,20 @@ double MeanOfFinite(const std::vector<double>& values) {
 
 }  // namespace
 
+Matrix6d ErrorCovariance(const StatePair& pair) {
+  const Eigen::Vector3d phi = so3::Log(pair.estimate.nav.R_WB.transpose() * pair.truth.nav.R_WB);
+  Matrix6d of_truth = Matrix6d::Identity();
+  of_truth.topLeftCorner<3, 3>() = so3::RightJacobianInverse(phi);
+  return pair.estimate.covariance + of_truth * pair.truth.covariance * of_truth.transpose();
+}
+
 NeesResult ComputeNees(const std::vector<StatePair>& pairs) {
   NeesResult result;
   std::vector<double> velocity, gyro_bias, accel_bias;
   std::size_t inside = 0, components = 0;
   for (const StatePair& pair : pairs) {
     const NavState& estimate = pair.estimate.nav;
-    const Matrix6d& covariance = pair.estimate.covariance;
+    const Matrix6d covariance = ErrorCovariance(pair);
     Vector6d error;
     error << so3::Log(estimate.R_WB.transpose() * pair.truth.nav.R_WB), pair.truth.nav.p_WB - estimate.p_WB;
 

@@ -7,8 +7,19 @@
 
 namespace alidade {
 
-/// NEES of (phi, dp) in the canonical chart: phi = Log(R_est^T R_truth), dp = p_truth - p_est; and of
-/// velocity and biases, truth - estimate. Unaligned.
+/// Covariance of the error (phi, dp) of an estimate as the truth shows it, phi = Log(R_est^T R_truth), dp =
+/// p_truth - p_est. The truth's own error (phi_t, dp_t), independent of the estimate's, is in the same chart
+/// about the truth: R = R_truth Exp(phi_t). To first order phi moves by J_r(phi)^-1 phi_t and dp by dp_t, so
+/// that
+///
+///   P = P_est + J P_truth J^T,   J = blockdiag(J_r(phi)^-1, I)
+///
+/// which is P_est where the truth has no covariance (zero). Both are in the world of the truth:
+/// ApplyAlignment turns P_est there.
+[[nodiscard]] Matrix6d ErrorCovariance(const StatePair& pair);
+
+/// NEES of (phi, dp) in the canonical chart against ErrorCovariance, and of velocity and biases, truth -
+/// estimate. Unaligned.
 struct NeesResult {
   std::vector<double> pose, orientation, position;  ///< one a pair; NaN where the covariance is singular
   /// Means over the regular covariances; NaN when there is none.

@@ -216,11 +216,10 @@ Json NeesBands(int most_runs) {
 /// All but what the plots alone need.
 Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures,
                 const std::vector<AggregateRow>& rows) {
-  Json data = {{"title", comparison.title},
-               {"command", comparison.command},
-               {"not_run", comparison.notes},
-               {"sequences", ListSequences(rows)},
-               {"estimators", ListLabels(rows)}};
+  Json data = {
+      {"title", comparison.title},        {"command", comparison.command},
+      {"not_run", comparison.notes},      {"truth_covariance", comparison.SequencesWithTruthCovariance()},
+      {"sequences", ListSequences(rows)}, {"estimators", ListLabels(rows)}};
   data["figures"] = Json::array();
   for (const Figure& figure : figures) {
     data["figures"].push_back(FigureData(figure));

@@ -55,7 +55,7 @@ void DrawLabels(const std::string& x_label, const std::string& y_label, const Sv
 }
 
 bool Drawable(const SvgPlot& plot, double x, double y) {
-  return std::isfinite(x) && std::isfinite(y) && (!plot.log_y || y > 0);
+  return std::isfinite(x) && std::isfinite(y) && (!plot.log_y || y > 0) && (!plot.log_x || x > 0);
 }
 
 /// Ranges of what is drawn.
@@ -165,9 +165,9 @@ void DrawPlot(const SvgPlot& plot, const SvgFrame& frame, SvgCanvas* canvas) {
     Widen(false, &x_range);
     Equalize(frame, &x_range, &y_range);
   } else if (x_range.high == x_range.low) {
-    Widen(false, &x_range);
+    Widen(plot.log_x, &x_range);
   }
-  const SvgAxis x(x_range.low, x_range.high, frame.left, frame.left + frame.width, false);
+  const SvgAxis x(x_range.low, x_range.high, frame.left, frame.left + frame.width, plot.log_x);
   const SvgAxis y(y_range.low, y_range.high, frame.top + frame.height, frame.top, plot.log_y);
   canvas->BeginClip(frame.left, frame.top, frame.width, frame.height);
   for (const auto& [low, high] : plot.y_regions) {

@@ -27,6 +27,7 @@ struct SvgPlot {
   bool log_y = false;       ///< values that are not positive are gaps
   bool equal_axes = false;  ///< a metre is as long in x as in y
   bool with_zero = false;   ///< y = 0 is included and drawn
+  bool log_x = false;       ///< likewise in x
   std::vector<SvgCurve> curves = {};
   std::vector<SvgBand> bands = {};                        ///< cut at three times the curves' range
   std::vector<std::pair<double, double>> y_regions = {};  ///< shaded over the whole width

@@ -93,6 +93,9 @@ std::string FormatTable(const Comparison& comparison) {
     }
   }
   text += "Means over ok runs \u00b1 standard error; * best of the column (NEES: nearest to 6, 3).\n";
+  if (const std::string remark = TruthCovarianceRemark(comparison); !remark.empty()) {
+    text += remark + "\n";
+  }
   for (const std::string& line : LostRuns(comparison)) {
     text += line + "\n";
   }

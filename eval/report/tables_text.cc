@@ -114,9 +114,22 @@ std::vector<std::string> LostRuns(const Comparison& comparison) {
   return lines;
 }
 
+std::string TruthCovarianceRemark(const Comparison& comparison) {
+  std::string names;
+  for (const std::string& name : comparison.SequencesWithTruthCovariance()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names.empty() ? ""
+                       : "NEES and 3 \u03c3 are those of P_estimate + P_truth: the truth has a covariance (" +
+                             names + ").";
+}
+
 std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables) {
   std::string text = "# ";
   text += EscapeMarkdown(comparison.title) + "\n\n" + kReading + "\n";
+  if (const std::string remark = TruthCovarianceRemark(comparison); !remark.empty()) {
+    text += "\n" + EscapeMarkdown(remark) + "\n";
+  }
   for (const TextTable& table : tables) {
     text += "\n";
     text += MarkdownTable(table);
@@ -136,6 +149,9 @@ std::string MarkdownText(const Comparison& comparison, const std::vector<TextTab
 std::string LatexText(const Comparison& comparison, const std::vector<TextTable>& tables) {
   std::string text =
       "% Needs \\usepackage{booktabs}.\n% " + EscapeLatex(comparison.title) + "\n% " + kReading + "\n";
+  if (const std::string remark = TruthCovarianceRemark(comparison); !remark.empty()) {
+    text += "% " + EscapeLatex(remark) + "\n";
+  }
   for (const TextTable& table : tables) {
     text += "\n";
     text += LatexTable(table);

@@ -11,6 +11,9 @@ namespace alidade {
 /// A line for every run that did not end ok, with the reason.
 [[nodiscard]] std::vector<std::string> LostRuns(const Comparison& comparison);
 
+/// A sentence on the sequences whose NEES include the covariance of the truth; empty when there are none.
+[[nodiscard]] std::string TruthCovarianceRemark(const Comparison& comparison);
+
 /// tables.md: GitHub tables; the best of a column in bold, published figures in italics. Names are escaped.
 [[nodiscard]] std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables);
 

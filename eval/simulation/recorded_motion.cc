@@ -17,6 +17,12 @@ double DurationOf(const Trajectory& trajectory) {
   return SecondsBetween(trajectory.points.front().stamp_ns, trajectory.points.back().stamp_ns);
 }
 
+/// A refined truth turns and accelerates as its IMU measured; a coarser spline would smooth that away.
+double KnotSpacing(const Trajectory& samples, const SimulatorConfig& config) {
+  return samples.has_covariance ? DurationOf(samples) / static_cast<double>(samples.points.size() - 1)
+                                : config.knot_spacing_s;
+}
+
 Status In(const std::string& path, const Status& status) {
   return {status.code(), path + ": " + status.message()};
 }
@@ -90,7 +96,7 @@ Result<RecordedMotion> LoadRecordedMotion(const std::string& source, const Simul
                          " s without a gap longer than max_gap_s " + Format("%g", config.max_gap_s) +
                          " s; expected a second or more");
   }
-  const Result<SplineTrajectory> motion = SplineTrajectory::Fit(*samples, config.knot_spacing_s);
+  const Result<SplineTrajectory> motion = SplineTrajectory::Fit(*samples, KnotSpacing(*samples, config));
   if (!motion.ok()) {
     return In(*path, motion.status());
   }

@@ -28,8 +28,9 @@ Result<std::string> FindTruth(const std::string& source, const std::string& trut
 Result<Trajectory> KeepGapFree(const Trajectory& recorded, double max_gap_s, TruthGaps policy);
 
 /// Reads the poses of `source`, keeps a gap-free stretch of at most duration_s, and fits a spline with knots
-/// every knot_spacing_s. Errors: those of FindTruth, ReadTrajectory, KeepGapFree and SplineTrajectory::Fit,
-/// and a stretch shorter than a second; all kInput, naming the file.
+/// every knot_spacing_s. A truth with covariances (alidade refine_truth) obeys its IMU at every pose and has
+/// a knot at every pose instead. Errors: those of FindTruth, ReadTrajectory, KeepGapFree and
+/// SplineTrajectory::Fit, and a stretch shorter than a second; all kInput, naming the file.
 Result<RecordedMotion> LoadRecordedMotion(const std::string& source, const SimulatorConfig& config);
 
 }  // namespace alidade

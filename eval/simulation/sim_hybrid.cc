@@ -58,6 +58,15 @@ void TrimImu(TimeNs first_frame_ns, TimeNs last_exposure_ns, std::vector<ImuSamp
   imu->erase(imu->begin(), std::lower_bound(imu->begin(), imu->end(), first_ns, earlier));
 }
 
+/// The camera moves along the truth itself, so that what is unknown of the real motion is no error of it.
+Trajectory Exactly(Trajectory truth) {
+  truth.has_covariance = false;
+  for (TrajectoryPoint& point : truth.points) {
+    point.covariance.setZero();
+  }
+  return truth;
+}
+
 Status CheckGyro(const RecordedMotion& recorded, const std::vector<ImuSample>& imu) {
   const Result<GyroAgreement> gyro = CompareGyro(recorded.motion, recorded.motion.start_ns(), imu);
   if (!gyro.ok()) {
@@ -106,7 +115,7 @@ Result<Simulation> SimulateHybrid(const SimulatorConfig& config, unsigned seed) 
     ALIDADE_RETURN_IF_ERROR(AddSimulatedTracks(config, motion, motion.start_ns(), seed, &dataset));
   }
   ALIDADE_RETURN_IF_ERROR(AddSimulatedGnss(config, motion, motion.start_ns(), seed, &dataset));
-  dataset.truth = std::move(recorded->samples);
+  dataset.truth = Exactly(std::move(recorded->samples));
   dataset.truth_path = recorded->path;
   simulation.motion_start_ns = motion.start_ns();
   simulation.motion = std::make_shared<SplineTrajectory>(std::move(recorded->motion));

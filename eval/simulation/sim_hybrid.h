@@ -15,7 +15,9 @@ namespace alidade {
 /// offset) lies within that stretch and within the IMU samples; before it, where EuRoC's truth is missing
 /// with the vehicle at rest, there are none. IMU: from 3 s before the first frame (a rest there serves static
 /// initialisation) to the first sample after the last exposure. Truth: the recorded rows of the stretch.
-/// Keys of trajectory, IMU, camera rate and camera model have no effect; those of tracks and landmarks do.
+/// A refined truth (recorded_motion.h) shares the vibration of the IMU with the camera; its covariances are
+/// left out, for the camera moves along it exactly. Keys of trajectory, IMU, camera rate and camera model
+/// have no effect; those of tracks and landmarks do.
 ///
 /// Errors: those of ReadDataset and LoadRecordedMotion; no truth, no frames, a motion that the gyroscope
 /// contradicts (kInput); no room for landmarks (kConfig).

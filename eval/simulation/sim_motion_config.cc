@@ -91,10 +91,11 @@ void DescribeRecording(SimMotionConfig* config, ConfigVisitor& visitor) {
       {"truth_file", "-",
        "truth file of a dataset folder; auto: data_recomputed.csv, else data.csv, else data_pose.csv"},
       &config->truth_file);
-  visitor.Real({"knot_spacing_s", "s",
-                "knot spacing of the spline through a recorded trajectory; a shorter one follows faster "
-                "motion and more noise"},
-               &config->knot_spacing_s, 0.01, 10);
+  visitor.Real(
+      {"knot_spacing_s", "s",
+       "knot spacing of the spline through a recorded trajectory; a shorter one follows faster "
+       "motion and more noise; a truth with covariances (refine_truth) has a knot at every pose instead"},
+      &config->knot_spacing_s, 0.01, 10);
   visitor.Real(
       {"max_gap_s", "s",
        "a longer interval without poses of a recorded trajectory is a gap, in which the motion is unknown"},

@@ -5,6 +5,8 @@
 
 #include "eval/files/csv.h"
 #include "eval/files/decimal_stamp.h"
+#include "eval/trajectory/pose_covariance.h"
+#include "eval/trajectory/truth_covariance.h"
 
 namespace alidade {
 namespace {
@@ -12,7 +14,6 @@ namespace {
 constexpr double kMaxQuaternionNormError = 1e-2;
 constexpr size_t kPoseColumns = 8;
 constexpr size_t kStateColumns = 17;
-constexpr size_t kCovarianceColumns = 21;
 
 const std::vector<CsvColumn>& PoseHeader() {
   static const std::vector<CsvColumn> kHeader = {
@@ -42,12 +43,15 @@ const std::vector<CsvColumn>& EurocHeader() {
 }
 
 const std::vector<CsvColumn>& StatesHeader() {
-  static const std::vector<CsvColumn> kHeader = {
-      {"timestamp_ns"}, {"p_x"},  {"p_y"},  {"p_z"},  {"q_w"},  {"q_x"},  {"q_y"},  {"q_z"},
-      {"v_x"},          {"v_y"},  {"v_z"},  {"bg_x"}, {"bg_y"}, {"bg_z"}, {"ba_x"}, {"ba_y"},
-      {"ba_z"},         {"c_00"}, {"c_01"}, {"c_02"}, {"c_03"}, {"c_04"}, {"c_05"}, {"c_11"},
-      {"c_12"},         {"c_13"}, {"c_14"}, {"c_15"}, {"c_22"}, {"c_23"}, {"c_24"}, {"c_25"},
-      {"c_33"},         {"c_34"}, {"c_35"}, {"c_44"}, {"c_45"}, {"c_55"}};
+  static const std::vector<CsvColumn> kHeader = [] {
+    std::vector<CsvColumn> header = {{"timestamp_ns"}, {"p_x"},  {"p_y"},  {"p_z"},  {"q_w"}, {"q_x"},
+                                     {"q_y"},          {"q_z"},  {"v_x"},  {"v_y"},  {"v_z"}, {"bg_x"},
+                                     {"bg_y"},         {"bg_z"}, {"ba_x"}, {"ba_y"}, {"ba_z"}};
+    for (const std::string_view name : PoseCovarianceNames()) {
+      header.push_back({name});
+    }
+    return header;
+  }();
   return kHeader;
 }
 
@@ -77,24 +81,6 @@ Status ReadRotation(const CsvReader& csv, size_t first, bool w_last, Eigen::Matr
   return Status::Ok();
 }
 
-Status ReadCovariance(const CsvReader& csv, size_t first, Matrix6d* covariance) {
-  size_t column = first;
-  for (int row = 0; row < 6; ++row) {
-    for (int col = row; col < 6; ++col) {
-      double value = 0;
-      ALIDADE_RETURN_IF_ERROR(csv.ReadReal(column, StatesHeader()[column].name, &value));
-      (*covariance)(row, col) = value;
-      (*covariance)(col, row) = value;
-      ++column;
-    }
-    if ((*covariance)(row, row) < 0) {
-      return csv.Fault(column - static_cast<size_t>(6 - row), "covariance",
-                       "a variance that is not negative");
-    }
-  }
-  return Status::Ok();
-}
-
 constexpr size_t kPositionColumns = 4;
 
 /// One row of the three comma-separated formats: they share their first columns.
@@ -112,7 +98,7 @@ Status ReadCsvPoint(const CsvReader& csv, const Trajectory& trajectory, Trajecto
     ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 14, "accel bias", &point->bias.accel));
   }
   if (trajectory.has_covariance) {
-    ALIDADE_RETURN_IF_ERROR(ReadCovariance(csv, kStateColumns, &point->covariance));
+    ALIDADE_RETURN_IF_ERROR(ReadPoseCovariance(csv, kStateColumns, &point->covariance));
   }
   return Status::Ok();
 }
@@ -141,7 +127,7 @@ Status RecognizeHeader(const CsvReader& csv, Trajectory* trajectory, size_t* col
   return Status::Input(
       csv.Place() + ": found a first row of " + std::to_string(*columns) +
       " columns, expected the header of EuRoC truth (17 or 8 columns), positions (4) or states.csv (" +
-      std::to_string(kStateColumns + kCovarianceColumns) + " or more)");
+      std::to_string(StatesHeader().size()) + " or more)");
 }
 
 Result<Trajectory> ReadCsvTrajectory(CsvReader& csv) {
@@ -208,6 +194,9 @@ Result<Trajectory> ReadTrajectory(const std::string& path) {
   Result<Trajectory> trajectory = csv->columns() > 1 ? ReadCsvTrajectory(*csv) : ReadTumTrajectory(path);
   if (trajectory.ok() && trajectory->points.empty()) {
     return Status::Input(path + ": holds no pose, expected at least one row");
+  }
+  if (trajectory.ok() && !trajectory->has_covariance && trajectory->has_orientation) {
+    ALIDADE_RETURN_IF_ERROR(ReadCovarianceBeside(path, &trajectory.value()));
   }
   return trajectory;
 }

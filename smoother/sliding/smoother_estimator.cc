@@ -288,6 +288,7 @@ Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {
   latest_.covariance = known.covariance;
   latest_clock_.covariance = known.clock_covariance;
   calibration_deviations_ = known.calibration_deviations;
+  window_information_ = std::move(known.window);
   return Status::Ok();
 }
 

@@ -78,6 +78,8 @@ class SmootherEstimator final : public Estimator {
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
   [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);
+  /// Whether the rows of a track's landmark may be linearised for good.
+  [[nodiscard]] bool DepthIsKnown(const std::vector<FrameGeometry>& geometry, const WindowTrack& track) const;
   [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
                                                       size_t free);
   [[nodiscard]] SensorContext Sensors() const { return {gravity_W_, gnss_.context()}; }
@@ -117,7 +119,8 @@ class SmootherEstimator final : public Estimator {
   Eigen::VectorXd calibration_deviations_;
   NavEstimate latest_;
   ClockState latest_clock_;
-  bool has_frames_ = false;  ///< a camera has been heard of
+  WindowInformation window_information_;  ///< at the last solve
+  bool has_frames_ = false;               ///< a camera has been heard of
   FrameStatistics statistics_;
   std::vector<ImuSample> interval_;
   bool initialized_ = false;

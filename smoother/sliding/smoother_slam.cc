@@ -9,8 +9,12 @@
 namespace alidade {
 namespace {
 
-// A landmark joins the prior once its depth is known so well that its rows are close to linear.
-constexpr double kMaxFeatureDepthDeviation = 0.1;
+// A landmark joins the prior once its depth is known so well that its rows are close to linear: largest
+// relative deviation of the inverse depth with the poses held fixed,
+constexpr double kMaxFeatureDepthDeviation = 0.04;
+// and of it, what the poses' uncertainty may be. That part is the scale of the window: it is common to all
+// landmarks and biases the scale, where a landmark's own part averages out.
+constexpr double kStateShare = 0.5;
 constexpr size_t kMinFeatureViews = 3;
 
 bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, const WindowFrame& from,
@@ -42,16 +46,23 @@ std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<F
   return staying;
 }
 
+bool SmootherEstimator::DepthIsKnown(const std::vector<FrameGeometry>& geometry,
+                                     const WindowTrack& track) const {
+  const std::optional<InverseDepthError> error =
+      LinearizeInverseDepth(track.views, geometry, kernel_, track.landmark);
+  const double bound = kMaxFeatureDepthDeviation * track.landmark.z();
+  return error && error->own_deviation < bound &&
+         window_information_.Deviation(error->row) < kStateShare * bound;
+}
+
 std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<FrameGeometry>& geometry,
                                                          size_t free) {
   std::vector<WindowTrack*> candidates;
   for (auto& [id, track] : window_.tracks()) {
-    Eigen::Vector3d pose_only;
     if (free > 0 && track.anchor == nullptr && track.alive && track.views.size() >= kMinFeatureViews &&
         track.views.front().frame->index == 0 && PrepareLandmark(geometry, &track) &&
-        InitializeLandmark(track.views, geometry, kMaxFeatureDepthDeviation, &pose_only) &&
         SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
-        DepthInRange(track.landmark)) {
+        DepthInRange(track.landmark) && DepthIsKnown(geometry, track)) {
       candidates.push_back(&track);
     }
   }

@@ -11,6 +11,7 @@ namespace alidade {
 
 RowElimination::RowElimination(ColumnMap columns) : columns_(std::move(columns)) {
   rows_.resize(2 * columns_.size(), columns_.size());
+  factor_.setZero(columns_.size(), columns_.size());
 }
 
 void RowElimination::Add(LinearTerm* term) {
@@ -78,6 +79,7 @@ bool RowElimination::EliminateUpTo(Index end) {
   if (!root_.allFinite() || (root_.diagonal().array() == 0).any()) {
     return false;
   }
+  factor_(Eigen::seqN(eliminated_, group), touched) = front.topRows(group).triangularView<Eigen::Upper>();
   for (Index i = 0; i < height; ++i) {
     const auto row = static_cast<size_t>(i);
     // The first rows of the triangle are about the group; those below it are zero.

@@ -26,6 +26,9 @@ class RowElimination {
   /// R of the group eliminated last, upper triangular: once no column is left, R^T R is the information about
   /// that group.
   [[nodiscard]] const Eigen::MatrixXd& root() const { return root_; }
+  /// R of all columns eliminated so far, upper triangular: once no column is left, R^T R is the information
+  /// about all of them.
+  [[nodiscard]] const Eigen::MatrixXd& factor() const { return factor_; }
 
  private:
   using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -41,6 +44,7 @@ class RowElimination {
   std::vector<Index> lead_;  ///< of each row: no column before this one is touched
   Index eliminated_ = 0;
   Eigen::MatrixXd root_;
+  Eigen::MatrixXd factor_;
 };
 
 }  // namespace alidade

@@ -29,6 +29,16 @@ Index CalibrationSize(const WindowTerms& terms) {
 
 }  // namespace
 
+double WindowInformation::Deviation(const Eigen::RowVectorXd& row) const {
+  Eigen::VectorXd whitened = Eigen::VectorXd::Zero(columns.size());
+  for (Index i = 0; kPoseColumns * i < row.size(); ++i) {
+    whitened.segment<kPoseColumns>(columns.Frame(static_cast<int>(i)).first) =
+        row.segment<kPoseColumns>(kPoseColumns * i).transpose();
+  }
+  root.triangularView<Eigen::Upper>().transpose().solveInPlace(whitened);
+  return whitened.norm();
+}
+
 bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest) {
   // In time order, so that a step touches few columns. The last group is what is asked for: calibration,
   // clock and state of the newest frame.
@@ -67,6 +77,7 @@ bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, Newe
   if (clock.size > 0) {
     newest->clock_covariance = covariance(clock);
   }
+  newest->window = {columns, elimination.factor()};
   newest->calibration_deviations = inverse.topRows(columns.Calibration().size).rowwise().norm();
   return newest->covariance.allFinite();
 }

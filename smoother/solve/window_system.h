@@ -7,11 +7,21 @@
 
 namespace alidade {
 
+/// What a window knows of all of its frames together, canonical chart.
+struct WindowInformation {
+  ColumnMap columns;
+  Eigen::MatrixXd root;  ///< R, upper triangular: R^T R is the information
+
+  /// Standard deviation of row * x over the poses of the window, row 1 x 6F in the order of the frames.
+  [[nodiscard]] double Deviation(const Eigen::RowVectorXd& row) const;
+};
+
 /// What a window knows of its newest frame.
 struct NewestEstimate {
   Matrix15d covariance;                    ///< of the state; canonical chart, phi dp dv dbg dba
   Matrix6d clock_covariance;               ///< of the clock, in an aligned window
   Eigen::VectorXd calibration_deviations;  ///< of what of the calibration is estimated
+  WindowInformation window;                ///< with the newest frame
 };
 
 /// The same from the whitened rows of `terms` over the frames at their present states, of which QR eliminates

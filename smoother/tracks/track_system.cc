@@ -193,6 +193,33 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   ++system->tracks;
   return true;
 }
+std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowView> views,
+                                                       std::span<const FrameGeometry> geometry,
+                                                       const ObservationKernel& kernel,
+                                                       const Vector3d& landmark) {
+  TrackWorkspace workspace;
+  if (!LinearizeViews(views, geometry, kernel, landmark, &workspace)) {
+    return std::nullopt;
+  }
+  const Vector3d scale = workspace.landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Matrix3d> factor(scale.asDiagonal() * workspace.landmark_hessian * scale.asDiagonal());
+  if (!scale.allFinite() || factor.info() != Eigen::Success) {
+    return std::nullopt;
+  }
+  // Last row of the inverse of the landmark's Hessian.
+  const Vector3d last = scale.asDiagonal() * factor.solve(Vector3d(0, 0, scale.z()));
+  InverseDepthError error;
+  error.own_deviation = std::sqrt(last.z());
+  error.row.setZero(6 * static_cast<Eigen::Index>(geometry.size()));
+  for (size_t k = 0; k < views.size(); ++k) {
+    error.row.segment<6>(6 * views[k].frame->index) -= (workspace.coupling[k] * last).transpose();
+  }
+  const FrameGeometry& base = Geometry(geometry, views.front());
+  error.row.segment<6>(6 * views.front().frame->index) +=
+      InverseDepthRow(base, landmark) * base.camera_from_body;
+  return error;
+}
+
 void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                     Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
   const Eigen::Index size = hessian.rows();

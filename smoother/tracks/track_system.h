@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,6 +74,19 @@ struct TrackWorkspace {
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior = {});
+
+/// What poses of the window say of a track's inverse depth in its base view: d rho / d (phi, dp) of each
+/// frame's body, 1 x 6 geometry.size(), the landmark being the one that its views determine from those poses;
+/// and the deviation of rho with the poses held fixed.
+struct InverseDepthError {
+  Eigen::RowVectorXd row;
+  double own_deviation = 0;
+};
+/// nullopt: behind a view, or the views do not determine the landmark.
+[[nodiscard]] std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowView> views,
+                                                                     std::span<const FrameGeometry> geometry,
+                                                                     const ObservationKernel& kernel,
+                                                                     const Eigen::Vector3d& landmark);
 
 /// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H
 /// (lower triangle given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.

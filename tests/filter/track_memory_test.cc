@@ -141,12 +141,13 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
 // The baseline is as uncertain as the velocity is: rows linearised at it would bias the scale. Where the
 // whole window stands does not matter.
 TEST_P(TrackMemoryTest, GivenADepthThatOnlyTheStateLeavesOpenThenNoMemoryStarts) {
-  const auto remembers = [&](double velocity_std, double position_std) {
+  const auto remembers = [&](TrackMemoryPolicy policy, double velocity_std, double position_std) {
     NavEstimate initial = test::DrawInitialState(dataset_, 1);
     initial.covariance.diagonal().segment<3>(3).setConstant(position_std * position_std);
     initial.covariance.diagonal().segment<3>(6).setConstant(velocity_std * velocity_std);
     const FilterState state = CloneEveryFrame(dataset_, GetParam(), initial);
     FilterConfig filter = Remembering(GetParam());
+    filter.track_memory = policy;
     filter.memory_depth_deviation = 0.2;
     FeatureUpdate update(filter, vision_, kFrames + 1);
     Track track = SeenFromClones(state, PointBefore(state), 0, kFrames);
@@ -155,9 +156,11 @@ TEST_P(TrackMemoryTest, GivenADepthThatOnlyTheStateLeavesOpenThenNoMemoryStarts)
     update.Remember(state, 0, 1, &track);
     return track.memory.active;
   };
-  EXPECT_TRUE(remembers(0.01, 0.01));
-  EXPECT_TRUE(remembers(0.01, 10));
-  EXPECT_FALSE(remembers(1.0, 0.01));
+  for (const TrackMemoryPolicy policy : {TrackMemoryPolicy::kWindow, TrackMemoryPolicy::kCarry}) {
+    EXPECT_TRUE(remembers(policy, 0.01, 0.01));
+    EXPECT_TRUE(remembers(policy, 0.01, 10));
+    EXPECT_FALSE(remembers(policy, 1.0, 0.01));
+  }
 }
 
 TEST_P(TrackMemoryTest, GivenACloneThatLeavesThenTheRowsAreTheMarginalOfItsConditional) {

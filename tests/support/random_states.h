@@ -13,6 +13,7 @@ class RandomStates {
   explicit RandomStates(unsigned seed) : random_(seed, "test states") {}
 
   double Uniform(double low, double high) { return random_.Uniform(low, high); }
+  double Gaussian() { return random_.Normal(); }
   Eigen::Vector3d Vector(double scale) {
     return {Uniform(-scale, scale), Uniform(-scale, scale), Uniform(-scale, scale)};
   }

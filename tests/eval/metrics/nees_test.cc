@@ -57,6 +57,66 @@ TEST(Nees, OfAnOverconfidentEstimatorLiesAboveItsBandAndItsCoverageFalls) {
   EXPECT_NEAR(nees.coverage_3sigma, std::erf(1.5 / std::sqrt(2)), 0.005);
 }
 
+/// Truth and estimate both with errors of their own, each drawn from its covariance about the exact motion.
+std::vector<StatePair> PairsWithUncertainTruth(int count, double truth_rad, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  std::vector<StatePair> pairs = PerfectPairs(count);
+  for (StatePair& pair : pairs) {
+    const NavState exact = pair.truth.nav;
+    for (TrajectoryPoint* point : {&pair.truth, &pair.estimate}) {
+      Matrix6d root = Matrix6d::NullaryExpr([&] { return normal(random); });
+      root.topRows<3>() *= point == &pair.truth ? truth_rad : 1e-2;
+      const Vector6d error = root * Vector6d::NullaryExpr([&] { return normal(random); });
+      point->nav.R_WB = exact.R_WB * so3::Exp(-error.head<3>());
+      point->nav.p_WB = exact.p_WB - error.tail<3>();
+      point->covariance = root * root.transpose();
+    }
+  }
+  return pairs;
+}
+
+TEST(Nees, GivenATruthWithACovarianceThenBothCount) {
+  std::mt19937_64 random(3);
+  const int count = 20000;
+  std::vector<StatePair> pairs = PairsWithUncertainTruth(count, 1e-2, random);
+  const NeesResult nees = ComputeNees(pairs);
+  const auto within = [&](double mean, int dof) {
+    const auto [low, high] = NeesBand(dof, count, 0.999);
+    EXPECT_GT(mean, low);
+    EXPECT_LT(mean, high);
+  };
+  within(nees.mean_pose, 6);
+  within(nees.mean_orientation, 3);
+  within(nees.mean_position, 3);
+  EXPECT_NEAR(nees.coverage_3sigma, 0.9973, 0.001);
+  for (StatePair& pair : pairs) {
+    pair.truth.covariance.setZero();
+  }
+  EXPECT_GT(ComputeNees(pairs).mean_pose, NeesBand(6, count).second) << "the truth's error is no error then";
+}
+
+TEST(Nees, TheErrorOfTheTruthIsTurnedIntoThatOfTheEstimate) {
+  // Far apart, so that the chart of the truth is not that of the estimate: Log(R_est^T R_truth Exp(phi_t)) by
+  // central differences.
+  std::mt19937_64 random(4);
+  StatePair pair = PairsWithUncertainTruth(3, 1e-3, random)[1];
+  pair.estimate.nav.R_WB = pair.truth.nav.R_WB * so3::Exp(Eigen::Vector3d(0.8, -0.5, 0.6));
+  Matrix6d jacobian = Matrix6d::Identity();
+  const double step = 1e-5;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d phi = step * Eigen::Vector3d::Unit(i);
+    const auto error = [&](const Eigen::Vector3d& turn) {
+      return so3::Log(pair.estimate.nav.R_WB.transpose() * pair.truth.nav.R_WB * so3::Exp(turn));
+    };
+    jacobian.col(i).head<3>() = (error(phi) - error(-phi)) / (2 * step);
+  }
+  const Matrix6d expected =
+      pair.estimate.covariance + jacobian * pair.truth.covariance * jacobian.transpose();
+  EXPECT_LT((ErrorCovariance(pair) - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
+  pair.truth.covariance.setZero();
+  EXPECT_EQ(ErrorCovariance(pair), pair.estimate.covariance);
+}
+
 TEST(Nees, OfOneHandComputedPair) {
   std::vector<StatePair> pairs = PerfectPairs(1);
   StatePair& pair = pairs[0];

@@ -123,6 +123,26 @@ int Landmarks(const Window& window) {
   }));
 }
 
+// GIVEN a slow motion, WHEN the velocity, and with it the scale of the window, is uncertain, THEN no landmark
+// joins the prior; with a known velocity landmarks do.
+TEST(SmootherEstimatorTest, LandmarksWaitUntilTheScaleOfTheWindowIsKnown) {
+  SimulatorConfig simulator;
+  simulator.duration_s = 2;
+  simulator.path_m = 1.5;
+  const Dataset dataset = test::SimulateOrDie(simulator, 3);
+  const auto features = [&](double velocity_std_mps) {
+    SmootherEstimator estimator(WithSlamFeatures(60), dataset.rig);
+    NavEstimate initial = test::DrawInitialState(dataset, 3);
+    initial.covariance.diagonal().segment<3>(6).setConstant(velocity_std_mps * velocity_std_mps);
+    const test::ScenarioResult result = test::RunScenario(dataset, initial, &estimator);
+    EXPECT_TRUE(result.status.ok()) << result.status.message();
+    return std::count_if(estimator.window().tracks().begin(), estimator.window().tracks().end(),
+                         [](const auto& item) { return item.second.anchor != nullptr; });
+  };
+  EXPECT_GT(features(1e-3), 5);
+  EXPECT_EQ(features(0.3), 0);
+}
+
 // GIVEN outliers, WHEN the gate refuses a landmark of the prior, THEN it is not counted as used besides.
 TEST(SmootherEstimatorTest, ARefusedSlamFeatureIsNotCountedAsUsed) {
   SimulatorConfig simulator;

@@ -168,6 +168,25 @@ TEST_P(MarginalizationTest, NewestCovarianceIsTheInverseOfTheFullHessian) {
   EXPECT_LT((covariance - expected).norm(), 1e-6 * expected.norm());
 }
 
+TEST_P(MarginalizationTest, DeviationsOverAllPosesAreThoseOfTheFullHessian) {
+  WindowFixture fixture(3, 4, 12, 1.0);
+  AddRest(&fixture);
+  LinearPrior prior;
+  ASSERT_TRUE(MakeInitialPrior(GetParam(), fixture.window.frame(0), SomeCovariance(), &prior));
+  const PoseSystem vision = Vision(fixture, 0, 3);
+  const WindowInformation window = test::Newest(fixture.window, prior, vision, {fixture.gravity_W}).window;
+  const Eigen::MatrixXd inverse = FullSystem(fixture, prior, vision).hessian.inverse();
+  Eigen::RowVectorXd row(24);
+  Eigen::RowVectorXd in_error = Eigen::RowVectorXd::Zero(60);
+  for (int i = 0; i < 4; ++i) {
+    row.segment<6>(6 * i) << fixture.random.Vector(1).transpose(), fixture.random.Vector(1).transpose();
+    in_error.segment<6>(15 * i) =
+        row.segment<6>(6 * i) * ChartJacobian(GetParam(), fixture.window.frame(i).nav_state().T_WB());
+  }
+  const double expected = std::sqrt(in_error * inverse * in_error.transpose());
+  EXPECT_NEAR(window.Deviation(row), expected, 1e-6 * expected);
+}
+
 // The gauge: turning the whole window about gravity and shifting it must change nothing but the first prior's
 // own term.
 TEST(MarginalizationGaugeTest, VisionAndImuSayNothingAboutYawAndPositionInRightInvariantCoordinates) {

@@ -1,0 +1,90 @@
+#include "eval/truth/refine_dataset.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "eval/dataset/dataset_truth.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<TruthPose> PosesAtRate(const Trajectory& truth, double rate_hz) {
+  std::vector<TruthPose> poses;
+  // Poses a little less than a period apart are taken too: rates seldom divide each other.
+  const double period_s = rate_hz > 0 ? 0.999 / rate_hz : 0;
+  for (const TrajectoryPoint& point : truth.points) {
+    if (poses.empty() || SecondsBetween(poses.back().stamp_ns, point.stamp_ns) >= period_s) {
+      poses.push_back({point.stamp_ns, point.nav.T_WB()});
+    }
+  }
+  return poses;
+}
+
+Status In(const fs::path& path, const std::error_code& error) {
+  return Status::Output(path.string() + ": cannot be written: " + error.message());
+}
+
+/// A sensor's folder: its files, and its folders (images) as links.
+Status CopySensor(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_directories(to, error);
+  if (error) {
+    return In(to, error);
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+    const fs::path target = to / entry.path().filename();
+    fs::remove_all(target, error);
+    if (entry.is_directory()) {
+      fs::create_directory_symlink(fs::canonical(entry.path()), target, error);
+    } else {
+      fs::copy_file(entry.path(), target, fs::copy_options::overwrite_existing, error);
+    }
+    if (error) {
+      return In(target, error);
+    }
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Result<RefinedTruth> RefineDataset(const Dataset& dataset, const RefineOptions& options) {
+  if (!dataset.truth || !dataset.truth->has_orientation) {
+    return Status::Input("refine_truth: " + dataset.path +
+                         (dataset.truth ? ": a truth without orientation" : ": no truth") +
+                         ", expected poses in state_groundtruth_estimate0 or a file named by --truth");
+  }
+  TruthRefinementOptions refinement;
+  refinement.imu_noise = options.imu.Scaled(dataset.rig.imu_noise);
+  refinement.gravity_mps2 = options.imu.gravity_mps2;
+  refinement.noise = options.noise;
+  refinement.stop = options.stop;
+  return RefineTruth(dataset.imu, PosesAtRate(*dataset.truth, options.truth_rate_hz), refinement);
+}
+
+Trajectory TruthOf(const RefinedTruth& refined) {
+  Trajectory truth;
+  truth.has_velocity = truth.has_bias = truth.has_covariance = true;
+  truth.points.reserve(refined.states.size());
+  for (const NavEstimate& state : refined.states) {
+    truth.points.push_back({state.stamp_ns, state.nav, state.bias, state.covariance.topLeftCorner<6, 6>()});
+  }
+  return truth;
+}
+
+Status WriteWithTruth(const Dataset& dataset, const Trajectory& truth, const std::string& output) {
+  const fs::path to = fs::path(output) / "mav0";
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(dataset.path) / "mav0")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_directory() && name != "state_groundtruth_estimate0" && name != "mocap0") {
+      ALIDADE_RETURN_IF_ERROR(CopySensor(entry.path(), to / name));
+    }
+  }
+  Dataset refined;
+  refined.truth = truth;
+  return WriteTruthFolder(refined, to.string());
+}
+
+}  // namespace alidade
