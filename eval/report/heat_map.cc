@@ -13,8 +13,9 @@ namespace {
 using HeatRgb = std::array<double, 3>;
 
 /// From white to the darkest colour of each side; orange and violet are told apart with any colour vision.
-constexpr std::array<HeatRgb, 4> kAbove = {{{255, 255, 255}, {253, 208, 149}, {236, 132, 44}, {158, 62, 4}}};
-constexpr std::array<HeatRgb, 4> kBelow = {
+constexpr std::array<HeatRgb, 4> kWarmRamp = {
+    {{255, 255, 255}, {253, 208, 149}, {236, 132, 44}, {158, 62, 4}}};
+constexpr std::array<HeatRgb, 4> kColdRamp = {
     {{255, 255, 255}, {205, 200, 228}, {139, 125, 186}, {76, 34, 130}}};
 
 /// Where the value lies between white (0) and the darkest colours (1 above, -1 below).
@@ -25,7 +26,7 @@ double Shade(const HeatMap& map, double value) {
 
 HeatRgb Blend(const HeatMap& map, double value) {
   const double shade = Shade(map, value);
-  const std::array<HeatRgb, 4>& stops = shade < 0 ? kBelow : kAbove;
+  const std::array<HeatRgb, 4>& stops = shade < 0 ? kColdRamp : kWarmRamp;
   const double place = std::abs(shade) * static_cast<double>(stops.size() - 1);
   const size_t before = std::min(static_cast<size_t>(place), stops.size() - 2);
   const double part = place - static_cast<double>(before);
