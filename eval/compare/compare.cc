@@ -168,6 +168,11 @@ class Comparer {
     comparison.command = options_.command;
     comparison.baseline = plan_.baseline;
     comparison.notes = NotesOfAbsent();
+    for (const PlanSequence& sequence : plan_.sequences) {
+      if (!sequence.group.empty()) {
+        comparison.groups[sequence.name] = sequence.group;
+      }
+    }
     for (const std::unique_ptr<CompareInput>& input : inputs_) {
       if (const auto found = frontends_.find(input.get()); found != frontends_.end()) {
         comparison.frontends.push_back(found->second);

@@ -30,7 +30,8 @@ bool RunExternalCell(const Plan& plan, const CompareOptions& options, const Comp
     Fail(outcome.message(), cell);
     return false;
   }
-  ScoreTrajectory(truth, outcome->trajectory, plan.MetricsOf(*cell->estimator), &cell->result);
+  ScoreTrajectory(truth, outcome->trajectory, plan.MetricsOf(*cell->estimator, *cell->sequence),
+                  &cell->result);
   if (!outcome->run) {
     return false;
   }
@@ -72,7 +73,8 @@ bool RunOwn(const Plan& plan, const CompareOptions& options, const CompareInput:
   // Scored from what was written: fresh and resumed comparisons give the same figures to the last digit.
   const Result<RunResult> written = ReadRun(cell->folder);
   if (written.ok()) {
-    ScoreRun(data.truth ? &*data.truth : nullptr, *written, plan.MetricsOf(*cell->estimator), &cell->result);
+    ScoreRun(data.truth ? &*data.truth : nullptr, *written, plan.MetricsOf(*cell->estimator, *cell->sequence),
+             &cell->result);
   } else {
     Fail(written.message(), cell);
   }

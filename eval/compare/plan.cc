@@ -10,10 +10,11 @@ bool PlanEstimator::RunsOn(const std::string& sequence) const {
              : trajectories.count(sequence) > 0;
 }
 
-EvaluationOptions Plan::MetricsOf(const PlanEstimator& estimator) const {
+EvaluationOptions Plan::MetricsOf(const PlanEstimator& estimator, const PlanSequence& sequence) const {
   EvaluationOptions own = metrics;
   own.alignment = estimator.alignment.value_or(metrics.alignment);
   own.align_share = estimator.align_share.value_or(metrics.align_share);
+  own.anchor_at_first = sequence.anchor_at_first.value_or(metrics.anchor_at_first);
   return own;
 }
 

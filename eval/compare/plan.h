@@ -34,11 +34,13 @@ struct PlanEstimator {
 /// One input of a comparison: a dataset (a folder or a bag) or a simulation, once a seed.
 struct PlanSequence {
   std::string name;
+  std::string group;      ///< heading in the maps of the report; may be empty
   DatasetSource dataset;  ///< `path` is empty for a simulation
   std::string truth;      ///< trajectory file to score against instead of the dataset's own; may be empty
   std::string config;     ///< simulation config; empty for a dataset
   std::vector<std::string> settings;            ///< over the simulation config
   std::vector<std::string> estimator_settings;  ///< over every estimator's own, on this sequence alone
+  std::optional<bool> anchor_at_first;          ///< its own instead of the plan's
   std::vector<unsigned> seeds = {1};  ///< of the simulation, and of the prior that init.method truth draws
 };
 
@@ -59,7 +61,8 @@ struct Plan {
   bool skip_missing = false;
   std::vector<std::pair<std::string, std::string>> absent;
 
-  [[nodiscard]] EvaluationOptions MetricsOf(const PlanEstimator& estimator) const;
+  [[nodiscard]] EvaluationOptions MetricsOf(const PlanEstimator& estimator,
+                                            const PlanSequence& sequence) const;
 };
 
 }  // namespace alidade

@@ -155,6 +155,11 @@ class PlanParser {
          {"config",
           [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
          {"seeds", [&](const Node& n) { return reader_.Seeds(n, "seeds", &sequence.seeds); }},
+         {"group", [&](const Node& n) { return reader_.Text(n, "group", &sequence.group); }},
+         {"anchor_at_first",
+          [&](const Node& n) {
+            return reader_.Boolean(n, "anchor_at_first", &sequence.anchor_at_first.emplace());
+          }},
          {"set", [&](const Node& n) { return reader_.Settings(n, "set", &sequence.settings); }},
          {"estimator_set", [&](const Node& n) {
             return reader_.Settings(n, "estimator_set", &sequence.estimator_settings);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "core/numbers.h"
 #include "eval/comparison/distinct.h"
@@ -114,12 +115,17 @@ bool IsRival(const AggregateRow& row, int most_ok) {
   return row.ok == most_ok && !IsBound(row);
 }
 
-/// Marks the best of the rows [begin, end), which are one sequence.
-void MarkBest(const std::vector<Figure>& figures, AggregateRow* begin, AggregateRow* end) {
+int MostOk(const AggregateRow* begin, const AggregateRow* end) {
   int most_ok = 1;
   for (const AggregateRow* row = begin; row != end; ++row) {
     most_ok = IsBound(*row) ? most_ok : std::max(most_ok, row->ok);
   }
+  return most_ok;
+}
+
+/// Marks the best of the rows [begin, end), which are one sequence.
+void MarkBest(const std::vector<Figure>& figures, AggregateRow* begin, AggregateRow* end) {
+  const int most_ok = MostOk(begin, end);
   for (size_t i = 0; i < figures.size(); ++i) {
     double least = std::numeric_limits<double>::infinity();
     int rivals = 0;
@@ -132,6 +138,22 @@ void MarkBest(const std::vector<Figure>& figures, AggregateRow* begin, Aggregate
     }
     for (AggregateRow* row = begin; row != end && rivals > 1; ++row) {
       row->best[i] = IsRival(*row, most_ok) && Badness(figures[i], row->figures[i].mean) == least;
+    }
+  }
+}
+
+/// Ratios of the mean RMSEs of the rows [begin, end), which are one sequence, to the lowest of them.
+void RelateToBest(const std::vector<Figure>& figures, AggregateRow* begin, AggregateRow* end) {
+  const int most_ok = MostOk(begin, end);
+  for (const auto& [key, ratio] : {std::pair("rmse_pos_m", &AggregateRow::rmse_pos_to_best),
+                                   std::pair("rmse_ori_deg", &AggregateRow::rmse_ori_to_best)}) {
+    const std::optional<size_t> figure = FindFigure(figures, key);
+    double least = kNan;
+    for (const AggregateRow* row = begin; row != end && figure; ++row) {
+      least = IsRival(*row, most_ok) ? std::fmin(least, row->figures[*figure].mean) : least;
+    }
+    for (AggregateRow* row = begin; row != end && figure; ++row) {
+      row->*ratio = row->figures[*figure].mean / least;
     }
   }
 }
@@ -180,6 +202,14 @@ std::vector<Figure> ListFigures(const Comparison& comparison) {
     return std::any_of(comparison.cells.begin(), comparison.cells.end(),
                        [member](const CellResult& cell) { return (cell.*member).has_value(); });
   };
+  for (const auto& [key, label, member] :
+       {std::tuple("nees_vel", "NEES vel.", &CellResult::nees_vel),
+        std::tuple("nees_gyro_bias", "NEES gyro bias", &CellResult::nees_gyro_bias),
+        std::tuple("nees_accel_bias", "NEES accel. bias", &CellResult::nees_accel_bias)}) {
+    if (known(member)) {
+      figures.push_back({key, label, "", Ideal::kTarget, 3, 2, OfTrajectory(member)});
+    }
+  }
   const auto plain = [](std::optional<double> CellResult::*member) {
     return [member](const CellResult& cell) { return (cell.*member).value_or(kNan); };
   };
@@ -248,12 +278,16 @@ std::vector<AggregateRow> Aggregate(const Comparison& comparison, const std::vec
   for (const CellGroup& group : GroupCells(comparison)) {
     rows.push_back(AggregateCells(group.cells, figures));
     rows.back().label = group.label;
+    if (const auto named = comparison.groups.find(group.sequence); named != comparison.groups.end()) {
+      rows.back().group = named->second;
+    }
   }
   for (size_t first = 0, end = 0; first < rows.size(); first = end) {
     while (end < rows.size() && rows[end].sequence == rows[first].sequence) {
       ++end;
     }
     MarkBest(figures, rows.data() + first, rows.data() + end);
+    RelateToBest(figures, rows.data() + first, rows.data() + end);
   }
   RelateToBaseline(comparison.baseline, figures, &rows);
   return rows;

@@ -52,6 +52,7 @@ struct AggregateRow {
   std::string backend;
   std::string label;  ///< the estimator's name, with its back end where two back ends share the name
   std::string sequence;
+  std::string group;  ///< of the sequence; may be empty
   int cells = 0, ok = 0, diverged = 0, not_initialized = 0, failed = 0;
   std::vector<Statistic> figures;  ///< parallel to ListFigures
   std::vector<bool> best;          ///< parallel to ListFigures: best of this sequence
@@ -66,6 +67,10 @@ struct AggregateRow {
   /// Mean RMSE over that of the same estimator on Comparison::baseline; NaN without a baseline or a value.
   double rmse_pos_ratio = std::numeric_limits<double>::quiet_NaN();
   double rmse_ori_ratio = std::numeric_limits<double>::quiet_NaN();
+  /// Mean RMSE over the lowest one of the sequence, among the estimators that can be best; NaN without a
+  /// value.
+  double rmse_pos_to_best = std::numeric_limits<double>::quiet_NaN();
+  double rmse_ori_to_best = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Rows by sequence, then estimator, both in order of first appearance. `best` is marked among the rows of a

@@ -60,6 +60,9 @@ void FillFigures(const Evaluation& evaluation, CellResult* cell) {
     cell->nees_ori = evaluation.nees->mean_orientation;
     cell->nees_pos = evaluation.nees->mean_position;
     cell->coverage_3sigma = evaluation.nees->coverage_3sigma;
+    cell->nees_vel = Known(evaluation.nees->mean_velocity);
+    cell->nees_gyro_bias = Known(evaluation.nees->mean_gyro_bias);
+    cell->nees_accel_bias = Known(evaluation.nees->mean_accel_bias);
     cell->truth_has_covariance = evaluation.truth_has_covariance;
   }
 }

@@ -68,7 +68,8 @@ struct CellResult {
   std::string align;
   std::vector<RpeResult> rpe;
   std::optional<double> nees_pose, nees_ori, nees_pos, coverage_3sigma;
-  bool truth_has_covariance = false;  ///< which the four then include
+  std::optional<double> nees_vel, nees_gyro_bias, nees_accel_bias;  ///< where the truth holds them
+  bool truth_has_covariance = false;  ///< which the first four NEES figures then include
   std::optional<double> frontend_ms;  ///< also unknown where the tracks were read from a file
   std::optional<double> backend_ms, backend_ms_p95;
   std::optional<double> features_per_frame;
@@ -114,6 +115,7 @@ struct Comparison {
   /// Of each sequence and seed whose images were tracked.
   std::vector<FrontendSummary> frontends = {};
   std::string baseline;  ///< sequence that RMSEs are also given relative to; may be empty
+  std::map<std::string, std::string> groups = {};  ///< of the sequences that have one
 };
 
 }  // namespace alidade

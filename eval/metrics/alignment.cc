@@ -107,9 +107,10 @@ AlignmentTransform Align(const std::vector<StatePair>& pairs, Alignment alignmen
 
 std::vector<StatePair> ApplyAlignment(const std::vector<StatePair>& pairs,
                                       const AlignmentTransform& transform) {
-  // phi is a perturbation in the body frame and stays; dp lives in the world and turns with it.
+  // phi is a perturbation in the body frame and stays; dp and dv live in the world and turn with it.
+  const Eigen::Matrix3d world_change = transform.scale * transform.rotation;
   Matrix6d chart_change = Matrix6d::Identity();
-  chart_change.bottomRightCorner<3, 3>() = transform.scale * transform.rotation;
+  chart_change.bottomRightCorner<3, 3>() = world_change;
 
   std::vector<StatePair> aligned = pairs;
   for (StatePair& pair : aligned) {
@@ -121,6 +122,8 @@ std::vector<StatePair> ApplyAlignment(const std::vector<StatePair>& pairs,
     const Matrix6d covariance = chart_change * pair.estimate.covariance * chart_change.transpose();
     nav = {rotation, position, velocity};
     pair.estimate.covariance = covariance;
+    Eigen::Matrix3d& velocity_covariance = pair.estimate.motion_covariance.velocity;
+    velocity_covariance = (world_change * velocity_covariance * world_change.transpose()).eval();
   }
   return aligned;
 }

@@ -26,6 +26,16 @@ std::vector<StatePair> FirstShare(const std::vector<StatePair>& pairs, double sh
   return {pairs.begin(), pairs.begin() + std::max(std::ptrdiff_t{1}, static_cast<std::ptrdiff_t>(count))};
 }
 
+/// NEES of what the truth does not hold would be of zeros.
+void ForgetUnknownNees(const Trajectory& truth, NeesResult* nees) {
+  if (!truth.has_velocity) {
+    nees->mean_velocity = kNan;
+  }
+  if (!truth.has_bias) {
+    nees->mean_gyro_bias = nees->mean_accel_bias = kNan;
+  }
+}
+
 void ForgetOrientation(Evaluation* evaluation) {
   evaluation->unaligned.ori_deg = evaluation->ate.ori_deg = kNan;
   for (RpeResult& rpe : evaluation->rpe) {
@@ -66,6 +76,7 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
     ForgetOrientation(&evaluation);
   } else if (estimate.has_covariance) {
     evaluation.nees = ComputeNees(evaluation.pairs);
+    ForgetUnknownNees(truth, &*evaluation.nees);
     evaluation.truth_has_covariance = truth.has_covariance;
   }
   return evaluation;

@@ -32,6 +32,11 @@ double NormalizedSquare(const Eigen::Matrix<double, N, 1>& error,
   return whitened.dot(factor.solve(whitened));
 }
 
+double NormalizedSquare3(const Eigen::Vector3d& truth, const Eigen::Vector3d& estimate,
+                         const Eigen::Matrix3d& covariance) {
+  return NormalizedSquare<3>(truth - estimate, covariance);
+}
+
 /// Mean of the values that are not NaN; NaN when there is none.
 double MeanOfFinite(const std::vector<double>& values) {
   double sum = 0;
@@ -56,6 +61,7 @@ Matrix6d ErrorCovariance(const StatePair& pair) {
 
 NeesResult ComputeNees(const std::vector<StatePair>& pairs) {
   NeesResult result;
+  std::vector<double> velocity, gyro_bias, accel_bias;
   std::size_t inside = 0, components = 0;
   for (const StatePair& pair : pairs) {
     const NavState& estimate = pair.estimate.nav;
@@ -66,6 +72,11 @@ NeesResult ComputeNees(const std::vector<StatePair>& pairs) {
     result.pose.push_back(NormalizedSquare<6>(error, covariance));
     result.orientation.push_back(NormalizedSquare<3>(error.head<3>(), covariance.topLeftCorner<3, 3>()));
     result.position.push_back(NormalizedSquare<3>(error.tail<3>(), covariance.bottomRightCorner<3, 3>()));
+    const MotionCovariance& motion = pair.estimate.motion_covariance;
+    velocity.push_back(NormalizedSquare3(pair.truth.nav.v_WB, estimate.v_WB, motion.velocity));
+    gyro_bias.push_back(NormalizedSquare3(pair.truth.bias.gyro, pair.estimate.bias.gyro, motion.gyro_bias));
+    accel_bias.push_back(
+        NormalizedSquare3(pair.truth.bias.accel, pair.estimate.bias.accel, motion.accel_bias));
     if (std::isfinite(result.pose.back())) {
       const Vector6d sigma = covariance.diagonal().cwiseSqrt();
       inside += static_cast<std::size_t>((error.array().abs() <= 3 * sigma.array()).count());
@@ -75,6 +86,9 @@ NeesResult ComputeNees(const std::vector<StatePair>& pairs) {
   result.mean_pose = MeanOfFinite(result.pose);
   result.mean_orientation = MeanOfFinite(result.orientation);
   result.mean_position = MeanOfFinite(result.position);
+  result.mean_velocity = MeanOfFinite(velocity);
+  result.mean_gyro_bias = MeanOfFinite(gyro_bias);
+  result.mean_accel_bias = MeanOfFinite(accel_bias);
   result.coverage_3sigma =
       components == 0 ? kNan : static_cast<double>(inside) / static_cast<double>(components);
   return result;

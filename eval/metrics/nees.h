@@ -18,11 +18,13 @@ namespace alidade {
 /// ApplyAlignment turns P_est there.
 [[nodiscard]] Matrix6d ErrorCovariance(const StatePair& pair);
 
-/// NEES of (phi, dp) in the canonical chart against ErrorCovariance. Unaligned.
+/// NEES of (phi, dp) in the canonical chart against ErrorCovariance, and of velocity and biases, truth -
+/// estimate. Unaligned.
 struct NeesResult {
   std::vector<double> pose, orientation, position;  ///< one a pair; NaN where the covariance is singular
   /// Means over the regular covariances; NaN when there is none.
   double mean_pose = 0, mean_orientation = 0, mean_position = 0;
+  double mean_velocity = 0, mean_gyro_bias = 0, mean_accel_bias = 0;
   double coverage_3sigma = 0;  ///< share of the six error components inside +-3 sigma; NaN likewise
 };
 [[nodiscard]] NeesResult ComputeNees(const std::vector<StatePair>& pairs);

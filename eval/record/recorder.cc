@@ -11,6 +11,7 @@
 #include "eval/files/csv_text.h"
 #include "eval/files/output_file.h"
 #include "eval/files/sha256.h"
+#include "eval/record/recorder_covariance.h"
 #include "eval/record/recorder_gnss.h"
 #include "eval/record/recorder_sensors.h"
 #include "eval/run/make_estimator.h"
@@ -279,6 +280,7 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   const bool gnss = HasGnss(result);
   ALIDADE_RETURN_IF_ERROR(write("trajectory.tum", true, [&] { return FormatTum(TrajectoryOf(result)); }));
   ALIDADE_RETURN_IF_ERROR(write("states.csv", true, [&] { return StatesText(result); }));
+  ALIDADE_RETURN_IF_ERROR(write("covariance.csv", true, [&] { return MotionCovarianceText(result); }));
   ALIDADE_RETURN_IF_ERROR(write("timing.csv", true, [&] { return TimingText(result); }));
   ALIDADE_RETURN_IF_ERROR(write("status.csv", true, [&] { return StatusText(result, identity.config); }));
   ALIDADE_RETURN_IF_ERROR(

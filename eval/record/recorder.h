@@ -23,10 +23,10 @@ struct RunIdentity {
 /// Digest of the resolved configuration.
 [[nodiscard]] std::string DigestOf(const EstimatorConfig& config);
 
-/// Writes trajectory.tum, states.csv, timing.csv, status.csv, for an audited run observability.csv, and,
-/// last, run.json into `folder` (formats: docs/formats.md). Equal runs give equal bytes in all but timing.csv
-/// and the object `times` of run.json. A run.json that was there is removed first, so that a folder with one
-/// is always complete. Errors: kOutput.
+/// Writes trajectory.tum, states.csv, covariance.csv, timing.csv, status.csv, for an audited run
+/// observability.csv, and, last, run.json into `folder` (formats: docs/formats.md). Equal runs give equal
+/// bytes in all but timing.csv and the object `times` of run.json. A run.json that was there is removed
+/// first, so that a folder with one is always complete. Errors: kOutput.
 Status WriteRun(const RunIdentity& identity, const RunResult& result, const std::string& folder);
 
 }  // namespace alidade

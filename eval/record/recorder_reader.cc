@@ -7,6 +7,7 @@
 
 #include "eval/files/csv.h"
 #include "eval/files/input_file.h"
+#include "eval/record/recorder_covariance.h"
 #include "eval/record/recorder_sensors.h"
 #include "eval/trajectory/trajectory_reader.h"
 
@@ -272,6 +273,10 @@ Result<RunResult> ReadRun(const std::string& folder) {
     return result;  // tables of a header alone
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
+  if (std::filesystem::exists(In(folder, "covariance.csv"))) {
+    ALIDADE_RETURN_IF_ERROR(
+        ReadRows(In(folder, "covariance.csv"), kMotionCovarianceColumns, &result, ReadMotionCovarianceRow));
+  }
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
   ALIDADE_RETURN_IF_ERROR(ReadStatusTable(folder, *json, &result));
   if (Get(*json, "audited", false)) {

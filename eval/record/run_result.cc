@@ -1,5 +1,7 @@
 #include "eval/record/run_result.h"
 
+#include "eval/trajectory/trajectory_point.h"
+
 namespace alidade {
 
 std::string StatusWord(const RunResult& result) {
@@ -20,9 +22,7 @@ Trajectory TrajectoryOf(const RunResult& result) {
   trajectory.has_velocity = trajectory.has_bias = trajectory.has_covariance = true;
   trajectory.points.reserve(result.records.size());
   for (const RunRecord& record : result.records) {
-    const NavEstimate& estimate = record.estimate;
-    trajectory.points.push_back(
-        {estimate.stamp_ns, estimate.nav, estimate.bias, estimate.covariance.topLeftCorner<6, 6>()});
+    trajectory.points.push_back(PointOf(record.estimate));
   }
   return trajectory;
 }

@@ -12,6 +12,7 @@
 #include "eval/comparison/nees_over_time.h"
 #include "eval/files/output_file.h"
 #include "eval/metrics/nees.h"
+#include "eval/report/heat_map.h"
 #include "eval/report/report_json.h"
 #include "eval/report/svg_plot.h"
 
@@ -228,6 +229,10 @@ std::vector<PaperFigure> DrawPaperFigures(const Comparison& comparison) {
     figures.push_back({sequence + "_nees", NeesFigure(entries)});
     figures.push_back({sequence + "_rpe", RpeFigure(entries)});
     figures.push_back({sequence + "_time", TimeFigure(entries)});
+  }
+  const std::vector<Figure> listed = ListFigures(comparison);
+  for (const HeatMap& map : MakeHeatMaps(Aggregate(comparison, listed), listed)) {
+    figures.push_back({map.key, HeatFigure(map)});
   }
   return figures;
 }

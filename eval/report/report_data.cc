@@ -12,6 +12,7 @@
 #include "eval/comparison/nees_over_time.h"
 #include "eval/comparison/paired.h"
 #include "eval/metrics/nees.h"
+#include "eval/report/heat_map.h"
 #include "eval/report/report_json.h"
 #include "eval/report/report_series.h"
 
@@ -106,6 +107,8 @@ Json AggregateData(const AggregateRow& row) {
           {"failed", row.failed},
           {"nees_verdict", row.nees_verdict},
           {"nees_inside", RoundedJson(row.nees_inside_share, 4)},
+          {"group", row.group},
+          {"rmse_to_best", RoundedJson({row.rmse_pos_to_best, row.rmse_ori_to_best}, 4)},
           {"means", means},
           {"errors", errors},
           {"best", best}};
@@ -259,6 +262,7 @@ std::string ReportData(const Comparison& comparison) {
   const int most = PointsPerSeries(comparison.cells.size(), audited);
   Json data = TablesData(comparison, figures, rows);
   data["points"] = most;
+  data["maps"] = HeatMapsJson(MakeHeatMaps(rows, figures));
   int most_runs = 1;
   for (const AggregateRow& row : rows) {
     most_runs = std::max(most_runs, row.cells);

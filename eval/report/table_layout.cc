@@ -8,6 +8,7 @@
 
 #include "core/format.h"
 #include "eval/report/efficiency_tables.h"
+#include "eval/report/heat_map.h"
 #include "eval/report/pair_tables.h"
 
 namespace alidade {
@@ -234,6 +235,9 @@ std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::str
     if (figures[i].key == "ate_pos_m" || figures[i].key == "ate_ori_deg") {
       tables.push_back(OverviewTable(i, rows, comparison, figures, ties, plus_minus));
     }
+  }
+  for (const HeatMap& map : MakeHeatMaps(rows, figures)) {
+    tables.push_back(HeatTable(map));
   }
   for (const std::string& sequence : sequences) {
     tables.push_back(SequenceTable(sequence, rows, comparison, figures, ties, plus_minus));

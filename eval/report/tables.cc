@@ -62,7 +62,8 @@ std::string AggregateCsv(const Comparison& comparison, const std::vector<Figure>
     header.push_back(std::string(nees) + "_band_low");
     header.push_back(std::string(nees) + "_band_high");
   }
-  for (const char* more : {"nees_verdict", "nees_inside_share", "rmse_pos_ratio", "rmse_ori_ratio"}) {
+  for (const char* more : {"nees_verdict", "nees_inside_share", "rmse_pos_ratio", "rmse_ori_ratio",
+                           "rmse_pos_to_best", "rmse_ori_to_best", "group"}) {
     header.emplace_back(more);
   }
   std::string text = JoinCsv(header);
@@ -81,9 +82,11 @@ std::string AggregateCsv(const Comparison& comparison, const std::vector<Figure>
       fields.push_back(CsvNumber(high));
     }
     fields.push_back(row.nees_verdict);
-    for (const double value : {row.nees_inside_share, row.rmse_pos_ratio, row.rmse_ori_ratio}) {
+    for (const double value : {row.nees_inside_share, row.rmse_pos_ratio, row.rmse_ori_ratio,
+                               row.rmse_pos_to_best, row.rmse_ori_to_best}) {
       fields.push_back(CsvNumber(value));
     }
+    fields.push_back(CsvText(row.group));
     text += JoinCsv(fields);
   }
   return text;

@@ -21,6 +21,15 @@ inline Jet operator*(double s, const Jet& a) {
   return {s * a.value, s * a.first, s * a.second};
 }
 
+inline Jet operator*(const Jet& a, const Jet& b) {
+  return {a.value * b.value, a.first * b.value + a.value * b.first,
+          a.second * b.value + 2 * a.first * b.first + a.value * b.second};
+}
+/// f(x) of a function f that is given at x.value.
+inline Jet Compose(const Jet& f, const Jet& x) {
+  return {f.value, f.first * x.first, f.second * x.first * x.first + f.first * x.second};
+}
+
 inline Jet Sin(const Jet& a) {
   const double s = std::sin(a.value);
   const double c = std::cos(a.value);

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-
 #include "eval/simulation/jet.h"
-#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 
@@ -21,18 +17,16 @@ class PathShape {
   /// Whether the curve closes after 2 pi.
   [[nodiscard]] virtual bool IsClosed() const = 0;
 
+  /// d u / d tau [rad/s] at which `path_m` are travelled in `duration_s`.
+  [[nodiscard]] virtual double PhaseRate(double path_m, double duration_s) const;
+
+ private:
   /// The phase at which the path from phase 0 is `arc_m` long. The midpoint rule converges spectrally over
   /// whole laps of a closed curve; what is left is walked in steps, exact to about 1e-7 of a lap (an open
   /// curve: 1e-6 of the path).
   [[nodiscard]] double PhaseAtArcLength(double arc_m) const;
-
- private:
   /// |d Position / d u| [m/rad].
   [[nodiscard]] double SpeedOverPhase(double u) const;
 };
-
-/// The curve that config.trajectory names; sim_trajectory.h states the equations. `seed` matters to wander
-/// alone. Precondition: the trajectory is an analytic one.
-[[nodiscard]] std::unique_ptr<PathShape> MakePathShape(const SimulatorConfig& config, std::uint64_t seed);
 
 }  // namespace alidade

@@ -7,67 +7,6 @@
 namespace alidade {
 namespace {
 
-void DescribeMotion(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Enumeration(
-      {"trajectory", "-",
-       "figure8 turns both ways, ellipse one way; wander does not repeat; file is a recorded trajectory"},
-      &config->trajectory,
-      {{"figure8", SimTrajectory::kFigureEight},
-       {"ellipse", SimTrajectory::kEllipse},
-       {"wander", SimTrajectory::kWander},
-       {"file", SimTrajectory::kFile}});
-  visitor.Real(
-      {"duration_s", "s",
-       "200 s is the duration of the paper's simulation; largest duration taken from a recorded trajectory"},
-      &config->duration_s, 1, 1e5);
-  visitor.Real({"length_m", "m", "extent of the path along x"}, &config->length_m, 0.1, 1e5);
-  visitor.Real({"width_m", "m", "extent of the path along y"}, &config->width_m, 0.1, 1e5);
-  visitor.Real({"height_m", "m", "amplitude of the vertical motion, three periods a lap; 0 is planar"},
-               &config->height_m, 0, 1e4);
-  visitor.Real({"path_m", "m", "length of the path travelled in duration_s; sets the speed"}, &config->path_m,
-               0.1, 1e6);
-  visitor.Real(
-      {"rest_s", "s", "at rest before the motion starts, for static initialisation; 0 starts in motion"},
-      &config->rest_s, 0, 1e4);
-  visitor.Real(
-      {"rest_ramp_s", "s",
-       "duration from rest to full speed, four times continuously differentiable; unused without rest"},
-      &config->rest_ramp_s, 0.1, 100);
-  visitor.Real({"wobble_rad", "rad",
-                "amplitude of roll, pitch and half of it in yaw about the path's tangent; excites all axes"},
-               &config->wobble_rad, 0, 0.5);
-  visitor.Real({"wobble_hz", "Hz", "frequency of the roll wobble; pitch and yaw use 0.77 and 0.61 of it"},
-               &config->wobble_hz, 0, 10);
-}
-
-void DescribeRecording(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Text({"trajectory_file", "-",
-                "for trajectory: file; a file of EuRoC, TUM or Alidade format, or a dataset folder; relative "
-                "to this file"},
-               &config->trajectory_file);
-  visitor.Text(
-      {"hybrid_dataset", "-",
-       "dataset folder whose real IMU and calibration are used; only tracks are simulated; required: a "
-       "setting must name it"},
-      &config->hybrid_dataset);
-  visitor.Text(
-      {"truth_file", "-",
-       "truth file of a dataset folder; auto: data_recomputed.csv, else data.csv, else data_pose.csv"},
-      &config->truth_file);
-  visitor.Real(
-      {"knot_spacing_s", "s",
-       "knot spacing of the spline through a recorded trajectory; a shorter one follows faster "
-       "motion and more noise; a truth with covariances (refine_truth) has a knot at every pose instead"},
-      &config->knot_spacing_s, 0.01, 10);
-  visitor.Real(
-      {"max_gap_s", "s",
-       "a longer interval without poses of a recorded trajectory is a gap, in which the motion is unknown"},
-      &config->max_gap_s, 0.001, 100);
-  visitor.Enumeration(
-      {"truth_gaps", "-", "longest_span uses the longest stretch without a gap, refuse makes gaps an error"},
-      &config->truth_gaps, {{"longest_span", TruthGaps::kLongestSpan}, {"refuse", TruthGaps::kRefuse}});
-}
-
 void DescribeImu(SimulatorConfig* config, ConfigVisitor& visitor) {
   ImuNoise* noise = &config->imu_noise;
   visitor.Real({"imu_rate_hz", "Hz", "value of the paper's simulation"}, &config->imu_rate_hz, 1, 1e4);
@@ -261,8 +200,7 @@ void SimulatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer(
       {"start_time_s", "s", "stamp of the first sample; not 0, so that a missing offset is detected"},
       &start_time_s, 0, 2000000000);
-  DescribeMotion(this, visitor);
-  DescribeRecording(this, visitor);
+  DescribeMotion(visitor);
   DescribeImu(this, visitor);
   DescribeCamera(this, visitor);
   DescribeMoreCameras(this, visitor);

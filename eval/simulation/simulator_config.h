@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/camera_model.h"
@@ -10,21 +9,16 @@
 #include "core/imu_sample.h"
 #include "core/status.h"
 #include "eval/simulation/render_config.h"
+#include "eval/simulation/sim_motion_config.h"
 #include "eval/simulation/sim_sensor_config.h"
 
 namespace alidade {
 
-enum class SimTrajectory { kFigureEight, kEllipse, kWander, kFile };
 enum class SimCameraView { kForward, kSideways, kDataset };
 enum class SimLandmarkLayout {
   kShell,   ///< between two distances around the path
   kRoom,    ///< on floor, ceiling and walls of a box around the path
   kVolume,  ///< of even density in the space around the path
-};
-/// What to do with a recorded trajectory that has gaps: the motion in a gap is unknown.
-enum class TruthGaps {
-  kLongestSpan,  ///< use the longest stretch without a gap
-  kRefuse,
 };
 enum class SimOutlierKind {
   kJump,     ///< shifted by a vector: an observation, or a track from some frame on
@@ -46,35 +40,12 @@ enum class SimFaultKind {
 /// whole tracks.
 enum class SimOutlierUnit { kObservation, kTrack };
 
-/// Value of a path that is not given.
-inline constexpr std::string_view kNoPath = "none";
-/// Value of a path that a setting must give: a config for many sequences is refused without it.
-inline constexpr std::string_view kRequiredPath = "required";
-
 /// A simulated sequence: trajectory (analytic or recorded), IMU as its exact derivative, landmarks around the
 /// path, feature tracks. The noise defaults are those of the simulation in the Po-InVIO paper. With
 /// hybrid_dataset only the tracks are simulated.
-struct SimulatorConfig : SimSensorConfig {
+struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   std::string name = "figure8";
   int start_time_s = 1000;  ///< stamp of the first sample
-
-  SimTrajectory trajectory = SimTrajectory::kFigureEight;
-  double duration_s = 200;
-  double length_m = 10;      ///< extent along x
-  double width_m = 5;        ///< extent along y
-  double height_m = 0.5;     ///< amplitude of the vertical motion
-  double path_m = 262;       ///< total path length; sets the speed
-  double rest_s = 0;         ///< at rest before the motion starts (smoothly)
-  double rest_ramp_s = 2;    ///< from rest to full speed; no effect without rest
-  double wobble_rad = 0.05;  ///< amplitude of the attitude about the path's tangent
-  double wobble_hz = 0.3;
-
-  std::string trajectory_file = std::string(kNoPath);  ///< for kFile: a trajectory or a dataset folder
-  std::string hybrid_dataset = std::string(kNoPath);   ///< dataset folder whose IMU and calibration are used
-  std::string truth_file = "auto";                     ///< which truth of a dataset folder
-  double knot_spacing_s = 0.1;                         ///< of the spline through a recorded trajectory
-  double max_gap_s = 0.2;                              ///< longer silences of a recorded trajectory are gaps
-  TruthGaps truth_gaps = TruthGaps::kLongestSpan;
 
   double imu_rate_hz = 100;
   double camera_rate_hz = 10;

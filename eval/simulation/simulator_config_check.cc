@@ -31,6 +31,28 @@ Status ValidateRecording(const SimulatorConfig& config) {
   return Expect(config.max_gap_s > 0, "max_gap_s", config.max_gap_s, "a positive number");
 }
 
+/// What the keys of analytic trajectories must fulfil together.
+Status ValidateMotion(const SimulatorConfig& config) {
+  const double least_s = config.pause_s + 2 * config.rest_ramp_s;
+  ALIDADE_RETURN_IF_ERROR(Expect(config.pause_s == 0 || least_s < config.pause_period_s, "pause_period_s",
+                                 config.pause_period_s,
+                                 "more than pause_s and two of rest_ramp_s, " + Format("%g", least_s)));
+  // An open path is walked from end to end: this bounds the work.
+  const bool drifts =
+      config.trajectory == SimTrajectory::kWander || config.trajectory == SimTrajectory::kHover;
+  ALIDADE_RETURN_IF_ERROR(Expect(!drifts || config.path_m < 1e4 * (config.length_m + config.width_m),
+                                 "path_m", config.path_m, "less than 1e4 times length_m + width_m"));
+  ALIDADE_RETURN_IF_ERROR(
+      Expect(config.trajectory != SimTrajectory::kSpiral || config.path_m < 1e4 * config.length_m, "path_m",
+             config.path_m, "less than 1e4 times length_m on a spiral"));
+  const bool recorded = config.trajectory == SimTrajectory::kFile || config.IsHybrid();
+  if (recorded && config.path_point == SimPathPoint::kCamera) {
+    return Status::Config(
+        "path_point: camera; expected body with a recorded trajectory, which is the body's");
+  }
+  return Status::Ok();
+}
+
 }  // namespace
 
 Status SimulatorConfig::Validate() const {
@@ -46,9 +68,7 @@ Status SimulatorConfig::Validate() const {
       Expect(duration_s * imu_rate_hz < 1e8, "duration_s", duration_s, "less than 1e8 IMU samples"));
   ALIDADE_RETURN_IF_ERROR(Expect(rest_s == 0 || rest_s + rest_ramp_s < duration_s, "rest_s", rest_s,
                                  "rest_s + rest_ramp_s less than duration_s " + Format("%g", duration_s)));
-  // An open path is walked from end to end: this bounds the work.
-  ALIDADE_RETURN_IF_ERROR(Expect(trajectory != SimTrajectory::kWander || path_m < 1e4 * (length_m + width_m),
-                                 "path_m", path_m, "less than 1e4 times length_m + width_m"));
+  ALIDADE_RETURN_IF_ERROR(ValidateMotion(*this));
   ALIDADE_RETURN_IF_ERROR(ValidateRecording(*this));
   ALIDADE_RETURN_IF_ERROR(ValidateSensors());
   // GPST began in 1980; readers know the years to 2099.

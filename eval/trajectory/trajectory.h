@@ -7,6 +7,14 @@
 
 namespace alidade {
 
+/// Covariances of velocity in W [m/s] and of the biases [rad/s, m/s^2]; the errors are additive, truth -
+/// estimate.
+struct MotionCovariance {
+  Eigen::Matrix3d velocity = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gyro_bias = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d accel_bias = Eigen::Matrix3d::Zero();
+};
+
 /// One row of a trajectory file. Fields that the file does not contain stay zero; the flags of Trajectory
 /// tell which it contains.
 struct TrajectoryPoint {
@@ -14,6 +22,7 @@ struct TrajectoryPoint {
   NavState nav;
   ImuBias bias;
   Matrix6d covariance = Matrix6d::Zero();  ///< canonical chart (phi, dp)
+  MotionCovariance motion_covariance;      ///< zero: unknown; no trajectory file has it
 };
 
 /// A time-ordered trajectory of the body frame, from truth, an estimate or another program.

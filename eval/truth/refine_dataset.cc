@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "eval/dataset/dataset_truth.h"
+#include "eval/trajectory/trajectory_point.h"
 
 namespace alidade {
 namespace {
@@ -69,7 +70,7 @@ Trajectory TruthOf(const RefinedTruth& refined) {
   truth.has_velocity = truth.has_bias = truth.has_covariance = true;
   truth.points.reserve(refined.states.size());
   for (const NavEstimate& state : refined.states) {
-    truth.points.push_back({state.stamp_ns, state.nav, state.bias, state.covariance.topLeftCorner<6, 6>()});
+    truth.points.push_back(PointOf(state));
   }
   return truth;
 }

@@ -119,6 +119,7 @@
   function drawOverview() {
     element('overview-note').textContent = report.overviewNote(state.figure);
     element('overview-table').innerHTML = report.overviewTable(state.figure);
+    report.drawMaps();
   }
 
   function drawFacts() {

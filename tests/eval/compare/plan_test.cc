@@ -3,7 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
+#include "core/estimator_config.h"
 #include "eval/compare/plan_parser.h"
+#include "eval/config/config_yaml.h"
+#include "eval/simulation/simulator_config.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -42,7 +48,8 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "  - {path: '${data}/seq', seeds: [4, 2]}\n"
       "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
       "'${data}/seq'}}\n"
-      "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}}\n"
+      "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}, group: one half, "
+      "anchor_at_first: true}\n"
       "audit: true\n"
       "metrics: {align: se3, align_share: 0.5, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
       "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
@@ -77,10 +84,13 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
   EXPECT_TRUE(plan->audit);
   EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
-  EXPECT_EQ(plan->MetricsOf(plan->estimators[0]).alignment, Alignment::kSe3);
-  EXPECT_EQ(plan->MetricsOf(plan->estimators[0]).align_share, 0.5);
-  EXPECT_EQ(plan->MetricsOf(plan->estimators[2]).alignment, Alignment::kPos);
-  EXPECT_EQ(plan->MetricsOf(plan->estimators[2]).align_share, 0.05);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).alignment, Alignment::kSe3);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).align_share, 0.5);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).alignment, Alignment::kPos);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).align_share, 0.05);
+  EXPECT_EQ(plan->sequences[2].group, "one half");
+  EXPECT_TRUE(plan->MetricsOf(plan->estimators[0], plan->sequences[2]).anchor_at_first);
+  EXPECT_FALSE(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).anchor_at_first);
   EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
   EXPECT_EQ(plan->metrics.association.max_dt_s, 0.02);
   EXPECT_TRUE(plan->metrics.association.interpolate);
@@ -119,6 +129,8 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
       {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
       {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` only with `config`"},
       {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
+      {estimators + "sequences: [{config: sim.yaml, anchor_at_first: perhaps}]\n", "anchor_at_first: found"},
+      {estimators + "sequences: [{config: sim.yaml, group: [a]}]\n", "group: found"},
       {estimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
       {estimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
       {estimators + "sequences: [{config: sim.yaml, seeds: -1}]\n", "from 0 to"},
@@ -221,6 +233,29 @@ TEST(PublishedPlans, SayWhatDataTheyNeed) {
   EXPECT_EQ(one->sequences.size(), 1u);
   EXPECT_EQ(one->absent.size(), 10u);
   EXPECT_EQ(one->references.size(), 55u);
+}
+
+// GIVEN the shipped plan of regimes THEN every regime is valid, belongs to one of two halves of about equal
+// size, and tells its estimators its pixel noise.
+TEST(RegimePlan, IsValidAndToldToTheEstimators) {
+  const Result<Plan> plan = ReadPlan(std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/regimes.yaml", "");
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_GE(plan->sequences.size(), 24u);
+  std::map<std::string, std::size_t> halves;
+  for (const PlanSequence& sequence : plan->sequences) {
+    ++halves[sequence.group];
+    EXPECT_THAT(sequence.seeds, ElementsAre(501, 502, 503, 504, 505, 506, 507, 508)) << sequence.name;
+    const Result<SimulatorConfig> simulation = LoadSimulatorConfig(sequence.config, sequence.settings);
+    ASSERT_TRUE(simulation.ok()) << sequence.name << ": " << simulation.message();
+    EXPECT_GE(simulation->duration_s, 60) << sequence.name;
+    EXPECT_GT(simulation->max_range_m, simulation->landmark_max_distance_m) << sequence.name;
+    EstimatorConfig estimator;
+    const auto describe = [&estimator](ConfigVisitor& visitor) { estimator.Describe(visitor); };
+    ASSERT_TRUE(ApplySettings(sequence.estimator_settings, describe).ok()) << sequence.name;
+    EXPECT_EQ(estimator.vision.pixel_noise_px, simulation->pixel_noise_px) << sequence.name;
+  }
+  ASSERT_EQ(halves.size(), 2u);
+  EXPECT_LE(std::max(halves.begin()->second, halves.rbegin()->second), 17u);
 }
 
 }  // namespace

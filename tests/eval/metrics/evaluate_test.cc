@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "eval/metrics/evaluate_format.h"
@@ -55,6 +56,40 @@ TEST(Evaluate, LeavesAScaleErrorInARigidAlignment) {
   EXPECT_NEAR(evaluation.rpe[0].pos_rmse_m, 0.02, 1.5e-3);  // below 1 % of 2 m where the path bends
   EXPECT_LT(evaluation.ate.ori_deg, 1e-5);
   EXPECT_FALSE(evaluation.nees.has_value());
+}
+
+// GIVEN an estimate with covariances of velocity and biases WHEN the truth holds none of them THEN there is
+// no NEES of them, and with a truth that does the anchor turns the velocity and its covariance.
+TEST(Evaluate, JudgesVelocityAndBiasesOnlyWhereTheTruthHoldsThem) {
+  Trajectory truth = MakeTrajectory(300);
+  const Eigen::Matrix3d yaw = so3::Exp({0, 0, -M_PI / 2});
+  for (TrajectoryPoint& point : truth.points) {
+    point.nav.v_WB << 1, 0, 0;
+  }
+  Trajectory estimate = truth;
+  for (TrajectoryPoint& point : estimate.points) {
+    point.nav.p_WB = (yaw * point.nav.p_WB).eval();
+    point.nav.R_WB = (yaw * point.nav.R_WB).eval();
+    point.nav.v_WB = yaw * Eigen::Vector3d(1.2, 0, 0);
+    point.covariance = Matrix6d::Identity();
+    point.motion_covariance.velocity.diagonal() << 1, 0.01, 1;  // along the turned velocity
+    point.motion_covariance.gyro_bias.setIdentity();
+    point.motion_covariance.accel_bias.setIdentity();
+    point.bias.accel << 0, 0, 2;
+  }
+  estimate.has_covariance = true;
+  EvaluationOptions options;
+  options.anchor_at_first = true;
+  truth.has_velocity = truth.has_bias = false;
+  const Evaluation without = *Evaluate(truth, estimate, options);
+  EXPECT_TRUE(std::isnan(without.nees->mean_velocity));
+  EXPECT_TRUE(std::isnan(without.nees->mean_gyro_bias));
+  EXPECT_TRUE(std::isnan(without.nees->mean_accel_bias));
+  truth.has_velocity = truth.has_bias = true;
+  const Evaluation with = *Evaluate(truth, estimate, options);
+  EXPECT_NEAR(with.nees->mean_velocity, 0.04 / 0.01, 1e-9);
+  EXPECT_EQ(with.nees->mean_gyro_bias, 0);
+  EXPECT_NEAR(with.nees->mean_accel_bias, 4, 1e-9);
 }
 
 TEST(Evaluate, JudgesConsistencyUnaligned) {

@@ -132,6 +132,25 @@ TEST(Nees, OfOneHandComputedPair) {
   EXPECT_NEAR(nees.coverage_3sigma, 5.0 / 6, 1e-12);  // 0.7 m is 3.5 sigma
 }
 
+TEST(Nees, OfVelocityAndBiasesIsThatOfOneHandComputedPair) {
+  std::vector<StatePair> pairs = PerfectPairs(1);
+  StatePair& pair = pairs[0];
+  pair.estimate.nav.v_WB = pair.truth.nav.v_WB - Eigen::Vector3d(0.3, 0, 0.1);
+  pair.estimate.bias.gyro = pair.truth.bias.gyro - Eigen::Vector3d(0, 2e-3, 0);
+  pair.estimate.bias.accel = pair.truth.bias.accel - Eigen::Vector3d(0.05, 0.05, 0);
+  MotionCovariance& covariance = pair.estimate.motion_covariance;
+  EXPECT_TRUE(std::isnan(ComputeNees(pairs).mean_velocity)) << "no covariance of it is known";
+  covariance.velocity.diagonal() << 0.01, 0.01, 0.04;
+  covariance.gyro_bias = 1e-6 * Eigen::Matrix3d::Identity();
+  covariance.accel_bias << 2, 1, 0, 1, 2, 0, 0, 0, 1;
+  covariance.accel_bias *= 1e-4;
+  const NeesResult nees = ComputeNees(pairs);
+  EXPECT_NEAR(nees.mean_velocity, 0.09 / 0.01 + 0.01 / 0.04, 1e-9);
+  EXPECT_NEAR(nees.mean_gyro_bias, 4, 1e-9);
+  // The inverse of [2 1; 1 2] is [2 -1; -1 2] / 3: 25 (2 - 1 - 1 + 2) / 3.
+  EXPECT_NEAR(nees.mean_accel_bias, 50.0 / 3, 1e-9);
+}
+
 TEST(Nees, ReadsTheErrorInTheBodyFrame) {
   // A covariance tight about the body's x alone tells a body-frame error from a world-frame one.
   std::vector<StatePair> pairs = PerfectPairs(1);

@@ -51,6 +51,10 @@ TEST_F(RecorderTest, WritesTheFormatsOfTheContract) {
           "timestamp_ns,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bg_x,bg_y,bg_z,ba_x,ba_y,ba_z,c_00,c_01,"
           "c_02,c_03,c_04,c_05,c_11,c_12,c_13,c_14,c_15,c_22,c_23,c_24,c_25,c_33,c_34,c_35,c_44,c_45,c_55"
           "\n1000000000000,"));
+  EXPECT_THAT(
+      Written("covariance.csv"),
+      StartsWith("timestamp_ns,v_xx,v_xy,v_xz,v_yy,v_yz,v_zz,bg_xx,bg_xy,bg_xz,bg_yy,bg_yz,bg_zz,ba_xx,"
+                 "ba_xy,ba_xz,ba_yy,ba_yz,ba_zz\n1000000000000,"));
   EXPECT_THAT(Written("timing.csv"),
               StartsWith("timestamp_ns,frontend_ms,propagate_ms,update_ms,backend_ms,total_ms\n"));
   EXPECT_THAT(Written("status.csv"), StartsWith("timestamp_ns,status,tracks_in,features_used,features_gated,"
@@ -93,6 +97,12 @@ TEST_F(RecorderTest, ReadsBackWhatItWrote) {
     EXPECT_TRUE(a.estimate.nav.R_WB.isApprox(b.estimate.nav.R_WB, 1e-14));
     const Matrix6d covariance = b.estimate.covariance.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>();
     EXPECT_EQ((a.estimate.covariance.topLeftCorner<6, 6>()), covariance);
+    for (const Eigen::Index first : {6, 9, 12}) {
+      const Eigen::Matrix3d motion = b.estimate.covariance.block<3, 3>(first, first);
+      const Eigen::Matrix3d symmetric = motion.selfadjointView<Eigen::Upper>();
+      EXPECT_EQ((a.estimate.covariance.block<3, 3>(first, first)), symmetric) << first;
+      EXPECT_GT(symmetric.trace(), 0);
+    }
     EXPECT_EQ(a.statistics.tracks_in, b.statistics.tracks_in);
     EXPECT_EQ(a.statistics.features_used, b.statistics.features_used);
     EXPECT_EQ(a.statistics.iterations, b.statistics.iterations);

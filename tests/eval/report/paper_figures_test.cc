@@ -77,9 +77,10 @@ TEST(PaperFigures, GivenAComparisonThenEverySequenceHasItsSix) {
     EXPECT_THAT(figure.svg, Not(HasSubstr("no data")));
     EXPECT_THAT(figure.svg, HasSubstr(">po_invio_multi</text>"));
   }
-  EXPECT_EQ(names.size(), 12U);
+  EXPECT_EQ(names.size(), 15U);
   EXPECT_THAT(names, ::testing::IsSupersetOf({"figure8_trajectory", "figure8_position_error",
-                                              "V1_01_easy_nees", "V1_01_easy_rpe", "V1_01_easy_time"}));
+                                              "V1_01_easy_nees", "V1_01_easy_rpe", "V1_01_easy_time",
+                                              "nees_map", "rmse_pos_map", "rmse_ori_map"}));
   // Three estimates and the truth; in three frames three errors and their bands; three boxes at three
   // lengths.
   EXPECT_EQ(CountOf("<polyline", FigureNamed("figure8_trajectory", comparison)), 4);

@@ -178,7 +178,7 @@ TEST_F(ReportInBrowser, GivenAPhoneThenOnlyTheTablesScrollSidewaysEachInItsBox) 
     EXPECT_EQ(visit.Mark("ready"), "true");
     EXPECT_EQ(visit.Mark("client"), std::to_string(width));
     EXPECT_LE(std::stoi("0" + visit.Mark("scroll")), width);
-    EXPECT_EQ(visit.Mark("boxes"), "4");
+    EXPECT_EQ(visit.Mark("boxes"), "7");
     EXPECT_EQ(visit.Mark("boxes-outside"), "0");
     EXPECT_EQ(visit.Mark("plots-outside"), "0");
     if (width == 390) {

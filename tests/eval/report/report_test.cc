@@ -161,7 +161,7 @@ TEST(Tables, GivenAComparisonThenAggregateHasARowAnEstimatorAndSequence) {
                                     "rmse_pos_m_mean,rmse_pos_m_se,"));
   EXPECT_THAT(lines[0],
               ::testing::EndsWith("nees_pos_band_low,nees_pos_band_high,nees_verdict,nees_inside_share,"
-                                  "rmse_pos_ratio,rmse_ori_ratio"));
+                                  "rmse_pos_ratio,rmse_ori_ratio,rmse_pos_to_best,rmse_ori_to_best,group"));
   EXPECT_THAT(lines[6], ::testing::StartsWith("vins_mono_class,smoother,V1_01_easy,2,1,0,0,1,"));
 }
 

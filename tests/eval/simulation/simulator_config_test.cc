@@ -19,7 +19,7 @@ TEST(SimulatorConfigTest, EveryShippedConfigurationIsValid) {
     std::vector<std::string> settings;
     if (stem == "hybrid" || stem == "rendered") {
       settings = {"hybrid_dataset=somewhere"};
-    } else if (stem == "gnss_recorded") {
+    } else if (stem == "recorded" || stem == "gnss_recorded") {
       settings = {"trajectory_file=" + testing::TempDir()};
     }
     const Result<SimulatorConfig> config = LoadSimulatorConfig(entry.path().string(), settings);
