@@ -12,6 +12,7 @@
 #include "eval/metrics/nees.h"
 #include "eval/simulation/sim_imu.h"
 #include "eval/simulation/sim_trajectory.h"
+#include "eval/trajectory/trajectory_point.h"
 
 namespace alidade {
 namespace {
@@ -80,7 +81,7 @@ StatePair PairAt(const RefinedTruth& refined, const Trajectory& motion, TimeNs s
   StatePair pair;
   for (const NavEstimate& state : refined.states) {
     if (state.stamp_ns == stamp_ns) {
-      pair.estimate = {stamp_ns, state.nav, state.bias, state.covariance.topLeftCorner<6, 6>()};
+      pair.estimate = PointOf(state);
     }
   }
   for (const TrajectoryPoint& point : motion.points) {
