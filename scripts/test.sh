@@ -23,7 +23,8 @@ ctest --preset "$preset" --parallel "$(nproc)" "$@" 2>&1 | tee "$log"
 code=${PIPESTATUS[0]}
 
 # A line of ctest for one test: "12/345 Test  #12: Name ....   Passed    0.01 sec".
-results=$(grep -E '^ *[0-9]+/[0-9]+ Test +#[0-9]+: ' "$log")
+# A disabled test is none.
+results=$(grep -E '^ *[0-9]+/[0-9]+ Test +#[0-9]+: ' "$log" | grep -vF '***Not Run (Disabled)')
 total=$(grep -c . <<<"$results" || true)
 passed=$(grep -cE ' Passed +[0-9.]+ sec$' <<<"$results" || true)
 skipped=$(grep -cE '\*\*\*Skipped +[0-9.]+ sec$' <<<"$results" || true)
