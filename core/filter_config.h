@@ -37,6 +37,8 @@ struct FilterConfig {
   bool flush_lost_tracks = true;
   ClonePolicy clone_policy = ClonePolicy::kKeepBases;
   int refine_iterations = 5;
+  int update_iterations = 1;
+  double max_direction_deviation = 0;
   bool first_estimates = false;
   int slam_features = 0;
   int slam_min_track = 10;

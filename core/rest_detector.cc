@@ -66,8 +66,8 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC
   return verdict;
 }
 
-Vector3d RestDetector::MeanGyro() const {
-  return MeasureImu(imu_).mean_gyro;
+RestRates RestDetector::Rates() const {
+  return {MeasureImu(imu_).mean_gyro, imu_.empty() ? Vector3d::Zero() : imu_.back().gyro};
 }
 
 void RestDetector::FindCommon(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before) {

@@ -14,8 +14,14 @@ namespace alidade {
 
 /// What a RestDetector found.
 struct RestVerdict {
-  bool no_translation = false;  ///< v = 0 may be used
+  bool no_translation = false;  ///< the camera's velocity is zero
   bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
+};
+
+/// Measured angular rates, bias included; rad/s, in B.
+struct RestRates {
+  Eigen::Vector3d mean_radps = Eigen::Vector3d::Zero();    ///< over the window
+  Eigen::Vector3d at_end_radps = Eigen::Vector3d::Zero();  ///< at its last frame
 };
 
 /// Detects rest from tracks and IMU. At rest tracks have no parallax and are rejected by the parallax gate,
@@ -38,8 +44,8 @@ class RestDetector {
   RestVerdict AddFrame(const TrackFrame& frame, const Eigen::Matrix3d& R_WC);
   void Clear();
 
-  /// Mean angular rate [rad/s] over the window; the gyroscope's bias when at rest.
-  [[nodiscard]] Eigen::Vector3d MeanGyro() const;
+  /// Over the present window.
+  [[nodiscard]] RestRates Rates() const;
 
  private:
   struct OrientedFrame {

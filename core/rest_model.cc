@@ -1,15 +1,19 @@
 #include "core/rest_model.h"
 
 #include "core/check.h"
+#include "core/lie.h"
 
 namespace alidade {
 
 void RestModel::Evaluate(const NavState& state, const ImuBias& bias, Vector6d* residual,
                          Jacobian* jacobian) const {
-  *residual << state.v_WB, bias.gyro - mean_gyro_radps;
+  const Eigen::Vector3d swing = (rates.at_end_radps - bias.gyro).cross(p_BC);
+  *residual << state.v_WB + state.R_WB * swing, bias.gyro - rates.mean_radps;
   if (jacobian != nullptr) {
     jacobian->setZero();
     jacobian->block<6, 6>(0, 6).setIdentity();
+    jacobian->block<3, 3>(0, 0) = -state.R_WB * Skew(swing);
+    jacobian->block<3, 3>(0, 9) = state.R_WB * Skew(p_BC);
   }
 }
 
@@ -22,10 +26,10 @@ void RestMeasurement::Evaluate(const NavState& state, const ImuBias& bias, Vecto
   }
 }
 
-RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const Eigen::Vector3d& mean_gyro_radps,
-                                    const VisionConfig& vision) {
+RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates& rates,
+                                    const Eigen::Vector3d& p_BC, const VisionConfig& vision) {
   CHECK(verdict.no_translation);
-  RestMeasurement measurement{{mean_gyro_radps}};
+  RestMeasurement measurement{{rates, p_BC}};
   measurement.sqrt_information.head<3>().setConstant(1 / vision.rest_velocity_std_mps);
   if (verdict.no_rotation) {
     measurement.sqrt_information.tail<3>().setConstant(1 / vision.rest_rate_std_radps);

@@ -6,18 +6,20 @@
 
 namespace alidade {
 
-/// A rig that stands still (core/rest_detector.h): zero velocity, and a gyroscope that shows its bias alone,
+/// A rig whose camera stands still (core/rest_detector.h) while the body may turn about it, and, where it does
+/// not turn either, a gyroscope that shows its bias alone,
 ///
-///     r = (v_WB - 0, b_g - mean measured rate),   6x1, m/s and rad/s.
+///     r = (v_WB + R_WB (w - b_g) x p_BC, b_g - mean measured rate),   6x1, m/s and rad/s,
 ///
-/// Jacobian over the 15 canonical coordinates (phi, dp, dv, dbg, dba); constant. Neglected: the earth's
-/// rotation (7e-5 rad/s, taken for bias) and the correlation of the mean rate with the gyroscope noise of the
-/// propagation.
+/// with w the rate measured at the state's stamp. Jacobian over the 15 canonical coordinates (phi, dp, dv, dbg,
+/// dba). Neglected: the earth's rotation (7e-5 rad/s, taken for bias), the noise of w, and the correlation of
+/// the mean rate with the gyroscope noise of the propagation.
 struct RestModel {
   static constexpr int kRows = 6;
   using Jacobian = Eigen::Matrix<double, kRows, 15>;
 
-  Eigen::Vector3d mean_gyro_radps = Eigen::Vector3d::Zero();
+  RestRates rates;
+  Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();  ///< m
 
   void Evaluate(const NavState& state, const ImuBias& bias, Vector6d* residual, Jacobian* jacobian) const;
 };
@@ -34,8 +36,7 @@ struct RestMeasurement {
 };
 
 /// Precondition: verdict.no_translation.
-[[nodiscard]] RestMeasurement MakeRestMeasurement(const RestVerdict& verdict,
-                                                  const Eigen::Vector3d& mean_gyro_radps,
-                                                  const VisionConfig& vision);
+[[nodiscard]] RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates& rates,
+                                                  const Eigen::Vector3d& p_BC, const VisionConfig& vision);
 
 }  // namespace alidade

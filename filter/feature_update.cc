@@ -145,22 +145,23 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
   rows->t = -residual_.head<3>();
 }
 
-TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& track, bool to_remember,
-                                        LandmarkRows* landmark_rows) {
+TrackOutcome FeatureUpdate::AppendToRemember(const FilterState& state, const Track& track) {
+  // Cheaper than the exact test of a memory, which follows.
+  const double lenient = kLeniency * filter_.memory_depth_deviation;
+  return AppendViews(state, track,
+                     {.max_depth_deviation = std::min(vision_.max_relative_depth_deviation, lenient),
+                      .to_remember = true});
+}
+
+TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& track,
+                                        const Purpose& purpose) {
   if (!GatherViews(state, track)) {
     return TrackOutcome::kWaiting;
   }
   Eigen::Vector3d p_W;
-  double max_relative_deviation = vision_.max_relative_depth_deviation;
-  if (landmark_rows != nullptr) {
-    max_relative_deviation = filter_.slam_max_depth_deviation;
-  } else if (to_remember) {
-    // Cheaper than the exact test of a memory, which follows.
-    max_relative_deviation = std::min(max_relative_deviation, kLeniency * filter_.memory_depth_deviation);
-  }
-  const bool refine = landmark_rows != nullptr || filter_.landmark == FilterLandmark::kMsckf ||
+  const bool refine = purpose.landmark_rows != nullptr || filter_.landmark == FilterLandmark::kMsckf ||
                       filter_.track_memory != TrackMemoryPolicy::kNone;
-  const TrackOutcome outcome = Triangulate(max_relative_deviation, refine, &p_W);
+  const TrackOutcome outcome = Triangulate(purpose.max_depth_deviation, refine, &p_W);
   if (outcome != TrackOutcome::kReady) {
     return outcome;
   }
@@ -169,7 +170,7 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   }
   const Index views = static_cast<Index>(clones_.size());
   auto point_jacobian = point_jacobian_.topRows(2 * views);
-  if (to_remember && !keeper_.MayStart(point_jacobian, p_W, poses_.back().translation)) {
+  if (purpose.to_remember && !keeper_.MayStart(point_jacobian, p_W, poses_.back().translation)) {
     return TrackOutcome::kWaiting;
   }
   auto dense = track_jacobian_.topLeftCorner(2 * views, StateColumns() + (tracing_ ? 2 * views : 0));
@@ -184,8 +185,8 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
         dense.block(3, 6 * views, block.rows, calibration_);
   }
   innovation_.segment(block.first, block.rows) = -residual_.segment(3, block.rows);
-  if (landmark_rows != nullptr) {
-    RetainRows(state, track, p_W, landmark_rows);
+  if (purpose.landmark_rows != nullptr) {
+    RetainRows(state, track, p_W, purpose.landmark_rows);
   } else {
     StartMemory(state, dense.topRows(3), p_W);
   }

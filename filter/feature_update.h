@@ -31,16 +31,20 @@ class FeatureUpdate {
   /// Whether traces() is kept.
   void SetTracing(bool tracing) { tracing_ = tracing; }
   void Begin(const FilterState& state);
-  /// Appends the rows of a track that all of its views define; to_remember: waits for a depth that a memory
-  /// can start from.
-  TrackOutcome Append(const FilterState& state, const Track& track, bool to_remember = false) {
-    return AppendViews(state, track, to_remember, nullptr);
+  /// Appends the rows of a track that all of its views define, when its depth is known to the given relative
+  /// standard deviation.
+  TrackOutcome Append(const FilterState& state, const Track& track, double max_depth_deviation) {
+    return AppendViews(state, track, {.max_depth_deviation = max_depth_deviation});
   }
+  /// The same when its depth is known well enough for a memory to start.
+  TrackOutcome AppendToRemember(const FilterState& state, const Track& track);
   /// The same for a track that becomes a SLAM feature: linearised at the Gauss-Newton solution, with the
   /// three remaining rows in `landmark_rows`. kWaiting, with nothing appended, while its depth is not known
   /// to slam_max_depth_deviation.
   TrackOutcome AppendLandmark(const FilterState& state, const Track& track, LandmarkRows* landmark_rows) {
-    return AppendViews(state, track, false, landmark_rows);
+    return AppendViews(
+        state, track,
+        {.max_depth_deviation = filter_.slam_max_depth_deviation, .landmark_rows = landmark_rows});
   }
   /// Appends the two rows that the newest view of a remembered track adds.
   TrackOutcome AppendRemembered(const FilterState& state, const Track& track);
@@ -81,8 +85,12 @@ class FeatureUpdate {
 
  private:
   bool GatherViews(const FilterState& state, const Track& track);
-  TrackOutcome AppendViews(const FilterState& state, const Track& track, bool to_remember,
-                           LandmarkRows* landmark_rows);
+  struct Purpose {
+    double max_depth_deviation = 0;  ///< relative
+    bool to_remember = false;
+    LandmarkRows* landmark_rows = nullptr;  ///< of a SLAM feature
+  };
+  TrackOutcome AppendViews(const FilterState& state, const Track& track, const Purpose& purpose);
   /// The depth needs a relative deviation below the given one.
   TrackOutcome Triangulate(double max_relative_deviation, bool refine, Eigen::Vector3d* p_W) const;
   /// Linearises every view at p_W, in the scratch of the track. False behind one of them.

@@ -27,9 +27,12 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       measurements_(config),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
-      correction_(state_.covariance().capacity()) {
+      correction_(state_.covariance().capacity()),
+      corrected_(state_.covariance().capacity()) {
   constexpr size_t kUsualTracks = 256;  // updated in one frame; more make vectors grow
   appended_.reserve(kUsualTracks);
+  degenerate_.reserve(kUsualTracks);
+  left_.reserve(kUsualTracks);
   accepted_.reserve(kUsualTracks);
   block_nis_.reserve(kUsualTracks);
   weights_.reserve(kUsualTracks);
@@ -170,6 +173,9 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
     const bool ends = track.last_serial != serial_;
     return ends && filter.flush_lost_tracks && filter.update == UpdateTiming::kImmediate && views >= 3;
   }
+  if (due_ == DueTracks::kAll) {
+    return true;
+  }
   switch (filter.update) {
     case UpdateTiming::kImmediate:
     case UpdateTiming::kAtL:
@@ -178,7 +184,8 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
       break;
   }
   // An uncertain start drifts far in a window's time: the first tracks must not wait for it to fill.
-  if (filter.track_memory != TrackMemoryPolicy::kNone && serial_ - first_serial_ < filter.window) {
+  if (filter.track_memory != TrackMemoryPolicy::kNone && serial_ - first_serial_ < filter.window &&
+      due_ != DueTracks::kEnding) {
     return true;
   }
   return track.last_serial != serial_ || track.views.front().serial == leaving_serial;
@@ -190,7 +197,7 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   }
   Vector6d residual;
   RestModel::Jacobian jacobian;
-  MakeRestMeasurement(rest, rest_.MeanGyro(), config_.vision)
+  MakeRestMeasurement(rest, rest_.Rates(), state_.calibration().T_BC.translation, config_.vision)
       .Evaluate(state_.nav(), state_.bias(), &residual, &jacobian);
   const int rows = rest.no_rotation ? RestModel::kRows : 3;
   rest_rows_.setZero(rows, state_.covariance().dimension());
@@ -228,19 +235,22 @@ void FilterEstimator::LeaveMemories(size_t leaving) {
   const int leaving_serial = state_.clones()[leaving].serial;
   const Eigen::Index columns = 6 * state_.clones()[leaving].slot;
   const Eigen::Vector3d& camera = state_.clones().back().T_WC.translation;
-  update_.keeper().Condition(state_, leaving, &conditional_);
+  left_.clear();
   for (Track& track : tracks_.tracks()) {
     TrackMemory& memory = track.memory;
-    if (!memory.active) {
-      continue;
+    if (memory.active &&
+        (memory.anchor == leaving_serial || !memory.clone_rows.middleCols<6>(columns).isZero(0))) {
+      left_.push_back(&memory);
     }
-    if (memory.anchor != leaving_serial && memory.clone_rows.middleCols<6>(columns).isZero(0)) {
-      continue;
-    }
+  }
+  if (carry && !left_.empty()) {
+    TrackMemoryKeeper::Condition(state_, leaving, left_.size(), &conditional_);
+  }
+  for (TrackMemory* memory : left_) {
     if (carry) {
-      update_.keeper().Carry(state_, conditional_, &memory);
+      update_.keeper().Carry(state_, conditional_, memory);
     }
-    memory.active = carry && update_.keeper().MayStay(memory, camera);
+    memory->active = carry && update_.keeper().MayStay(*memory, camera);
   }
 }
 

@@ -41,6 +41,13 @@ class FilterEstimator : public Estimator {
   void SetObserver(FilterObserver* observer);
 
  private:
+  /// Which tracks may update; an active memory always may.
+  enum class DueTracks {
+    kUsual,   ///< by FilterConfig::update
+    kAll,     ///< every one, whatever it waits for
+    kEnding,  ///< those that cannot wait
+  };
+
   Status PropagateTo(TimeNs stamp_ns);
   /// The same for a measurement between frames; `what` names it in messages. kDiverged: not aligned.
   Status BeginMeasurement(const char* what, TimeNs stamp_ns);
@@ -52,7 +59,16 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
   /// Appends the rows of a track: of its landmark in the state, of its entry there, or of its due views.
   void AppendTrack(size_t index, int leaving_serial);
-  /// False when a number is not finite; the state is then lost.
+  /// Appends the rows of all tracks that are due; where those of landmarks of the state begin.
+  int AppendDueTracks(int leaving_serial);
+  /// While the window's shape is less certain than FilterConfig::max_direction_deviation, all tracks update
+  /// as soon as most of them can: a few would be those whose noise looks like parallax. Returns as above.
+  int AppendTracks(int leaving_serial);
+  /// Updates the covariance with all tracks that are due, linearised again (FilterConfig::update_iterations)
+  /// where they move the state far; what is left to correct the state by is then in Correction(). Nothing is
+  /// left when appended_ is empty. False when a number is not finite; the state is then lost.
+  bool CorrectWithDueTracks(int leaving_serial);
+  /// False as above.
   bool UpdateWithDueTracks(int leaving_serial);
   /// Zero velocity and zero angular rate, as far as the rest detector says so. False as above.
   bool UpdateAtRest(const RestVerdict& rest);
@@ -91,6 +107,7 @@ class FilterEstimator : public Estimator {
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
   bool aligned_ = false;               ///< W stands as Align turned it
+  DueTracks due_ = DueTracks::kUsual;  ///< in this frame
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
@@ -98,11 +115,14 @@ class FilterEstimator : public Estimator {
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;
+  std::vector<size_t> degenerate_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
   std::vector<double> weights_;  ///< of the blocks; 0: refused
+  std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;
   Eigen::VectorXd correction_;  ///< see Correction()
+  Eigen::VectorXd corrected_;
   Eigen::MatrixXd rest_rows_;
   Eigen::VectorXd rest_innovation_;
 };

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "filter/filter_estimator.h"
 
@@ -10,6 +11,62 @@ namespace {
 
 // A remembered track that is refused more often in a row is taken for another point.
 constexpr int kMaxRefusals = 1;
+// Square of what may be neglected in the linearisation of an update, in standard deviations of one row.
+constexpr double kNegligible = 0.1;
+// Share of the tracks without a memory that update together while the window's shape is uncertain.
+constexpr double kMostTracks = 0.7;
+
+/// How far a correction deforms the window, the positions of its cameras as the newest one sees them, as a
+/// share of its extent.
+double RelativeDeformation(const FilterState& state, const Eigen::Ref<const Eigen::VectorXd>& correction) {
+  const std::vector<Clone>& clones = state.clones();
+  const auto moved = [&](size_t i) -> Vector6d {
+    return clones[i].camera_from_error * correction.segment<6>(state.CloneOffset(i));
+  };
+  const Pose& newest = clones.back().T_WC;
+  const Vector6d newest_moved = moved(clones.size() - 1);
+  double deformation = 0;
+  double extent = 0;
+  for (size_t i = 0; i + 1 < clones.size(); ++i) {
+    const Eigen::Vector3d place =
+        newest.rotation.transpose() * (clones[i].T_WC.translation - newest.translation);
+    const Eigen::Vector3d shift =
+        newest.rotation.transpose() * (moved(i).tail<3>() - newest_moved.tail<3>()) -
+        newest_moved.head<3>().cross(place);
+    deformation += shift.squaredNorm();
+    extent += place.squaredNorm();
+  }
+  return extent > 0 ? std::sqrt(deformation / extent) : 0;
+}
+
+/// Relative standard deviation of the oldest camera's position as the newest one sees it, across the line
+/// between them. Along it lies the scale, in which the rows are linear.
+double DirectionDeviation(const FilterState& state) {
+  const std::vector<Clone>& clones = state.clones();
+  if (clones.size() < 2) {
+    return 0;
+  }
+  const Clone& newest = clones.back();
+  const Clone& oldest = clones.front();
+  const Eigen::Matrix3d R_CW = newest.T_WC.rotation.transpose();
+  const Eigen::Vector3d place = R_CW * (oldest.T_WC.translation - newest.T_WC.translation);
+  const double extent = place.norm();
+  if (!(extent > 0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  Eigen::Matrix<double, 3, 6> over_newest = -R_CW * newest.camera_from_error.bottomRows<3>();
+  over_newest += Skew(place) * newest.camera_from_error.topRows<3>();
+  const Eigen::Matrix<double, 3, 6> over_oldest = R_CW * oldest.camera_from_error.bottomRows<3>();
+  const int n = state.CloneOffset(clones.size() - 1);
+  const int o = state.CloneOffset(0);
+  const SquareRootCovariance& p = state.covariance();
+  const Eigen::Matrix3d cross = over_newest * p.PoseBlock(n, o) * over_oldest.transpose();
+  const Eigen::Matrix3d covariance = over_newest * p.PoseBlock(n, n) * over_newest.transpose() +
+                                     over_oldest * p.PoseBlock(o, o) * over_oldest.transpose() + cross +
+                                     cross.transpose();
+  const Eigen::Vector3d along = place / extent;
+  return std::sqrt(std::max(covariance.trace() - along.dot(covariance * along), 0.0)) / extent;
+}
 
 }  // namespace
 
@@ -43,43 +100,106 @@ void FilterEstimator::AppendTrack(size_t index, int leaving_serial) {
       ++statistics_.features_waiting;
       break;
     case TrackOutcome::kDegenerate:
-      ++statistics_.features_degenerate;
-      RetireViews(&track, false);
-      track.memory.active = false;
+      degenerate_.push_back(index);
       break;
   }
 }
 
-bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
-  std::vector<Track>& tracks = tracks_.tracks();
+int FilterEstimator::AppendDueTracks(int leaving_serial) {
+  const std::vector<Track>& tracks = tracks_.tracks();
   slam_.Begin();
-  slam_.Promote(serial_, &tracks_, &state_);
   update_.Begin(state_);
   appended_.clear();
+  degenerate_.clear();
+  statistics_.features_waiting = 0;
   for (size_t i = 0; i < tracks.size(); ++i) {
     if (!tracks[i].in_state) {
       AppendTrack(i, leaving_serial);
     }
   }
-  const int landmark_rows = update_.rows();  // where they begin
+  const int landmark_rows = update_.rows();
   for (size_t i = 0; i < tracks.size(); ++i) {
     if (tracks[i].in_state) {
       AppendTrack(i, leaving_serial);
     }
   }
-  if (appended_.empty()) {
-    return true;
+  return landmark_rows;
+}
+
+int FilterEstimator::AppendTracks(int leaving_serial) {
+  due_ = DueTracks::kUsual;
+  const double limit = config_.filter.max_direction_deviation;
+  if (limit > 0 && DirectionDeviation(state_) > limit) {
+    due_ = DueTracks::kAll;
+    const int landmark_rows = AppendDueTracks(leaving_serial);
+    const double ready = static_cast<double>(appended_.size());
+    if (ready >= kMostTracks * (ready + statistics_.features_waiting)) {
+      return landmark_rows;
+    }
+    due_ = DueTracks::kEnding;
   }
-  if (observer_ != nullptr) {
-    observed_ = {update_.jacobian(), update_.innovation(), update_.traces(), RowSource::kVision};
+  return AppendDueTracks(leaving_serial);
+}
+
+bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
+  SquareRootCovariance& covariance = state_.covariance();
+  auto corrected = corrected_.head(covariance.dimension());  // since the prediction
+  corrected.setZero();
+  for (int pass = 1;; ++pass) {
+    const int landmark_rows = pass == 1 ? AppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
+    if (appended_.empty()) {
+      if (pass > 1) {
+        Correction() = -corrected;
+        Correct();
+      }
+      return true;
+    }
+    if (pass > 1) {
+      // The prior is about the prediction, the rows about the state.
+      update_.innovation().noalias() += update_.jacobian() * corrected;
+    }
+    if (observer_ != nullptr) {
+      observed_ = {update_.jacobian(), update_.innovation(), update_.traces(), RowSource::kVision};
+    }
+    PreparedRows rows = update_.Prepare(landmark_rows, &covariance);
+    GateBlocks(&rows);
+    if (!covariance.Factor(rows, &statistics_.nis)) {
+      return false;
+    }
+    if (pass == config_.filter.update_iterations) {
+      break;
+    }
+    const double explained = covariance.Solution(Correction());
+    Correction() -= corrected;
+    const double deformation = RelativeDeformation(state_, Correction());
+    if (!(deformation * deformation * explained > kNegligible)) {
+      break;
+    }
+    corrected += Correction();
+    Correct();
+    ++statistics_.iterations;
   }
-  PreparedRows rows = update_.Prepare(landmark_rows, &state_.covariance());
-  GateBlocks(&rows);
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, observed_);
   }
-  if (!state_.covariance().Apply(rows, Correction(), &statistics_.nis)) {
+  covariance.Commit(Correction());
+  Correction() -= corrected;
+  return true;
+}
+
+bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
+  std::vector<Track>& tracks = tracks_.tracks();
+  slam_.Promote(serial_, &tracks_, &state_);
+  if (!CorrectWithDueTracks(leaving_serial)) {
     return false;
+  }
+  statistics_.features_degenerate += static_cast<int>(degenerate_.size());
+  for (const size_t index : degenerate_) {
+    RetireViews(&tracks[index], false);
+    tracks[index].memory.active = false;
+  }
+  if (appended_.empty()) {
+    return true;
   }
   for (size_t block = 0; block < appended_.size(); ++block) {
     Track& track = tracks[appended_[block]];
@@ -105,7 +225,11 @@ TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial
   // A memory wants a good depth to start from; the last chance to use the views does not.
   const bool last_chance = track.last_serial != serial_ || track.views.front().serial == leaving_serial;
   const bool to_remember = config_.filter.track_memory != TrackMemoryPolicy::kNone && !last_chance;
-  return update_.Append(state_, track, to_remember);
+  if (due_ == DueTracks::kAll) {
+    return update_.Append(state_, track, config_.filter.max_direction_deviation);
+  }
+  return to_remember ? update_.AppendToRemember(state_, track)
+                     : update_.Append(state_, track, config_.vision.max_relative_depth_deviation);
 }
 
 void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
@@ -119,6 +243,9 @@ void FilterEstimator::GateBlocks(PreparedRows* rows) {
   MeasureBlocks(*rows);
   accepted_.assign(appended_.size(), true);
   weights_.assign(appended_.size(), 0);
+  statistics_.features_used = 0;
+  statistics_.features_gated = 0;
+  statistics_.nis_dof = 0;
   int refused = 0;
   for (size_t i = 0; i < appended_.size(); ++i) {
     accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);

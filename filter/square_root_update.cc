@@ -156,6 +156,15 @@ void SquareRootCovariance::DivideTriangle(int first, int begin, int size) {
 
 bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<VectorXd> correction, double* nis,
                                  double* log_det) {
+  correction.setZero();
+  if (!Factor(prepared, nis, log_det)) {
+    return false;
+  }
+  Commit(correction);
+  return true;
+}
+
+bool SquareRootCovariance::Factor(const PreparedRows& prepared, double* nis, double* log_det) {
   const Eigen::Ref<MatrixXd>& prepared_rows = prepared.rows_;
   const Eigen::Ref<VectorXd>& y = prepared.innovation_;
   const int rows = static_cast<int>(prepared_rows.rows());
@@ -167,7 +176,7 @@ bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<Vector
   const int first_sparse = LeadingZeroColumns(prepared_rows.bottomRows(rows - dense));
   const int first = std::min(first_dense, first_sparse);
   const int active = n - first;
-  correction.setZero();
+  factored_ = first;
   if (nis != nullptr) {
     *nis = y.squaredNorm();
   }
@@ -197,12 +206,36 @@ bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<Vector
   auto b = projected_.head(active);
   cblas_dgemv(CblasColMajor, CblasTrans, rows, active, 1.0, a, lda, y.data(), 1, 0.0, b.data(), 1);
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasTrans, CblasNonUnit, active, m, ldm, b.data(), 1);
-  DivideByInformationRoot(first);
-  correction.noalias() = Part(0, first, n, active) * b;
   if (nis != nullptr) {
     *nis -= b.squaredNorm();
   }
   return true;
+}
+
+double SquareRootCovariance::Solution(Eigen::Ref<VectorXd> correction) {
+  correction.setZero();
+  const int active = dimension_ - factored_;
+  if (active == 0) {
+    return 0;
+  }
+  auto b = projected_.head(active);
+  auto w = whitened_.head(active);
+  w = b;
+  cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, active, information_.data(), capacity(),
+              w.data(), 1);
+  correction.noalias() = Part(0, factored_, dimension_, active) * w;
+  // A^T A = U^T U - I.
+  return b.squaredNorm() - w.squaredNorm();
+}
+
+void SquareRootCovariance::Commit(Eigen::Ref<VectorXd> correction) {
+  correction.setZero();
+  const int active = dimension_ - factored_;
+  if (active == 0) {
+    return;
+  }
+  DivideByInformationRoot(factored_);
+  correction.noalias() = Part(0, factored_, dimension_, active) * projected_.head(active);
 }
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
 #include "filter/track_memory.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
@@ -22,49 +23,13 @@ constexpr double kStayFactor = 1.5;
 // Of the depth's deviation, what the state's may be: it is common to all tracks and biases the scale, where a
 // track's own averages out.
 constexpr double kStateShare = 0.5;
-
-// A clone is predicted from two others by errors relative to one of them, y = (x_m, x_1, x_2) less the yaw
-// and position of clone 1 in the right-invariant error, so that what follows says nothing about the
-// unobservable directions; y_1 keeps its tilt alone. Other errors are taken as they are, less clone 1's yaw
-// and position.
-using ThreePoses = Eigen::Matrix<double, 18, 18>;
-using RelativePoses = Eigen::Matrix<double, 14, 14>;
-
-/// Covariance of y = (y_m, y_1, y_2), of 6, 2 and 6 rows, from that of (x_m, x_1, x_2).
-RelativePoses RelativeCovariance(ErrorConvention convention, const ThreePoses& covariance) {
-  ThreePoses p = covariance;
-  if (convention == ErrorConvention::kRightInvariant) {
-    for (const Index first : {Index{2}, Index{14}}) {
-      p.middleRows(first, 4) -= p.middleRows(8, 4);
-    }
-    for (const Index first : {Index{2}, Index{14}}) {
-      p.middleCols(first, 4) -= p.middleCols(8, 4);
-    }
-  }
-  RelativePoses q;
-  q.topLeftCorner(8, 8) = p.topLeftCorner(8, 8);
-  q.topRightCorner(8, 6) = p.block(0, 12, 8, 6);
-  q.bottomLeftCorner(6, 8) = p.block(12, 0, 6, 8);
-  q.bottomRightCorner(6, 6) = p.bottomRightCorner(6, 6);
-  return q;
-}
-
-/// Gain of x_m = (x_m - y_m) + gain (y_1, y_2) by (x_1, x_2); the first term is clone 1's yaw and position.
-Eigen::Matrix<double, 6, 12> OverClones(ErrorConvention convention, const Eigen::Matrix<double, 6, 8>& gain) {
-  Eigen::Matrix<double, 6, 12> over;
-  over << gain.leftCols<2>(), Eigen::Matrix<double, 6, 4>::Zero(), gain.rightCols<6>();
-  if (convention == ErrorConvention::kRightInvariant) {
-    over.middleCols<4>(2) = -gain.rightCols<4>();
-    over.block<4, 4>(2, 2) += Eigen::Matrix4d::Identity();
-  }
-  return over;
-}
+// Directions that the noise of a clone's conditional has: a memory shares each with this part of the others.
+constexpr double kPoseDirections = 6;
 
 }  // namespace
 
 TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size)
-    : convention_(filter.error),
-      error_(filter.error),
+    : error_(filter.error),
       max_depth_deviation_(filter.memory_depth_deviation),
       calibration_(calibration_size),
       columns_(6 * max_clones + calibration_size),
@@ -189,39 +154,56 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
   memory->p_W += move;
 }
 
-void TrackMemoryKeeper::Condition(const FilterState& state, size_t index,
-                                  CloneConditional* conditional) const {
+void TrackMemoryKeeper::Condition(const FilterState& state, size_t index, size_t memories,
+                                  CloneConditional* conditional) {
+  constexpr size_t kMost = CloneConditional::kMaxNeighbours;
+  using Joint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 * kMost, 6 * kMost>;
   const std::vector<Clone>& clones = state.clones();
   CHECK_GE(clones.size(), 3U);
-  size_t first = 0;
-  size_t second = 0;
-  if (index == 0) {
-    first = 1;
-    second = 2;
-  } else if (index + 1 == clones.size()) {
-    first = index - 1;
-    second = index - 2;
-  } else {
-    first = index - 1;
-    second = index + 1;
+  // The nearest in time, the very nearest first: x_1.
+  const size_t count = std::min(kMost, clones.size() - 1);
+  std::array<size_t, kMost> neighbours{};
+  for (size_t i = 0, before = index, after = index + 1; i < count; ++i) {
+    const bool earlier = before > 0 && (after == clones.size() || index - before < after - index);
+    neighbours[i] = earlier ? --before : after++;
   }
-  const std::array<size_t, 3> blocks = {index, first, second};
-  ThreePoses p;
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t j = 0; j < 3; ++j) {
-      p.block<6, 6>(6 * static_cast<Index>(i), 6 * static_cast<Index>(j)) =
-          state.covariance().PoseBlock(state.CloneOffset(blocks[i]), state.CloneOffset(blocks[j]));
+  // Covariance of (x_m, x_2, x_3 ...), less x_1 each: what follows says nothing about where all of them are.
+  const SquareRootCovariance& covariance = state.covariance();
+  const int nearest = state.CloneOffset(neighbours[0]);
+  const auto offset = [&](size_t i) { return state.CloneOffset(i == 0 ? index : neighbours[i]); };
+  const Matrix6d of_nearest = covariance.PoseBlock(nearest, nearest);
+  std::array<Matrix6d, kMost> with_nearest;
+  for (size_t i = 0; i < count; ++i) {
+    with_nearest[i] = covariance.PoseBlock(offset(i), nearest);
+  }
+  Joint p(6 * count, 6 * count);
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      const Matrix6d block = covariance.PoseBlock(offset(i), offset(j)) - with_nearest[i] -
+                             with_nearest[j].transpose() + of_nearest;
+      p.block<6, 6>(6 * static_cast<Index>(i), 6 * static_cast<Index>(j)) = block;
+      p.block<6, 6>(6 * static_cast<Index>(j), 6 * static_cast<Index>(i)) = block.transpose();
     }
   }
-  const RelativePoses q = RelativeCovariance(convention_, p);
-  const Eigen::Matrix<double, 6, 8> gain =
-      q.bottomRightCorner<8, 8>().ldlt().solve(q.bottomLeftCorner<8, 6>()).transpose();
+  const Index others = p.rows() - 6;
+  const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6 * kMost, 6> gain =
+      p.bottomRightCorner(others, others).ldlt().solve(p.bottomLeftCorner(others, 6));
   conditional->leaving_serial = clones[index].serial;
   conditional->leaving_slot = clones[index].slot;
-  conditional->neighbour_slots = {clones[first].slot, clones[second].slot};
-  conditional->gain = OverClones(convention_, gain);
-  const Matrix6d rest = q.topLeftCorner<6, 6>() - gain * q.bottomLeftCorner<8, 6>();
-  conditional->covariance = 0.5 * (rest + rest.transpose());
+  conditional->neighbours = count;
+  auto over_nearest = conditional->gain.leftCols<6>();
+  over_nearest.setIdentity();
+  for (size_t i = 0; i < count; ++i) {
+    conditional->neighbour_slots[i] = clones[neighbours[i]].slot;
+    if (i > 0) {
+      const Matrix6d part = gain.middleRows<6>(6 * static_cast<Index>(i - 1)).transpose();
+      conditional->gain.middleCols<6>(6 * static_cast<Index>(i)) = part;
+      over_nearest -= part;
+    }
+  }
+  const Matrix6d rest = p.topLeftCorner<6, 6>() - gain.transpose() * p.bottomLeftCorner(others, 6);
+  conditional->covariance = std::max(1.0, static_cast<double>(memories) / kPoseDirections) * 0.5 *
+                            (rest + rest.transpose());
 }
 
 void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& conditional,
@@ -238,7 +220,7 @@ void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& 
   if (rows.isZero(0)) {
     return;
   }
-  for (size_t s = 0; s < conditional.neighbour_slots.size(); ++s) {
+  for (size_t s = 0; s < conditional.neighbours; ++s) {
     memory->clone_rows.middleCols<6>(6 * conditional.neighbour_slots[s]) +=
         rows * conditional.gain.middleCols<6>(6 * static_cast<Index>(s));
   }

@@ -24,10 +24,12 @@ struct TrackMemory {
 
 /// The marginalised clone seen from its neighbours in time: x_m = G x_s + w, w ~ N(0, C).
 struct CloneConditional {
+  static constexpr int kMaxNeighbours = 8;
   int leaving_serial = 0;
   int leaving_slot = 0;
-  std::array<int, 2> neighbour_slots{};
-  Eigen::Matrix<double, 6, 12> gain = Eigen::Matrix<double, 6, 12>::Zero();  ///< G
+  size_t neighbours = 0;  ///< how many there are
+  std::array<int, kMaxNeighbours> neighbour_slots{};
+  Eigen::Matrix<double, 6, 6 * kMaxNeighbours> gain;  ///< G; six columns a neighbour
   Matrix6d covariance = Matrix6d::Zero();                                    ///< C
 };
 
@@ -57,10 +59,11 @@ class TrackMemoryKeeper {
   void Correct(const FilterState& state, const Eigen::Ref<const Eigen::VectorXd>& correction,
                TrackMemory* memory) const;
 
-  /// How clone `index` follows from its neighbours.
-  void Condition(const FilterState& state, size_t index, CloneConditional* conditional) const;
-  /// Replaces the leaving clone in the rows by its conditional mean and whitens its noise away. That noise is
-  /// common to all tracks that saw the clone; it counts as each one's own.
+  /// How clone `index` follows from its neighbours. `memories`: how many are carried over it; w is common to
+  /// them, and C is scaled so that they may take it for their own (docs/track_memory.md).
+  static void Condition(const FilterState& state, size_t index, size_t memories,
+                        CloneConditional* conditional);
+  /// Replaces the leaving clone in the rows by its conditional mean and whitens its noise away.
   void Carry(const FilterState& state, const CloneConditional& conditional, TrackMemory* memory) const;
 
   /// Whether a landmark at p_W is known well enough for a memory that starts; `point_jacobian`: whitened rows
@@ -79,7 +82,6 @@ class TrackMemoryKeeper {
                              const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
                              const std::vector<int>& clones);
 
-  ErrorConvention convention_;
   LandmarkError error_;
   double max_depth_deviation_;
   Eigen::Index calibration_;  ///< size of the calibration's error

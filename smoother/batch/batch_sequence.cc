@@ -110,7 +110,7 @@ void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& fra
   if (config_.vision.rest_updates) {
     const RestVerdict verdict = rest_.AddFrame(frame, estimate.nav.R_WB * rig_.T_BC.rotation);
     if (verdict.no_translation) {
-      node.rest = MakeRestMeasurement(verdict, rest_.MeanGyro(), config_.vision);
+      node.rest = MakeRestMeasurement(verdict, rest_.Rates(), rig_.T_BC.translation, config_.vision);
     }
   }
 }

@@ -190,7 +190,7 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   const RestVerdict verdict = rest_.AddFrame(frame, newest.nav_state().R_WB * camera().T_BC.rotation);
   statistics_.at_rest = verdict.no_translation;
   if (verdict.no_translation) {
-    newest.rest = MakeRestMeasurement(verdict, rest_.MeanGyro(), config_.vision);
+    newest.rest = MakeRestMeasurement(verdict, rest_.Rates(), camera().T_BC.translation, config_.vision);
   }
 }
 
