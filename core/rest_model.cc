@@ -32,6 +32,7 @@ RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates&
   RestMeasurement measurement{{rates, p_BC}};
   measurement.sqrt_information.head<3>().setConstant(1 / vision.rest_velocity_std_mps);
   if (verdict.no_rotation) {
+    measurement.model.rates.at_end_radps = rates.mean_radps;  // the same, less its noise
     measurement.sqrt_information.tail<3>().setConstant(1 / vision.rest_rate_std_radps);
   }
   return measurement;

@@ -32,7 +32,10 @@ class FeatureUpdate {
   void SetTracing(bool tracing) { tracing_ = tracing; }
   void Begin(const FilterState& state);
   /// Appends the rows of a track that all of its views define, when its depth is known to the given relative
-  /// standard deviation.
+  /// standard deviation, VisionConfig's without one.
+  TrackOutcome Append(const FilterState& state, const Track& track) {
+    return Append(state, track, vision_.max_relative_depth_deviation);
+  }
   TrackOutcome Append(const FilterState& state, const Track& track, double max_depth_deviation) {
     return AppendViews(state, track, {.max_depth_deviation = max_depth_deviation});
   }

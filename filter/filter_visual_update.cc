@@ -228,8 +228,7 @@ TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial
   if (due_ == DueTracks::kAll) {
     return update_.Append(state_, track, config_.filter.max_direction_deviation);
   }
-  return to_remember ? update_.AppendToRemember(state_, track)
-                     : update_.Append(state_, track, config_.vision.max_relative_depth_deviation);
+  return to_remember ? update_.AppendToRemember(state_, track) : update_.Append(state_, track);
 }
 
 void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {

@@ -50,7 +50,7 @@ class RestDetectorTest : public ::testing::Test {
         }
       }
       verdict = detector.AddFrame(frame, R_WC);
-      mean_gyro_ = detector.MeanGyro();
+      mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
   }

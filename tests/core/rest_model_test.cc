@@ -12,8 +12,19 @@ TEST(RestModelTest, VanishesOnARigAtRest) {
   const NavState state{so3::Exp({0.1, 0.2, 2.0}), {1, 2, 3}, Eigen::Vector3d::Zero()};
   const ImuBias bias{{0.01, -0.02, 0.003}, {0.1, 0.2, 0.3}};
   Vector6d residual;
-  RestModel{bias.gyro}.Evaluate(state, bias, &residual, nullptr);
+  RestModel{{bias.gyro, bias.gyro}, {0.1, -0.2, 0.05}}.Evaluate(state, bias, &residual, nullptr);
   EXPECT_EQ(residual.norm(), 0);
+}
+
+TEST(RestModelTest, GivenABodyThatTurnsAboutItsCameraThenTheVelocityOfTheCameraVanishes) {
+  const Eigen::Vector3d p_BC(0.1, -0.2, 0.05);
+  const Eigen::Vector3d rate(0.4, 0.1, -0.6);
+  NavState state{so3::Exp({0.1, 0.2, 2.0}), {1, 2, 3}, Eigen::Vector3d::Zero()};
+  state.v_WB = -state.R_WB * rate.cross(p_BC);
+  const ImuBias bias{{0.01, -0.02, 0.003}, {0.1, 0.2, 0.3}};
+  Vector6d residual;
+  RestModel{{bias.gyro, rate + bias.gyro}, p_BC}.Evaluate(state, bias, &residual, nullptr);
+  EXPECT_LT(residual.norm(), 1e-15);
 }
 
 TEST(RestModelTest, JacobianAgreesWithCentralDifferencesInAllConventions) {
@@ -21,7 +32,7 @@ TEST(RestModelTest, JacobianAgreesWithCentralDifferencesInAllConventions) {
     test::RandomStates random(seed);
     const NavState state{random.Rotation(), random.Vector(5), random.Vector(2)};
     const ImuBias bias = random.Bias();
-    const RestModel model{random.Vector(0.1)};
+    const RestModel model{{random.Vector(0.1), random.Vector(1)}, random.Vector(0.3)};
     Vector6d residual;
     RestModel::Jacobian jacobian;
     model.Evaluate(state, bias, &residual, &jacobian);
@@ -49,14 +60,16 @@ TEST(RestModelTest, WhitensWithTheConfiguredDeviationsAndLeavesATurningRigItsRat
   vision.rest_rate_std_radps = 0.1;
   const NavState state{Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), {1, 2, 3}};
   const ImuBias bias{{0.3, 0.2, 0.1}, Eigen::Vector3d::Zero()};
-  const Eigen::Vector3d mean_gyro(0.1, 0.1, 0.1);
+  const RestRates rates{{0.1, 0.1, 0.1}, bias.gyro};
   Vector6d residual;
   RestModel::Jacobian jacobian;
-  MakeRestMeasurement({true, true}, mean_gyro, vision).Evaluate(state, bias, &residual, &jacobian);
+  MakeRestMeasurement({true, true}, rates, Eigen::Vector3d::Zero(), vision)
+      .Evaluate(state, bias, &residual, &jacobian);
   EXPECT_LT((residual - (Vector6d() << 2, 4, 6, 2, 1, 0).finished()).norm(), 1e-12);
   EXPECT_DOUBLE_EQ(jacobian(0, 6), 2);
   EXPECT_DOUBLE_EQ(jacobian(3, 9), 10);
-  MakeRestMeasurement({true, false}, mean_gyro, vision).Evaluate(state, bias, &residual, &jacobian);
+  MakeRestMeasurement({true, false}, rates, Eigen::Vector3d::Zero(), vision)
+      .Evaluate(state, bias, &residual, &jacobian);
   EXPECT_EQ(residual.tail<3>().norm(), 0);
   EXPECT_EQ(jacobian.bottomRows<3>().norm(), 0);
 }

@@ -211,7 +211,7 @@ TEST_P(EveryConvention, APromotedMemoryLosesNothing) {
     Track& track = promoted.track_;
     if (i == 4) {
       update.Begin(promoted.state_);
-      ASSERT_EQ(update.Append(promoted.state_, track, true), TrackOutcome::kReady);
+      ASSERT_EQ(update.AppendToRemember(promoted.state_, track), TrackOutcome::kReady);
       update.Remember(promoted.state_, 0, 1, &track);
       ASSERT_TRUE(track.memory.active);
       VectorXd correction(promoted.state_.covariance().dimension());

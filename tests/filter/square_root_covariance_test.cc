@@ -266,6 +266,30 @@ TEST_F(SquareRootCovarianceTest, ZeroedRowsDoNothing) {
   EXPECT_EQ((root_.Covariance() - before).norm(), 0.0);
 }
 
+TEST_F(SquareRootCovarianceTest, TheCorrectionIsKnownBeforeTheUpdateIsMade) {
+  Clone();
+  AddLeading();
+  const MatrixXd before = root_.Covariance();
+  const MatrixXd rows = RandomMatrix(&random_, 7, root_.dimension());
+  const VectorXd y = RandomMatrix(&random_, 7, 1);
+  MatrixXd h = rows;
+  VectorXd innovation = y;
+  double nis = 0;
+  VectorXd foreseen(root_.dimension());
+  ASSERT_TRUE(root_.Factor(root_.Prepare(h, innovation), &nis));
+  const double moved = root_.Solution(foreseen);
+  EXPECT_EQ(root_.Covariance(), before);
+  EXPECT_NEAR(moved, (rows * foreseen).squaredNorm(), 1e-9 * moved);
+  VectorXd correction(root_.dimension());
+  root_.Commit(correction);
+  EXPECT_LT((correction - foreseen).norm(), 1e-12 * correction.norm());
+  const MatrixXd s = rows * before * rows.transpose() + MatrixXd::Identity(7, 7);
+  EXPECT_LT((correction - before * rows.transpose() * s.ldlt().solve(y)).norm(), 1e-9 * correction.norm());
+  EXPECT_NEAR(nis, y.dot(s.ldlt().solve(y)), 1e-9 * nis);
+  const MatrixXd after = before - before * rows.transpose() * s.ldlt().solve(rows * before);
+  EXPECT_LT((root_.Covariance() - after).norm(), 1e-9 * after.norm());
+}
+
 TEST_F(SquareRootCovarianceTest, RowsThatAreNotFiniteAreRefusedAndChangeNothing) {
   const MatrixXd before = root_.Covariance();
   MatrixXd h = MatrixXd::Ones(3, root_.dimension());

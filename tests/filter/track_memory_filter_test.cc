@@ -67,5 +67,45 @@ TEST(TrackMemoryFilterTest, AnUncertainStartDoesNotWaitForTheWindowToFill) {
   EXPECT_GT(nees(TrackMemoryPolicy::kNone), 2 * with_memory);
 }
 
+// GIVEN a walk at 0.15 m/s and a start whose velocity is known to 0.05 m/s THEN the first corrections are as
+// large as the motion itself: tracks that wait for a depth leave it too late, single ones are those whose noise
+// looks like parallax, and one linearisation is not enough.
+TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAndWithMostTracks) {
+  const Result<SimulatorConfig> sim = LoadSimulatorConfig(
+      ALIDADE_SOURCE_DIR "/configs/datasets/figure8.yaml",
+      {"trajectory=hover", "duration_s=10", "length_m=0.6", "width_m=0.4", "height_m=0.2", "path_m=1.5"});
+  ASSERT_TRUE(sim.ok()) << sim.message();
+  EstimatorConfig config;
+  config.filter.update = UpdateTiming::kDelayedAll;
+  config.filter.clone_policy = ClonePolicy::kOldest;
+  config.filter.track_memory = TrackMemoryPolicy::kCarry;
+  config.filter.memory_depth_deviation = 0.03;
+  const auto nees = [&](int iterations, double max_direction_deviation) {
+    config.filter.update_iterations = iterations;
+    config.filter.max_direction_deviation = max_direction_deviation;
+    double sum = 0;
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+      const Dataset dataset = test::SimulateOrDie(*sim, seed);
+      FilterEstimator filter(config, dataset.rig);
+      NavEstimate initial = test::DrawInitialState(dataset, seed);
+      initial.covariance.diagonal().segment<2>(0).setConstant(0.01 * 0.01);
+      initial.covariance.diagonal().segment<3>(6).setConstant(0.05 * 0.05);
+      initial.covariance.diagonal().segment<3>(9).setConstant(5e-3 * 5e-3);
+      initial.covariance.diagonal().segment<3>(12).setConstant(0.1 * 0.1);
+      initial.nav.v_WB += Vector3d(0.05, -0.05, 0.05);
+      initial.bias.gyro += Vector3d(5e-3, 5e-3, -5e-3);
+      initial.bias.accel += Vector3d(0.1, -0.1, 0.1);
+      const test::ScenarioResult result = test::RunScenario(dataset, initial, &filter);
+      EXPECT_TRUE(result.status.ok()) << result.status.message();
+      sum += result.nees_pose;
+    }
+    return sum / 6;
+  };
+  const double right = nees(6, 0.2);
+  EXPECT_LT(right, 15);
+  EXPECT_GT(nees(1, 0), 3 * right);
+  EXPECT_GT(nees(6, 0), 3 * right);
+}
+
 }  // namespace
 }  // namespace alidade

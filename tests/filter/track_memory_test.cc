@@ -90,7 +90,7 @@ class TrackMemoryTest : public ::testing::TestWithParam<ErrorConvention> {
     Track track = SeenFromClones(state, p_W, 0, 5);
     FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
     update.Begin(state);
-    EXPECT_EQ(update.Append(state, track, true), TrackOutcome::kReady);
+    EXPECT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
     update.Remember(state, 0, 1, &track);
     EXPECT_TRUE(track.memory.active);
     return track.memory;
@@ -114,7 +114,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   plain.error = GetParam();
   FeatureUpdate all(plain, vision_, kFrames + 1);
   all.Begin(joint);
-  ASSERT_EQ(all.Append(joint, SeenFromClones(joint, p_W, 0, kFrames), false), TrackOutcome::kReady);
+  ASSERT_EQ(all.Append(joint, SeenFromClones(joint, p_W, 0, kFrames)), TrackOutcome::kReady);
   ASSERT_TRUE(joint.covariance().Apply(all.Prepare(-1, &joint.covariance()), correction, nullptr));
 
   FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
@@ -122,7 +122,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
   for (size_t seen = 5; seen <= kFrames; ++seen) {
     update.Begin(sequential);
     ASSERT_EQ(track.memory.active ? update.AppendRemembered(sequential, track)
-                                  : update.Append(sequential, track, true),
+                                  : update.AppendToRemember(sequential, track),
               TrackOutcome::kReady);
     update.Remember(sequential, 0, 1, &track);
     ASSERT_TRUE(
@@ -152,7 +152,7 @@ TEST_P(TrackMemoryTest, GivenADepthThatOnlyTheStateLeavesOpenThenNoMemoryStarts)
     FeatureUpdate update(filter, vision_, kFrames + 1);
     Track track = SeenFromClones(state, PointBefore(state), 0, kFrames);
     update.Begin(state);
-    EXPECT_EQ(update.Append(state, track, true), TrackOutcome::kReady);
+    EXPECT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
     update.Remember(state, 0, 1, &track);
     return track.memory.active;
   };
@@ -168,74 +168,105 @@ TEST_P(TrackMemoryTest, GivenACloneThatLeavesThenTheRowsAreTheMarginalOfItsCondi
   const TrackMemory before = Begin(state, PointBefore(state));
   const TrackMemoryKeeper keeper(Remembering(GetParam()), kFrames + 1);
   CloneConditional conditional;
-  keeper.Condition(state, 0, &conditional);
+  TrackMemoryKeeper::Condition(state, 0, 1, &conditional);
+  ASSERT_EQ(conditional.neighbours, std::min<size_t>(CloneConditional::kMaxNeighbours, kFrames - 1));
   TrackMemory after = before;
   keeper.Carry(state, conditional, &after);
 
-  // Unknowns (f, x_m, x_1, x_2): the memory's rows, and x_m = G x_s + w.
-  MatrixXd rows = MatrixXd::Zero(9, 21);
+  // Unknowns (f, x_m, x_1, x_2 ...): the memory's rows, and x_m = G x_s + w.
+  const auto width = static_cast<Index>(6 * conditional.neighbours);
+  MatrixXd rows = MatrixXd::Zero(9, 9 + width);
   const Eigen::Matrix<double, 6, 6> whiten =
       conditional.covariance.llt().matrixL().solve(Matrix6d::Identity());
-  const auto slot_columns = [](const TrackMemory& memory, int slot) {
-    return memory.clone_rows.middleCols<6>(6 * slot);
+  const auto over_neighbours = [&](const TrackMemory& memory) {
+    MatrixXd columns(3, width);
+    for (size_t i = 0; i < conditional.neighbours; ++i) {
+      columns.middleCols<6>(6 * static_cast<Index>(i)) =
+          memory.clone_rows.middleCols<6>(6 * conditional.neighbour_slots[i]);
+    }
+    return columns;
   };
+  const int leaving = 6 * conditional.leaving_slot;
   rows.topLeftCorner<3, 3>() = before.landmark_rows;
-  rows.block<3, 6>(0, 3) = slot_columns(before, conditional.leaving_slot);
-  rows.block<3, 6>(0, 9) = slot_columns(before, conditional.neighbour_slots[0]);
-  rows.block<3, 6>(0, 15) = slot_columns(before, conditional.neighbour_slots[1]);
+  rows.block<3, 6>(0, 3) = before.clone_rows.middleCols<6>(leaving);
+  rows.topRightCorner(3, width) = over_neighbours(before);
   rows.block<6, 6>(3, 3) = whiten;
-  rows.block<6, 12>(3, 9) = -whiten * conditional.gain;
-  MatrixXd ordered(9, 21);
-  ordered << rows.middleCols(3, 6), rows.leftCols(3), rows.rightCols(12);
+  rows.bottomRightCorner(6, width) = -whiten * conditional.gain.leftCols(width);
+  MatrixXd ordered(9, 9 + width);
+  ordered << rows.middleCols(3, 6), rows.leftCols(3), rows.rightCols(width);
   const MatrixXd information = ordered.transpose() * ordered;
+  const Index kept = 3 + width;
   const MatrixXd expected =
-      information.bottomRightCorner(15, 15) -
-      information.bottomLeftCorner(15, 6) *
-          information.topLeftCorner(6, 6).ldlt().solve(information.topRightCorner(6, 15));
+      information.bottomRightCorner(kept, kept) -
+      information.bottomLeftCorner(kept, 6) *
+          information.topLeftCorner(6, 6).ldlt().solve(information.topRightCorner(6, kept));
 
-  MatrixXd carried(3, 15);
-  carried << after.landmark_rows, slot_columns(after, conditional.neighbour_slots[0]),
-      slot_columns(after, conditional.neighbour_slots[1]);
+  MatrixXd carried(3, kept);
+  carried << after.landmark_rows, over_neighbours(after);
   if (GetParam() != ErrorConvention::kRightInvariant) {  // there the anchor may have moved
     const MatrixXd actual = carried.transpose() * carried;
     EXPECT_LT((actual - expected).norm(), 1e-6 * expected.norm());
   }
-  EXPECT_TRUE(slot_columns(after, conditional.leaving_slot).isZero(0));
+  EXPECT_TRUE(after.clone_rows.middleCols<6>(leaving).isZero(0));
   EXPECT_LT(after.landmark_rows.norm(), before.landmark_rows.norm()) << "something is lost";
   EXPECT_GT(after.landmark_rows.norm(), 0.5 * before.landmark_rows.norm()) << "but not much";
 }
 
 TEST_P(TrackMemoryTest, GivenARemovedCloneThenItIsPredictedByItsNeighbours) {
   const FilterState state = CloneEveryFrame(dataset_, GetParam());
-  const TrackMemoryKeeper keeper(Remembering(GetParam()), kFrames + 1);
   const MatrixXd p = state.covariance().Covariance();
   for (const size_t leaving : {size_t{0}, size_t{3}, size_t{kFrames - 2}}) {
     CloneConditional conditional;
-    keeper.Condition(state, leaving, &conditional);
-    const size_t first = leaving == 0 ? 1 : leaving - 1;
-    const size_t second = leaving == 0 ? 2 : leaving + 1;
+    TrackMemoryKeeper::Condition(state, leaving, 1, &conditional);
     // The deviation of x_m - G x_s in the filter's own covariance.
     MatrixXd map = MatrixXd::Zero(6, p.rows());
     map.middleCols<6>(state.CloneOffset(leaving)).setIdentity();
-    map.middleCols<6>(state.CloneOffset(first)) = -conditional.gain.leftCols<6>();
-    map.middleCols<6>(state.CloneOffset(second)) = -conditional.gain.rightCols<6>();
+    Matrix6d sum = Matrix6d::Zero();
+    for (size_t i = 0; i < conditional.neighbours; ++i) {
+      const auto gain = conditional.gain.middleCols<6>(6 * static_cast<Index>(i));
+      sum += gain;
+      for (size_t k = 0; k < state.clones().size(); ++k) {
+        if (state.clones()[k].slot == conditional.neighbour_slots[i]) {
+          map.middleCols<6>(state.CloneOffset(k)) = -gain;
+        }
+      }
+    }
     const MatrixXd residual = map * p * map.transpose();
     EXPECT_LT((residual - conditional.covariance).norm(), 1e-6 * residual.norm() + 1e-14) << leaving;
+    // Where all of them are is no concern of it, and no further one makes its noise larger.
+    EXPECT_LT((sum - Matrix6d::Identity()).norm(), 1e-9);
+    const Index next = state.CloneOffset(leaving == 0 ? 1 : leaving - 1);
+    MatrixXd alone = MatrixXd::Zero(6, p.rows());
+    alone.middleCols<6>(state.CloneOffset(leaving)).setIdentity();
+    alone.middleCols<6>(next) = -Matrix6d::Identity();
+    EXPECT_LT(residual.trace(), (alone * p * alone.transpose()).trace());
   }
 }
 
-/// Yaw about gravity and translation of the whole world, in the right-invariant error: the same for every
-/// clone and without the landmark's own position.
-MatrixXd UnobservableDirections(const FilterState& state) {
-  MatrixXd directions = MatrixXd::Zero(state.covariance().dimension() + 3, 4);
+TEST_P(TrackMemoryTest, GivenManyMemoriesThenTheNoiseTheyShareCountsAsOftenAsTheyShareADirectionOfIt) {
+  const FilterState state = CloneEveryFrame(dataset_, GetParam());
+  CloneConditional alone;
+  TrackMemoryKeeper::Condition(state, 0, 1, &alone);
+  for (const auto& [memories, factor] : {std::pair(5, 1.0), std::pair(12, 2.0), std::pair(120, 20.0)}) {
+    CloneConditional shared;
+    TrackMemoryKeeper::Condition(state, 0, static_cast<size_t>(memories), &shared);
+    EXPECT_LT((shared.covariance - factor * alone.covariance).norm(), 1e-9 * shared.covariance.norm());
+  }
+}
+
+/// Rotation and translation of the whole world, in the right-invariant error: the same for every clone and
+/// without the landmark's own position. Of the rotation, only yaw is unobservable; rows of views and memories are
+/// blind to all of it.
+MatrixXd WorldDirections(const FilterState& state) {
+  MatrixXd directions = MatrixXd::Zero(state.covariance().dimension() + 3, 6);
   for (size_t i = 0; i < state.clones().size(); ++i) {
-    directions.block<4, 4>(state.CloneOffset(i) + 2, 0).setIdentity();
+    directions.middleRows<6>(state.CloneOffset(i)).setIdentity();
   }
   directions.bottomRightCorner<3, 3>().setIdentity();
   return directions;
 }
 
-TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfYawAndPositionWhateverHappensToThem) {
+TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfWhereTheWorldIsWhateverHappensToThem) {
   const Dataset dataset = test::SimulateOrDie(SimulatorConfig(), 1);
   FilterState state = CloneEveryFrame(dataset, ErrorConvention::kRightInvariant);
   const FilterConfig config = Remembering(ErrorConvention::kRightInvariant);
@@ -244,12 +275,12 @@ TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfYawAndPositionWhateverHappen
   FeatureUpdate update(config, VisionConfig{.max_relative_depth_deviation = 10}, kFrames + 1);
   TrackMemoryKeeper keeper(config, kFrames + 1);
   update.Begin(state);
-  ASSERT_EQ(update.Append(state, track, true), TrackOutcome::kReady);
+  ASSERT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
   update.Remember(state, 0, 1, &track);
   const auto expect_blind = [&](const char* when) {
     MatrixXd rows(3, state.covariance().dimension() + 3);
     rows << OverState(state, track.memory.clone_rows), track.memory.landmark_rows;
-    EXPECT_LT((rows * UnobservableDirections(state)).norm(), 1e-8 * rows.norm()) << when;
+    EXPECT_LT((rows * WorldDirections(state)).norm(), 1e-8 * rows.norm()) << when;
   };
   expect_blind("at the start");
   RandomStream random(3, "correction");
@@ -268,11 +299,11 @@ TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfYawAndPositionWhateverHappen
     expect_blind("after a view");
     MatrixXd rows(2, state.covariance().dimension() + 3);
     rows << OverState(state, keeper.jacobian()), Eigen::Matrix<double, 2, 3>::Zero();
-    EXPECT_LT((rows * UnobservableDirections(state)).norm(), 1e-8 * rows.norm());
+    EXPECT_LT((rows * WorldDirections(state)).norm(), 1e-8 * rows.norm());
   }
   while (state.clones().size() > 3) {
     CloneConditional conditional;
-    keeper.Condition(state, state.clones().size() / 2 - 1, &conditional);
+    TrackMemoryKeeper::Condition(state, state.clones().size() / 2 - 1, 1, &conditional);
     keeper.Carry(state, conditional, &track.memory);
     state.RemoveClone(state.clones().size() / 2 - 1);
     expect_blind("after a clone left");

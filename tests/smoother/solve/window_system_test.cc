@@ -95,7 +95,7 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
 void AddRest(WindowFixture* fixture) {
   for (int i = 0; i < 2; ++i) {
     fixture->window.frame(i).rest =
-        MakeRestMeasurement({true, true}, Eigen::Vector3d(0.01, -0.02, 0.03 * i), VisionConfig());
+        MakeRestMeasurement({true, true}, {{0.01, -0.02, 0.03 * i}, {0.1, 0.2, 0.3}}, {0.1, 0, 0.1}, VisionConfig());
   }
 }
 
