@@ -6,14 +6,14 @@
 
 namespace alidade {
 
-/// A rig whose camera stands still (core/rest_detector.h) while the body may turn about it, and, where it does
-/// not turn either, a gyroscope that shows its bias alone,
+/// A rig whose camera stands still (core/rest_detector.h) while the body may turn about it, and, where it
+/// does not turn either, a gyroscope that shows its bias alone,
 ///
 ///     r = (v_WB + R_WB (w - b_g) x p_BC, b_g - mean measured rate),   6x1, m/s and rad/s,
 ///
-/// with w the rate measured at the state's stamp. Jacobian over the 15 canonical coordinates (phi, dp, dv, dbg,
-/// dba). Neglected: the earth's rotation (7e-5 rad/s, taken for bias), the noise of w, and the correlation of
-/// the mean rate with the gyroscope noise of the propagation.
+/// with w the rate measured at the state's stamp. Jacobian over the 15 canonical coordinates (phi, dp, dv,
+/// dbg, dba). Neglected: the earth's rotation (7e-5 rad/s, taken for bias), the noise of w, and the
+/// correlation of the mean rate with the gyroscope noise of the propagation.
 struct RestModel {
   static constexpr int kRows = 6;
   using Jacobian = Eigen::Matrix<double, kRows, 15>;

@@ -148,9 +148,9 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
 TrackOutcome FeatureUpdate::AppendToRemember(const FilterState& state, const Track& track) {
   // Cheaper than the exact test of a memory, which follows.
   const double lenient = kLeniency * filter_.memory_depth_deviation;
-  return AppendViews(state, track,
-                     {.max_depth_deviation = std::min(vision_.max_relative_depth_deviation, lenient),
-                      .to_remember = true});
+  return AppendViews(
+      state, track,
+      {.max_depth_deviation = std::min(vision_.max_relative_depth_deviation, lenient), .to_remember = true});
 }
 
 TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& track,

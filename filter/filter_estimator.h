@@ -118,7 +118,7 @@ class FilterEstimator : public Estimator {
   std::vector<size_t> degenerate_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
-  std::vector<double> weights_;  ///< of the blocks; 0: refused
+  std::vector<double> weights_;     ///< of the blocks; 0: refused
   std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;
   Eigen::VectorXd correction_;  ///< see Correction()

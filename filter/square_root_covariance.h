@@ -74,7 +74,8 @@ class SquareRootCovariance {
              double* log_det = nullptr);
 
   /// The halves of Apply. Factor leaves S as it is; Solution then gives the correction, and the square of the
-  /// norm of H times it; Commit updates S and gives the same correction. Each needs Factor directly before it.
+  /// norm of H times it; Commit updates S and gives the same correction. Each needs Factor directly before
+  /// it.
   bool Factor(const PreparedRows& prepared, double* nis, double* log_det = nullptr);
   double Solution(Eigen::Ref<Eigen::VectorXd> correction);
   void Commit(Eigen::Ref<Eigen::VectorXd> correction);
@@ -132,8 +133,8 @@ class SquareRootCovariance {
   Eigen::MatrixXd information_;  // scratch of Apply
   Eigen::MatrixXd corner_;       // scratch of Propagate and CloneCore
   Eigen::VectorXd projected_;
-  Eigen::VectorXd whitened_;  // scratch of Solution
-  int factored_ = 0;          // first column of S that Factor's rows see
+  Eigen::VectorXd whitened_;                     // scratch of Solution
+  int factored_ = 0;                             // first column of S that Factor's rows see
   std::vector<std::pair<int, double>> entries_;  // scratch of PrepareSparse: column and value
   std::vector<size_t> row_ends_;
   Eigen::VectorXd reflection_;

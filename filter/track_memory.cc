@@ -202,8 +202,8 @@ void TrackMemoryKeeper::Condition(const FilterState& state, size_t index, size_t
     }
   }
   const Matrix6d rest = p.topLeftCorner<6, 6>() - gain.transpose() * p.bottomLeftCorner(others, 6);
-  conditional->covariance = std::max(1.0, static_cast<double>(memories) / kPoseDirections) * 0.5 *
-                            (rest + rest.transpose());
+  conditional->covariance =
+      std::max(1.0, static_cast<double>(memories) / kPoseDirections) * 0.5 * (rest + rest.transpose());
 }
 
 void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& conditional,

@@ -30,7 +30,7 @@ struct CloneConditional {
   size_t neighbours = 0;  ///< how many there are
   std::array<int, kMaxNeighbours> neighbour_slots{};
   Eigen::Matrix<double, 6, 6 * kMaxNeighbours> gain;  ///< G; six columns a neighbour
-  Matrix6d covariance = Matrix6d::Zero();                                    ///< C
+  Matrix6d covariance = Matrix6d::Zero();             ///< C
 };
 
 /// Starts, extends and carries the memories of tracks (docs/track_memory.md).

@@ -255,8 +255,8 @@ TEST_P(TrackMemoryTest, GivenManyMemoriesThenTheNoiseTheyShareCountsAsOftenAsThe
 }
 
 /// Rotation and translation of the whole world, in the right-invariant error: the same for every clone and
-/// without the landmark's own position. Of the rotation, only yaw is unobservable; rows of views and memories are
-/// blind to all of it.
+/// without the landmark's own position. Of the rotation, only yaw is unobservable; rows of views and memories
+/// are blind to all of it.
 MatrixXd WorldDirections(const FilterState& state) {
   MatrixXd directions = MatrixXd::Zero(state.covariance().dimension() + 3, 6);
   for (size_t i = 0; i < state.clones().size(); ++i) {

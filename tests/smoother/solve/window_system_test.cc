@@ -94,8 +94,8 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
 /// The first two frames stood still (deviations 0.02 m/s and 0.005 rad/s).
 void AddRest(WindowFixture* fixture) {
   for (int i = 0; i < 2; ++i) {
-    fixture->window.frame(i).rest =
-        MakeRestMeasurement({true, true}, {{0.01, -0.02, 0.03 * i}, {0.1, 0.2, 0.3}}, {0.1, 0, 0.1}, VisionConfig());
+    fixture->window.frame(i).rest = MakeRestMeasurement(
+        {true, true}, {{0.01, -0.02, 0.03 * i}, {0.1, 0.2, 0.3}}, {0.1, 0, 0.1}, VisionConfig());
   }
 }
 

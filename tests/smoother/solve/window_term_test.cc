@@ -52,7 +52,8 @@ TEST(WindowTermTest, RowsOfTheSensorsAreThoseOfCeresAndNumeric) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     GnssFixture fixture(seed);
     fixture.window.frame(1).rest =
-        MakeRestMeasurement({true, true}, {fixture.random.Vector(0.1), fixture.random.Vector(1)}, fixture.random.Vector(0.3), VisionConfig());
+        MakeRestMeasurement({true, true}, {fixture.random.Vector(0.1), fixture.random.Vector(1)},
+                            fixture.random.Vector(0.3), VisionConfig());
     for (int i = 1; i <= 2; ++i) {  // at the frame, and after it
       WindowFrame& frame = fixture.window.frame(i);
       FrameMeasurement& fix = frame.measurements.emplace_back();
