@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxRefusals = 1;
 // Square of what may be neglected in the linearisation of an update, in standard deviations of one row.
 constexpr double kNegligible = 0.1;
-// Share of the tracks without a memory that update together while the window's shape is uncertain.
+// Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
 
 /// How far a correction deforms the window, the positions of its cameras as the newest one sees them, as a

@@ -33,7 +33,7 @@ TEST(BaseYaml, IsWhatTheCodeSays) {
   const Result<std::string> text = ReadWholeFile(path);
   ASSERT_TRUE(text.ok()) << text.message();
   EXPECT_EQ(*text, BaseYaml()) << "configs/base.yaml is out of date; run:  ALIDADE_REGENERATE=1 "
-                                  "build/alidade_eval_tests --gtest_filter=BaseYaml.IsWhatTheCodeSays";
+                                  "build/alidade_eval_config_tests --gtest_filter=BaseYaml.IsWhatTheCodeSays";
 }
 
 TEST(BaseYaml, WhenReadBackThenItIsTheDefaults) {
