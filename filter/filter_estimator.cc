@@ -185,10 +185,12 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
   }
   // An uncertain start drifts far in a window's time: the first tracks must not wait for it to fill.
   if (filter.track_memory != TrackMemoryPolicy::kNone && serial_ - first_serial_ < filter.window &&
-      due_ != DueTracks::kEnding) {
+      due_ != DueTracks::kLeaving) {
     return true;
   }
-  return track.last_serial != serial_ || track.views.front().serial == leaving_serial;
+  // One that was lost while most tracks still wait is dropped: alone, it would be taken for parallax.
+  const bool lost = track.last_serial != serial_ && due_ != DueTracks::kLeaving;
+  return lost || track.views.front().serial == leaving_serial;
 }
 
 bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {

@@ -43,9 +43,9 @@ class FilterEstimator : public Estimator {
  private:
   /// Which tracks may update; an active memory always may.
   enum class DueTracks {
-    kUsual,   ///< by FilterConfig::update
-    kAll,     ///< every one, whatever it waits for
-    kEnding,  ///< those that cannot wait
+    kUsual,    ///< by FilterConfig::update
+    kAll,      ///< every one, whatever it waits for
+    kLeaving,  ///< those whose first view leaves the window
   };
 
   Status PropagateTo(TimeNs stamp_ns);

@@ -136,7 +136,7 @@ int FilterEstimator::AppendTracks(int leaving_serial) {
     if (ready >= kMostTracks * (ready + statistics_.features_waiting)) {
       return landmark_rows;
     }
-    due_ = DueTracks::kEnding;
+    due_ = DueTracks::kLeaving;
   }
   return AppendDueTracks(leaving_serial);
 }
