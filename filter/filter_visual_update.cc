@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,8 @@ constexpr int kMaxRefusals = 1;
 constexpr double kNegligible = 0.1;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
+// Of the deviation across the line between the cameras that is allowed, what may be along it.
+constexpr double kScaleTolerance = 2;
 
 /// How far a correction deforms the window, the positions of its cameras as the newest one sees them, as a
 /// share of its extent.
@@ -39,12 +42,16 @@ double RelativeDeformation(const FilterState& state, const Eigen::Ref<const Eige
   return extent > 0 ? std::sqrt(deformation / extent) : 0;
 }
 
-/// Relative standard deviation of the oldest camera's position as the newest one sees it, across the line
-/// between them. Along it lies the scale, in which the rows are linear.
-double DirectionDeviation(const FilterState& state) {
+/// Relative standard deviations of the oldest camera's position as the newest one sees it.
+struct BaselineDeviation {
+  double across = 0;  ///< the line between them
+  double along = 0;   ///< the scale, in which the rows are linear
+};
+
+BaselineDeviation MeasureBaseline(const FilterState& state) {
   const std::vector<Clone>& clones = state.clones();
   if (clones.size() < 2) {
-    return 0;
+    return {};
   }
   const Clone& newest = clones.back();
   const Clone& oldest = clones.front();
@@ -52,7 +59,7 @@ double DirectionDeviation(const FilterState& state) {
   const Eigen::Vector3d place = R_CW * (oldest.T_WC.translation - newest.T_WC.translation);
   const double extent = place.norm();
   if (!(extent > 0)) {
-    return std::numeric_limits<double>::infinity();
+    return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
   Eigen::Matrix<double, 3, 6> over_newest = -R_CW * newest.camera_from_error.bottomRows<3>();
   over_newest += Skew(place) * newest.camera_from_error.topRows<3>();
@@ -64,8 +71,9 @@ double DirectionDeviation(const FilterState& state) {
   const Eigen::Matrix3d covariance = over_newest * p.PoseBlock(n, n) * over_newest.transpose() +
                                      over_oldest * p.PoseBlock(o, o) * over_oldest.transpose() + cross +
                                      cross.transpose();
-  const Eigen::Vector3d along = place / extent;
-  return std::sqrt(std::max(covariance.trace() - along.dot(covariance * along), 0.0)) / extent;
+  const Eigen::Vector3d line = place / extent;
+  const double along = std::max(line.dot(covariance * line), 0.0);
+  return {std::sqrt(std::max(covariance.trace() - along, 0.0)) / extent, std::sqrt(along) / extent};
 }
 
 }  // namespace
@@ -129,13 +137,19 @@ int FilterEstimator::AppendDueTracks(int leaving_serial) {
 int FilterEstimator::AppendTracks(int leaving_serial) {
   due_ = DueTracks::kUsual;
   const double limit = config_.filter.max_direction_deviation;
-  if (limit > 0 && DirectionDeviation(state_) > limit) {
+  if (!(limit > 0)) {
+    return AppendDueTracks(leaving_serial);
+  }
+  const BaselineDeviation deviation = MeasureBaseline(state_);
+  if (deviation.across > limit) {
     due_ = DueTracks::kAll;
     const int landmark_rows = AppendDueTracks(leaving_serial);
     const double ready = static_cast<double>(appended_.size());
     if (ready >= kMostTracks * (ready + statistics_.features_waiting)) {
       return landmark_rows;
     }
+    due_ = DueTracks::kLeaving;
+  } else if (deviation.along > kScaleTolerance * limit) {
     due_ = DueTracks::kLeaving;
   }
   return AppendDueTracks(leaving_serial);
