@@ -1,5 +1,6 @@
 #include "core/rest_detector.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

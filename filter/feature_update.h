@@ -81,7 +81,7 @@ class FeatureUpdate {
   }
   /// Hands the rows over to be applied; those from `sparse_from` on are of landmarks of the state.
   [[nodiscard]] PreparedRows Prepare(int sparse_from, SquareRootCovariance* covariance) {
-    const PreparedRows prepared = covariance->Prepare(jacobian(), innovation(), sparse_from);
+    PreparedRows prepared = covariance->Prepare(jacobian(), innovation(), sparse_from);
     prepared_ = true;
     return prepared;
   }

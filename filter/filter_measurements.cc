@@ -64,7 +64,7 @@ Status FilterEstimator::AddGnss(const GnssEpoch& epoch) {
   ALIDADE_RETURN_IF_ERROR(BeginMeasurement("GNSS epoch", epoch.stamp_ns));
   const Stopwatch stopwatch;
   const bool finite = gnss_.Apply(epoch, last_gyro_radps_, &state_, Correction(), &statistics_);
-  const Status status = EndMeasurement("GNSS epoch", epoch.stamp_ns, finite);
+  Status status = EndMeasurement("GNSS epoch", epoch.stamp_ns, finite);
   statistics_.update_ms = stopwatch.ElapsedMs();
   return status;
 }
@@ -77,7 +77,7 @@ Status FilterEstimator::AddMeasurement(const Measurement& measurement) {
   ALIDADE_RETURN_IF_ERROR(BeginMeasurement(what, stamp_ns));
   const Stopwatch stopwatch;
   const bool finite = measurements_.Apply(*whitened, &state_, Correction(), &statistics_);
-  const Status status = EndMeasurement(what, stamp_ns, finite);
+  Status status = EndMeasurement(what, stamp_ns, finite);
   statistics_.update_ms = stopwatch.ElapsedMs();
   return status;
 }
