@@ -54,11 +54,12 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
                    "largest number of linearisations of a visual update; more than one only where the "
                    "correction is too large for one"},
                   &update_iterations, 1, 20);
-  visitor.Real({"max_direction_deviation", "-",
-                "largest relative standard deviation of the newest camera's position as the oldest one sees "
-                "it, across the line between them, at which tracks may wait for a better depth; also of the "
-                "depth of a track that then may not; 0: tracks may always wait"},
-               &max_direction_deviation, 0, 10);
+  visitor.Real(
+      {"max_direction_deviation", "-",
+       "largest relative standard deviation of the direction from the newest camera to the oldest one "
+       "at which a track may wait for a better depth; above it, tracks update together, with depths "
+       "known to this deviation; 0: tracks always wait"},
+      &max_direction_deviation, 0, 10);
   visitor.Boolean({"first_estimates", "-",
                    "evaluate Jacobians at the first estimate of each pose and landmark: with so3xrn yaw then "
                    "stays unobservable"},

@@ -246,7 +246,7 @@ void FilterEstimator::LeaveMemories(size_t leaving) {
     }
   }
   if (carry && !left_.empty()) {
-    TrackMemoryKeeper::Condition(state_, leaving, left_.size(), &conditional_);
+    ConditionClone(state_, leaving, left_.size(), &conditional_);
   }
   for (TrackMemory* memory : left_) {
     if (carry) {

@@ -64,7 +64,7 @@ class FilterEstimator : public Estimator {
   /// While the window's shape is less certain than FilterConfig::max_direction_deviation, all tracks update
   /// as soon as most of them can: a few would be those whose noise looks like parallax. While only its scale
   /// is uncertain, they wait. Returns as above.
-  int AppendTracks(int leaving_serial);
+  int ChooseAndAppendTracks(int leaving_serial);
   /// Updates the covariance with all tracks that are due, linearised again (FilterConfig::update_iterations)
   /// where they move the state far; what is left to correct the state by is then in Correction(). Nothing is
   /// left when appended_ is empty. False when a number is not finite; the state is then lost.

@@ -1,8 +1,7 @@
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "filter/filter_estimator.h"
+#include "filter/window_shape.h"
 
 // The visual update of FilterEstimator: which rows, which of them pass the gate, and what becomes of their
 // tracks.
@@ -18,63 +17,6 @@ constexpr double kNegligible = 0.1;
 constexpr double kMostTracks = 0.7;
 // Of the deviation across the line between the cameras that is allowed, what may be along it.
 constexpr double kScaleTolerance = 2;
-
-/// How far a correction deforms the window, the positions of its cameras as the newest one sees them, as a
-/// share of its extent.
-double RelativeDeformation(const FilterState& state, const Eigen::Ref<const Eigen::VectorXd>& correction) {
-  const std::vector<Clone>& clones = state.clones();
-  const auto moved = [&](size_t i) -> Vector6d {
-    return clones[i].camera_from_error * correction.segment<6>(state.CloneOffset(i));
-  };
-  const Pose& newest = clones.back().T_WC;
-  const Vector6d newest_moved = moved(clones.size() - 1);
-  double deformation = 0;
-  double extent = 0;
-  for (size_t i = 0; i + 1 < clones.size(); ++i) {
-    const Eigen::Vector3d place =
-        newest.rotation.transpose() * (clones[i].T_WC.translation - newest.translation);
-    const Eigen::Vector3d shift =
-        newest.rotation.transpose() * (moved(i).tail<3>() - newest_moved.tail<3>()) -
-        newest_moved.head<3>().cross(place);
-    deformation += shift.squaredNorm();
-    extent += place.squaredNorm();
-  }
-  return extent > 0 ? std::sqrt(deformation / extent) : 0;
-}
-
-/// Relative standard deviations of the oldest camera's position as the newest one sees it.
-struct BaselineDeviation {
-  double across = 0;  ///< the line between them
-  double along = 0;   ///< the scale, in which the rows are linear
-};
-
-BaselineDeviation MeasureBaseline(const FilterState& state) {
-  const std::vector<Clone>& clones = state.clones();
-  if (clones.size() < 2) {
-    return {};
-  }
-  const Clone& newest = clones.back();
-  const Clone& oldest = clones.front();
-  const Eigen::Matrix3d R_CW = newest.T_WC.rotation.transpose();
-  const Eigen::Vector3d place = R_CW * (oldest.T_WC.translation - newest.T_WC.translation);
-  const double extent = place.norm();
-  if (!(extent > 0)) {
-    return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  }
-  Eigen::Matrix<double, 3, 6> over_newest = -R_CW * newest.camera_from_error.bottomRows<3>();
-  over_newest += Skew(place) * newest.camera_from_error.topRows<3>();
-  const Eigen::Matrix<double, 3, 6> over_oldest = R_CW * oldest.camera_from_error.bottomRows<3>();
-  const int n = state.CloneOffset(clones.size() - 1);
-  const int o = state.CloneOffset(0);
-  const SquareRootCovariance& p = state.covariance();
-  const Eigen::Matrix3d cross = over_newest * p.PoseBlock(n, o) * over_oldest.transpose();
-  const Eigen::Matrix3d covariance = over_newest * p.PoseBlock(n, n) * over_newest.transpose() +
-                                     over_oldest * p.PoseBlock(o, o) * over_oldest.transpose() + cross +
-                                     cross.transpose();
-  const Eigen::Vector3d line = place / extent;
-  const double along = std::max(line.dot(covariance * line), 0.0);
-  return {std::sqrt(std::max(covariance.trace() - along, 0.0)) / extent, std::sqrt(along) / extent};
-}
 
 }  // namespace
 
@@ -134,7 +76,7 @@ int FilterEstimator::AppendDueTracks(int leaving_serial) {
   return landmark_rows;
 }
 
-int FilterEstimator::AppendTracks(int leaving_serial) {
+int FilterEstimator::ChooseAndAppendTracks(int leaving_serial) {
   due_ = DueTracks::kUsual;
   const double limit = config_.filter.max_direction_deviation;
   if (!(limit > 0)) {
@@ -160,7 +102,8 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   auto corrected = corrected_.head(covariance.dimension());  // since the prediction
   corrected.setZero();
   for (int pass = 1;; ++pass) {
-    const int landmark_rows = pass == 1 ? AppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
+    const int landmark_rows =
+        pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
     if (appended_.empty()) {
       if (pass > 1) {
         Correction() = -corrected;
@@ -256,6 +199,7 @@ void FilterEstimator::GateBlocks(PreparedRows* rows) {
   MeasureBlocks(*rows);
   accepted_.assign(appended_.size(), true);
   weights_.assign(appended_.size(), 0);
+  // Of the last linearisation alone.
   statistics_.features_used = 0;
   statistics_.features_gated = 0;
   statistics_.nis_dof = 0;

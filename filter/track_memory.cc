@@ -1,7 +1,6 @@
 #include "filter/track_memory.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "core/check.h"
@@ -23,8 +22,6 @@ constexpr double kStayFactor = 1.5;
 // Of the depth's deviation, what the state's may be: it is common to all tracks and biases the scale, where a
 // track's own averages out.
 constexpr double kStateShare = 0.5;
-// Directions that the noise of a clone's conditional has: a memory shares each with this part of the others.
-constexpr double kPoseDirections = 6;
 
 }  // namespace
 
@@ -152,58 +149,6 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
     memory->p_W = LandmarkError::Turned(theta, memory->p_W);
   }
   memory->p_W += move;
-}
-
-void TrackMemoryKeeper::Condition(const FilterState& state, size_t index, size_t memories,
-                                  CloneConditional* conditional) {
-  constexpr size_t kMost = CloneConditional::kMaxNeighbours;
-  using Joint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 * kMost, 6 * kMost>;
-  const std::vector<Clone>& clones = state.clones();
-  CHECK_GE(clones.size(), 3U);
-  // The nearest in time, the very nearest first: x_1.
-  const size_t count = std::min(kMost, clones.size() - 1);
-  std::array<size_t, kMost> neighbours{};
-  for (size_t i = 0, before = index, after = index + 1; i < count; ++i) {
-    const bool earlier = before > 0 && (after == clones.size() || index - before < after - index);
-    neighbours[i] = earlier ? --before : after++;
-  }
-  // Covariance of (x_m, x_2, x_3 ...), less x_1 each: what follows says nothing about where all of them are.
-  const SquareRootCovariance& covariance = state.covariance();
-  const int nearest = state.CloneOffset(neighbours[0]);
-  const auto offset = [&](size_t i) { return state.CloneOffset(i == 0 ? index : neighbours[i]); };
-  const Matrix6d of_nearest = covariance.PoseBlock(nearest, nearest);
-  std::array<Matrix6d, kMost> with_nearest;
-  for (size_t i = 0; i < count; ++i) {
-    with_nearest[i] = covariance.PoseBlock(offset(i), nearest);
-  }
-  Joint p(6 * count, 6 * count);
-  for (size_t i = 0; i < count; ++i) {
-    for (size_t j = 0; j <= i; ++j) {
-      const Matrix6d block = covariance.PoseBlock(offset(i), offset(j)) - with_nearest[i] -
-                             with_nearest[j].transpose() + of_nearest;
-      p.block<6, 6>(6 * static_cast<Index>(i), 6 * static_cast<Index>(j)) = block;
-      p.block<6, 6>(6 * static_cast<Index>(j), 6 * static_cast<Index>(i)) = block.transpose();
-    }
-  }
-  const Index others = p.rows() - 6;
-  const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6 * kMost, 6> gain =
-      p.bottomRightCorner(others, others).ldlt().solve(p.bottomLeftCorner(others, 6));
-  conditional->leaving_serial = clones[index].serial;
-  conditional->leaving_slot = clones[index].slot;
-  conditional->neighbours = count;
-  auto over_nearest = conditional->gain.leftCols<6>();
-  over_nearest.setIdentity();
-  for (size_t i = 0; i < count; ++i) {
-    conditional->neighbour_slots[i] = clones[neighbours[i]].slot;
-    if (i > 0) {
-      const Matrix6d part = gain.middleRows<6>(6 * static_cast<Index>(i - 1)).transpose();
-      conditional->gain.middleCols<6>(6 * static_cast<Index>(i)) = part;
-      over_nearest -= part;
-    }
-  }
-  const Matrix6d rest = p.topLeftCorner<6, 6>() - gain.transpose() * p.bottomLeftCorner(others, 6);
-  conditional->covariance =
-      std::max(1.0, static_cast<double>(memories) / kPoseDirections) * 0.5 * (rest + rest.transpose());
 }
 
 void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& conditional,

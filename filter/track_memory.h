@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "core/filter_config.h"
+#include "filter/clone_conditional.h"
 #include "filter/filter_state.h"
 
 namespace alidade {
@@ -20,17 +20,6 @@ struct TrackMemory {
   /// T: six columns a clone slot, then the calibration's
   Eigen::Matrix<double, 3, Eigen::Dynamic> clone_rows;
   int refusals = 0;  ///< observations refused in a row
-};
-
-/// The marginalised clone seen from its neighbours in time: x_m = G x_s + w, w ~ N(0, C).
-struct CloneConditional {
-  static constexpr int kMaxNeighbours = 8;
-  int leaving_serial = 0;
-  int leaving_slot = 0;
-  size_t neighbours = 0;  ///< how many there are
-  std::array<int, kMaxNeighbours> neighbour_slots{};
-  Eigen::Matrix<double, 6, 6 * kMaxNeighbours> gain;  ///< G; six columns a neighbour
-  Matrix6d covariance = Matrix6d::Zero();             ///< C
 };
 
 /// Starts, extends and carries the memories of tracks (docs/track_memory.md).
@@ -59,10 +48,6 @@ class TrackMemoryKeeper {
   void Correct(const FilterState& state, const Eigen::Ref<const Eigen::VectorXd>& correction,
                TrackMemory* memory) const;
 
-  /// How clone `index` follows from its neighbours. `memories`: how many are carried over it; w is common to
-  /// them, and C is scaled so that they may take it for their own (docs/track_memory.md).
-  static void Condition(const FilterState& state, size_t index, size_t memories,
-                        CloneConditional* conditional);
   /// Replaces the leaving clone in the rows by its conditional mean and whitens its noise away.
   void Carry(const FilterState& state, const CloneConditional& conditional, TrackMemory* memory) const;
 

@@ -9,6 +9,18 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// One standard deviation off in velocity and biases, as a sensor sheet leaves them.
+NavEstimate UncertainStart(const Dataset& dataset, unsigned seed) {
+  NavEstimate initial = test::DrawInitialState(dataset, seed);
+  initial.covariance.diagonal().segment<3>(6).setConstant(0.05 * 0.05);
+  initial.covariance.diagonal().segment<3>(9).setConstant(5e-3 * 5e-3);
+  initial.covariance.diagonal().segment<3>(12).setConstant(0.1 * 0.1);
+  initial.nav.v_WB += Vector3d(0.05, -0.05, 0.05);
+  initial.bias.gyro += Vector3d(5e-3, 5e-3, -5e-3);
+  initial.bias.accel += Vector3d(0.1, -0.1, 0.1);
+  return initial;
+}
+
 TEST(TrackMemoryFilterTest, MemoryBeyondTheWindowBeatsTheWindowAlone) {
   SimulatorConfig sim;
   sim.duration_s = 60;
@@ -51,14 +63,7 @@ TEST(TrackMemoryFilterTest, AnUncertainStartDoesNotWaitForTheWindowToFill) {
   const auto nees = [&](TrackMemoryPolicy policy) {
     config.filter.track_memory = policy;
     FilterEstimator filter(config, dataset.rig);
-    NavEstimate initial = test::DrawInitialState(dataset, 1);
-    initial.covariance.diagonal().segment<3>(6).setConstant(0.05 * 0.05);
-    initial.covariance.diagonal().segment<3>(9).setConstant(5e-3 * 5e-3);
-    initial.covariance.diagonal().segment<3>(12).setConstant(0.1 * 0.1);
-    initial.nav.v_WB += Vector3d(0.05, -0.05, 0.05);
-    initial.bias.gyro += Vector3d(5e-3, 5e-3, -5e-3);
-    initial.bias.accel += Vector3d(0.1, -0.1, 0.1);
-    const test::ScenarioResult result = test::RunScenario(dataset, initial, &filter);
+    const test::ScenarioResult result = test::RunScenario(dataset, UncertainStart(dataset, 1), &filter);
     EXPECT_TRUE(result.status.ok()) << result.status.message();
     return result.nees_pose;
   };
@@ -87,14 +92,8 @@ TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAnd
     for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
       const Dataset dataset = test::SimulateOrDie(*sim, seed);
       FilterEstimator filter(config, dataset.rig);
-      NavEstimate initial = test::DrawInitialState(dataset, seed);
+      NavEstimate initial = UncertainStart(dataset, seed);
       initial.covariance.diagonal().segment<2>(0).setConstant(0.01 * 0.01);
-      initial.covariance.diagonal().segment<3>(6).setConstant(0.05 * 0.05);
-      initial.covariance.diagonal().segment<3>(9).setConstant(5e-3 * 5e-3);
-      initial.covariance.diagonal().segment<3>(12).setConstant(0.1 * 0.1);
-      initial.nav.v_WB += Vector3d(0.05, -0.05, 0.05);
-      initial.bias.gyro += Vector3d(5e-3, 5e-3, -5e-3);
-      initial.bias.accel += Vector3d(0.1, -0.1, 0.1);
       const test::ScenarioResult result = test::RunScenario(dataset, initial, &filter);
       EXPECT_TRUE(result.status.ok()) << result.status.message();
       sum += result.nees_pose;

@@ -5,9 +5,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "core/imu_buffer.h"
 #include "core/visual_observation.h"
 #include "filter/feature_update.h"
+#include "tests/support/cloned_window.h"
 #include "tests/support/scenario.h"
 
 namespace alidade {
@@ -18,31 +18,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kFrames = 9;
-
-/// A filter state with a clone for each of the first frames of a simulation; nothing updated yet.
-FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention, const NavEstimate& initial) {
-  FilterState state(convention, false, dataset.rig.T_BC, {kFrames + 1, 0});
-  EXPECT_TRUE(state.Reset(initial).ok());
-  ImuBuffer imu(1.0);
-  for (const ImuSample& sample : dataset.imu) {
-    EXPECT_TRUE(imu.Add(sample).ok());
-  }
-  for (int k = 0; k < kFrames; ++k) {
-    const TimeNs stamp_ns = dataset.tracks[static_cast<size_t>(k)].stamp_ns;
-    if (k > 0) {
-      std::vector<ImuSample> interval;
-      EXPECT_TRUE(imu.Interval(state.stamp_ns(), stamp_ns, &interval).ok());
-      EXPECT_TRUE(state.Propagate(interval, dataset.rig.imu_noise, Vector3d(0, 0, -9.81)).ok());
-    }
-    state.AddClone(k);
-  }
-  return state;
-}
-
-FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) {
-  return CloneEveryFrame(dataset, convention, test::DrawInitialState(dataset, 1));
-}
+using test::CloneEveryFrame;
+constexpr int kFrames = test::kClonedFrames;
 
 /// The landmark seen by the estimated clones [first, last), without noise.
 Track SeenFromClones(const FilterState& state, const Vector3d& p_W, size_t first, size_t last) {
@@ -168,7 +145,7 @@ TEST_P(TrackMemoryTest, GivenACloneThatLeavesThenTheRowsAreTheMarginalOfItsCondi
   const TrackMemory before = Begin(state, PointBefore(state));
   const TrackMemoryKeeper keeper(Remembering(GetParam()), kFrames + 1);
   CloneConditional conditional;
-  TrackMemoryKeeper::Condition(state, 0, 1, &conditional);
+  ConditionClone(state, 0, 1, &conditional);
   ASSERT_EQ(conditional.neighbours, std::min<size_t>(CloneConditional::kMaxNeighbours, kFrames - 1));
   TrackMemory after = before;
   keeper.Carry(state, conditional, &after);
@@ -210,48 +187,6 @@ TEST_P(TrackMemoryTest, GivenACloneThatLeavesThenTheRowsAreTheMarginalOfItsCondi
   EXPECT_TRUE(after.clone_rows.middleCols<6>(leaving).isZero(0));
   EXPECT_LT(after.landmark_rows.norm(), before.landmark_rows.norm()) << "something is lost";
   EXPECT_GT(after.landmark_rows.norm(), 0.5 * before.landmark_rows.norm()) << "but not much";
-}
-
-TEST_P(TrackMemoryTest, GivenARemovedCloneThenItIsPredictedByItsNeighbours) {
-  const FilterState state = CloneEveryFrame(dataset_, GetParam());
-  const MatrixXd p = state.covariance().Covariance();
-  for (const size_t leaving : {size_t{0}, size_t{3}, size_t{kFrames - 2}}) {
-    CloneConditional conditional;
-    TrackMemoryKeeper::Condition(state, leaving, 1, &conditional);
-    // The deviation of x_m - G x_s in the filter's own covariance.
-    MatrixXd map = MatrixXd::Zero(6, p.rows());
-    map.middleCols<6>(state.CloneOffset(leaving)).setIdentity();
-    Matrix6d sum = Matrix6d::Zero();
-    for (size_t i = 0; i < conditional.neighbours; ++i) {
-      const auto gain = conditional.gain.middleCols<6>(6 * static_cast<Index>(i));
-      sum += gain;
-      for (size_t k = 0; k < state.clones().size(); ++k) {
-        if (state.clones()[k].slot == conditional.neighbour_slots[i]) {
-          map.middleCols<6>(state.CloneOffset(k)) = -gain;
-        }
-      }
-    }
-    const MatrixXd residual = map * p * map.transpose();
-    EXPECT_LT((residual - conditional.covariance).norm(), 1e-6 * residual.norm() + 1e-14) << leaving;
-    // Where all of them are is no concern of it, and no further one makes its noise larger.
-    EXPECT_LT((sum - Matrix6d::Identity()).norm(), 1e-9);
-    const Index next = state.CloneOffset(leaving == 0 ? 1 : leaving - 1);
-    MatrixXd alone = MatrixXd::Zero(6, p.rows());
-    alone.middleCols<6>(state.CloneOffset(leaving)).setIdentity();
-    alone.middleCols<6>(next) = -Matrix6d::Identity();
-    EXPECT_LT(residual.trace(), (alone * p * alone.transpose()).trace());
-  }
-}
-
-TEST_P(TrackMemoryTest, GivenManyMemoriesThenTheNoiseTheyShareCountsAsOftenAsTheyShareADirectionOfIt) {
-  const FilterState state = CloneEveryFrame(dataset_, GetParam());
-  CloneConditional alone;
-  TrackMemoryKeeper::Condition(state, 0, 1, &alone);
-  for (const auto& [memories, factor] : {std::pair(5, 1.0), std::pair(12, 2.0), std::pair(120, 20.0)}) {
-    CloneConditional shared;
-    TrackMemoryKeeper::Condition(state, 0, static_cast<size_t>(memories), &shared);
-    EXPECT_LT((shared.covariance - factor * alone.covariance).norm(), 1e-9 * shared.covariance.norm());
-  }
 }
 
 /// Rotation and translation of the whole world, in the right-invariant error: the same for every clone and
@@ -303,7 +238,7 @@ TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfWhereTheWorldIsWhateverHappe
   }
   while (state.clones().size() > 3) {
     CloneConditional conditional;
-    TrackMemoryKeeper::Condition(state, state.clones().size() / 2 - 1, 1, &conditional);
+    ConditionClone(state, state.clones().size() / 2 - 1, 1, &conditional);
     keeper.Carry(state, conditional, &track.memory);
     state.RemoveClone(state.clones().size() / 2 - 1);
     expect_blind("after a clone left");

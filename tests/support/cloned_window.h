@@ -1,0 +1,40 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/imu_buffer.h"
+#include "filter/filter_state.h"
+#include "tests/support/scenario.h"
+
+namespace alidade::test {
+
+constexpr int kClonedFrames = 9;
+
+/// A filter state with a clone for each of the first frames of a simulation; nothing updated yet.
+inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention,
+                                   const NavEstimate& initial) {
+  FilterState state(convention, false, dataset.rig.T_BC, {kClonedFrames + 1, 0});
+  EXPECT_TRUE(state.Reset(initial).ok());
+  ImuBuffer imu(1.0);
+  for (const ImuSample& sample : dataset.imu) {
+    EXPECT_TRUE(imu.Add(sample).ok());
+  }
+  for (int k = 0; k < kClonedFrames; ++k) {
+    const TimeNs stamp_ns = dataset.tracks[static_cast<size_t>(k)].stamp_ns;
+    if (k > 0) {
+      std::vector<ImuSample> interval;
+      EXPECT_TRUE(imu.Interval(state.stamp_ns(), stamp_ns, &interval).ok());
+      EXPECT_TRUE(state.Propagate(interval, dataset.rig.imu_noise, Eigen::Vector3d(0, 0, -9.81)).ok());
+    }
+    state.AddClone(k);
+  }
+  return state;
+}
+
+inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention) {
+  return CloneEveryFrame(dataset, convention, DrawInitialState(dataset, 1));
+}
+
+}  // namespace alidade::test
