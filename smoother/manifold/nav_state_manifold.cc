@@ -51,9 +51,19 @@ Matrix3x4 RotationLift(const double* block) {
   return 4.0 * QuaternionJacobian(ConstQuaternion(block).normalized(), false).transpose();
 }
 
+NavState NavStateManifold::Relative(const double* block) const {
+  NavState state = UnpackNavState(block);
+  state.p_WB -= p_center_;
+  state.v_WB -= v_center_;
+  return state;
+}
+
 bool NavStateManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
   const Eigen::Quaterniond q = ConstQuaternion(x);
-  PackNavState(Retract(convention_, UnpackNavState(x), Eigen::Map<const Vector9d>(delta)), x_plus_delta);
+  NavState next = Retract(convention_, Relative(x), Eigen::Map<const Vector9d>(delta));
+  next.p_WB += p_center_;
+  next.v_WB += v_center_;
+  PackNavState(next, x_plus_delta);
   Eigen::Map<Eigen::Vector4d> q_next(x_plus_delta);
   if (q_next.dot(q.coeffs()) < 0) {  // of the two quaternions of a rotation, the one next to x
     q_next = -q_next;
@@ -62,7 +72,7 @@ bool NavStateManifold::Plus(const double* x, const double* delta, double* x_plus
 }
 
 bool NavStateManifold::PlusJacobian(const double* x, double* jacobian) const {
-  const NavState state = UnpackNavState(x);
+  const NavState state = Relative(x);
   const bool right_invariant = convention_ == ErrorConvention::kRightInvariant;
   Eigen::Map<PlusMatrix> j(jacobian);
   j.setZero();
@@ -73,12 +83,12 @@ bool NavStateManifold::PlusJacobian(const double* x, double* jacobian) const {
 }
 
 bool NavStateManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
-  Eigen::Map<Vector9d>{y_minus_x} = Local(convention_, UnpackNavState(x), UnpackNavState(y));
+  Eigen::Map<Vector9d>{y_minus_x} = Local(convention_, Relative(x), Relative(y));
   return true;
 }
 
 bool NavStateManifold::MinusJacobian(const double* x, double* jacobian) const {
-  const NavState state = UnpackNavState(x);
+  const NavState state = Relative(x);
   const bool right_invariant = convention_ == ErrorConvention::kRightInvariant;
   Eigen::Map<MinusMatrix> j(jacobian);
   j.setZero();

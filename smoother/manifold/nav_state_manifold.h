@@ -27,10 +27,17 @@ void PackBias(const ImuBias& bias, double* block);
 ///     (J_zeta * lift) * PlusJacobian = J_zeta * C * MinusJacobian * PlusJacobian = J_zeta * C.
 [[nodiscard]] Eigen::Matrix<double, 3, 4> RotationLift(const double* block);
 
-/// (R, p, v) as one block whose Plus and Minus are Retract and Local of an error convention.
+/// (R, p, v) as one block whose Plus and Minus are Retract and Local of an error convention, of the state
+/// relative to a centre: Plus(x, d) = centre + Retract(x - centre, d) in p and v. The right-invariant error
+/// turns about the world's origin; from 400 m away, a state that turns where it is needs a shift of 400 m
+/// times the angle that cancels, and normal equations over such columns are ill conditioned. With a centre in
+/// the window they are not. No factor depends on it, since their Jacobians are over the block.
 class NavStateManifold final : public ceres::Manifold {
  public:
-  explicit NavStateManifold(ErrorConvention convention) : convention_(convention) {}
+  explicit NavStateManifold(ErrorConvention convention,
+                            const Eigen::Vector3d& p_center = Eigen::Vector3d::Zero(),
+                            const Eigen::Vector3d& v_center = Eigen::Vector3d::Zero())
+      : convention_(convention), p_center_(p_center), v_center_(v_center) {}
 
   [[nodiscard]] int AmbientSize() const override { return kNavAmbientSize; }
   [[nodiscard]] int TangentSize() const override { return kNavTangentSize; }
@@ -44,7 +51,11 @@ class NavStateManifold final : public ceres::Manifold {
   [[nodiscard]] ErrorConvention convention() const { return convention_; }
 
  private:
+  [[nodiscard]] NavState Relative(const double* block) const;
+
   ErrorConvention convention_;
+  Eigen::Vector3d p_center_;
+  Eigen::Vector3d v_center_;
 };
 
 /// d Local(origin, Retract(state, xi)) / d xi at xi = 0, 9x9: the identity where state == origin. A prior

@@ -15,7 +15,7 @@ ParameterBlocks::ParameterBlocks(ErrorConvention error, const WindowFrames& fram
       parameters_(kFrameStride * frames.size() + kLandmarkStride * tracks.size() +
                   (has_clocks_ ? kClockStride * frames.size() : 0) +
                   (calibration.size() > 0 ? kCalibrationStride : 0)),
-      manifold_(error) {
+      manifold_(error, frames.back()->nav_state().p_WB, frames.back()->nav_state().v_WB) {
   for (const std::unique_ptr<WindowFrame>& frame : frames) {
     std::copy(frame->nav.begin(), frame->nav.end(), Nav(frame->index));
     std::copy(frame->bias.begin(), frame->bias.end(), Bias(frame->index));

@@ -17,7 +17,8 @@ namespace alidade {
 /// history.
 class ParameterBlocks {
  public:
-  /// Copies states and landmarks; `frames`, `tracks` and `calibration` must outlive the blocks.
+  /// Copies states and landmarks; `frames`, `tracks` and `calibration` must outlive the blocks. The centre of
+  /// the states' manifold is the last frame.
   ParameterBlocks(ErrorConvention error, const WindowFrames& frames, const std::vector<WindowTrack*>& tracks,
                   const WindowCalibration& calibration);
 

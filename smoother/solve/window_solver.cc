@@ -1,5 +1,6 @@
 #include "smoother/solve/window_solver.h"
 
+#include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
 
 #include <memory>
@@ -8,14 +9,43 @@
 namespace alidade {
 namespace {
 
+// Ceres adds 1e-8 of the columns' squared norms, at most this, to the normal equations of a dogleg step. The
+// IMU knows the distance of two frames to micrometres and the window's drift to decimetres: against squared
+// norms alone a drift would be damped away, step by step the same. (The scaled columns have norms of about
+// one.)
+constexpr double kLargestDiagonal = 1e-4;
+// Of the step in scaled columns times the root of that; a step as long as this one is rejected at most a few
+// times before it is short.
+constexpr double kTrustRadius = 1e3;
+// Steps that are rejected take an evaluation without Jacobians at most; so many more of them than of others.
+constexpr int kRejectedSteps = 3;
+
+/// Ends the solve after a number of accepted steps.
+class AcceptedSteps final : public ceres::IterationCallback {
+ public:
+  explicit AcceptedSteps(int most) : most_(most) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    accepted_ += summary.iteration > 0 && summary.step_is_successful ? 1 : 0;
+    return accepted_ >= most_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+  [[nodiscard]] int accepted() const { return accepted_; }
+
+ private:
+  int most_;
+  int accepted_ = 0;
+};
+
 ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBlocks* blocks) {
   ceres::Solver::Options solver;
-  solver.max_num_iterations = config.max_iterations;
+  solver.max_num_iterations = (1 + kRejectedSteps) * config.max_iterations;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   // Dogleg takes the undamped Gauss-Newton step; Levenberg-Marquardt would damp the weakly observed drift
   // directions first.
   solver.trust_region_strategy_type = ceres::DOGLEG;
+  solver.max_lm_diagonal = kLargestDiagonal;
+  solver.initial_trust_region_radius = kTrustRadius;
   solver.function_tolerance = 1e-6;
   solver.parameter_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-12;
@@ -54,7 +84,10 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
     term->AddTo(&blocks, problem.get());
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(SolverOptions(config, &blocks), problem.get(), &summary);
+  ceres::Solver::Options options = SolverOptions(config, &blocks);
+  AcceptedSteps steps(config.max_iterations);
+  options.callbacks.push_back(&steps);
+  ceres::Solve(options, problem.get(), &summary);
   if (summary.termination_type == ceres::FAILURE || !blocks.IsFinite()) {
     return Status::Diverged("smoother: solver failed at " + FormatSeconds(window->newest().stamp_ns) +
                             " s: " + summary.message);
@@ -66,8 +99,7 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
   }
   calibration->mean = solved;
   blocks.WriteBack();
-  return WindowSolveReport{static_cast<int>(summary.iterations.size()) - 1, summary.initial_cost,
-                           summary.final_cost};
+  return WindowSolveReport{steps.accepted(), summary.initial_cost, summary.final_cost};
 }
 
 }  // namespace alidade

@@ -9,7 +9,7 @@
 namespace alidade {
 
 struct WindowSolveReport {
-  int iterations = 0;
+  int iterations = 0;  ///< accepted steps
   double initial_cost = 0;
   double final_cost = 0;
 };

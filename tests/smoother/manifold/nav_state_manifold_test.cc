@@ -27,8 +27,10 @@ class NavStateManifoldTest : public testing::TestWithParam<ErrorConvention> {};
 
 TEST_P(NavStateManifoldTest, ObeysEveryLawOfACeresManifold) {
   RandomStates random(11);
-  const NavStateManifold manifold(GetParam());
   for (int trial = 0; trial < 20; ++trial) {
+    const NavStateManifold manifold = trial % 2 == 0
+                                          ? NavStateManifold(GetParam())
+                                          : NavStateManifold(GetParam(), random.Vector(8), random.Vector(8));
     const Eigen::VectorXd x = Block(random.Nav(5));
     const Eigen::VectorXd y = Block(random.Nav(5));
     Eigen::VectorXd delta(kNavTangentSize);
@@ -69,6 +71,28 @@ TEST_P(NavStateManifoldTest, TheLiftIsTheChartJacobianTimesTheMinusJacobian) {
     lift.bottomRightCorner<6, 6>().setIdentity();
     EXPECT_EQ(CompareJacobians(lift, ChartJacobian(GetParam(), state) * minus, 1e-12), "");
   }
+}
+
+// GIVEN a centre THEN states and their errors are those of a world that begins there.
+TEST_P(NavStateManifoldTest, TheCentreIsTheOriginOfTheWorld) {
+  RandomStates random(14);
+  const Eigen::Vector3d p = random.Vector(300);
+  const Eigen::Vector3d v = random.Vector(20);
+  const NavStateManifold centred(GetParam(), p, v);
+  const NavState near = random.Nav(5);
+  NavState far = near;
+  far.p_WB += p;
+  far.v_WB += v;
+  Vector9d delta;
+  delta << random.Vector(0.1), random.Vector(1), random.Vector(1);
+  AmbientVector moved;
+  ASSERT_TRUE(centred.Plus(Block(far).data(), delta.data(), moved.data()));
+  NavState expected = Retract(GetParam(), near, delta);
+  expected.p_WB += p;
+  expected.v_WB += v;
+  EXPECT_LT((UnpackNavState(moved.data()).R_WB - expected.R_WB).norm(), 1e-12);
+  EXPECT_LT((UnpackNavState(moved.data()).p_WB - expected.p_WB).norm(), 1e-10);
+  EXPECT_LT((UnpackNavState(moved.data()).v_WB - expected.v_WB).norm(), 1e-10);
 }
 
 TEST_P(NavStateManifoldTest, LocalJacobianIsTheDerivativeOfLocalAwayFromTheOrigin) {

@@ -79,7 +79,10 @@ class CeresView {
     for (const TermPart& part : parts) {
       Eigen::MatrixXd own = Eigen::MatrixXd::Identity(part.width, part.width);
       if (part.of.kind == Unknown::Kind::kFrame) {
-        const NavState state = frames_[static_cast<size_t>(part.of.index)]->nav_state();
+        // Relative to the centre of ParameterBlocks' manifold.
+        NavState state = frames_[static_cast<size_t>(part.of.index)]->nav_state();
+        state.p_WB -= frames_.back()->nav_state().p_WB;
+        state.v_WB -= frames_.back()->nav_state().v_WB;
         const Eigen::Index columns = std::max(part.width, kNavColumns);
         own = ImuChartJacobian(convention_, state).topLeftCorner(part.width, columns);
       }
