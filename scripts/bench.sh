@@ -8,6 +8,7 @@
 #   --output    where the commit is built and the results are written (default out/bench): bench.csv, rounds.csv
 # Benchmarks that only one side has are listed without a ratio. The machine should be idle: other load widens the spread.
 set -euo pipefail
+shopt -s inherit_errexit
 cd "$(dirname "$0")/.."
 
 usage() { sed -n '4,8s/^# //p' "$0" >&2; exit 2; }

@@ -9,15 +9,14 @@
 namespace alidade {
 namespace {
 
-// Ceres adds 1e-8 of the columns' squared norms, at most this, to the normal equations of a dogleg step. The
-// IMU knows the distance of two frames to micrometres and the window's drift to decimetres: against squared
-// norms alone a drift would be damped away, step by step the same. (The scaled columns have norms of about
-// one.)
+// Ceres adds 1e-8 of the squared norms of the scaled columns (about one), at most of this, to the normal
+// equations of a dogleg step. Without the bound the weak directions of a window, its drift and scale, do not
+// reach the minimum in any number of steps (docs/smoother.md, Weak directions).
 constexpr double kLargestDiagonal = 1e-4;
-// Of the step in scaled columns times the root of that; a step as long as this one is rejected at most a few
-// times before it is short.
+// First radius of the trust region: length of a step in scaled columns, times the root of the bound. A longer
+// first step is cut, one that proves too long is rejected a few times.
 constexpr double kTrustRadius = 1e3;
-// Steps that are rejected take an evaluation without Jacobians at most; so many more of them than of others.
+// Rejected steps allowed for each accepted one: they cost an evaluation without Jacobians at most.
 constexpr int kRejectedSteps = 3;
 
 /// Ends the solve after a number of accepted steps.
