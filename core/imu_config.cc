@@ -4,6 +4,10 @@ namespace alidade {
 
 void ImuConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"gravity_mps2", "m/s^2", "magnitude of gravity; W has z up"}, &gravity_mps2, 9.7, 9.9);
+  visitor.Enumeration({"noise", "-",
+                       "white noise of the IMU: that of the sensor sheet, or `adaptive` with what vibration "
+                       "adds that the sample rate does not resolve"},
+                      &noise, {{"sheet", ImuNoiseModel::kSheet}, {"adaptive", ImuNoiseModel::kAdaptive}});
   visitor.Real({"noise_scale", "-",
                 "factor on the white-noise densities of the sensor sheet, which assume a stationary IMU; "
                 "larger on vehicles"},
@@ -18,7 +22,7 @@ ImuNoise ImuConfig::Scaled(const ImuNoise& sheet) const {
   return {sheet.gyro_noise_density_radps_sqrthz * noise_scale,
           sheet.accel_noise_density_mps2_sqrthz * noise_scale,
           sheet.gyro_random_walk_radps2_sqrthz * random_walk_scale,
-          sheet.accel_random_walk_mps3_sqrthz * random_walk_scale};
+          sheet.accel_random_walk_mps3_sqrthz * random_walk_scale, noise == ImuNoiseModel::kAdaptive};
 }
 
 }  // namespace alidade

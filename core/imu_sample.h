@@ -19,6 +19,8 @@ struct ImuNoise {
   double accel_noise_density_mps2_sqrthz = 1e-3;
   double gyro_random_walk_radps2_sqrthz = 3e-5;
   double accel_random_walk_mps3_sqrthz = 2e-4;
+  /// Whether vibration that the samples show adds to the white noise (core/imu_vibration.h).
+  bool with_vibration = false;
 };
 
 }  // namespace alidade

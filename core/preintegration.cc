@@ -1,6 +1,7 @@
 #include "core/preintegration.h"
 
 #include "core/check.h"
+#include "core/imu_vibration.h"
 #include "core/semi_definite.h"
 
 namespace alidade {
@@ -8,16 +9,17 @@ namespace alidade {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-void Preintegration::Add(const ImuSample& from, const ImuSample& to) {
+void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
   const double dt_s = SecondsBetween(from.stamp_ns, to.stamp_ns);
   DCHECK_GT(dt_s, 0);
   increment_.Append(StepIncrement(0.5 * (from.gyro + to.gyro) - bias_.gyro,
-                                  0.5 * (from.accel + to.accel) - bias_.accel, dt_s, noise_));
+                                  0.5 * (from.accel + to.accel) - bias_.accel, dt_s, noise));
 }
 
 void Preintegration::Add(std::span<const ImuSample> samples) {
+  const ImuNoise noise = noise_.with_vibration ? AddVibration(samples, noise_) : noise_;
   for (size_t k = 0; k + 1 < samples.size(); ++k) {
-    Add(samples[k], samples[k + 1]);
+    Add(samples[k], samples[k + 1], noise);
   }
 }
 

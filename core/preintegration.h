@@ -16,9 +16,10 @@ class Preintegration {
  public:
   Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
 
-  /// Appends one step between two samples; stamps strictly increasing.
-  void Add(const ImuSample& from, const ImuSample& to);
-  /// Appends all steps of consecutive samples; fewer than two add nothing.
+  /// Appends one step between two samples with the given densities; stamps strictly increasing.
+  void Add(const ImuSample& from, const ImuSample& to) { Add(from, to, noise_); }
+  /// Appends all steps of consecutive samples, with their vibration as white noise where the noise says so;
+  /// fewer than two add nothing.
   void Add(std::span<const ImuSample> samples);
 
   /// The motion corrected to first order for a bias at t0 other than the one integrated with.
@@ -41,6 +42,8 @@ class Preintegration {
   [[nodiscard]] const ImuNoise& noise() const { return noise_; }
 
  private:
+  void Add(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
+
   ImuBias bias_;
   ImuNoise noise_;
   ImuIncrement increment_;

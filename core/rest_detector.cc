@@ -61,7 +61,12 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC
       imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
     return verdict;
   }
-  verdict.no_translation = FlowIsZero(before.frame, frame, R_WC.transpose() * before.R_WC);
+  // Under a constant force, as at a turning point, the camera passes the same place twice, with a calm IMU:
+  // the ends of the window alone would not tell.
+  const OrientedFrame& middle = frames_[frame_count_ / 2];
+  verdict.no_translation =
+      FlowIsZero(before.frame, frame, R_WC.transpose() * before.R_WC) &&
+      (frame_count_ == 2 || FlowIsZero(middle.frame, frame, R_WC.transpose() * middle.R_WC));
   verdict.no_rotation = verdict.no_translation && imu.gyro_std_radps < init_.static_max_gyro_std_radps &&
                         FlowIsZero(before.frame, frame, Matrix3d::Identity());
   return verdict;

@@ -28,11 +28,12 @@ struct RestRates {
 /// so an estimator would drift with its accelerometer. Tracks alone cannot separate translation from
 /// rotation, an IMU alone cannot separate rest from constant velocity.
 ///
-/// No translation: the image flow since the oldest frame of the window, freed of the rig's turn, fitted by
-/// shift, zoom and roll over the common tracks, stays below VisionConfig::rest_max_flow_px at the image's
-/// corner, and the specific force spreads less than rest_max_accel_std_mps2. No rotation: so does the flow as
-/// it is, and the angular rate spreads less than InitConfig allows. Neglected: motion so slow or scenery so
-/// far that it moves tracks by less than the limit in the window.
+/// No translation: the image flow since the oldest frame of the window and since its middle one, freed of the
+/// rig's turn, fitted by shift, zoom and roll over the common tracks, stays below
+/// VisionConfig::rest_max_flow_px at the image's corner, and the specific force spreads less than
+/// rest_max_accel_std_mps2. No rotation: so does the flow as it is, and the angular rate spreads less than
+/// InitConfig allows. Neglected: motion so slow or scenery so far that it moves tracks by less than the limit
+/// in the window.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);

@@ -5,6 +5,10 @@ namespace alidade {
 void VisionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"pixel_noise_px", "px", "standard deviation of one image coordinate of a track"},
                &pixel_noise_px, 0.01, 100);
+  visitor.Enumeration({"noise", "-",
+                       "noise of the tracks: pixel_noise_px as given, or `adaptive`, which raises it slowly "
+                       "while the innovations are larger than predicted"},
+                      &noise, {{"given", PixelNoiseModel::kGiven}, {"adaptive", PixelNoiseModel::kAdaptive}});
   visitor.Real({"gate_probability", "-",
                 "chi-square gate: a track is used if its NIS is below this quantile; 1 disables the gate"},
                &gate_probability, 0.5, 1.0);

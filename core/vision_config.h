@@ -5,10 +5,17 @@
 
 namespace alidade {
 
+/// Which noise the image coordinates of a track have.
+enum class PixelNoiseModel {
+  kGiven,     ///< pixel_noise_px
+  kAdaptive,  ///< never less, and more where the innovations say so (core/pixel_noise.h)
+};
+
 /// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not
 /// settings.
 struct VisionConfig {
   double pixel_noise_px = 1.0;
+  PixelNoiseModel noise = PixelNoiseModel::kGiven;
   double gate_probability = 0.99;
   double max_gated_share = 0.5;
   double max_relative_depth_deviation = 0.1;

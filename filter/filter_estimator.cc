@@ -27,6 +27,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       measurements_(config),
       rest_(config.vision, config.init, rig.camera),
       imu_(config.imu.max_gap_s),
+      pixel_noise_(config.vision),
       correction_(state_.covariance().capacity()),
       corrected_(state_.covariance().capacity()) {
   constexpr size_t kUsualTracks = 256;  // updated in one frame; more make vectors grow
@@ -43,6 +44,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   tracks_.Clear();
   gnss_.Reset();
   measurements_.Reset();
+  pixel_noise_.Reset();
   aligned_ = false;
   rest_.Clear();
   imu_.DropBefore(initial.stamp_ns);
@@ -102,8 +104,9 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   state_.AddClone(serial_, last_gyro_radps_);
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   stopwatch.Restart();
-  statistics_.observations_invalid = tracks_.AddFrame(
-      state_.calibration().camera, config_.vision.pixel_noise_px, serial_, frame.observations);
+  statistics_.pixel_noise_px = pixel_noise_.px();
+  statistics_.observations_invalid =
+      tracks_.AddFrame(state_.calibration().camera, pixel_noise_.px(), serial_, frame.observations);
   const int leaving = ChooseLeavingClone();
   const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
   bool finite = true;
@@ -113,6 +116,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     finite = UpdateAtRest(rest);
   }
   finite = finite && UpdateWithDueTracks(leaving_serial);
+  pixel_noise_.EndFrame(frame_stamp_ns_, statistics_.suspect);
   SlamFeatures::RemoveEnded(serial_, &tracks_, &state_);
   tracks_.RemoveEnded(serial_);
   if (leaving >= 0) {
@@ -225,7 +229,7 @@ void FilterEstimator::Correct() {
   }
   state_.Correct(Correction());
   if (state_.layout().intrinsics() >= 0) {
-    tracks_.Renormalize(state_.calibration().camera, config_.vision.pixel_noise_px);
+    tracks_.Renormalize(state_.calibration().camera, pixel_noise_.px());
   }
 }
 

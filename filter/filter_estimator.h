@@ -5,6 +5,7 @@
 #include "core/estimator/estimator.h"
 #include "core/estimator_config.h"
 #include "core/imu_buffer.h"
+#include "core/pixel_noise.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
 #include "core/robust.h"
@@ -103,6 +104,7 @@ class FilterEstimator : public Estimator {
   MeasurementUpdate measurements_;
   RestDetector rest_;
   ImuBuffer imu_;
+  PixelNoise pixel_noise_;
   FrameStatistics statistics_;
   FilterObserver* observer_ = nullptr;
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer

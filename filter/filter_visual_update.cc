@@ -161,6 +161,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   for (size_t block = 0; block < appended_.size(); ++block) {
     Track& track = tracks[appended_[block]];
     if (accepted_[block]) {
+      pixel_noise_.AddTrack(block_nis_[block], update_.blocks()[block].rows);
       update_.Remember(state_, block, weights_[block], &track);
     } else if (track.memory.active && ++track.memory.refusals > kMaxRefusals) {
       track.memory.active = false;

@@ -45,6 +45,8 @@ struct FrameStatistics {
   bool clock_jump = false;              ///< the receiver clock was set anew
   double propagate_ms = 0;
   double update_ms = 0;
+  /// Standard deviation that the frame's observations were given.
+  double pixel_noise_px = 0;
 };
 
 /// Revised estimate of one frame, available after the sequence (batch estimate).

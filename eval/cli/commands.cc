@@ -95,8 +95,8 @@ const std::vector<Command>& Commands() {
       {"refine_truth",
        "estimate a sequence's motion from its IMU and the poses of its truth: a truth at IMU rate with "
        "covariance, and what is wrong with the poses",
-       {"dataset", "truth", "truth_rate", "truth_std_deg", "truth_std_m", "set", "output", "json",
-        "overwrite", "quiet"},
+       {"dataset", "truth", "imu_scale", "truth_rate", "truth_std_deg", "truth_std_m", "set", "output",
+        "json", "overwrite", "quiet"},
        {"dataset", "output"},
        0,
        RunRefineTruth},

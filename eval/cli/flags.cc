@@ -23,6 +23,9 @@ DEFINE_string(error, "right_invariant",
 DEFINE_string(estimate, "", "trajectory file to evaluate");
 DEFINE_string(estimator, "",
               "configuration of the filter to analyse: a YAML file, or the name of a shipped one");
+DEFINE_bool(
+    imu_scale, false,
+    "estimate a scale factor for each axis of the IMU, and multiply the samples that are written by it");
 DEFINE_string(input, "",
               "input: a JSON file of cases (- reads standard input), or the output folder of compare");
 DEFINE_string(export, "", "folder for both trajectories in the formats of evo and rpg_trajectory_evaluation");

@@ -21,6 +21,7 @@ DECLARE_bool(diff);
 DECLARE_string(error);
 DECLARE_string(estimate);
 DECLARE_string(estimator);
+DECLARE_bool(imu_scale);
 DECLARE_string(input);
 DECLARE_string(export);
 DECLARE_string(figures);

@@ -31,6 +31,7 @@ Result<RefineOptions> RefineOptionsFromFlags() {
     }
   }
   options.truth_rate_hz = FLAGS_truth_rate;
+  options.imu_scale = FLAGS_imu_scale;
   options.noise = {kRadiansPerDegree * FLAGS_truth_std_deg, FLAGS_truth_std_m};
   ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set), [&options](ConfigVisitor& visitor) {
     visitor.Section("imu", "inertial sensor", [&] { options.imu.Describe(visitor); });
@@ -76,7 +77,7 @@ int RunRefineTruth(const std::vector<std::string>&) {
     return Report(refined.status());
   }
   const std::string json = FormatRefinementJson(*refined, *dataset, *options);
-  Status written = WriteWithTruth(*dataset, TruthOf(*refined), FLAGS_output);
+  Status written = WriteRefined(*dataset, *refined, FLAGS_output);
   if (written.ok()) {
     written = WriteFileAtomically(FLAGS_output + "/refine_truth.json", json);
   }

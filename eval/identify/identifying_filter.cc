@@ -40,6 +40,8 @@ void AssumeNoise(const PerNoise& noise, const EstimatorConfig& given, EstimatorC
                  MeasurementLog* log) {
   log->rig.imu_noise = ImuNoiseOf(noise);
   config->imu.noise_scale = config->imu.random_walk_scale = 1;
+  config->imu.noise = ImuNoiseModel::kSheet;
+  config->vision.noise = PixelNoiseModel::kGiven;
   config->vision.pixel_noise_px = noise[IndexOf(NoiseSource::kPixel)];
   const double gnss = noise[IndexOf(NoiseSource::kGnss)];
   config->gnss.corrections.pseudorange_std_m = gnss * given.gnss.corrections.pseudorange_std_m;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "eval/dataset/dataset_imu.h"
 #include "eval/dataset/dataset_truth.h"
 #include "eval/trajectory/trajectory_point.h"
 
@@ -57,9 +58,14 @@ Result<RefinedTruth> RefineDataset(const Dataset& dataset, const RefineOptions& 
                          (dataset.truth ? ": a truth without orientation" : ": no truth") +
                          ", expected poses in state_groundtruth_estimate0 or a file named by --truth");
   }
+  if (options.imu.noise != ImuNoiseModel::kSheet) {
+    return Status::Usage(
+        "refine_truth: imu.noise: found adaptive, expected sheet (imu.noise_scale multiplies it)");
+  }
   TruthRefinementOptions refinement;
   refinement.imu_noise = options.imu.Scaled(dataset.rig.imu_noise);
   refinement.gravity_mps2 = options.imu.gravity_mps2;
+  refinement.imu_scale = options.imu_scale;
   refinement.noise = options.noise;
   refinement.stop = options.stop;
   return RefineTruth(dataset.imu, PosesAtRate(*dataset.truth, options.truth_rate_hz), refinement);
@@ -75,7 +81,7 @@ Trajectory TruthOf(const RefinedTruth& refined) {
   return truth;
 }
 
-Status WriteWithTruth(const Dataset& dataset, const Trajectory& truth, const std::string& output) {
+Status WriteRefined(const Dataset& dataset, const RefinedTruth& refined, const std::string& output) {
   const fs::path to = fs::path(output) / "mav0";
   for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(dataset.path) / "mav0")) {
     const std::string name = entry.path().filename().string();
@@ -83,9 +89,18 @@ Status WriteWithTruth(const Dataset& dataset, const Trajectory& truth, const std
       ALIDADE_RETURN_IF_ERROR(CopySensor(entry.path(), to / name));
     }
   }
-  Dataset refined;
-  refined.truth = truth;
-  return WriteTruthFolder(refined, to.string());
+  Dataset with_truth;
+  with_truth.truth = TruthOf(refined);
+  ALIDADE_RETURN_IF_ERROR(WriteTruthFolder(with_truth, to.string()));
+  if (refined.imu_scale_std.isZero(0)) {
+    return Status::Ok();
+  }
+  with_truth.rig = dataset.rig;
+  with_truth.imu_rate_hz = dataset.imu_rate_hz;
+  for (const ImuSample& sample : dataset.imu) {
+    with_truth.imu.push_back(refined.imu_scale.Applied(sample));
+  }
+  return WriteImuFolder(with_truth, to.string());
 }
 
 }  // namespace alidade

@@ -35,12 +35,26 @@ std::vector<ConstantRow> ConstantRows(const RefinedTruth& refined) {
     }
     return result;
   };
-  return {
+  std::vector<ConstantRow> rows = {
       row("tilt_deg", "tilt of the truth's frame [deg]", tilt, kTiltColumn, 2, kDegreesPerRadian),
       row("marker_rotation_deg", "rotation of the marker [deg]", marker, kMarkerColumn, 3, kDegreesPerRadian),
       row("lever_arm_mm", "lever arm of the marker [mm]", lever, kLeverColumn, 3, 1e3),
       row("time_offset_ms", "t_imu - t_truth [ms]", Eigen::Vector3d(constants.time_offset_s, 0, 0),
           kTimeColumn, 1, 1e3)};
+  if (!refined.imu_scale_std.isZero(0)) {
+    const auto scale = [&](const char* key, const char* text, const Eigen::Vector3d& values, int first) {
+      ConstantRow result{key, text, {}, {}};
+      for (int i = 0; i < 3; ++i) {
+        result.values.push_back(1e3 * values[i]);
+        result.deviations.push_back(1e3 * refined.imu_scale_std[first + i]);
+      }
+      return result;
+    };
+    rows.push_back(scale("gyro_scale_permille", "scale of the gyroscope [1e-3]", refined.imu_scale.gyro, 0));
+    rows.push_back(
+        scale("accel_scale_permille", "scale of the accelerometer [1e-3]", refined.imu_scale.accel, 3));
+  }
+  return rows;
 }
 
 struct FitRow {

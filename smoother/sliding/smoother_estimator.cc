@@ -41,6 +41,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
       imu_(config.imu.max_gap_s),
+      pixel_noise_(config.vision),
       rest_(config.vision, config.init, rig.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
@@ -71,6 +72,7 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
   prior_ = std::move(prior);
   gnss_.Reset();
   measurements_.Reset();
+  pixel_noise_.Reset();
   aligned_ = false;
   imu_.DropBefore(initial.stamp_ns);
   rest_.Clear();
@@ -105,14 +107,16 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
   ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(camera().time_offset_s)));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
+  statistics_.pixel_noise_px = pixel_noise_.px();
   statistics_.observations_invalid =
-      window_.AddObservations(camera().camera, config_.vision.pixel_noise_px, frame.observations);
+      window_.AddObservations(camera().camera, pixel_noise_.px(), frame.observations);
   window_.Prune();
   DetectRest(frame);
   if (window_.size() > 1) {
     std::vector<WindowTrack*> tracks = SelectTracks();
     ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
   }
+  pixel_noise_.EndFrame(window_.newest().stamp_ns, statistics_.suspect);
   statistics_.update_ms = stopwatch.ElapsedMs() - statistics_.propagate_ms;
   return Status::Ok();
 }

@@ -6,6 +6,7 @@
 #include "core/estimator/estimator.h"
 #include "core/estimator_config.h"
 #include "core/imu_buffer.h"
+#include "core/pixel_noise.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
 #include "core/robust.h"
@@ -109,6 +110,7 @@ class SmootherEstimator final : public Estimator {
   ObservationKernel kernel_;
   ChiSquareGate gate_;
   ImuBuffer imu_;
+  PixelNoise pixel_noise_;
   RestDetector rest_;
   Window window_;
   GnssWindow gnss_;

@@ -103,7 +103,12 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
       track->Restart();
       continue;
     }
-    if (!gate_.Accepts(TrackChiSquare(*track, geometry), track->dof())) {
+    const double chi_square = TrackChiSquare(*track, geometry);
+    const bool fits = gate_.Accepts(chi_square, track->dof());
+    if (fits) {
+      pixel_noise_.AddTrack(chi_square, track->dof());
+    }
+    if (!fits) {
       refused.push_back(track);
     } else if (track->anchor != nullptr && !DepthInRange(track->landmark)) {
       ++statistics_.features_degenerate;

@@ -11,7 +11,7 @@ void ArrowSystem::Reset() {
 }
 
 void ArrowSystem::AddLink(size_t k, const Vector15d& residual, const Matrix15d& of_k,
-                          const Matrix15d& of_next) {
+                          const Matrix15d& of_next, const LinkBorderRows& of_border) {
   Node& node = nodes_[k];
   Node& next = nodes_[k + 1];
   node.own.noalias() += of_k.transpose() * of_k;
@@ -19,6 +19,12 @@ void ArrowSystem::AddLink(size_t k, const Vector15d& residual, const Matrix15d& 
   next.own.noalias() += of_next.transpose() * of_next;
   node.gradient.noalias() += of_k.transpose() * residual;
   next.gradient.noalias() += of_next.transpose() * residual;
+  if (!of_border.isZero(0)) {
+    node.border.noalias() += of_k.transpose() * of_border;
+    next.border.noalias() += of_next.transpose() * of_border;
+    border_.noalias() += of_border.transpose() * of_border;
+    border_gradient_.noalias() += of_border.transpose() * residual;
+  }
 }
 
 void ArrowSystem::AddPose(size_t k, const Vector6d& residual, const PoseRows& of_k,
@@ -80,6 +86,7 @@ void ArrowSystem::Solve(const std::function<void(const Solution&)>& visit) const
     const Solution later = solution;
     solution.k = k;
     solution.next_covariance = later.covariance;
+    solution.next_with_border = later.with_border;
     solution.step = -node.gradient - node.next * later.step - node.border * border_step_;
     solution.with_border = -node.next * later.with_border - node.border * border_covariance_;
     solution.with_next = -node.next * later.covariance - node.border * later.with_border.transpose();

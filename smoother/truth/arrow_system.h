@@ -8,8 +8,8 @@
 namespace alidade {
 
 /// Gauss-Newton normal equations of a chain of states x_0 .. x_{n-1} (15 columns each), every one linked to
-/// the next, and of a few constants c (9 columns) that concern them all: H is block tridiagonal with a border
-/// (an arrow).
+/// the next, and of a few constants c (15 columns) that concern them all: H is block tridiagonal with a
+/// border (an arrow).
 ///
 /// Factorize eliminates x_0, x_1, ... in turn, with A_k what is left of the diagonal block, B_k its coupling
 /// to x_{k+1} and C_k to c:
@@ -24,24 +24,26 @@ namespace alidade {
 ///     P_kc = -F_k P_{k+1,c} - E_k P_cc,   P_{k,k+1} = -F_k P_{k+1,k+1} - E_k P_{c,k+1},
 ///     P_kk = A_k^-1 - P_{k,k+1} F_k^T - P_kc E_k^T.
 ///
-/// Both are exact. Time and memory are O(n): 4.8 kB a state.
+/// Both are exact. Time and memory are O(n): 5.5 kB a state.
 class ArrowSystem {
  public:
   static constexpr int kState = 15;
-  static constexpr int kBorder = 9;
+  static constexpr int kBorder = 15;
   using Border = Eigen::Matrix<double, kBorder, 1>;
   using BorderMatrix = Eigen::Matrix<double, kBorder, kBorder>;
   using Coupling = Eigen::Matrix<double, kState, kBorder>;
   using PoseRows = Eigen::Matrix<double, 6, kState>;
   using BorderRows = Eigen::Matrix<double, 6, kBorder>;
+  using LinkBorderRows = Eigen::Matrix<double, kState, kBorder>;
 
   explicit ArrowSystem(size_t states) : nodes_(states) {}
 
   [[nodiscard]] size_t states() const { return nodes_.size(); }
   /// Forgets all terms.
   void Reset();
-  /// Whitened residual and Jacobians of a term over x_k and x_{k+1}.
-  void AddLink(size_t k, const Vector15d& residual, const Matrix15d& of_k, const Matrix15d& of_next);
+  /// Whitened residual and Jacobians of a term over x_k, x_{k+1} and c.
+  void AddLink(size_t k, const Vector15d& residual, const Matrix15d& of_k, const Matrix15d& of_next,
+               const LinkBorderRows& of_border);
   /// The same of a term over x_k and c.
   void AddPose(size_t k, const Vector6d& residual, const PoseRows& of_k, const BorderRows& of_border);
   /// Independent whitened residuals of x_k, and of c: `root` holds the square roots of their information.
@@ -66,6 +68,7 @@ class ArrowSystem {
     Coupling with_border = Coupling::Zero();        ///< P_kc
     Matrix15d with_next = Matrix15d::Zero();        ///< P_{k,k+1}; zero of the last state
     Matrix15d next_covariance = Matrix15d::Zero();  ///< P_{k+1,k+1}; likewise
+    Coupling next_with_border = Coupling::Zero();   ///< P_{k+1,c}; likewise
   };
   /// Visits all states, the last one first.
   void Solve(const std::function<void(const Solution&)>& visit) const;

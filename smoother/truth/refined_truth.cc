@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "core/imu_propagation.h"
+#include "smoother/truth/fixed_point.h"
 #include "smoother/truth/truth_terms.h"
 
 namespace alidade {
@@ -20,6 +21,8 @@ constexpr int kMaxIterations = 40;
 constexpr double kSettledSigma = 0.01;
 constexpr double kSettledNoise = 1e-4;  // relative
 constexpr double kImuGapSteps = 10;
+constexpr double kScaleSigma = 0.02;  // of an inertial sensor's sheet
+constexpr double kHeldSigma = 1e-8;   // of what is not estimated
 constexpr int kOrientationRow = 0;
 constexpr int kPositionRow = 3;
 
@@ -78,6 +81,7 @@ class Refinement {
     TruthStart start = StartTruth(imu_, poses);
     constants_ = first_constants_ = start.constants;
     CutSamples(&start.states);
+    ApplyScale();
     CountImuGaps();
     poses_.Attach(imu_, constants_.time_offset_s);
     return Status::Ok();
@@ -115,8 +119,8 @@ class Refinement {
 
   [[nodiscard]] TruthPoseTerm Term(const JudgedPose& pose) const {
     const size_t i = *pose.state;
-    return LinearizePose(pose.pose.T_TM, pose.pose.stamp_ns + SecondsToNs(constants_.time_offset_s), imu_[i],
-                         imu_[i + 1], states_[i], constants_, imu_model_);
+    return LinearizePose(pose.pose.T_TM, pose.pose.stamp_ns + SecondsToNs(constants_.time_offset_s),
+                         scaled_[i], scaled_[i + 1], states_[i], constants_, imu_model_);
   }
 
   /// Divides the rows by the deviations of the noise.
@@ -134,12 +138,12 @@ class Refinement {
     AddPriors(system);
     for (size_t k = 0; k + 1 < states_.size(); ++k) {
       const std::optional<TruthLink> link =
-          LinearizeLink(imu_[k], imu_[k + 1], states_[k], states_[k + 1], imu_model_);
+          LinearizeLink(scaled_[k], scaled_[k + 1], states_[k], states_[k + 1], imu_model_);
       if (!link) {
         return Status::Input("refine_truth: the IMU sample at " + FormatSeconds(imu_[k].stamp_ns) +
                              " s is not finite or its noise is singular");
       }
-      system->AddLink(k, link->residual, link->of_first, link->of_second);
+      system->AddLink(k, link->residual, link->of_first, link->of_second, link->of_constants);
     }
     for (const JudgedPose& pose : poses_.poses()) {
       if (pose.used()) {
@@ -160,9 +164,12 @@ class Refinement {
     state_root.segment<3>(12).setConstant(0.1);
     state_error << Vector9d::Zero(), states_.front().bias.gyro, 0.1 * states_.front().bias.accel;
     system->AddPrior(0, state_error, state_root);
-    TruthConstantsError root = TruthConstantsError::Ones();
+    ArrowSystem::Border root = ArrowSystem::Border::Ones();
     root.segment<3>(kLeverColumn).setConstant(0.1);
-    TruthConstantsError error = TruthConstantsError::Zero();
+    root.segment<kScales>(kScaleColumn).setConstant(1 / (options_.imu_scale ? kScaleSigma : kHeldSigma));
+    ArrowSystem::Border error = ArrowSystem::Border::Zero();
+    error.segment<kScales>(kScaleColumn) << scale_.gyro, scale_.accel;
+    error.segment<kScales>(kScaleColumn) *= root[kScaleColumn];
     error.segment<2>(kTiltColumn) = so3::Log(first_constants_.R_TW.transpose() * constants_.R_TW).head<2>();
     error.segment<3>(kMarkerColumn) =
         so3::Log(first_constants_.T_BM.rotation.transpose() * constants_.T_BM.rotation);
@@ -183,7 +190,21 @@ class Refinement {
       }
       states_[solution.k] = Retract(states_[solution.k], solution.step);
     });
-    constants_ = Retract(constants_, system.border_step());
+    constants_ = Retract(constants_, system.border_step().head<kTruthConstants>());
+    const Eigen::Vector3d one = Eigen::Vector3d::Ones();
+    const auto step = system.border_step().segment<kScales>(kScaleColumn);
+    if (options_.imu_scale) {
+      scale_.gyro = (one + scale_.gyro).cwiseProduct(one + step.head<3>()) - one;
+      scale_.accel = (one + scale_.accel).cwiseProduct(one + step.tail<3>()) - one;
+      ApplyScale();
+    }
+  }
+
+  void ApplyScale() {
+    scaled_.clear();
+    for (const ImuSample& sample : imu_) {
+      scaled_.push_back(scale_.Applied(sample));
+    }
   }
 
   /// Diagonal of J P J^T of a pose's rows, over orientation and position.
@@ -213,7 +234,10 @@ class Refinement {
       changed_ = poses_.Gate();
     }
     if (!robust) {
+      const TruthNoise before = poses_.noise();
       poses_.EstimateNoise(hat_);
+      poses_.SetNoise({orientation_noise_.Next(before.orientation_rad, poses_.noise().orientation_rad),
+                       position_noise_.Next(before.position_m, poses_.noise().position_m)});
     }
   }
 
@@ -227,14 +251,20 @@ class Refinement {
   Result<RefinedTruth> Finish(ArrowSystem* system) {
     ALIDADE_RETURN_IF_ERROR(Linearize(false, system));
     result_.constants = constants_;
-    result_.constants_covariance = system->border_covariance();
+    result_.constants_covariance =
+        system->border_covariance().topLeftCorner<kTruthConstants, kTruthConstants>();
+    if (options_.imu_scale) {
+      result_.imu_scale = scale_;
+      result_.imu_scale_std =
+          system->border_covariance().diagonal().segment<kScales>(kScaleColumn).cwiseMax(0).cwiseSqrt();
+    }
     result_.distance_sigma = std::sqrt(system->newton_decrement());
     DescribePoses();
     const TruthSpan extent = poses_.Extent(constants_.time_offset_s);
     system->Solve([&](const ArrowSystem::Solution& solution) {
       const size_t k = solution.k;
       if (k + 1 < states_.size()) {
-        AddImuFit(solution);
+        AddImuFit(solution, system->border_covariance());
       }
       if (imu_[k].stamp_ns >= extent.from_ns && imu_[k].stamp_ns <= extent.to_ns) {
         result_.states.push_back({imu_[k].stamp_ns, states_[k].nav, states_[k].bias, solution.covariance});
@@ -244,11 +274,15 @@ class Refinement {
     return std::move(result_);
   }
 
-  void AddImuFit(const ArrowSystem::Solution& solution) {
+  void AddImuFit(const ArrowSystem::Solution& solution, const ArrowSystem::BorderMatrix& border) {
     const size_t k = solution.k;
     const std::optional<TruthLink> link =
-        LinearizeLink(imu_[k], imu_[k + 1], states_[k], states_[k + 1], imu_model_);
-    const Matrix15d mixed = link->of_first * solution.with_next * link->of_second.transpose();
+        LinearizeLink(scaled_[k], scaled_[k + 1], states_[k], states_[k + 1], imu_model_);
+    const Matrix15d mixed =
+        link->of_first * solution.with_next * link->of_second.transpose() +
+        (link->of_first * solution.with_border + link->of_second * solution.next_with_border +
+         0.5 * link->of_constants * border) *
+            link->of_constants.transpose();
     const Vector15d hat =
         (link->of_first * solution.covariance * link->of_first.transpose() +
          link->of_second * solution.next_covariance * link->of_second.transpose() + mixed + mixed.transpose())
@@ -284,9 +318,12 @@ class Refinement {
   TruthRefinementOptions options_;
   TruthImu imu_model_;
   std::span<const ImuSample> imu_;
+  TruthImuScale scale_;
+  std::vector<ImuSample> scaled_;  ///< imu_ times the factors
   TruthPoses poses_;
   std::vector<TruthState> states_;  ///< at the samples
   TruthConstants constants_, first_constants_;
+  FixedPoint orientation_noise_, position_noise_;
   TruthNoise hat_;      ///< sums of the diagonal of J P J^T [rad^2, m^2]
   size_t changed_ = 0;  ///< verdicts of the gate
   RefinedTruth result_;

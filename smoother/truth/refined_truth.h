@@ -6,6 +6,7 @@
 
 #include "core/status.h"
 #include "smoother/truth/truth_poses.h"
+#include "smoother/truth/truth_terms.h"
 
 namespace alidade {
 
@@ -17,7 +18,8 @@ struct TruthRefinementOptions {
   double gate_probability = 0.9999;
   /// Longer without a pose that is used is a span without truth.
   double max_gap_s = 0.1;
-  TruthNoise noise;                         ///< a positive deviation is taken as given, else it is estimated
+  bool imu_scale = false;  ///< estimate TruthImuScale, else the readings are taken as they are
+  TruthNoise noise;        ///< a positive deviation is taken as given, else it is estimated
   const std::atomic<bool>* stop = nullptr;  ///< polled once an iteration; may be null
 };
 
@@ -26,6 +28,9 @@ struct RefinedTruth {
   std::vector<NavEstimate> states;
   TruthConstants constants;
   TruthConstantsCovariance constants_covariance = TruthConstantsCovariance::Zero();
+  /// With TruthRefinementOptions::imu_scale, and deviations of its entries: gyroscope, accelerometer.
+  TruthImuScale imu_scale;
+  Vector6d imu_scale_std = Vector6d::Zero();
   TruthNoise noise;
   TruthNoise noise_std;  ///< standard deviations of the two deviations
   size_t poses = 0;      ///< within the IMU's time
@@ -49,13 +54,14 @@ struct RefinedTruth {
 ///
 ///   1. StartTruth; iterations with a Huber kernel, the noise from the median of the residuals.
 ///   2. Gauss-Newton iterations (ArrowSystem) with the poses that the gate lets pass and the noise of maximum
-///      likelihood, sigma^2 = sigma_0^2 chi_square / dof (variance components; Koch 1999), until poses, noise
-///      and states stand: distance to the minimum below 0.01 standard deviations.
+///      likelihood, sigma^2 = sigma_0^2 chi_square / dof (variance components; Koch 1999; FixedPoint), at
+///      least 1e-5 rad and 0.01 mm, until poses, noise and states stand: distance to the minimum below 0.01
+///      standard deviations.
 ///
 /// Steps between samples: Preintegration. A pose between two samples is compared with the state before it,
 /// carried there by the IMU; the noise of that fraction of a step is neglected. Weak priors of zero mean hold
 /// what nothing determines: the first biases (1 rad/s, 10 m/s^2), and the constants about their initial
-/// values (1 rad, 1 rad, 10 m, 1 s).
+/// values (1 rad, 1 rad, 10 m, 1 s; factors of the IMU 0.02).
 ///
 /// kInput: fewer than 10 poses within the IMU's time, a noise density that is not positive, samples that are
 /// not finite. kDiverged: the normal equations are not positive definite, or 40 iterations do not suffice, or

@@ -11,8 +11,9 @@ constexpr double kHuberSigma = 2;
 constexpr TruthNoise kFirstNoise{0.02, 0.01};
 // Median of the chi-square distribution of three degrees of freedom.
 constexpr double kMedianOfThree = 2.3660;
-// Keeps a truth that the IMU follows exactly from a noise of zero [rad, m], and one step from going too far.
-constexpr double kMinNoise = 1e-9;
+// Keeps a truth that was made with this IMU, which fits it exactly, from a noise of zero [rad, m], and one
+// step from going too far. Files hold five or six digits.
+constexpr TruthNoise kMinNoise{1e-5, 1e-5};
 constexpr double kMinRatio = 0.01;
 // The autocorrelation of the residuals is added up to here.
 constexpr size_t kMaxLag = 2000;
@@ -47,9 +48,11 @@ TruthPoses::TruthPoses(std::span<const TruthPose> poses, double gate_probability
 }
 
 void TruthPoses::TakeGivenNoise() {
-  noise_.orientation_rad =
-      given_.orientation_rad > 0 ? given_.orientation_rad : std::max(noise_.orientation_rad, kMinNoise);
-  noise_.position_m = given_.position_m > 0 ? given_.position_m : std::max(noise_.position_m, kMinNoise);
+  noise_.orientation_rad = given_.orientation_rad > 0
+                               ? given_.orientation_rad
+                               : std::max(noise_.orientation_rad, kMinNoise.orientation_rad);
+  noise_.position_m =
+      given_.position_m > 0 ? given_.position_m : std::max(noise_.position_m, kMinNoise.position_m);
 }
 
 void TruthPoses::Attach(std::span<const ImuSample> imu, double time_offset_s) {

@@ -49,6 +49,11 @@ class TruthPoses {
   [[nodiscard]] std::vector<JudgedPose>& poses() { return poses_; }
   [[nodiscard]] const std::vector<JudgedPose>& poses() const { return poses_; }
   [[nodiscard]] const TruthNoise& noise() const { return noise_; }
+  /// What is not given.
+  void SetNoise(const TruthNoise& noise) {
+    noise_ = noise;
+    TakeGivenNoise();
+  }
 
   /// Each pose to the sample before it in IMU time.
   void Attach(std::span<const ImuSample> imu, double time_offset_s);

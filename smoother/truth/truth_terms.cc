@@ -18,10 +18,17 @@ std::optional<TruthLink> LinearizeLink(const ImuSample& from, const ImuSample& t
   const PreintegrationModel model{&preintegration, imu.gravity_W};
   model.Evaluate(first.nav, first.bias, second.nav, second.bias, &link.residual, &link.of_first,
                  &link.of_second);
+  // A factor acts on the mean of the two samples, as a bias of the other sign does.
+  link.of_constants.setZero();
+  Vector6d mean;
+  mean << 0.5 * (from.gyro + to.gyro), 0.5 * (from.accel + to.accel);
+  link.of_constants.block<9, kScales>(0, kScaleColumn) =
+      -link.of_first.block<9, kScales>(0, 9) * mean.asDiagonal();
   const auto lower = whitening.triangularView<Eigen::Lower>();
   link.residual = (lower * link.residual).eval();
   link.of_first = (lower * link.of_first).eval();
   link.of_second = (lower * link.of_second).eval();
+  link.of_constants = (lower * link.of_constants).eval();
   return link;
 }
 
@@ -36,8 +43,10 @@ TruthPoseTerm LinearizePose(const Pose& T_TM, TimeNs stamp_ns, const ImuSample& 
   const NavState carried = CarryState(preintegration, state.nav, state.bias, imu.gravity_W, &transition);
   TruthPoseTerm term;
   Eigen::Matrix<double, 6, 9> of_carried;
+  Eigen::Matrix<double, 6, kTruthConstants> of_constants;
   TruthPoseModel{T_TM}.Evaluate(carried, here.gyro - state.bias.gyro, constants, &term.residual, &of_carried,
-                                &term.of_constants);
+                                &of_constants);
+  term.of_constants << of_constants, Eigen::Matrix<double, 6, kScales>::Zero();
   term.of_state = of_carried * transition.topRows<9>();
   return term;
 }

@@ -26,7 +26,7 @@ class RestDetectorTest : public ::testing::Test {
   /// Verdict after one second of motion at the given velocity and camera turn rate (about y); `spread` shakes
   /// the IMU.
   RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread,
-                             double bias = 0.01) {
+                             double bias = 0.01, const Vector3d& acceleration = Vector3d::Zero()) {
     RestDetector detector(VisionConfig(), InitConfig(), camera_);
     RestVerdict verdict;
     for (int k = 0; k <= 20; ++k) {
@@ -36,15 +36,17 @@ class RestDetectorTest : public ::testing::Test {
         const Vector3d shake = accel_spread * random_.Normal3();
         imu.push_back({SecondsToNs(t - 0.05 + 0.005 * i),
                        Vector3d(0, turn_rate + bias, 0) + 0.003 * random_.Normal3(),
-                       Vector3d(0, 0, 9.81) + shake});
+                       Vector3d(0, 0, 9.81) + acceleration + shake});
       }
       detector.AddImu(imu);
       const Matrix3d R_WC = so3::Exp(Vector3d(0, turn_rate * t, 0));
+      // A turning point in the middle of the last half second.
+      const Vector3d position = velocity * t + 0.5 * (t - 0.75) * (t - 0.75) * acceleration;
       TrackFrame frame;
       frame.stamp_ns = SecondsToNs(t);
       for (size_t i = 0; i < landmarks_.size(); ++i) {
         Vector2d pixel;
-        if (camera_.Project(R_WC.transpose() * (landmarks_[i] - velocity * t), &pixel)) {
+        if (camera_.Project(R_WC.transpose() * (landmarks_[i] - position), &pixel)) {
           frame.observations.push_back(
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
@@ -82,6 +84,12 @@ TEST_F(RestDetectorTest, ConstantVelocityIsNotRest) {
 
 TEST_F(RestDetectorTest, ShakingIsNotRest) {
   EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 2.0).no_translation);
+}
+
+// GIVEN a camera that is thrown up and caught at the same place, pushed evenly all the while, WHEN the ends
+// of the window show the same image, THEN it is not at rest.
+TEST_F(RestDetectorTest, ATurningPointIsNotRest) {
+  EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 0.1, 0.01, Vector3d(0, 4, 0)).no_translation);
 }
 
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {

@@ -132,6 +132,32 @@ TEST(FilterEstimatorTest, OutliersAreGated) {
   EXPECT_LT(result.rmse_position_m, 0.2);
 }
 
+// GIVEN vision.noise: adaptive WHEN 30 % of the tracks jump about for 5 s, THEN the noise moves by no more
+// than its rate allows in that time, the truth is kept, and the same input gives the same bits.
+TEST(FilterEstimatorTest, WrongTracksDoNotRaiseTheAdaptiveNoise) {
+  EstimatorConfig config = FilterPreset(FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4);
+  config.vision.noise = PixelNoiseModel::kAdaptive;
+  Dataset dataset = test::SimulateOrDie(ShortFigureEight(), 6);
+  const ScenarioResult clean = RunFilter(config, dataset, 6);
+  ASSERT_TRUE(clean.status.ok());
+  EXPECT_GE(clean.max_pixel_noise_px, config.vision.pixel_noise_px);
+  EXPECT_LT(clean.max_pixel_noise_px, 1.1 * config.vision.pixel_noise_px);
+  RandomStream random(6, "wrong tracks");
+  const TimeNs start_ns = dataset.tracks.front().stamp_ns + 15 * kSecondNs;
+  for (TrackFrame& frame : dataset.tracks) {
+    for (TrackObservation& seen : frame.observations) {
+      if (seen.track_id % 10 < 3 && frame.stamp_ns >= start_ns && frame.stamp_ns < start_ns + 5 * kSecondNs) {
+        seen.pixel += 15 * Eigen::Vector2d(random.Normal(), random.Normal());
+      }
+    }
+  }
+  const ScenarioResult result = RunFilter(config, dataset, 6);
+  ASSERT_TRUE(result.status.ok());
+  EXPECT_LT(result.max_pixel_noise_px, 1.15 * config.vision.pixel_noise_px);
+  EXPECT_LT(result.rmse_position_m, 0.2);
+  EXPECT_EQ(RunFilter(config, dataset, 6).last.covariance, result.last.covariance);
+}
+
 TEST(FilterEstimatorTest, WindowNeverExceedsItsSize) {
   const Dataset dataset = test::SimulateOrDie(ShortFigureEight(), 7);
   for (const ClonePolicy policy : {ClonePolicy::kOldest, ClonePolicy::kKeepBases}) {

@@ -103,6 +103,49 @@ TEST(ImuIntervalTest, FilterAndSmootherCarryTheSameState) {
   }
 }
 
+// GIVEN imu.noise: adaptive WHEN the samples vibrate, THEN both back ends have the same covariance, larger
+// than that of the sheet, and after the vibration both add the sheet's noise again.
+TEST(ImuIntervalTest, FilterAndSmootherTakeVibrationAlike) {
+  test::RandomStates random(12);
+  EstimatorConfig config;
+  config.imu.gravity_mps2 = kGravity;
+  EstimatorConfig adaptive = config;
+  adaptive.imu.noise = ImuNoiseModel::kAdaptive;
+  const RigCalibration rig;
+  const Estimators fixed = MakeBoth(config, rig);
+  const Estimators both = MakeBoth(adaptive, rig);
+  const NavEstimate start = RandomStart(&random);
+  std::array<double, 2> velocity_variance = {};  // of the sheet, adaptive: while it vibrates
+  for (const auto* estimators : {&fixed, &both}) {
+    for (const std::unique_ptr<Estimator>& estimator : *estimators) {
+      ASSERT_TRUE(estimator->Initialize(start).ok());
+    }
+  }
+  for (int k = 0; k <= 4 * kSamplesPerFrame; ++k) {
+    const double size = k <= 2 * kSamplesPerFrame ? 20 : 0;
+    const ImuSample sample{SecondsToNs(k / kImuRateHz), Vector3d(0.1, 0.2, 0),
+                           Vector3d(0, 0, kGravity) + random.Vector(1) * size};
+    for (const auto* estimators : {&fixed, &both}) {
+      for (const std::unique_ptr<Estimator>& estimator : *estimators) {
+        ASSERT_TRUE(estimator->AddImu(sample).ok());
+        if (k % kSamplesPerFrame == 0) {
+          ASSERT_TRUE(estimator->AddFrame(EmptyFrame(sample.stamp_ns)).ok());
+        }
+      }
+    }
+    if (k > 0 && k % kSamplesPerFrame == 0) {
+      EXPECT_LT(RelativeDifference(both[1]->Latest().covariance, both[0]->Latest().covariance), 1e-9);
+    }
+    if (k == 2 * kSamplesPerFrame) {
+      velocity_variance = {fixed[0]->Latest().covariance(8, 8), both[0]->Latest().covariance(8, 8)};
+      EXPECT_GT(velocity_variance[1], 1.001 * velocity_variance[0]);
+    }
+  }
+  EXPECT_NEAR(both[0]->Latest().covariance(8, 8) - velocity_variance[1],
+              fixed[0]->Latest().covariance(8, 8) - velocity_variance[0],
+              0.2 * (velocity_variance[1] - velocity_variance[0]));
+}
+
 // GIVEN a prior at a frame and the smoother's rows of the IMU up to the next WHEN the first frame is
 // eliminated by QR, THEN the covariance left is that of the filter, in every error convention.
 TEST(ImuIntervalTest, RowsOfTheSmootherHoldTheCovarianceOfTheFilter) {

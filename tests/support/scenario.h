@@ -25,7 +25,8 @@ struct ScenarioResult {
   double rmse_position_m = 0;
   double rmse_orientation_rad = 0;
   double max_position_m = 0;
-  double nees_pose = 0;  ///< mean over frames; 6 is ideal
+  double nees_pose = 0;           ///< mean over frames; 6 is ideal
+  double max_pixel_noise_px = 0;  ///< that a frame's observations were given
   NavEstimate last;
 };
 
@@ -95,6 +96,7 @@ inline ScenarioResult RunScenario(const Dataset& dataset, const NavEstimate& ini
   result.status = run.status.ok() && run.frames_skipped > 0 ? Status::Input(run.skip_report) : run.status;
   for (const RunRecord& record : run.records) {
     result.last = record.estimate;
+    result.max_pixel_noise_px = std::max(result.max_pixel_noise_px, record.statistics.pixel_noise_px);
     const NavState& truth = TruthAt(dataset, result.last.stamp_ns).nav;
     const Vector6d error = Local(ErrorConvention::kSo3xRn, result.last.nav, truth).head<6>();
     const Matrix6d covariance = result.last.covariance.topLeftCorner<6, 6>();

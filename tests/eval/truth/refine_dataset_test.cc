@@ -50,7 +50,7 @@ TEST_F(RefineDatasetTest, WritesASequenceWithATruthThatHasCovariances) {
   const Result<RefinedTruth> refined = RefineDataset(dataset_, {});
   ASSERT_TRUE(refined.ok()) << refined.message();
   const test::TemporaryFolder output;
-  ASSERT_TRUE(WriteWithTruth(dataset_, TruthOf(*refined), output.path()).ok());
+  ASSERT_TRUE(WriteRefined(dataset_, *refined, output.path()).ok());
   const Result<Dataset> read = ReadDataset(output.path());
   ASSERT_TRUE(read.ok()) << read.message();
   EXPECT_EQ(read->imu.size(), dataset_.imu.size());
@@ -76,6 +76,30 @@ TEST_F(RefineDatasetTest, WritesASequenceWithATruthThatHasCovariances) {
   const Result<RecordedMotion> motion = LoadRecordedMotion(output.path(), config);
   ASSERT_TRUE(motion.ok()) << motion.message();
   EXPECT_LT(motion->motion.fit().position_rms_m, 1e-5);
+}
+
+TEST_F(RefineDatasetTest, GivenScaleFactorsThenTheSamplesAreWrittenWithThem) {
+  RefineOptions options;
+  options.imu_scale = true;
+  Result<RefinedTruth> refined = RefineDataset(dataset_, options);
+  ASSERT_TRUE(refined.ok()) << refined.message();
+  EXPECT_LT(refined->imu_scale.gyro.cwiseAbs().maxCoeff(), 4 * refined->imu_scale_std.head<3>().maxCoeff());
+  EXPECT_THAT(FormatRefinementText(*refined), HasSubstr("scale of the gyroscope"));
+  refined->imu_scale.accel.z() = 0.01;
+  const test::TemporaryFolder output;
+  ASSERT_TRUE(WriteRefined(dataset_, *refined, output.path()).ok());
+  const Result<Dataset> read = ReadDataset(output.path());
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_NEAR(read->imu[5].accel.z() / dataset_.imu[5].accel.z(), 1.01, 1e-9);
+  EXPECT_EQ(read->rig.imu_noise.gyro_noise_density_radps_sqrthz,
+            dataset_.rig.imu_noise.gyro_noise_density_radps_sqrthz);
+
+  options.imu_scale = false;
+  const Result<RefinedTruth> as_read = RefineDataset(dataset_, options);
+  ASSERT_TRUE(as_read.ok()) << as_read.message();
+  EXPECT_TRUE(as_read->imu_scale_std.isZero(0));
+  options.imu.noise = ImuNoiseModel::kAdaptive;
+  EXPECT_EQ(RefineDataset(dataset_, options).code(), StatusCode::kUsage);
 }
 
 TEST_F(RefineDatasetTest, TheReportNamesWhatWasFound) {

@@ -28,20 +28,22 @@ struct RandomChain {
       if (k + 1 < count) {
         const Matrix15d first = Random<15, 15>(), second = Random<15, 15>();
         const Vector15d residual = Random<15, 1>();
-        system.AddLink(k, residual, first, second);
+        const ArrowSystem::LinkBorderRows of_border = Random<15, kBorderColumns>();
+        system.AddLink(k, residual, first, second, of_border);
         MatrixXd jacobian = MatrixXd::Zero(15, hessian.cols());
         jacobian.middleCols(column, 15) = first;
         jacobian.middleCols(column + 15, 15) = second;
+        jacobian.rightCols(kBorderColumns) = of_border;
         AddDense(jacobian, residual);
       }
       for (int pose = 0; pose < 2; ++pose) {
         const ArrowSystem::PoseRows of_state = Random<6, 15>();
-        const ArrowSystem::BorderRows of_border = Random<6, 9>();
+        const ArrowSystem::BorderRows of_border = Random<6, kBorderColumns>();
         const Vector6d residual = Random<6, 1>();
         system.AddPose(k, residual, of_state, of_border);
         MatrixXd jacobian = MatrixXd::Zero(6, hessian.cols());
         jacobian.middleCols(column, 15) = of_state;
-        jacobian.middleCols(border, 9) = of_border;
+        jacobian.middleCols(border, kBorderColumns) = of_border;
         AddDense(jacobian, residual);
       }
     }
@@ -49,10 +51,11 @@ struct RandomChain {
     system.AddPrior(0, residual, root);
     hessian.diagonal().head<15>() += root.cwiseAbs2();
     gradient.head<15>() += root.cwiseProduct(residual);
-    const ArrowSystem::Border border_residual = Random<9, 1>(), border_root = Random<9, 1>();
+    const ArrowSystem::Border border_residual = Random<kBorderColumns, 1>(),
+                              border_root = Random<kBorderColumns, 1>();
     system.AddBorderPrior(border_residual, border_root);
-    hessian.diagonal().tail<9>() += border_root.cwiseAbs2();
-    gradient.tail<9>() += border_root.cwiseProduct(border_residual);
+    hessian.diagonal().tail<kBorderColumns>() += border_root.cwiseAbs2();
+    gradient.tail<kBorderColumns>() += border_root.cwiseProduct(border_residual);
   }
 
   template <int kRows, int kColumns>
@@ -80,9 +83,12 @@ TEST(ArrowSystemTest, EqualsTheDenseInverse) {
   const Index border = kStateColumns * static_cast<Index>(kStates);
   EXPECT_NEAR(chain.system.newton_decrement(), -chain.gradient.dot(step),
               1e-9 * chain.system.newton_decrement());
-  EXPECT_LT((chain.system.border_covariance() - covariance.bottomRightCorner(9, 9)).cwiseAbs().maxCoeff(),
+  EXPECT_LT((chain.system.border_covariance() - covariance.bottomRightCorner(kBorderColumns, kBorderColumns))
+                .cwiseAbs()
+                .maxCoeff(),
             tolerance);
-  EXPECT_LT((chain.system.border_step() - step.tail(9)).cwiseAbs().maxCoeff(), 1e-9 * step.norm());
+  EXPECT_LT((chain.system.border_step() - step.tail(kBorderColumns)).cwiseAbs().maxCoeff(),
+            1e-9 * step.norm());
   size_t visited = 0;
   chain.system.Solve([&](const ArrowSystem::Solution& solution) {
     EXPECT_EQ(solution.k, kStates - 1 - visited) << "the last one first";
@@ -91,8 +97,9 @@ TEST(ArrowSystemTest, EqualsTheDenseInverse) {
     EXPECT_LT((solution.step - step.segment(column, 15)).cwiseAbs().maxCoeff(), 1e-9 * step.norm());
     EXPECT_LT((solution.covariance - covariance.block(column, column, 15, 15)).cwiseAbs().maxCoeff(),
               tolerance);
-    EXPECT_LT((solution.with_border - covariance.block(column, border, 15, 9)).cwiseAbs().maxCoeff(),
-              tolerance);
+    EXPECT_LT(
+        (solution.with_border - covariance.block(column, border, 15, kBorderColumns)).cwiseAbs().maxCoeff(),
+        tolerance);
     if (solution.k + 1 < kStates) {
       EXPECT_LT((solution.with_next - covariance.block(column, column + 15, 15, 15)).cwiseAbs().maxCoeff(),
                 tolerance);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "eval/simulation/sim_imu.h"
 #include "eval/simulation/sim_trajectory.h"
 #include "eval/trajectory/trajectory_point.h"
+#include "smoother/truth/fixed_point.h"
 
 namespace alidade {
 namespace {
@@ -203,6 +205,57 @@ TEST(RefinedTruthTest, GivenADeviationThenItIsKept) {
   EXPECT_EQ(refined->noise.position_m, 2e-3);
   EXPECT_NEAR(refined->position.ratio(), 0.25, 0.02);
   EXPECT_NEAR(refined->noise.orientation_rad / kNoise.orientation_rad, 1, 0.03);
+}
+
+TEST(RefinedTruthTest, GivenAnImuWithScaleErrorsThenTheFactorsAreFound) {
+  Capture capture = MakeCapture(5);
+  const TruthImuScale wrong{{4e-3, -6e-3, 5e-3}, {-5e-3, 8e-3, 6e-3}};
+  for (ImuSample& sample : capture.imu.samples) {
+    sample = wrong.Applied(sample);
+  }
+  const Result<RefinedTruth> taken = Refine(capture);
+  capture.options.imu_scale = true;
+  const Result<RefinedTruth> refined = Refine(capture);
+  ASSERT_TRUE(refined.ok()) << refined.message();
+  Vector6d error, size;
+  size << wrong.gyro, wrong.accel;
+  error << refined->imu_scale.gyro, refined->imu_scale.accel;
+  error = (error.array() + 1) * (size.array() + 1) - 1;
+  EXPECT_LT(error.cwiseQuotient(refined->imu_scale_std).cwiseAbs().maxCoeff(), 3.5) << error.transpose();
+  EXPECT_LT(refined->imu_scale_std.head<3>().maxCoeff(), 3e-3);
+  EXPECT_LT(NormalizedErrors(*refined, capture.constants).cwiseAbs().maxCoeff(), 3.5);
+  // Not estimated, they show in the residuals.
+  ASSERT_TRUE(taken.ok()) << taken.message();
+  EXPECT_TRUE(taken->imu_scale_std.isZero(0));
+  EXPECT_GT(taken->gyro.ratio(), 1.5 * refined->gyro.ratio());
+}
+
+TEST(RefinedTruthTest, GivenATruthMadeWithItsImuThenItsNoiseStopsAtItsLeastValue) {
+  Capture capture = MakeCapture(6);
+  const Result<RefinedTruth> first = Refine(capture);
+  ASSERT_TRUE(first.ok()) << first.message();
+  capture.poses.clear();
+  for (size_t k = 0; k < first->states.size(); k += 5) {
+    capture.poses.push_back({first->states[k].stamp_ns, first->states[k].nav.T_WB()});
+  }
+  const Result<RefinedTruth> second = Refine(capture);
+  ASSERT_TRUE(second.ok()) << second.message();
+  EXPECT_LE(second->noise.orientation_rad, 1e-4);
+  EXPECT_GE(second->noise.orientation_rad, 1e-5);
+  EXPECT_GE(second->noise.position_m, 1e-5);
+}
+
+TEST(FixedPointTest, AnIterationThatConvergesSlowlyTakesFewSteps) {
+  // log x <- 0.7 log x: 26 plain steps to 1e-4.
+  FixedPoint fixed_point;
+  double x = 20;
+  int steps = 0;
+  while (std::abs(std::log(x)) > 1e-4 && steps < 26) {
+    x = fixed_point.Next(x, std::pow(x, 0.7));
+    ++steps;
+  }
+  EXPECT_LE(steps, 4);
+  EXPECT_EQ(fixed_point.Next(2, 2), 2) << "where it stands it stays";
 }
 
 TEST(RefinedTruthTest, BadInputIsRefused) {
