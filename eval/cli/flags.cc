@@ -58,6 +58,9 @@ DEFINE_bool(quiet, false, "print only errors and results");
 DEFINE_bool(render, false, "render images instead of simulating tracks (render.enabled)");
 DEFINE_bool(resume, false, "keep the completed cells of an interrupted comparison");
 DEFINE_string(rpe, "8,16,24,32,40", "distances of the relative pose error [m], separated by commas");
+DEFINE_bool(score, false,
+            "judge the tracks: life, loss, coverage, CPU time, consistency with the truth, and errors of "
+            "corners in rendered images; writes score.json and score.csv");
 DEFINE_uint32(seed, 1, "seed of the simulation, and of the start drawn by init.method truth");
 DEFINE_string(set, "", "a.b=value,...: override keys of the configuration file; may be repeated");
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
@@ -66,6 +69,7 @@ DEFINE_int32(starts, 100, "total number of starts, distributed over the sequence
 DEFINE_string(
     topics, "",
     "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones (docs/bags.md)");
+DEFINE_string(tracks, "", "tracks.csv to judge with --score, instead of tracks of the front end");
 DEFINE_string(truth, "", "ground-truth trajectory file");
 DEFINE_double(truth_rate, 0,
               "largest rate of the poses of the truth that are used [Hz]; 0: all. Their errors should be "

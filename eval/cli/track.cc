@@ -4,8 +4,10 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/score.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
+#include "eval/dataset/dataset_tracks.h"
 #include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/digest.h"
 #include "eval/files/output_file.h"
@@ -47,31 +49,27 @@ Status WriteAll(const Dataset& dataset, const std::vector<TrackerStatistics>& st
   return DrawOverlays(dataset, dataset.tracks);
 }
 
-}  // namespace
+/// Tracks that exist: those of --tracks, or of a sequence without images; none: the front end makes them.
+Result<std::vector<TrackFrame>> GivenTracks(const Dataset& dataset) {
+  if (!FLAGS_tracks.empty()) {
+    return FLAGS_score
+               ? ReadTracks(FLAGS_tracks)
+               : Status::Usage("track: --tracks is for --score, the front end makes tracks of images");
+  }
+  return FLAGS_score && dataset.images.empty() ? dataset.tracks : std::vector<TrackFrame>();
+}
 
-int RunTrack(const std::vector<std::string>&) {
-  const Result<EstimatorConfig> config = FrontendSettings();
-  if (!config.ok()) {
-    return Report(config.status());
-  }
-  Result<Dataset> dataset = ReadDatasetFromFlags();
-  if (!dataset.ok()) {
-    return Report(dataset.status());
-  }
-  if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
-    return Report(status);
-  }
-  if (FLAGS_overlay < 0) {
-    return Report(
-        Status::Config("--overlay: found " + std::to_string(FLAGS_overlay) + ", expected 0 or more"));
-  }
+/// Runs the front end over the images, writes what it leaves, and judges it if asked to.
+int TrackAndWrite(const FrontendConfig& config, Dataset* dataset) {
   std::vector<TrackerStatistics> statistics;
+  std::vector<double> cpu_ms;
   PipelineOptions options;
   options.statistics = &statistics;
+  options.cpu_ms = &cpu_ms;
   options.stop = InstallInterruptHandler();
   ProgressLine progress("images");
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
-  Result<std::vector<TrackFrame>> frames = TrackImages(*dataset, config->frontend, options);
+  Result<std::vector<TrackFrame>> frames = TrackImages(*dataset, config, options);
   if (options.stop->load()) {
     return kExitInterrupted;
   }
@@ -90,7 +88,33 @@ int RunTrack(const std::vector<std::string>&) {
       "rejected by the epipolar geometry a frame\n",
       summary.mean_ms, summary.p95_ms, summary.features_per_frame, summary.mean_length,
       100 * summary.lost_share, 100 * summary.rejected_share);
-  return kExitDone;
+  return FLAGS_score ? Report(JudgeTracks(*dataset, dataset->tracks, cpu_ms)) : kExitDone;
+}
+
+}  // namespace
+
+int RunTrack(const std::vector<std::string>&) {
+  const Result<EstimatorConfig> config = FrontendSettings();
+  if (!config.ok()) {
+    return Report(config.status());
+  }
+  if (FLAGS_overlay < 0) {
+    return Report(
+        Status::Config("--overlay: found " + std::to_string(FLAGS_overlay) + ", expected 0 or more"));
+  }
+  Result<Dataset> dataset = ReadDatasetFromFlags();
+  if (!dataset.ok()) {
+    return Report(dataset.status());
+  }
+  const Result<std::vector<TrackFrame>> given = GivenTracks(*dataset);
+  if (!given.ok()) {
+    return Report(given.status());
+  }
+  if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
+    return Report(status);
+  }
+  return given->empty() ? TrackAndWrite(config->frontend, &*dataset)
+                        : Report(JudgeTracks(*dataset, *given, {}));
 }
 
 }  // namespace alidade::cli

@@ -35,6 +35,8 @@ Status ReadOneTruth(const fs::path& folder, Dataset* dataset) {
   return Status::Ok();
 }
 
+}  // namespace
+
 std::string TruthCsv(const Trajectory& truth) {
   std::string text =
       truth.has_velocity
@@ -62,8 +64,6 @@ std::string TruthCsv(const Trajectory& truth) {
   }
   return text;
 }
-
-}  // namespace
 
 Status ReadTruthFolder(const std::string& mav, Dataset* dataset) {
   ALIDADE_RETURN_IF_ERROR(ReadOneTruth(fs::path(mav) / "state_groundtruth_estimate0", dataset));

@@ -17,6 +17,9 @@ class Findings;
 Status ReadTruthFolder(const std::string& mav, Dataset* dataset);
 Status WriteTruthFolder(const Dataset& dataset, const std::string& mav);
 
+/// The text of data.csv, data_pose.csv or data_position.csv, whichever holds what the trajectory has.
+[[nodiscard]] std::string TruthCsv(const Trajectory& truth);
+
 /// Rate, gaps, the covered part of the IMU's time, length of the path; a warning without truth.
 void CheckTruth(const Dataset& dataset, Findings* findings);
 

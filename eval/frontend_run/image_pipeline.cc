@@ -1,5 +1,6 @@
 #include "eval/frontend_run/image_pipeline.h"
 
+#include "core/cpu_time.h"
 #include "core/stopwatch.h"
 #include "eval/bag/dataset_images.h"
 #include "frontend/tracking/image_reader.h"
@@ -25,8 +26,12 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
     }
     const Result<GreyImage> grey = image_of(frames.size());
     ALIDADE_RETURN_IF_ERROR(grey.status());
+    const double cpu_start_s = ThreadCpuSeconds();
     Result<TrackFrame> frame = tracker.Track(stamp_ns, grey->pixels.data(), grey->width_px, grey->height_px);
     ALIDADE_RETURN_IF_ERROR(frame.status());
+    if (options.cpu_ms != nullptr) {
+      options.cpu_ms->push_back(1e3 * (ThreadCpuSeconds() - cpu_start_s));
+    }
     frames.push_back(std::move(*frame));
     if (options.statistics != nullptr) {
       options.statistics->push_back(tracker.statistics());

@@ -16,6 +16,7 @@ struct PipelineOptions {
   std::function<void(size_t images_done, size_t images)> progress = {};  ///< by one thread at a time
   int jobs = 1;  ///< threads that draw images, where they are drawn; they change no byte
   std::vector<TrackerStatistics>* statistics = nullptr;  ///< one an image, where asked for
+  std::vector<double>* cpu_ms = nullptr;  ///< CPU time of the tracker an image, where asked for
 };
 
 /// The image of a frame; called in order, once a frame.

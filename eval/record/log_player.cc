@@ -1,12 +1,11 @@
 #include "eval/record/log_player.h"
 
-#include <time.h>
-
 #include <limits>
 #include <memory>
 #include <utility>
 
 #include "core/check.h"
+#include "core/cpu_time.h"
 #include "core/stopwatch.h"
 #include "eval/record/truth_start.h"
 
@@ -16,12 +15,6 @@ namespace {
 // Messages handed over ahead of a frame, beyond any receiver clock and any error of the camera's time offset.
 constexpr TimeNs kEpochsAheadNs = 10'000'000'000;
 constexpr TimeNs kImuAheadNs = kSecondNs;
-
-double ThreadCpuSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * kNsToSeconds;
-}
 
 }  // namespace
 

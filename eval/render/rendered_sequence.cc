@@ -8,10 +8,12 @@
 
 #include "core/lie.h"
 #include "eval/config/config_writer.h"
+#include "eval/dataset/dataset_truth.h"
 #include "eval/dataset/digest.h"
 #include "eval/dataset/png_image.h"
 #include "eval/files/output_file.h"
 #include "eval/files/parallel_for.h"
+#include "eval/render/hall_file.h"
 
 namespace alidade {
 namespace {
@@ -51,12 +53,33 @@ RenderedSequence::RenderedSequence(const SimulatorConfig& config, const Simulati
   }
 }
 
+Pose RenderedSequence::CameraPose(double time_s) const {
+  return motion_->At(time_s).nav.T_WB() * rig_.T_BC;
+}
+
+double RenderedSequence::MiddleOfExposure(std::size_t index) const {
+  return SecondsBetween(motion_start_ns_, stamps_[index]) + rig_.camera_time_offset_s;
+}
+
+Trajectory RenderedSequence::CameraPoses() const {
+  Trajectory poses;
+  for (std::size_t i = 0; i < stamps_.size(); ++i) {
+    const Pose T_WC = CameraPose(MiddleOfExposure(i));
+    TrajectoryPoint point;
+    point.stamp_ns = stamps_[i];
+    point.nav.R_WB = T_WC.rotation;
+    point.nav.p_WB = T_WC.translation;
+    poses.points.push_back(point);
+  }
+  return poses;
+}
+
 GreyImage RenderedSequence::Frame(std::size_t index) const {
-  const double time_s = SecondsBetween(motion_start_ns_, stamps_[index]) + rig_.camera_time_offset_s;
+  const double time_s = MiddleOfExposure(index);
   std::vector<Pose> T_WC;
   for (int k = 0; k < config_.samples; ++k) {
     const double share = (k + 0.5) / config_.samples - 0.5;
-    T_WC.push_back(motion_->At(time_s + share * config_.exposure_s).nav.T_WB() * rig_.T_BC);
+    T_WC.push_back(CameraPose(time_s + share * config_.exposure_s));
   }
   const double phase = 2 * std::numbers::pi * time_s / config_.brightness_period_s;
   return renderer_.Render(T_WC, index, 1 + config_.brightness_swing * std::sin(phase));
@@ -79,6 +102,8 @@ Status WriteRenderedImages(const RenderedSequence& sequence, const std::string& 
     return Status::Ok();
   };
   ALIDADE_RETURN_IF_ERROR(ParallelFor(stamps.size(), options.jobs, draw));
+  ALIDADE_RETURN_IF_ERROR(WriteHall(sequence.hall(), HallPath(path)));
+  ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(CameraPosesPath(path), TruthCsv(sequence.CameraPoses())));
   std::string list = "#timestamp [ns],filename\n";
   for (const TimeNs stamp : stamps) {
     list += std::to_string(stamp) + "," + std::to_string(stamp) + ".png\n";

@@ -22,11 +22,16 @@ class RenderedSequence {
   [[nodiscard]] const Hall& hall() const { return renderer_.hall(); }
   /// Text that differs whenever the images or the gyroscope beside them may: keys, seed, lens, motion, IMU.
   [[nodiscard]] const std::string& Fingerprint() const { return fingerprint_; }
+  /// Poses T_WC of the camera in the middle of each exposure, at the camera's stamps.
+  [[nodiscard]] Trajectory CameraPoses() const;
   /// Any frame, from any thread.
   [[nodiscard]] GreyImage Frame(std::size_t index) const;
 
  private:
   RenderedSequence(const SimulatorConfig& config, const Simulation& simulation, Hall hall, unsigned seed);
+
+  [[nodiscard]] Pose CameraPose(double time_s) const;  ///< time since the motion's start
+  [[nodiscard]] double MiddleOfExposure(std::size_t index) const;
 
   RenderConfig config_;
   std::string fingerprint_;
@@ -37,8 +42,8 @@ class RenderedSequence {
   HallRenderer renderer_;
 };
 
-/// Writes the images as mav0/cam0/data/<stamp>.png below `path`, and the list mav0/cam0/data.csv last.
-/// Errors: kOutput; kDiverged: stopped.
+/// Writes the images as mav0/cam0/data/<stamp>.png below `path`, what was drawn (eval/render/hall_file.h),
+/// and the list mav0/cam0/data.csv last. Errors: kOutput; kDiverged: stopped.
 Status WriteRenderedImages(const RenderedSequence& sequence, const std::string& path,
                            const PipelineOptions& options);
 
