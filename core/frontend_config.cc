@@ -9,8 +9,10 @@ void FrontendConfig::Describe(ConfigVisitor& visitor) {
       {"grid_columns", "-", "corners are detected per grid cell, so they are distributed over the image"},
       &grid_columns, 1, 64);
   visitor.Integer({"grid_rows", "-", "see grid_columns"}, &grid_rows, 1, 64);
-  visitor.Real({"corner_threshold", "grey", "FAST threshold: smallest contrast of a corner"},
-               &corner_threshold, 1, 200);
+  visitor.Real(
+      {"corner_threshold", "grey",
+       "smallest contrast of a corner; one much weaker than the strongest of the image is refused too"},
+      &corner_threshold, 1, 200);
   visitor.Integer({"pyramid_levels", "-", "pyramid levels above the full image"}, &pyramid_levels, 0, 6);
   visitor.Integer({"window_px", "px",
                    "side of the KLT window; a larger one is more affected by deformation of the image"},
@@ -20,16 +22,20 @@ void FrontendConfig::Describe(ConfigVisitor& visitor) {
        "side of the patch kept from a track's first image; every image is matched to it under an affine "
        "deformation, which prevents drift of the track; 0 tracks from frame to frame only"},
       &template_px, 0, 41);
-  visitor.Real(
-      {"min_correlation", "-", "smallest correlation of the image with that patch; below it the track ends"},
-      &min_correlation, 0, 1);
+  visitor.Real({"min_correlation", "-",
+                "smallest correlation of the image with that patch; below it the track must be followed "
+                "back, and takes a "
+                "new patch"},
+               &min_correlation, 0, 1);
   visitor.Real({"ransac_threshold_px", "px", "largest distance to the epipolar line"}, &ransac_threshold_px,
                0.1, 20);
   visitor.Real({"forward_backward_px", "px",
                 "largest distance between a point and its backward track, from frame to frame; 0 skips the "
                 "backward pass"},
                &forward_backward_px, 0, 10);
-  visitor.Boolean({"equalize", "-", "CLAHE before tracking; compensates exposure changes"}, &equalize);
+  visitor.Boolean(
+      {"equalize", "-", "CLAHE before tracking; raises the contrast of dark images, and their noise"},
+      &equalize);
   visitor.Boolean({"imu_prediction", "-", "start the search of each track at the gyroscope's prediction"},
                   &imu_prediction);
 }

@@ -10,14 +10,14 @@ struct FrontendConfig {
   double min_distance_px = 20.0;
   int grid_columns = 8;
   int grid_rows = 5;
-  double corner_threshold = 12.0;
+  double corner_threshold = 6.0;
   int pyramid_levels = 3;
   int window_px = 15;
   int template_px = 13;
   double min_correlation = 0.8;
   double ransac_threshold_px = 1.0;
   double forward_backward_px = 0.0;
-  bool equalize = true;
+  bool equalize = false;
   bool imu_prediction = true;
 
   void Describe(ConfigVisitor& visitor);

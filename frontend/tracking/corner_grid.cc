@@ -3,22 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
 namespace alidade {
 namespace {
 
-// FAST looks 3 px around a pixel, and one more for the suppression of non-maxima.
-constexpr int kFastMarginPx = 4;
-// FAST corners of one cell whose structure tensor is worth computing, strongest first.
-constexpr size_t kMaxProposals = 40;
-constexpr int kTensorRadiusPx = 3;
 constexpr int kSubPixelRadiusPx = 3;
-// Corners below this share of the cell's best are edges or noise beside it.
-constexpr float kMinRelativeEigenvalue = 0.02F;
+// Black or white: less than the quarter that the corner of a lamp covers.
+constexpr double kMaxSaturatedShare = 0.15;
+// Of the strongest corner: a tenth of its contrast. Weaker ones do not live long beside it.
+constexpr float kMinRelativeStrength = 0.01F;
 
 /// Points hashed into square buckets as wide as the radius asked about, so that a query visits nine of them.
 class Neighbourhood {
@@ -62,35 +57,17 @@ class Neighbourhood {
   std::vector<std::vector<cv::Point2f>> buckets_;
 };
 
-/// Smaller eigenvalue of the structure tensor around an integer pixel, in squared derivative units.
-float SmallerEigenvalue(const cv::Mat& derivatives, const cv::Point& centre) {
-  double xx = 0;
-  double xy = 0;
-  double yy = 0;
-  for (int row = centre.y - kTensorRadiusPx; row <= centre.y + kTensorRadiusPx; ++row) {
-    const cv::Vec2s* line = derivatives.ptr<cv::Vec2s>(row);
-    for (int column = centre.x - kTensorRadiusPx; column <= centre.x + kTensorRadiusPx; ++column) {
-      const double dx = line[column][0];
-      const double dy = line[column][1];
-      xx += dx * dx;
-      xy += dx * dy;
-      yy += dy * dy;
-    }
+/// Whether more than kMaxSaturatedShare of the patch is without detail because the sensor ended there.
+bool IsSaturated(const cv::Mat& image, const cv::Point& centre) {
+  int saturated = 0;
+  for (int y = centre.y - corner_strength::kRadiusPx; y <= centre.y + corner_strength::kRadiusPx; ++y) {
+    const unsigned char* const row = image.ptr(y) + centre.x;
+    saturated +=
+        static_cast<int>(std::count_if(row - corner_strength::kRadiusPx, row + corner_strength::kRadiusPx + 1,
+                                       [](unsigned char grey) { return grey == 0 || grey >= 254; }));
   }
-  return static_cast<float>(0.5 * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4 * xy * xy)));
-}
-
-struct Proposal {
-  cv::Point2f pixel;
-  float strength = 0;
-};
-
-/// Strongest first; equal strengths in reading order, so that the order never depends on the sort.
-bool Before(const Proposal& a, const Proposal& b) {
-  if (a.strength != b.strength) {
-    return a.strength > b.strength;
-  }
-  return a.pixel.y != b.pixel.y ? a.pixel.y < b.pixel.y : a.pixel.x < b.pixel.x;
+  constexpr int kSide = 2 * corner_strength::kRadiusPx + 1;
+  return saturated > kMaxSaturatedShare * kSide * kSide;
 }
 
 }  // namespace
@@ -98,8 +75,9 @@ bool Before(const Proposal& a, const Proposal& b) {
 CornerGrid::CornerGrid(const FrontendConfig& config, int width_px, int height_px, int border_px)
     : config_(config),
       size_px_(width_px, height_px),
-      border_px_(std::max(border_px, kTensorRadiusPx + 1)),
+      border_px_(std::max(border_px, corner_strength::kMarginPx)),
       cells_(config.grid_columns * config.grid_rows),
+      rest_(static_cast<size_t>(cells_), 0),
       share_((config.max_features + cells_ - 1) / cells_) {}
 
 int CornerGrid::CellOf(const cv::Point2f& pixel) const {
@@ -137,45 +115,47 @@ std::vector<bool> CornerGrid::Thin(const std::vector<cv::Point2f>& pixels) const
   return keep;
 }
 
-std::vector<cv::Point2f> CornerGrid::Propose(const cv::Mat& image, const cv::Mat& derivatives,
-                                             int cell) const {
+std::vector<Corner> CornerGrid::Propose(const cv::Mat& image, const cv::Mat& derivatives, int cell) const {
   const cv::Rect allowed(border_px_, border_px_, size_px_.width - 2 * border_px_,
                          size_px_.height - 2 * border_px_);
-  const cv::Rect cell_rect = CellRect(cell) & allowed;
-  if (cell_rect.empty()) {
-    return {};
-  }
-  const cv::Rect search =
-      cv::Rect(cell_rect.x - kFastMarginPx, cell_rect.y - kFastMarginPx, cell_rect.width + 2 * kFastMarginPx,
-               cell_rect.height + 2 * kFastMarginPx) &
-      cv::Rect({0, 0}, size_px_);
-  std::vector<cv::KeyPoint> corners;
-  cv::FAST(image(search), corners, static_cast<int>(std::lround(config_.corner_threshold)), true);
-  std::vector<Proposal> proposals;
-  for (const cv::KeyPoint& corner : corners) {
-    const cv::Point2f pixel = corner.pt + cv::Point2f(search.tl());
-    if (cell_rect.contains(pixel)) {
-      proposals.push_back({pixel, corner.response});
+  std::vector<Corner> corners = corner_strength::Maxima(
+      derivatives, CellRect(cell) & allowed, corner_strength::OfContrast(config_.corner_threshold));
+  corners.erase(std::remove_if(corners.begin(), corners.end(),
+                               [&](const Corner& corner) { return IsSaturated(image, corner.pixel); }),
+                corners.end());
+  return corners;
+}
+
+std::vector<int> CornerGrid::CellsToSearch(size_t features) {
+  const bool all = 2 * static_cast<int>(features) < config_.max_features;
+  std::vector<int> cells;
+  for (int cell = 0; cell < cells_; ++cell) {
+    int& rest = rest_[static_cast<size_t>(cell)];
+    rest = all ? 0 : rest;
+    if (rest == 0) {
+      cells.push_back(cell);
+    } else {
+      --rest;
     }
   }
-  std::sort(proposals.begin(), proposals.end(), Before);
-  proposals.resize(std::min(proposals.size(), kMaxProposals));
-  for (Proposal& proposal : proposals) {
-    proposal.strength = SmallerEigenvalue(derivatives, proposal.pixel);
-  }
-  std::sort(proposals.begin(), proposals.end(), Before);
-  std::vector<cv::Point2f> pixels;
-  for (const Proposal& proposal : proposals) {
-    if (proposal.strength < kMinRelativeEigenvalue * proposals.front().strength) {
-      break;
+  return cells;
+}
+
+float CornerGrid::StrongestOf(const cv::Mat& derivatives, const std::vector<cv::Point2f>& pixels) const {
+  const cv::Rect allowed(border_px_, border_px_, size_px_.width - 2 * border_px_,
+                         size_px_.height - 2 * border_px_);
+  float strongest = 0;
+  for (const cv::Point2f& pixel : pixels) {
+    const cv::Point place = pixel;
+    if (allowed.contains(place)) {
+      strongest = std::max(strongest, corner_strength::At(derivatives, place));
     }
-    pixels.push_back(proposal.pixel);
   }
-  return pixels;
+  return strongest;
 }
 
 std::vector<cv::Point2f> CornerGrid::Detect(const cv::Mat& image, const cv::Mat& derivatives,
-                                            const std::vector<cv::Point2f>& existing) const {
+                                            const std::vector<cv::Point2f>& existing) {
   Neighbourhood taken(size_px_, config_.min_distance_px);
   std::vector<int> counts(static_cast<size_t>(cells_), 0);
   for (const cv::Point2f& pixel : existing) {
@@ -183,29 +163,43 @@ std::vector<cv::Point2f> CornerGrid::Detect(const cv::Mat& image, const cv::Mat&
     ++counts[static_cast<size_t>(CellOf(pixel))];
   }
   // Cells are searched only when their turn comes; a cell that runs dry leaves the round.
-  std::vector<std::optional<std::vector<cv::Point2f>>> proposals(static_cast<size_t>(cells_));
-  std::vector<int> open(static_cast<size_t>(cells_));
-  std::iota(open.begin(), open.end(), 0);
+  std::vector<std::optional<std::vector<Corner>>> proposals(static_cast<size_t>(cells_));
+  std::vector<int> open = CellsToSearch(existing.size());
+  float strongest = StrongestOf(derivatives, existing);
+  const auto search = [&](size_t cell) {
+    if (!proposals[cell].has_value()) {
+      proposals[cell] = Propose(image, derivatives, static_cast<int>(cell));
+      if (!proposals[cell]->empty()) {
+        strongest = std::max(strongest, proposals[cell]->front().strength);
+      }
+      std::reverse(proposals[cell]->begin(), proposals[cell]->end());
+    }
+    return &*proposals[cell];
+  };
+  if (existing.empty()) {
+    std::for_each(open.begin(), open.end(), [&](int cell) { search(static_cast<size_t>(cell)); });
+  }
   std::vector<cv::Point2f> found;
   while (!open.empty() && static_cast<int>(existing.size() + found.size()) < config_.max_features) {
     const auto emptiest = std::min_element(open.begin(), open.end(), [&](int a, int b) {
       return counts[static_cast<size_t>(a)] < counts[static_cast<size_t>(b)];
     });
-    const size_t cell = static_cast<size_t>(*emptiest);
-    if (!proposals[cell].has_value()) {
-      proposals[cell] = Propose(image, derivatives, *emptiest);
-      std::reverse(proposals[cell]->begin(), proposals[cell]->end());
-    }
-    std::vector<cv::Point2f>& queue = *proposals[cell];
-    while (!queue.empty() && taken.HasNear(queue.back())) {
-      queue.pop_back();
-    }
-    if (queue.empty() || counts[cell] >= 2 * share_) {
+    const auto cell = static_cast<size_t>(*emptiest);
+    if (counts[cell] >= 2 * share_) {
       open.erase(emptiest);
       continue;
     }
-    taken.Add(queue.back());
-    found.push_back(queue.back());
+    std::vector<Corner>& queue = *search(cell);
+    while (!queue.empty() && taken.HasNear(queue.back().pixel)) {
+      queue.pop_back();
+    }
+    if (queue.empty() || queue.back().strength < kMinRelativeStrength * strongest) {
+      rest_[cell] = kRestImages;
+      open.erase(emptiest);
+      continue;
+    }
+    taken.Add(queue.back().pixel);
+    found.push_back(queue.back().pixel);
     queue.pop_back();
     ++counts[cell];
   }

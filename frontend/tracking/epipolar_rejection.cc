@@ -19,6 +19,8 @@ using Eigen::Vector3d;
 constexpr int kMaxHypotheses = 100;
 constexpr double kConfidence = 0.999;
 constexpr int kRefinementSteps = 5;
+// A rolling shutter and a poor calibration leave more than noise; beyond this it is another motion.
+constexpr double kMaxThresholdGrowth = 3;
 
 /// Relative motion of the camera, p_2 = R_21 p_1 + t with |t| = 1.
 struct Motion {
@@ -200,6 +202,26 @@ Consensus RejectNegativeDepth(const std::vector<BearingPair>& pairs, const Motio
   return Count(std::move(consensus.inliers));
 }
 
+/// Threshold that suits the scatter of the inliers: three robust standard deviations, at least that of the
+/// options and at most kMaxThresholdGrowth times it.
+double AdaptedThreshold(const std::vector<BearingPair>& pairs, const std::vector<bool>& inliers,
+                        const Motion& motion, const EpipolarOptions& options) {
+  std::vector<double> distances_px;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const EpipolarTerm term = Evaluate(pairs[i], motion, options.focal_px);
+    if (inliers[i] && !term.at_epipole) {
+      distances_px.push_back(std::abs(term.error) * term.scale);
+    }
+  }
+  if (distances_px.empty()) {
+    return options.threshold_px;
+  }
+  const auto middle = distances_px.begin() + static_cast<std::ptrdiff_t>(distances_px.size() / 2);
+  std::nth_element(distances_px.begin(), middle, distances_px.end());
+  // The deviation of a normal distribution is 1.4826 times its median absolute deviation.
+  return std::clamp(3 * 1.4826 * *middle, options.threshold_px, kMaxThresholdGrowth * options.threshold_px);
+}
+
 Consensus AgreeWithRotation(const std::vector<BearingPair>& pairs, const Matrix3d& R_21,
                             const EpipolarOptions& options) {
   // 1 mrad: rotation noise and calibration at high frame rates, where the bias alone would promise too much.
@@ -208,10 +230,12 @@ Consensus AgreeWithRotation(const std::vector<BearingPair>& pairs, const Matrix3
   Motion motion{.R_21 = R_21, .t = Vector3d::UnitZ()};
   Consensus consensus = SampleTranslation(pairs, loose_px, options.focal_px, &motion);
   Refine(pairs, consensus.inliers, R_21, rotation_std, options, &motion);
-  consensus = Score(pairs, motion, options.threshold_px, options.focal_px);
-  Refine(pairs, consensus.inliers, R_21, rotation_std, options, &motion);
-  consensus = Score(pairs, motion, options.threshold_px, options.focal_px);
-  return RejectNegativeDepth(pairs, motion, options, std::move(consensus));
+  EpipolarOptions adapted = options;
+  adapted.threshold_px = AdaptedThreshold(pairs, consensus.inliers, motion, options);
+  consensus = Score(pairs, motion, adapted.threshold_px, options.focal_px);
+  Refine(pairs, consensus.inliers, R_21, rotation_std, adapted, &motion);
+  consensus = Score(pairs, motion, adapted.threshold_px, options.focal_px);
+  return RejectNegativeDepth(pairs, motion, adapted, std::move(consensus));
 }
 
 Consensus AgreeWithFundamental(const std::vector<BearingPair>& pairs, const EpipolarOptions& options) {

@@ -13,7 +13,7 @@ struct BearingPair {
 };
 
 struct EpipolarOptions {
-  double threshold_px = 1.0;  ///< distance to the epipolar line
+  double threshold_px = 1.0;  ///< distance to the epipolar line; grows with the scatter of the inliers
   double focal_px = 460.0;    ///< pixels per unit of the normalised plane
   double dt_s = 0.05;         ///< between the images; bounds what an unknown gyroscope bias can do
 };
@@ -26,9 +26,10 @@ struct EpipolarOptions {
 /// x_1, t . (g x x_2) = 0 for each pair, so t ~ n_a x n_b, n = g x x_2. The best of these starts a
 /// Gauss-Newton refinement of t and of a rotation correction delta, R = Exp(delta) R_21, because a gyroscope
 /// without bias correction is wrong by about kGyroError dt; the correction has this as prior, so low parallax
-/// stays well-posed. Without R_21, or when fewer than half the pairs agree with it, a fundamental matrix by
-/// RANSAC decides instead (Hartley and Zisserman 2004, ch. 11). With fewer than kMinPairs pairs none is
-/// rejected.
+/// stays well-posed. Where the inliers scatter more than the threshold expects (rolling shutter, poor
+/// calibration), it grows to three of their robust standard deviations, three times at most. Without R_21, or
+/// when fewer than half the pairs agree with it, a fundamental matrix by RANSAC decides instead (Hartley and
+/// Zisserman 2004, ch. 11). With fewer than kMinPairs pairs none is rejected.
 [[nodiscard]] std::vector<bool> FindEpipolarInliers(const std::vector<BearingPair>& pairs,
                                                     const std::optional<Eigen::Matrix3d>& R_21,
                                                     const EpipolarOptions& options);

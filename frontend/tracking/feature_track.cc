@@ -43,6 +43,15 @@ Eigen::Matrix2f DeformationBy(const std::optional<Eigen::Matrix3d>& R_C1C0, cons
   return deformation.cast<float>();
 }
 
+void BeginTemplate(const cv::Mat& image, const FrontendConfig& config, const cv::Point2f& pixel,
+                   FeatureTrack* track) {
+  const Eigen::Vector2f centre(pixel.x, pixel.y);
+  track->patch = PatchTemplate::Fits(image, centre, config.template_px)
+                     ? PatchTemplate(image, centre, config.template_px)
+                     : PatchTemplate();
+  track->affine = Eigen::Matrix2f::Identity();
+}
+
 bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eigen::Matrix2f& deformation,
                    FeatureTrack* track, cv::Point2f* pixel) {
   TemplateMatch match{
@@ -54,8 +63,7 @@ bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eig
   track->affine = match.affine;
   if (PatchTemplate::IsWornOut(match.affine) &&
       PatchTemplate::Fits(image, match.centre, config.template_px)) {
-    track->patch = PatchTemplate(image, match.centre, config.template_px);
-    track->affine = Eigen::Matrix2f::Identity();
+    BeginTemplate(image, config, *pixel, track);
   }
   return true;
 }

@@ -39,9 +39,13 @@ int Keep(const std::vector<bool>& marked, std::vector<FeatureTrack>* tracks);
 [[nodiscard]] Eigen::Matrix2f DeformationBy(const std::optional<Eigen::Matrix3d>& R_C1C0,
                                             const CameraModel& camera, const FeatureTrack& track);
 
+/// Takes the patch around `pixel` as the track's template; none where the image ends too near.
+void BeginTemplate(const cv::Mat& image, const FrontendConfig& config, const cv::Point2f& pixel,
+                   FeatureTrack* track);
+
 /// Matches a track that went to `pixel` of `image` with its template, deformed by `deformation` since the
 /// last image: improves pixel and affine, and begins a new template where the old one is worn out. False when
-/// the image does not look like the template (frontend.min_correlation).
+/// the image does not look like the template (frontend.min_correlation) or there is none; pixel then stays.
 bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eigen::Matrix2f& deformation,
                    FeatureTrack* track, cv::Point2f* pixel);
 

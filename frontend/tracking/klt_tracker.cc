@@ -6,7 +6,6 @@
 #include <numeric>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 #include <optional>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "frontend/tracking/epipolar_rejection.h"
 #include "frontend/tracking/feature_track.h"
 #include "frontend/tracking/gyro_rotation.h"
+#include "frontend/tracking/optical_flow.h"
 
 namespace alidade {
 namespace {
@@ -26,19 +26,14 @@ using Eigen::Vector3d;
 // Contrast limit and tiles: enough to see into shadows, not enough to make corners of sensor noise.
 constexpr double kClaheClipLimit = 3.0;
 constexpr int kClaheTiles = 8;
-// A patch needs this smaller eigenvalue a pixel (OpenCV's normalisation) for its position to be defined.
-constexpr double kMinEigenvalue = 1e-4;
+// Of a track that its template does not confirm: what noise leaves of a track that did not slide.
+constexpr double kReturnPx = 0.5;
 
 /// Runs are parallel across sequences, never inside one: a pool of threads under each run would only fight
 /// over the cores.
 void ForbidThreadsInside() {
   static std::once_flag once;
   std::call_once(once, [] { cv::setNumThreads(1); });
-}
-
-/// A multiple of four: OpenCV's vector code leaves the rest of each row to a loop that doubles the time.
-int WindowSidePx(const FrontendConfig& config) {
-  return (config.window_px + 3) / 4 * 4;
 }
 
 int BorderPx(const FrontendConfig& config) {
@@ -51,35 +46,39 @@ struct KltTracker::Implementation {
   Implementation(const FrontendConfig& front_end, const RigCalibration& rig_calibration)
       : config(front_end),
         rig(rig_calibration),
-        window(WindowSidePx(front_end), WindowSidePx(front_end)),
+        flow(front_end),
         grid(front_end, rig_calibration.camera.width_px(), rig_calibration.camera.height_px(),
              BorderPx(front_end)),
         clahe(cv::createCLAHE(kClaheClipLimit, cv::Size(kClaheTiles, kClaheTiles))) {}
 
   [[nodiscard]] Status CheckInput(TimeNs stamp_ns, const unsigned char* grey, int width_px,
                                   int height_px) const;
-  void BuildPyramid(const unsigned char* grey);
+  void AddImage(const unsigned char* grey);
   /// R_C1C0 from the last image to this one, when the gyroscope covers the time between.
   std::optional<Matrix3d> RotationSinceLast(TimeNs stamp_ns);
   [[nodiscard]] std::vector<cv::Point2f> Predict(const std::optional<Matrix3d>& R_C1C0) const;
   void Follow(const std::optional<Matrix3d>& R_C1C0, double dt_s);
-  /// Lucas-Kanade forward from the predictions, then back on the finest level; true where both agree.
-  std::vector<bool> FollowPixels(const std::vector<cv::Point2f>& from, std::vector<cv::Point2f>* to) const;
+  /// Improves pixels where Lucas-Kanade found them by the tracks' templates. A track that its template does
+  /// not confirm lives on if it can be followed back; then it begins a new template. Returns which are alive.
+  std::vector<bool> Confirm(const std::optional<Matrix3d>& R_C1C0, std::vector<bool> alive,
+                            std::vector<cv::Point2f>* pixels);
+  /// Ends those of the marked tracks that do not return to within tolerance_px of where they were in the
+  /// image before.
+  void RequireReturn(const std::vector<bool>& marked, const std::vector<cv::Point2f>& pixels,
+                     double tolerance_px, std::vector<bool>* alive) const;
   void Spread();
   void Detect();
   [[nodiscard]] TrackFrame Observations(TimeNs stamp_ns) const;
 
   FrontendConfig config;
   RigCalibration rig;
-  cv::Size window;
+  OpticalFlow flow;
   CornerGrid grid;
   cv::Ptr<cv::CLAHE> clahe;
   GyroRotation gyro;
 
   cv::Mat equalized;
   cv::Mat smoothed;
-  std::vector<cv::Mat> last_pyramid;
-  std::vector<cv::Mat> pyramid;  // image, derivatives, image, derivatives, ... from fine to coarse
   std::optional<TimeNs> last_stamp_ns;
   std::vector<FeatureTrack> tracks;  // sorted by id
   std::int64_t next_id = 0;
@@ -104,7 +103,7 @@ Status KltTracker::Implementation::CheckInput(TimeNs stamp_ns, const unsigned ch
   return Status::Ok();
 }
 
-void KltTracker::Implementation::BuildPyramid(const unsigned char* grey) {
+void KltTracker::Implementation::AddImage(const unsigned char* grey) {
   // OpenCV has no view of constant memory; the pixels are only read.
   const cv::Mat image(rig.camera.height_px(), rig.camera.width_px(), CV_8UC1,
                       const_cast<unsigned char*>(grey));
@@ -115,11 +114,7 @@ void KltTracker::Implementation::BuildPyramid(const unsigned char* grey) {
     // Bilinear sampling of a sharper image depends on where between the pixels it falls.
     cv::GaussianBlur(image, smoothed, cv::Size(3, 3), 0);
   }
-  std::swap(pyramid, last_pyramid);
-  // The derivatives serve this frame's backward pass, the ranking of corners, and the next frame's forward
-  // pass.
-  cv::buildOpticalFlowPyramid(config.equalize ? equalized : image, pyramid, window, config.pyramid_levels,
-                              true, cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
+  flow.Add(config.equalize ? equalized : image);
 }
 
 std::optional<Matrix3d> KltTracker::Implementation::RotationSinceLast(TimeNs stamp_ns) {
@@ -151,26 +146,40 @@ std::vector<cv::Point2f> KltTracker::Implementation::Predict(const std::optional
   return predicted;
 }
 
-std::vector<bool> KltTracker::Implementation::FollowPixels(const std::vector<cv::Point2f>& from,
-                                                           std::vector<cv::Point2f>* to) const {
-  // Where a template is matched afterwards, its neighbourhood is enough.
-  const bool rough = config.template_px > 0;
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, rough ? 10 : 20,
-                                  rough ? 0.1 : 0.03);
-  std::vector<unsigned char> found;
-  cv::calcOpticalFlowPyrLK(last_pyramid, pyramid, from, *to, found, cv::noArray(), window,
-                           config.pyramid_levels, criteria, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-  std::vector<bool> followed(found.begin(), found.end());
-  if (config.forward_backward_px <= 0) {
-    return followed;
+std::vector<bool> KltTracker::Implementation::Confirm(const std::optional<Matrix3d>& R_C1C0,
+                                                      std::vector<bool> alive,
+                                                      std::vector<cv::Point2f>* pixels) {
+  std::vector<bool> unconfirmed(tracks.size());
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    unconfirmed[i] =
+        alive[i] && !MatchTemplate(smoothed, config, DeformationBy(R_C1C0, rig.camera, tracks[i]), &tracks[i],
+                                   &(*pixels)[i]);
   }
-  std::vector<cv::Point2f> back = from;
-  cv::calcOpticalFlowPyrLK(pyramid, last_pyramid, *to, back, found, cv::noArray(), window, 0, criteria,
-                           cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
-  for (size_t i = 0; i < from.size(); ++i) {
-    followed[i] = followed[i] && found[i] != 0 && cv::norm(back[i] - from[i]) <= config.forward_backward_px;
+  RequireReturn(unconfirmed, *pixels, kReturnPx, &alive);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (unconfirmed[i] && alive[i]) {
+      BeginTemplate(smoothed, config, (*pixels)[i], &tracks[i]);
+    }
   }
-  return followed;
+  return alive;
+}
+
+void KltTracker::Implementation::RequireReturn(const std::vector<bool>& marked,
+                                               const std::vector<cv::Point2f>& pixels, double tolerance_px,
+                                               std::vector<bool>* alive) const {
+  std::vector<size_t> indices;
+  std::vector<cv::Point2f> from, to;
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (marked[i]) {
+      indices.push_back(i);
+      from.push_back(tracks[i].pixel);
+      to.push_back(pixels[i]);
+    }
+  }
+  const std::vector<bool> returned = flow.Return(from, to, tolerance_px);
+  for (size_t k = 0; k < indices.size(); ++k) {
+    (*alive)[indices[k]] = returned[k];
+  }
 }
 
 void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, double dt_s) {
@@ -178,14 +187,17 @@ void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, d
     return;
   }
   std::vector<cv::Point2f> pixels = Predict(R_C1C0);
-  std::vector<bool> alive = FollowPixels(Pixels(tracks), &pixels);
+  std::vector<bool> alive = flow.Follow(Pixels(tracks), &pixels);
+  if (config.forward_backward_px > 0) {
+    const std::vector<bool> followed = alive;
+    RequireReturn(followed, pixels, config.forward_backward_px, &alive);
+  }
+  if (config.template_px > 0) {
+    alive = Confirm(R_C1C0, std::move(alive), &pixels);
+  }
   std::vector<BearingPair> pairs;
   for (size_t i = 0; i < tracks.size(); ++i) {
     BearingPair pair{.first = tracks[i].normalized, .second = Vector2d::Zero()};
-    if (alive[i] && config.template_px > 0) {
-      alive[i] = MatchTemplate(smoothed, config, DeformationBy(R_C1C0, rig.camera, tracks[i]), &tracks[i],
-                               &pixels[i]);
-    }
     const Vector2d pixel = ToVector(pixels[i]);
     alive[i] =
         alive[i] && rig.camera.InImage(pixel, BorderPx(config)) && rig.camera.Unproject(pixel, &pair.second);
@@ -222,7 +234,7 @@ void KltTracker::Implementation::Spread() {
 }
 
 void KltTracker::Implementation::Detect() {
-  for (const cv::Point2f& corner : grid.Detect(pyramid[0], pyramid[1], Pixels(tracks))) {
+  for (const cv::Point2f& corner : grid.Detect(flow.image(), flow.derivatives(), Pixels(tracks))) {
     FeatureTrack track;
     track.id = next_id;
     track.pixel = corner;
@@ -231,7 +243,7 @@ void KltTracker::Implementation::Detect() {
       continue;
     }
     if (config.template_px > 0) {
-      track.patch = PatchTemplate(smoothed, {corner.x, corner.y}, config.template_px);
+      BeginTemplate(smoothed, config, corner, &track);
     }
     tracks.push_back(std::move(track));
     ++next_id;
@@ -268,7 +280,7 @@ Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey,
   Implementation& tracker = *implementation_;
   ALIDADE_RETURN_IF_ERROR(tracker.CheckInput(stamp_ns, grey, width_px, height_px));
   tracker.statistics = TrackerStatistics{.imu_ignored = tracker.statistics.imu_ignored};
-  tracker.BuildPyramid(grey);
+  tracker.AddImage(grey);
   if (tracker.last_stamp_ns.has_value()) {
     tracker.Follow(tracker.RotationSinceLast(stamp_ns), SecondsBetween(*tracker.last_stamp_ns, stamp_ns));
     tracker.Spread();

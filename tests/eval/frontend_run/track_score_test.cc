@@ -83,7 +83,7 @@ TEST(TrackScore, GIVEN_exact_tracks_THEN_no_error_is_found) {
   EXPECT_EQ(score.corner.count, 12U * 11);
   EXPECT_LT(score.corner.p95_px, 1e-6);
   EXPECT_LT(score.epipolar.p95_px, 1e-6);
-  EXPECT_EQ(AtAge(score, 10).observations, 24U);
+  EXPECT_EQ(AtAge(score, 10).observations, 12U);
   EXPECT_TRUE(std::isnan(score.cpu_ms)) << "not measured";
 }
 

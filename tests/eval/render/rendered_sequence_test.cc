@@ -14,7 +14,9 @@
 #include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/digest.h"
 #include "eval/files/sha256.h"
+#include "eval/render/hall_file.h"
 #include "eval/simulation/simulator.h"
+#include "eval/trajectory/trajectory_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -224,6 +226,14 @@ TEST(RenderedSequence, ThreadsChangeNoByteAndTheFolderReadsBack) {
   EXPECT_TRUE(read.tracks.empty()) << "the front end makes them";
   const GreyImage image = ReadGreyImage(read.images[7].path).value();
   EXPECT_EQ(image.pixels, scene.sequence.Frame(7).pixels);
+
+  const Vector3d p_W = scene.CameraAt(scene.sequence.stamps()[5]).translation;
+  EXPECT_EQ(ReadHall(HallPath(one.path()))->Distance(p_W, Vector3d::UnitX()),
+            scene.sequence.hall().Distance(p_W, Vector3d::UnitX()));
+  const Trajectory poses = ReadTrajectory(CameraPosesPath(one.path())).value();
+  ASSERT_EQ(poses.points.size(), 21U);
+  EXPECT_EQ(poses.points[5].stamp_ns, scene.sequence.stamps()[5]);
+  EXPECT_LT((poses.points[5].nav.p_WB - p_W).norm(), 1e-12);
 
   // Tracks from files and from memory are the same measurement log.
   const std::vector<TrackFrame> from_files = TrackImages(read, FrontendConfig(), {}).value();

@@ -79,6 +79,28 @@ TEST(EpipolarRejection, FindsOutliersWithABiasedGyroscope) {
   }
 }
 
+/// The same scene with `noise_px` more noise on the second image, and `outlier_px` on every tenth across the
+/// direction of motion, x.
+Verdict JudgeWithScatter(double noise_px, double outlier_px) {
+  Scene scene = MakeScene(Matrix3d::Identity(), {0.15, 0, 0}, 8, false);
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, noise_px / kFocalPx);
+  for (size_t i = 0; i < scene.pairs.size(); ++i) {
+    scene.outlier[i] = i % 10 == 0;
+    scene.pairs[i].second.y() += scene.outlier[i] ? outlier_px / kFocalPx : noise(random);
+  }
+  return Judge(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
+}
+
+TEST(EpipolarRejection, GIVEN_a_scatter_that_the_threshold_does_not_expect_THEN_it_grows) {
+  const Verdict scattered = JudgeWithScatter(0.8, 8);
+  EXPECT_GE(scattered.good_kept, scattered.good * 93 / 100) << "a threshold of 1 px would reject a fifth";
+  EXPECT_EQ(scattered.bad_kept, 0);
+  const Verdict sharp = JudgeWithScatter(0.1, 2);
+  EXPECT_GE(sharp.good_kept, sharp.good * 97 / 100);
+  EXPECT_EQ(sharp.bad_kept, 0) << "it did not grow without need";
+}
+
 TEST(EpipolarRejection, FindsOutliersWithoutGyroscope) {
   const Scene scene = MakeScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 3);
   const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, std::nullopt, kOptions));
