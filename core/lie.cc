@@ -13,6 +13,9 @@ using Eigen::Vector3d;
 // Below this angle the closed forms of Gamma_2 and Gamma_3 cancel; ten Taylor terms are exact to 1e-16 there.
 constexpr double kSeriesAngle = 0.3;
 
+// Vectors whose cosine is nearer than this to -1 have no direction of their cross product.
+constexpr double kOpposite = 1e-12;
+
 /// a(theta) and b(theta) of Gamma_m = I/m! + a [phi]x + b [phi]x^2, m in 0..4.
 std::array<double, 2> GammaCoefficients(double theta, int m) {
   if (theta < kSeriesAngle) {
@@ -123,7 +126,17 @@ Matrix3d Normalize(const Matrix3d& m) {
 }
 
 Matrix3d Between(const Vector3d& from, const Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+  const Vector3d a = from.normalized();
+  const Vector3d b = to.normalized();
+  const double c = b.dot(a);
+  // Not Eigen's FromTwoVectors: it turns opposite vectors through an SVD that takes the compiler 9 s.
+  if (c < -1 + kOpposite) {
+    const Vector3d axis = a.unitOrthogonal();
+    return Eigen::Quaterniond(0, axis.x(), axis.y(), axis.z()).toRotationMatrix();
+  }
+  const double s = std::sqrt((1 + c) * 2);
+  const Vector3d axis = a.cross(b) * (1 / s);
+  return Eigen::Quaterniond(s * 0.5, axis.x(), axis.y(), axis.z()).toRotationMatrix();
 }
 
 }  // namespace so3

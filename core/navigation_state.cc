@@ -1,7 +1,6 @@
 #include "core/navigation_state.h"
 
-#include <Eigen/Eigenvalues>
-
+#include "core/dense_solvers.h"
 #include "core/format.h"
 
 namespace alidade {
@@ -37,10 +36,9 @@ Status CheckInitialState(const NavEstimate& initial) {
   if ((initial.covariance - initial.covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) {
     return Status::Input("initial covariance is not symmetric");
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix15d> eigen(initial.covariance, Eigen::EigenvaluesOnly);
-  if (eigen.eigenvalues()[0] < -1e-12 * scale) {
-    return Status::Input(
-        Format("initial covariance has the negative eigenvalue %.3g", eigen.eigenvalues()[0]));
+  const Matrix15d lifted = initial.covariance + 1e-12 * scale * Matrix15d::Identity();
+  if (scale > 0 && !SymmetricSolver(lifted).positive()) {
+    return Status::Input("initial covariance has a negative eigenvalue");
   }
   return Status::Ok();
 }
