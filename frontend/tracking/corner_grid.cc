@@ -15,6 +15,9 @@ constexpr double kMaxSaturatedShare = 0.15;
 // Of the strongest corner: a tenth of its contrast. Weaker ones do not live long beside it.
 constexpr float kMinRelativeStrength = 0.01F;
 
+// Of the shorter side: a corner nearer to the edge soon leaves the image.
+constexpr double kEdgeShare = 0.06;
+
 /// Points hashed into square buckets as wide as the radius asked about, so that a query visits nine of them.
 class Neighbourhood {
  public:
@@ -75,7 +78,8 @@ bool IsSaturated(const cv::Mat& image, const cv::Point& centre) {
 CornerGrid::CornerGrid(const FrontendConfig& config, int width_px, int height_px, int border_px)
     : config_(config),
       size_px_(width_px, height_px),
-      border_px_(std::max(border_px, corner_strength::kMarginPx)),
+      border_px_(std::max({border_px, corner_strength::kMarginPx,
+                           static_cast<int>(kEdgeShare * std::min(width_px, height_px))})),
       cells_(config.grid_columns * config.grid_rows),
       rest_(static_cast<size_t>(cells_), 0),
       share_((config.max_features + cells_ - 1) / cells_) {}
@@ -100,26 +104,25 @@ cv::Rect CornerGrid::CellRect(int cell) const {
   return {corner, end};
 }
 
+cv::Rect CornerGrid::Without(int border_px) const {
+  return {border_px, border_px, size_px_.width - 2 * border_px, size_px_.height - 2 * border_px};
+}
+
 std::vector<bool> CornerGrid::Thin(const std::vector<cv::Point2f>& pixels) const {
   Neighbourhood kept(size_px_, 0.5 * config_.min_distance_px);
-  std::vector<int> counts(static_cast<size_t>(cells_), 0);
   std::vector<bool> keep(pixels.size());
   for (size_t i = 0; i < pixels.size(); ++i) {
-    int& count = counts[static_cast<size_t>(CellOf(pixels[i]))];
-    keep[i] = count < 2 * share_ && !kept.HasNear(pixels[i]);
+    keep[i] = !kept.HasNear(pixels[i]);
     if (keep[i]) {
       kept.Add(pixels[i]);
-      ++count;
     }
   }
   return keep;
 }
 
 std::vector<Corner> CornerGrid::Propose(const cv::Mat& image, const cv::Mat& derivatives, int cell) const {
-  const cv::Rect allowed(border_px_, border_px_, size_px_.width - 2 * border_px_,
-                         size_px_.height - 2 * border_px_);
   std::vector<Corner> corners = corner_strength::Maxima(
-      derivatives, CellRect(cell) & allowed, corner_strength::OfContrast(config_.corner_threshold));
+      derivatives, CellRect(cell) & Without(border_px_), corner_strength::OfContrast(config_.corner_threshold));
   corners.erase(std::remove_if(corners.begin(), corners.end(),
                                [&](const Corner& corner) { return IsSaturated(image, corner.pixel); }),
                 corners.end());
@@ -142,12 +145,11 @@ std::vector<int> CornerGrid::CellsToSearch(size_t features) {
 }
 
 float CornerGrid::StrongestOf(const cv::Mat& derivatives, const std::vector<cv::Point2f>& pixels) const {
-  const cv::Rect allowed(border_px_, border_px_, size_px_.width - 2 * border_px_,
-                         size_px_.height - 2 * border_px_);
+  const cv::Rect measurable = Without(corner_strength::kMarginPx);
   float strongest = 0;
   for (const cv::Point2f& pixel : pixels) {
     const cv::Point place = pixel;
-    if (allowed.contains(place)) {
+    if (measurable.contains(place)) {
       strongest = std::max(strongest, corner_strength::At(derivatives, place));
     }
   }

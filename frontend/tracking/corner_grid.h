@@ -12,12 +12,13 @@ namespace alidade {
 /// first. Positions are pixels of the image given to the constructor.
 class CornerGrid {
  public:
-  /// border_px: corners this close to the image's edge are not proposed.
+  /// border_px: corners this close to the image's edge are not proposed, nor those within 6 % of its shorter
+  /// side, which soon leave it.
   CornerGrid(const FrontendConfig& config, int width_px, int height_px, int border_px);
 
   /// Which of `pixels`, given in order of preference, stay: a feature goes when a preferred one is closer
   /// than half of min_distance_px (half, so that a track is not lost for coming a little nearer than new
-  /// corners may), or when its cell holds twice its share already.
+  /// corners may).
   [[nodiscard]] std::vector<bool> Thin(const std::vector<cv::Point2f>& pixels) const;
 
   /// New corners, sub-pixel refined, until `existing` and they make max_features. Each goes to the cell with
@@ -37,6 +38,8 @@ class CornerGrid {
  private:
   [[nodiscard]] int CellOf(const cv::Point2f& pixel) const;
   [[nodiscard]] cv::Rect CellRect(int cell) const;
+  /// The image without a border.
+  [[nodiscard]] cv::Rect Without(int border_px) const;
   /// Corners of one cell, strongest first.
   [[nodiscard]] std::vector<Corner> Propose(const cv::Mat& image, const cv::Mat& derivatives, int cell) const;
   /// Cells that do not rest, in an image that has so many features already; called once an image.

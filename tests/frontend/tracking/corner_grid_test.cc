@@ -73,15 +73,6 @@ TEST(CornerGrid, ThinningPrefersTheFirst) {
   EXPECT_THAT(grid.Thin({}), ElementsAre());
 }
 
-TEST(CornerGrid, ThinningLeavesACellTwiceItsShare) {
-  const CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
-  std::vector<cv::Point2f> pixels;  // six in the first cell, whose share is 40 / 20
-  for (int i = 0; i < 6; ++i) {
-    pixels.emplace_back(12.F + 10 * static_cast<float>(i), 20.F);
-  }
-  EXPECT_THAT(grid.Thin(pixels), ElementsAre(true, true, true, true, false, false));
-}
-
 TEST(CornerGrid, FillsTheEmptiestCellsFirst) {
   const Textured scene([](int) { return false; });
   CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
