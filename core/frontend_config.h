@@ -8,6 +8,7 @@ namespace alidade {
 struct FrontendConfig {
   int max_features = 150;
   double min_distance_px = 20.0;
+  double edge_share = 0.06;
   int grid_columns = 8;
   int grid_rows = 5;
   double corner_threshold = 6.0;

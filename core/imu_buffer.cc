@@ -21,8 +21,9 @@ std::string Milliseconds(TimeNs duration_ns) {
 
 ImuSample Interpolate(const ImuSample& a, const ImuSample& b, TimeNs stamp_ns) {
   DCHECK_LT(a.stamp_ns, b.stamp_ns);
-  const double w = SecondsBetween(a.stamp_ns, stamp_ns) / SecondsBetween(a.stamp_ns, b.stamp_ns);
-  return {stamp_ns, (1 - w) * a.gyro + w * b.gyro, (1 - w) * a.accel + w * b.accel};
+  const double gap_s = SecondsBetween(a.stamp_ns, b.stamp_ns);
+  const double w = SecondsBetween(a.stamp_ns, stamp_ns) / gap_s;
+  return {stamp_ns, (1 - w) * a.gyro + w * b.gyro, (1 - w) * a.accel + w * b.accel, gap_s};
 }
 
 Status ImuBuffer::Add(const ImuSample& sample) {

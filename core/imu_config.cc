@@ -16,6 +16,10 @@ void ImuConfig::Describe(ConfigVisitor& visitor) {
                &random_walk_scale, 0.01, 1000);
   visitor.Real({"max_gap_s", "s", "a longer interval without IMU samples is reported as a gap"}, &max_gap_s,
                0.01, 10);
+  visitor.Boolean({"guard", "-",
+                   "replace single samples that their neighbours contradict (spikes) before any estimator "
+                   "sees them; counted and told"},
+                  &guard);
 }
 
 ImuNoise ImuConfig::Scaled(const ImuNoise& sheet) const {

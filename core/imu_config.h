@@ -18,6 +18,7 @@ struct ImuConfig {
   double noise_scale = 1.0;
   double random_walk_scale = 1.0;
   double max_gap_s = 0.5;
+  bool guard = true;
 
   /// The sensor sheet's noise as far as it is trusted.
   [[nodiscard]] ImuNoise Scaled(const ImuNoise& sheet) const;

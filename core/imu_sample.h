@@ -11,6 +11,7 @@ struct ImuSample {
   TimeNs stamp_ns = 0;
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
+  double gap_s = 0;  ///< of an interpolated one: time between the measured samples around it
 };
 
 /// Continuous-time noise of an IMU (one axis), EuRoC's sensor.yaml units.

@@ -1,6 +1,7 @@
 #include "core/preintegration.h"
 
 #include "core/check.h"
+#include "core/imu_gap.h"
 #include "core/imu_vibration.h"
 #include "core/semi_definite.h"
 
@@ -19,7 +20,8 @@ void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNo
 void Preintegration::Add(std::span<const ImuSample> samples) {
   const ImuNoise noise = noise_.with_vibration ? AddVibration(samples, noise_) : noise_;
   for (size_t k = 0; k + 1 < samples.size(); ++k) {
-    Add(samples[k], samples[k + 1], noise);
+    const bool silent = imu_gap::IsInside(samples[k], samples[k + 1]);
+    Add(samples[k], samples[k + 1], silent ? imu_gap::AddNoise(samples[k], samples[k + 1], noise) : noise);
   }
 }
 

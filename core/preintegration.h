@@ -18,8 +18,8 @@ class Preintegration {
 
   /// Appends one step between two samples with the given densities; stamps strictly increasing.
   void Add(const ImuSample& from, const ImuSample& to) { Add(from, to, noise_); }
-  /// Appends all steps of consecutive samples, with their vibration as white noise where the noise says so;
-  /// fewer than two add nothing.
+  /// Appends all steps of consecutive samples, with their vibration as white noise where the noise says so,
+  /// and what a silence of the IMU hides (core/imu_gap.h); fewer than two add nothing.
   void Add(std::span<const ImuSample> samples);
 
   /// The motion corrected to first order for a bias at t0 other than the one integrated with.

@@ -69,10 +69,18 @@ void RunBuilder::On(const StateEvent& event) {
 }
 
 void RunBuilder::On(const SuspectEvent& event) {
+  Mark("suspect", event.reason);
+}
+
+void RunBuilder::On(const DegradedEvent& event) {
+  Mark("degraded", event.reason);
+}
+
+void RunBuilder::Mark(const char* status, const std::string& reason) {
   RunRecord& record = result_.records.back();
   if (record.status == "ok") {
-    record.status = "suspect";
-    record.reason = event.reason;
+    record.status = status;
+    record.reason = reason;
   }
 }
 

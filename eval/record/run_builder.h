@@ -24,6 +24,7 @@ class RunBuilder {
   void On(const StartedEvent& event);
   void On(const StateEvent& event);
   void On(const SuspectEvent& event);
+  void On(const DegradedEvent& event);
   void On(const LostEvent& event);
   void On(const RestartedEvent& event);
   void On(const AlignedEvent& event);
@@ -32,6 +33,8 @@ class RunBuilder {
   void On(const TooLateEvent& event);
   void On(const SkippedEvent& event);
   void On(const FailedEvent& event);
+  /// Of the newest record, where it says nothing else.
+  void Mark(const char* status, const std::string& reason);
 
   bool camera_;
   RunResult result_;

@@ -32,6 +32,7 @@ EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration
       options_(options),
       estimator_(*estimator),
       events_(*events),
+      imu_(config.imu.guard),
       recovery_(config, rig, options.camera) {
   if (options.camera && config.init.method != InitMethod::kTruth) {
     initializer_ = std::make_unique<Initializer>(config, rig);
@@ -69,6 +70,18 @@ void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
   const Stopwatch stopwatch;
   const TimeNs imu_ns = ImuTime(frame.stamp_ns);
   DeliverImu(imu_ns);
+  if (degradation_.IsFrozen(frame)) {
+    ProcessTracks({frame.stamp_ns, {}, frame.frontend_ms}, stopwatch);
+  } else {
+    ProcessTracks(frame, stopwatch);
+  }
+  if (running()) {
+    AlignAfterFrame(imu_ns);
+  }
+  TrimImu();
+}
+
+void EstimatorLoop::ProcessTracks(const TrackFrame& frame, const Stopwatch& stopwatch) {
   if (phase_ == Phase::kSeeking) {
     TryStart(frame);
   } else if (phase_ == Phase::kLost) {
@@ -77,10 +90,6 @@ void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
   if (running()) {
     AddFrame(frame, stopwatch);
   }
-  if (running()) {
-    AlignAfterFrame(imu_ns);
-  }
-  TrimImu();
 }
 
 void EstimatorLoop::ProcessEpoch() {
@@ -128,6 +137,10 @@ void EstimatorLoop::ProcessMessage(SensorRun* sensor) {
 void EstimatorLoop::DeliverImu(TimeNs stamp_ns) {
   while (const ImuSample* sample = imu_.Deliver(stamp_ns)) {
     gyro_radps_ = sample->gyro;
+    degradation_.OnImu(sample->stamp_ns);
+    if (!imu_.fault().empty()) {
+      events_.emplace_back(SkippedEvent{Sensor::kImu, sample->stamp_ns, imu_.fault()});
+    }
     if (running()) {
       AddImu(*sample);
     } else if (phase_ == Phase::kLost) {
@@ -164,6 +177,16 @@ void EstimatorLoop::AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch
     return;
   }
   ReportState(Sensor::kCamera, frame.stamp_ns, frame.frontend_ms, stopwatch);
+  if (running()) {
+    ReportDegraded(ImuTime(frame.stamp_ns));
+  }
+}
+
+void EstimatorLoop::ReportDegraded(TimeNs imu_ns) {
+  std::string reason = degradation_.Check(imu_ns, estimator_.last_statistics());
+  if (!reason.empty()) {
+    events_.emplace_back(DegradedEvent{state_ns_, std::move(reason)});
+  }
 }
 
 Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_ns) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/stopwatch.h"
+#include "eval/run/degradation.h"
 #include "eval/run/gnss_run.h"
 #include "eval/run/imu_stream.h"
 #include "eval/run/measurement_runs.h"
@@ -57,6 +58,7 @@ class EstimatorLoop {
  private:
   enum class Phase { kSeeking, kRunning, kLost, kFailed };
 
+  void ProcessTracks(const TrackFrame& frame, const Stopwatch& stopwatch);
   void ProcessEpochAlone();
   /// Samples up to the first one at or after `stamp_ns`.
   void DeliverImu(TimeNs stamp_ns);
@@ -68,6 +70,7 @@ class EstimatorLoop {
   /// False: the estimator refused the state and the session is over.
   bool Begin(const NavEstimate& start);
   void AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch);
+  void ReportDegraded(TimeNs imu_ns);
   void AlignAfterFrame(TimeNs stamp_ns);
   Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
   /// Tells the measurements of sensors other than `by`, which aligned the run; null: GNSS did.
@@ -85,6 +88,7 @@ class EstimatorLoop {
   ImuStream imu_;
   std::unique_ptr<Initializer> initializer_;  ///< until the first start
   Recovery recovery_;
+  Degradation degradation_;
   std::optional<GnssRun> gnss_;
   std::vector<std::unique_ptr<MeasurementRun>> measurements_;
   std::vector<SensorRun*> sensors_;  ///< of the two above

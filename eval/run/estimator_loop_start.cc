@@ -82,6 +82,7 @@ bool EstimatorLoop::Begin(const NavEstimate& start) {
     return false;
   }
   phase_ = Phase::kRunning;
+  degradation_.Reset();
   state_ns_ = start.stamp_ns;
   for (const ImuSample& sample : imu_.DeliveredSince(start.stamp_ns)) {
     AddImu(sample);

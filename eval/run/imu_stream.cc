@@ -35,8 +35,12 @@ const ImuSample* ImuStream::Deliver(TimeNs stamp_ns) {
   if (delivered_ns_ >= stamp_ns || delivered_ == samples_.size()) {
     return nullptr;
   }
-  const ImuSample& sample = samples_[delivered_++];
+  ImuSample& sample = samples_[delivered_++];
   delivered_ns_ = sample.stamp_ns;
+  if (guarded_) {
+    const bool awaited = sample.stamp_ns < stamp_ns && delivered_ < samples_.size();
+    fault_ = guard_.Mend(awaited ? &samples_[delivered_] : nullptr, &sample);
+  }
   return &sample;
 }
 

@@ -2,9 +2,11 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/imu_sample.h"
+#include "eval/run/imu_guard.h"
 
 namespace alidade {
 
@@ -13,6 +15,11 @@ namespace alidade {
 class ImuStream {
  public:
   enum class Arrival { kTaken, kTwice, kTooLate };
+
+  /// guard: samples are mended as they are delivered (ImuGuard). The last one of a delivery is judged without
+  /// its successor, whether that has arrived or not.
+  explicit ImuStream(bool guard) : guarded_(guard) {}
+
   /// Sorts the sample in. kTooLate: it is not after the last delivered one.
   Arrival Add(const ImuSample& sample);
 
@@ -20,6 +27,8 @@ class ImuStream {
   /// at or after it, one a call; null when they are delivered or there is none left. Valid until the next
   /// call.
   const ImuSample* Deliver(TimeNs stamp_ns);
+  /// What was wrong with the last delivered sample, which was mended; empty: nothing.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
   /// Takes out the oldest sample that is not delivered yet when it lies before `stamp_ns`; later samples not
   /// after it are too late.
   std::optional<ImuSample> PassOver(TimeNs stamp_ns);
@@ -43,6 +52,9 @@ class ImuStream {
   [[nodiscard]] std::vector<ImuSample> Range(TimeNs stamp_ns, size_t end) const;
 
   std::deque<ImuSample> samples_;
+  bool guarded_;
+  ImuGuard guard_;
+  std::string fault_;
   size_t delivered_ = 0;  ///< of samples_
   TimeNs delivered_ns_ = INT64_MIN;
   TimeNs newest_ns_ = INT64_MIN;

@@ -22,6 +22,9 @@ struct Describer {
     return At("state", e.estimate.stamp_ns) + Format(": p_WB %.3f %.3f %.3f m", p.x(), p.y(), p.z());
   }
   std::string operator()(const SuspectEvent& e) const { return At("suspect", e.stamp_ns) + ": " + e.reason; }
+  std::string operator()(const DegradedEvent& e) const {
+    return At("degraded", e.stamp_ns) + ": " + e.reason;
+  }
   std::string operator()(const LostEvent& e) const { return At("lost", e.stamp_ns) + ": " + e.reason; }
   std::string operator()(const RestartedEvent& e) const {
     return At("restarted", e.estimate.stamp_ns) + " (" + e.method + "): " + e.report;

@@ -40,6 +40,13 @@ struct SuspectEvent {
   std::string reason;
 };
 
+/// The estimate goes on without what it needs (Degradation): its covariance grows. Follows the StateEvent of
+/// every such frame.
+struct DegradedEvent {
+  TimeNs stamp_ns = 0;  ///< of the state
+  std::string reason;
+};
+
 /// The estimate was given up; a new start is sought.
 struct LostEvent {
   TimeNs stamp_ns = 0;  ///< IMU time of the message at which it was
@@ -111,8 +118,8 @@ struct FailedEvent {
 };
 
 using SessionEvent =
-    std::variant<StartedEvent, StateEvent, SuspectEvent, LostEvent, RestartedEvent, AlignedEvent,
-                 SatellitesEvent, WaitingEvent, TooLateEvent, SkippedEvent, FailedEvent>;
+    std::variant<StartedEvent, StateEvent, SuspectEvent, DegradedEvent, LostEvent, RestartedEvent,
+                 AlignedEvent, SatellitesEvent, WaitingEvent, TooLateEvent, SkippedEvent, FailedEvent>;
 
 /// One line for a log or a terminal: "lost at 12.300 s: speed 130 m/s, limit 100".
 [[nodiscard]] std::string Describe(const SessionEvent& event);

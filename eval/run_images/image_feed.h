@@ -35,7 +35,7 @@ class ImageFeed {
   const TimeNs lateness_ns_;  ///< of an image, and of the samples around it
   Session& session_;
   KltTracker tracker_;
-  ImuStream imu_;
+  ImuStream imu_{true};
   std::map<TimeNs, GreyImage> images_;  ///< waiting, by camera stamp
   TimeNs last_image_ns_ = INT64_MIN;    ///< tracked
 };

@@ -17,6 +17,8 @@ constexpr std::uint64_t kOnsets = 4;                 // 1 to this many frames af
 constexpr std::int64_t kSecondLife = 1'000'000'000;  // added to the id of a track that comes back
 constexpr double kGarbageRate_radps = 3;
 constexpr double kGarbageForce_mps2 = 30;
+constexpr double kSpikeRate_radps = 30;
+constexpr double kSpikeForce_mps2 = 490;
 
 void BlackOut(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
   std::set<std::int64_t> before;
@@ -65,6 +67,84 @@ void Garble(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, std::v
         sample.accel[axis] = random.Uniform(-kGarbageForce_mps2, kGarbageForce_mps2);
       }
     }
+  }
+}
+
+void Freeze(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
+  const TrackFrame* first = nullptr;
+  for (TrackFrame& frame : *frames) {
+    if (!fails(frame.stamp_ns)) {
+      continue;
+    }
+    if (first == nullptr) {
+      first = &frame;
+    }
+    frame.observations = std::vector<TrackObservation>(first->observations);
+  }
+}
+
+void Silence(const std::function<bool(TimeNs)>& fails, std::vector<ImuSample>* imu) {
+  imu->erase(std::remove_if(imu->begin(), imu->end(),
+                            [&](const ImuSample& sample) { return fails(sample.stamp_ns); }),
+             imu->end());
+}
+
+void AddSpike(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, bool of_gyro,
+              std::vector<ImuSample>* imu) {
+  std::vector<ImuSample*> candidates;
+  for (ImuSample& sample : *imu) {
+    if (fails(sample.stamp_ns)) {
+      candidates.push_back(&sample);
+    }
+  }
+  if (candidates.empty()) {
+    return;
+  }
+  RandomStream random(seed, "fault/spike");
+  ImuSample& sample = *candidates[static_cast<std::size_t>(random.Below(candidates.size()))];
+  const Eigen::Vector3d direction = random.Normal3().normalized();
+  if (of_gyro) {
+    sample.gyro += kSpikeRate_radps * direction;
+  } else {
+    sample.accel += kSpikeForce_mps2 * direction;
+  }
+}
+
+/// Of the tracks of one camera.
+void ApplyToTracks(SimFaultKind fault, std::uint64_t seed, const std::function<bool(TimeNs)>& fails,
+                   std::vector<TrackFrame>* frames) {
+  switch (fault) {
+    case SimFaultKind::kBlackout:
+    case SimFaultKind::kBlackoutAndImu:
+      BlackOut(fails, frames);
+      break;
+    case SimFaultKind::kTracks:
+      ShuffleIds(fails, seed, frames);
+      break;
+    case SimFaultKind::kFrozen:
+      Freeze(fails, frames);
+      break;
+    default:
+      break;
+  }
+}
+
+void ApplyToImu(SimFaultKind fault, std::uint64_t seed, const std::function<bool(TimeNs)>& fails,
+                std::vector<ImuSample>* imu) {
+  switch (fault) {
+    case SimFaultKind::kImu:
+    case SimFaultKind::kBlackoutAndImu:
+      Garble(fails, seed, imu);
+      break;
+    case SimFaultKind::kImuGap:
+      Silence(fails, imu);
+      break;
+    case SimFaultKind::kGyroSpike:
+    case SimFaultKind::kAccelSpike:
+      AddSpike(fails, seed, fault == SimFaultKind::kGyroSpike, imu);
+      break;
+    default:
+      break;
   }
 }
 
@@ -124,19 +204,13 @@ void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_
   const TimeNs begin_ns = start_ns + SecondsToNs(config.fault_start_s);
   const TimeNs end_ns = begin_ns + SecondsToNs(config.fault_duration_s);
   const auto fails = [=](TimeNs stamp_ns) { return stamp_ns >= begin_ns && stamp_ns < end_ns; };
-  const bool both = config.fault == SimFaultKind::kBlackoutAndImu;
-  if (both || config.fault == SimFaultKind::kBlackout) {
-    BlackOut(fails, &dataset->tracks);
+  ApplyToTracks(config.fault, seed, fails, &dataset->tracks);
+  if (config.fault != SimFaultKind::kTracks) {
     for (ExtraCamera& extra : dataset->extra_cameras) {
-      BlackOut(fails, &extra.frames);
+      ApplyToTracks(config.fault, seed, fails, &extra.frames);
     }
   }
-  if (both || config.fault == SimFaultKind::kImu) {
-    Garble(fails, seed, &dataset->imu);
-  }
-  if (config.fault == SimFaultKind::kTracks) {
-    ShuffleIds(fails, seed, &dataset->tracks);
-  }
+  ApplyToImu(config.fault, seed, fails, &dataset->imu);
 }
 
 }  // namespace alidade

@@ -52,7 +52,9 @@ class FaultSource {
 /// Applies the fault SimulatorConfig::fault, over [fault_start_s, fault_start_s + fault_duration_s) from
 /// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. imu: rates and
 /// specific forces are uniform in +-3 rad/s and +-30 m/s^2. tracks: a frame's ids are shuffled, anew in every
-/// frame.
+/// frame. frozen: frames show what the first one of the fault showed. imu_gap: no samples. gyro_spike,
+/// accel_spike: 30 rad/s or 490 m/s^2 (50 g) in a random direction are added to one sample, drawn from those
+/// of the fault.
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset);
 
 }  // namespace alidade

@@ -134,7 +134,11 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
        {"blackout", SimFaultKind::kBlackout},
        {"imu", SimFaultKind::kImu},
        {"tracks", SimFaultKind::kTracks},
-       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu}});
+       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu},
+       {"frozen", SimFaultKind::kFrozen},
+       {"imu_gap", SimFaultKind::kImuGap},
+       {"gyro_spike", SimFaultKind::kGyroSpike},
+       {"accel_spike", SimFaultKind::kAccelSpike}});
   visitor.Real({"fault_start_s", "s", "start of the fault after the first IMU sample"},
                &config->fault_start_s, 0, 1e5);
   visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);

@@ -35,6 +35,10 @@ enum class SimFaultKind {
   kImu,       ///< the IMU tells noise
   kTracks,    ///< the tracks of a frame exchange their ids at random
   kBlackoutAndImu,
+  kFrozen,      ///< every frame repeats the first one of the fault
+  kImuGap,      ///< the IMU is silent
+  kGyroSpike,   ///< one sample
+  kAccelSpike,  ///< one sample
 };
 /// Whether single observations or whole tracks are wrong. Drift, moving and mixed outliers always affect
 /// whole tracks.

@@ -15,9 +15,6 @@ constexpr double kMaxSaturatedShare = 0.15;
 // Of the strongest corner: a tenth of its contrast. Weaker ones do not live long beside it.
 constexpr float kMinRelativeStrength = 0.01F;
 
-// Of the shorter side: a corner nearer to the edge soon leaves the image.
-constexpr double kEdgeShare = 0.06;
-
 /// Points hashed into square buckets as wide as the radius asked about, so that a query visits nine of them.
 class Neighbourhood {
  public:
@@ -79,7 +76,7 @@ CornerGrid::CornerGrid(const FrontendConfig& config, int width_px, int height_px
     : config_(config),
       size_px_(width_px, height_px),
       border_px_(std::max({border_px, corner_strength::kMarginPx,
-                           static_cast<int>(kEdgeShare * std::min(width_px, height_px))})),
+                           static_cast<int>(config.edge_share * std::min(width_px, height_px))})),
       cells_(config.grid_columns * config.grid_rows),
       rest_(static_cast<size_t>(cells_), 0),
       share_((config.max_features + cells_ - 1) / cells_) {}
@@ -121,8 +118,9 @@ std::vector<bool> CornerGrid::Thin(const std::vector<cv::Point2f>& pixels) const
 }
 
 std::vector<Corner> CornerGrid::Propose(const cv::Mat& image, const cv::Mat& derivatives, int cell) const {
-  std::vector<Corner> corners = corner_strength::Maxima(
-      derivatives, CellRect(cell) & Without(border_px_), corner_strength::OfContrast(config_.corner_threshold));
+  std::vector<Corner> corners =
+      corner_strength::Maxima(derivatives, CellRect(cell) & Without(border_px_),
+                              corner_strength::OfContrast(config_.corner_threshold));
   corners.erase(std::remove_if(corners.begin(), corners.end(),
                                [&](const Corner& corner) { return IsSaturated(image, corner.pixel); }),
                 corners.end());

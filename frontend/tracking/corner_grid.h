@@ -12,8 +12,8 @@ namespace alidade {
 /// first. Positions are pixels of the image given to the constructor.
 class CornerGrid {
  public:
-  /// border_px: corners this close to the image's edge are not proposed, nor those within 6 % of its shorter
-  /// side, which soon leave it.
+  /// border_px: corners this close to the image's edge are not proposed, nor those that
+  /// FrontendConfig::edge_share excludes.
   CornerGrid(const FrontendConfig& config, int width_px, int height_px, int border_px);
 
   /// Which of `pixels`, given in order of preference, stay: a feature goes when a preferred one is closer

@@ -28,6 +28,8 @@ constexpr double kClaheClipLimit = 3.0;
 constexpr int kClaheTiles = 8;
 // Of a track that its template does not confirm: what noise leaves of a track that did not slide.
 constexpr double kReturnPx = 0.5;
+// A camera that repeats its image for longer: the rotation since then finds no track again.
+constexpr double kMaxRepeatedS = 1;
 
 /// Runs are parallel across sequences, never inside one: a pool of threads under each run would only fight
 /// over the cores.
@@ -53,6 +55,9 @@ struct KltTracker::Implementation {
 
   [[nodiscard]] Status CheckInput(TimeNs stamp_ns, const unsigned char* grey, int width_px,
                                   int height_px) const;
+  /// Whether it is, to the last bit, the image before: a camera that repeats itself. What it shows is where
+  /// it was.
+  bool Repeats(const unsigned char* grey);
   void AddImage(const unsigned char* grey);
   /// R_C1C0 from the last image to this one, when the gyroscope covers the time between.
   std::optional<Matrix3d> RotationSinceLast(TimeNs stamp_ns);
@@ -68,6 +73,9 @@ struct KltTracker::Implementation {
                      double tolerance_px, std::vector<bool>* alive) const;
   void Spread();
   void Detect();
+  /// A repeated image: all tracks stay where they are.
+  void KeepAll(TimeNs stamp_ns);
+  void Advance(TimeNs stamp_ns, const unsigned char* grey);
   [[nodiscard]] TrackFrame Observations(TimeNs stamp_ns) const;
 
   FrontendConfig config;
@@ -77,9 +85,11 @@ struct KltTracker::Implementation {
   cv::Ptr<cv::CLAHE> clahe;
   GyroRotation gyro;
 
+  std::vector<unsigned char> last_grey;
   cv::Mat equalized;
   cv::Mat smoothed;
   std::optional<TimeNs> last_stamp_ns;
+  std::optional<TimeNs> image_ns;    // of the last image that did not repeat the one before it
   std::vector<FeatureTrack> tracks;  // sorted by id
   std::int64_t next_id = 0;
   TrackerStatistics statistics;
@@ -103,6 +113,14 @@ Status KltTracker::Implementation::CheckInput(TimeNs stamp_ns, const unsigned ch
   return Status::Ok();
 }
 
+bool KltTracker::Implementation::Repeats(const unsigned char* grey) {
+  const size_t size =
+      static_cast<size_t>(rig.camera.width_px()) * static_cast<size_t>(rig.camera.height_px());
+  const bool repeats = last_grey.size() == size && std::equal(last_grey.begin(), last_grey.end(), grey);
+  last_grey.assign(grey, grey + size);
+  return repeats;
+}
+
 void KltTracker::Implementation::AddImage(const unsigned char* grey) {
   // OpenCV has no view of constant memory; the pixels are only read.
   const cv::Mat image(rig.camera.height_px(), rig.camera.width_px(), CV_8UC1,
@@ -118,11 +136,11 @@ void KltTracker::Implementation::AddImage(const unsigned char* grey) {
 }
 
 std::optional<Matrix3d> KltTracker::Implementation::RotationSinceLast(TimeNs stamp_ns) {
-  if (!config.imu_prediction || !last_stamp_ns.has_value()) {
+  if (!config.imu_prediction || !image_ns.has_value()) {
     return std::nullopt;
   }
   const TimeNs offset_ns = SecondsToNs(rig.camera_time_offset_s);
-  const std::optional<Matrix3d> R_B0B1 = gyro.Between(*last_stamp_ns + offset_ns, stamp_ns + offset_ns);
+  const std::optional<Matrix3d> R_B0B1 = gyro.Between(*image_ns + offset_ns, stamp_ns + offset_ns);
   if (!R_B0B1.has_value()) {
     return std::nullopt;
   }
@@ -233,6 +251,27 @@ void KltTracker::Implementation::Spread() {
   statistics.tracked = static_cast<int>(tracks.size());
 }
 
+void KltTracker::Implementation::KeepAll(TimeNs stamp_ns) {
+  if (SecondsBetween(*image_ns, stamp_ns) > kMaxRepeatedS) {
+    static_cast<void>(RotationSinceLast(stamp_ns));  // forgets the samples before
+    image_ns = stamp_ns;
+  }
+  for (FeatureTrack& track : tracks) {
+    ++track.length;
+  }
+  statistics.tracked = static_cast<int>(tracks.size());
+}
+
+void KltTracker::Implementation::Advance(TimeNs stamp_ns, const unsigned char* grey) {
+  AddImage(grey);
+  if (image_ns.has_value()) {
+    Follow(RotationSinceLast(stamp_ns), SecondsBetween(*image_ns, stamp_ns));
+    Spread();
+  }
+  Detect();
+  image_ns = stamp_ns;
+}
+
 void KltTracker::Implementation::Detect() {
   for (const cv::Point2f& corner : grid.Detect(flow.image(), flow.derivatives(), Pixels(tracks))) {
     FeatureTrack track;
@@ -280,12 +319,11 @@ Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey,
   Implementation& tracker = *implementation_;
   ALIDADE_RETURN_IF_ERROR(tracker.CheckInput(stamp_ns, grey, width_px, height_px));
   tracker.statistics = TrackerStatistics{.imu_ignored = tracker.statistics.imu_ignored};
-  tracker.AddImage(grey);
-  if (tracker.last_stamp_ns.has_value()) {
-    tracker.Follow(tracker.RotationSinceLast(stamp_ns), SecondsBetween(*tracker.last_stamp_ns, stamp_ns));
-    tracker.Spread();
+  if (tracker.Repeats(grey)) {
+    tracker.KeepAll(stamp_ns);
+  } else {
+    tracker.Advance(stamp_ns, grey);
   }
-  tracker.Detect();
   tracker.last_stamp_ns = stamp_ns;
   double length_sum = 0;
   for (const FeatureTrack& track : tracker.tracks) {

@@ -31,8 +31,8 @@ class KltTracker {
 
   /// Gyroscope samples up to the next image predict where tracks start.
   void AddImu(const ImuSample& sample);
-  /// grey: row-major 8-bit image of the camera's resolution (stride == width). Error (kInput): wrong size,
-  /// stamps not increasing.
+  /// grey: row-major 8-bit image of the camera's resolution (stride == width). An image that repeats the one
+  /// before bit by bit leaves every track on its pixel. Error (kInput): wrong size, stamps not increasing.
   Result<TrackFrame> Track(TimeNs stamp_ns, const unsigned char* grey, int width_px, int height_px);
 
   [[nodiscard]] const TrackerStatistics& statistics() const;

@@ -98,7 +98,9 @@ struct RestingScene {
       TrackFrame frame;
       frame.stamp_ns = kStart + i * 100'000'000LL + SecondsToNs(frame_shift_s);
       frame.frontend_ms = 1.5;
-      frame.observations.resize(static_cast<size_t>(i));
+      for (int track = 0; track < i; ++track) {
+        frame.observations.push_back({track, {10.0 * track, 0.1 * i}});  // a sensor never sees the same twice
+      }
       log.frames.push_back(frame);
     }
   }

@@ -10,7 +10,7 @@ ImuSample At(TimeNs stamp_ns) {
 }
 
 TEST(ImuStreamTest, DeliversInTheOrderOfStampsUpToTheFirstSampleAtOrAfter) {
-  ImuStream stream;
+  ImuStream stream(false);
   for (const TimeNs stamp : {10, 30, 20, 50, 40}) {
     EXPECT_EQ(stream.Add(At(stamp)), ImuStream::Arrival::kTaken);
   }
@@ -27,7 +27,7 @@ TEST(ImuStreamTest, DeliversInTheOrderOfStampsUpToTheFirstSampleAtOrAfter) {
 }
 
 TEST(ImuStreamTest, RefusesWhatIsThereAndWhatIsNotAfterTheDelivered) {
-  ImuStream stream;
+  ImuStream stream(false);
   ASSERT_EQ(stream.Add(At(10)), ImuStream::Arrival::kTaken);
   EXPECT_EQ(stream.Add(At(10)), ImuStream::Arrival::kTwice);
   ASSERT_EQ(stream.Add(At(30)), ImuStream::Arrival::kTaken);
@@ -38,7 +38,7 @@ TEST(ImuStreamTest, RefusesWhatIsThereAndWhatIsNotAfterTheDelivered) {
 }
 
 TEST(ImuStreamTest, ForgetsDeliveredSamplesButTheLastOneNotAfter) {
-  ImuStream stream;
+  ImuStream stream(false);
   for (TimeNs stamp = 10; stamp <= 60; stamp += 10) {
     ASSERT_EQ(stream.Add(At(stamp)), ImuStream::Arrival::kTaken);
   }
@@ -54,7 +54,7 @@ TEST(ImuStreamTest, ForgetsDeliveredSamplesButTheLastOneNotAfter) {
 }
 
 TEST(ImuStreamTest, PassesOverSamplesThatNobodyAskedFor) {
-  ImuStream stream;
+  ImuStream stream(false);
   for (TimeNs stamp = 10; stamp <= 40; stamp += 10) {
     ASSERT_EQ(stream.Add(At(stamp)), ImuStream::Arrival::kTaken);
   }

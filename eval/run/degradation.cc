@@ -1,0 +1,51 @@
+#include "eval/run/degradation.h"
+
+#include "core/format.h"
+#include "core/imu_gap.h"
+
+namespace alidade {
+
+void Degradation::OnImu(TimeNs stamp_ns) {
+  if (last_imu_ns_ != INT64_MIN && SecondsBetween(last_imu_ns_, stamp_ns) > imu_gap::kMinGapS) {
+    silent_until_ns_ = stamp_ns;
+    silence_s_ = SecondsBetween(last_imu_ns_, stamp_ns);
+  }
+  last_imu_ns_ = stamp_ns;
+}
+
+bool Degradation::IsFrozen(const TrackFrame& frame) {
+  size_t common = 0;
+  bool moved = false;
+  auto before = shown_.begin();
+  for (const TrackObservation& now : frame.observations) {
+    while (before != shown_.end() && before->track_id < now.track_id) {
+      ++before;
+    }
+    if (before != shown_.end() && before->track_id == now.track_id) {
+      ++common;
+      moved = moved || before->pixel != now.pixel;
+    }
+  }
+  shown_ = frame.observations;
+  frozen_ = common >= kMinFrozen && !moved;
+  return frozen_;
+}
+
+std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics) {
+  if (statistics.tracks_in > 0 || sighted_ns_ == INT64_MIN) {
+    sighted_ns_ = imu_ns;
+  }
+  if (frozen_) {
+    return "the image did not change at all";
+  }
+  const double blind_s = SecondsBetween(sighted_ns_, imu_ns);
+  if (blind_s > kMaxBlindS) {
+    return Format("no tracks for %.2f s", blind_s);
+  }
+  if (silent_until_ns_ != INT64_MIN && SecondsBetween(silent_until_ns_, imu_ns) < kSettlingS) {
+    return Format("the IMU was silent for %.2f s", silence_s_);
+  }
+  return {};
+}
+
+}  // namespace alidade

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/record/runner.h"
+#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
+#include "eval/trajectory/trajectory_interpolation.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kFaultS = 8;
+
+struct Faulty {
+  Dataset dataset;
+  RunResult result;
+  double rmse_m = 0;
+
+  [[nodiscard]] TimeNs fault_ns() const {
+    return dataset.truth->points.front().stamp_ns + SecondsToNs(kFaultS);
+  }
+  /// Of the records of this status.
+  [[nodiscard]] std::vector<double> SecondsAfterTheFault(const std::string& status) const {
+    std::vector<double> seconds;
+    for (const RunRecord& record : result.records) {
+      if (record.status == status) {
+        seconds.push_back(SecondsBetween(fault_ns(), record.estimate.stamp_ns));
+      }
+    }
+    return seconds;
+  }
+};
+
+/// Runs of both back ends through the faults of a sensor, each beside the clean run.
+class FaultRunTest : public testing::TestWithParam<Backend> {
+ protected:
+  static Faulty Run(SimFaultKind fault, double duration_s) {
+    SimulatorConfig simulation;
+    simulation.duration_s = 20;
+    simulation.path_m = 1.31 * simulation.duration_s;
+    simulation.wobble_rad = 0.15;
+    simulation.fault = fault;
+    simulation.fault_start_s = kFaultS;
+    simulation.fault_duration_s = duration_s;
+    Faulty run;
+    Result<Dataset> dataset = Simulate(simulation, 105);
+    EXPECT_TRUE(dataset.ok()) << dataset.message();
+    run.dataset = std::move(*dataset);
+    EstimatorConfig config;
+    config.backend = GetParam();
+    config.init.method = InitMethod::kTruth;
+    run.result = RunEstimator(config, {run.dataset.rig, run.dataset.imu, run.dataset.tracks},
+                              &*run.dataset.truth, 105);
+    EXPECT_TRUE(run.result.status.ok()) << run.result.status.message();
+    for (const RunRecord& record : run.result.records) {
+      const Result<TrajectoryPoint> truth = InterpolateTruth(*run.dataset.truth, record.estimate.stamp_ns);
+      run.rmse_m += (truth->nav.p_WB - record.estimate.nav.p_WB).squaredNorm();
+    }
+    run.rmse_m = std::sqrt(run.rmse_m / static_cast<double>(run.result.records.size()));
+    return run;
+  }
+};
+
+TEST_P(FaultRunTest, OneWildSampleIsMendedToldAndWithoutEffect) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  EXPECT_EQ(clean.result.imu_rejected, 0);
+  EXPECT_EQ(clean.SecondsAfterTheFault("ok").size(), clean.result.records.size());
+  for (const SimFaultKind fault : {SimFaultKind::kGyroSpike, SimFaultKind::kAccelSpike}) {
+    const Faulty run = Run(fault, 1);
+    EXPECT_EQ(run.result.imu_rejected, 1);
+    EXPECT_EQ(run.SecondsAfterTheFault("ok").size(), run.result.records.size());
+    EXPECT_LT(run.rmse_m, 1.2 * clean.rmse_m + 0.003);
+  }
+}
+
+TEST_P(FaultRunTest, ASilentImuIsToldAndCovered) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  const Faulty run = Run(SimFaultKind::kImuGap, 0.2);
+  EXPECT_TRUE(run.result.restarts.empty());
+  const std::vector<double> degraded = run.SecondsAfterTheFault("degraded");
+  ASSERT_FALSE(degraded.empty());
+  EXPECT_LT(degraded.front(), 0.31);
+  EXPECT_LT(degraded.back(), 1.5);
+  EXPECT_LT(run.rmse_m, 1.5 * clean.rmse_m + 0.01);
+}
+
+TEST_P(FaultRunTest, ImagesThatRepeatThemselvesAreNotUsedAndToldAtOnce) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  const Faulty run = Run(SimFaultKind::kFrozen, 2);
+  EXPECT_TRUE(run.result.restarts.empty());
+  const std::vector<double> degraded = run.SecondsAfterTheFault("degraded");
+  ASSERT_FALSE(degraded.empty());
+  EXPECT_LE(degraded.front(), 0.3);
+  EXPECT_NEAR(degraded.back(), 2, 0.2);
+  EXPECT_LT(run.rmse_m, 1.5 * clean.rmse_m + 0.02);
+}
+
+TEST_P(FaultRunTest, ABlackoutIsToldWithinAFifthOfASecond) {
+  const Faulty run = Run(SimFaultKind::kBlackout, 2);
+  const std::vector<double> degraded = run.SecondsAfterTheFault("degraded");
+  ASSERT_FALSE(degraded.empty());
+  EXPECT_LE(degraded.front(), 0.31);  // frames come at 10 Hz
+  EXPECT_NEAR(degraded.back(), 2, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothBackEnds, FaultRunTest, testing::Values(Backend::kFilter, Backend::kSmoother),
+                         [](const auto& of) { return of.param == Backend::kFilter ? "filter" : "smoother"; });
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,71 @@
+#include "eval/run/degradation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+TrackFrame Frame(double stamp_s, int tracks, double shift_px) {
+  TrackFrame frame{SecondsToNs(stamp_s), {}};
+  for (int i = 0; i < tracks; ++i) {
+    frame.observations.push_back({i, {10.0 * i + shift_px, 20}});
+  }
+  return frame;
+}
+
+FrameStatistics Saw(int tracks) {
+  FrameStatistics statistics;
+  statistics.tracks_in = tracks;
+  return statistics;
+}
+
+TEST(DegradationTest, AnImageThatMovesIsNotFrozenAndOneThatRepeatsItselfIs) {
+  Degradation degradation;
+  EXPECT_FALSE(degradation.IsFrozen(Frame(0, 20, 0)));
+  EXPECT_FALSE(degradation.IsFrozen(Frame(0.05, 20, 1e-9)));
+  EXPECT_TRUE(degradation.IsFrozen(Frame(0.1, 20, 1e-9)));
+  EXPECT_THAT(degradation.Check(SecondsToNs(0.1), Saw(0)), HasSubstr("did not change"));
+  EXPECT_TRUE(degradation.IsFrozen(Frame(0.15, 20, 1e-9)));
+  EXPECT_FALSE(degradation.IsFrozen(Frame(0.2, 20, 3)));
+  EXPECT_EQ(degradation.Check(SecondsToNs(0.2), Saw(20)), "");
+}
+
+TEST(DegradationTest, FewEqualPixelsMayBeChance) {
+  Degradation degradation;
+  EXPECT_FALSE(degradation.IsFrozen(Frame(0, 7, 0)));
+  EXPECT_FALSE(degradation.IsFrozen(Frame(0.05, 7, 0)));
+}
+
+TEST(DegradationTest, WithoutTracksItIsToldWithinAFifthOfASecondAndTakenBackWithTheNextTracks) {
+  Degradation degradation;
+  double told_s = 0;
+  for (int k = 0; k < 20; ++k) {
+    const double t = 0.05 * k;
+    const bool blind = k >= 5 && k < 15;
+    static_cast<void>(degradation.IsFrozen(Frame(t, blind ? 0 : 20, t)));
+    const bool degraded = !degradation.Check(SecondsToNs(t), Saw(blind ? 0 : 20)).empty();
+    told_s = degraded && told_s == 0 ? t : told_s;
+    EXPECT_TRUE(blind || !degraded) << t;
+  }
+  EXPECT_GT(told_s, 0.25);
+  EXPECT_LE(told_s, 0.4);
+}
+
+TEST(DegradationTest, ASilentImuIsToldUntilTheEstimateHasSettled) {
+  Degradation degradation;
+  for (int k = 0; k < 200; ++k) {
+    if (k < 100 || k >= 140) {  // 0.2 s
+      degradation.OnImu(SecondsToNs(k / 200.0));
+    }
+  }
+  static_cast<void>(degradation.IsFrozen(Frame(0.6, 20, 0)));
+  EXPECT_THAT(degradation.Check(SecondsToNs(0.6), Saw(20)), HasSubstr("silent for 0.21 s"));
+  EXPECT_NE(degradation.Check(SecondsToNs(1.1), Saw(20)), "");
+  EXPECT_EQ(degradation.Check(SecondsToNs(1.3), Saw(20)), "");
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,116 @@
+#include "eval/run/imu_guard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/random.h"
+#include "eval/run/imu_stream.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kRateHz = 200;
+
+/// A vehicle in motion whose frame vibrates: steps of up to 0.1 rad/s and 6 m/s^2 from sample to sample.
+std::vector<ImuSample> Flight(int count, unsigned seed) {
+  RandomStream gyro(seed, "gyro"), accel(seed, "accel");
+  std::vector<ImuSample> samples;
+  for (int k = 0; k < count; ++k) {
+    const double t = k / kRateHz;
+    samples.push_back({SecondsToNs(t), Vector3d(0.8 * std::sin(3 * t), 0.2, -0.5 * std::cos(2 * t)),
+                       Vector3d(3 * std::sin(4 * t), 2 * std::cos(5 * t), 9.81)});
+    samples.back().gyro += 0.03 * gyro.Normal3();
+    samples.back().accel += 1.5 * accel.Normal3();
+  }
+  return samples;
+}
+
+/// As delivered to frames every `stride` samples; `faults` counts.
+std::vector<ImuSample> Delivered(const std::vector<ImuSample>& samples, size_t stride, int* faults) {
+  ImuStream stream(true);
+  for (const ImuSample& sample : samples) {
+    EXPECT_EQ(stream.Add(sample), ImuStream::Arrival::kTaken);
+  }
+  std::vector<ImuSample> delivered;
+  for (size_t k = 0; k < samples.size(); k += stride) {
+    while (const ImuSample* sample = stream.Deliver(samples[k].stamp_ns)) {
+      delivered.push_back(*sample);
+      *faults += stream.fault().empty() ? 0 : 1;
+    }
+  }
+  return delivered;
+}
+
+double LargestError(const std::vector<ImuSample>& used, const std::vector<ImuSample>& clean) {
+  double largest = 0;
+  for (size_t k = 0; k < used.size(); ++k) {
+    largest = std::max(
+        largest, (used[k].accel - clean[k].accel).norm() / 9.81 + (used[k].gyro - clean[k].gyro).norm());
+  }
+  return largest;
+}
+
+TEST(ImuGuardTest, MotionAndVibrationPassUntouched) {
+  const std::vector<ImuSample> clean = Flight(20000, 1);
+  int faults = 0;
+  const std::vector<ImuSample> used = Delivered(clean, 10, &faults);
+  EXPECT_EQ(faults, 0);
+  for (size_t k = 0; k < used.size(); ++k) {
+    ASSERT_EQ(used[k].accel, clean[k].accel);
+    ASSERT_EQ(used[k].gyro, clean[k].gyro);
+  }
+}
+
+// GIVEN a spike at any place of the interval between two frames, its end included, WHEN the samples are
+// delivered, THEN it is told once and what is used is near what was measured around it.
+TEST(ImuGuardTest, ASpikeIsReplacedWhereverItLies) {
+  const std::vector<ImuSample> clean = Flight(1000, 2);
+  for (size_t at = 500; at < 512; ++at) {
+    for (const bool of_gyro : {false, true}) {
+      std::vector<ImuSample> samples = clean;
+      (of_gyro ? samples[at].gyro : samples[at].accel) += Vector3d(0, of_gyro ? -30 : 490, 0);
+      int faults = 0;
+      const std::vector<ImuSample> used = Delivered(samples, 10, &faults);
+      EXPECT_EQ(faults, 1) << at;
+      EXPECT_LT(LargestError(used, clean), 1.2) << at;
+    }
+  }
+}
+
+TEST(ImuGuardTest, AStepThatLastsIsMotionAfterOneSample) {
+  std::vector<ImuSample> samples = Flight(1000, 3);
+  for (size_t k = 510; k < samples.size(); ++k) {  // a frame's sample is the first
+    samples[k].accel.x() += 100;
+  }
+  int faults = 0;
+  const std::vector<ImuSample> used = Delivered(samples, 10, &faults);
+  EXPECT_EQ(faults, 1);
+  for (size_t k = 511; k < used.size(); ++k) {
+    ASSERT_EQ(used[k].accel, samples[k].accel) << k;
+  }
+}
+
+TEST(ImuGuardTest, TellsWhichSensorJumpedAndByHowMuch) {
+  ImuGuard guard;
+  for (int k = 0; k < 200; ++k) {
+    ImuSample sample{SecondsToNs(k / kRateHz), Vector3d::Zero(), Vector3d(0, 0, 9.81)};
+    ImuSample next = sample;
+    next.stamp_ns += SecondsToNs(1 / kRateHz);
+    sample.gyro.z() = k == 150 ? 2 : 0;
+    const std::string fault = guard.Mend(&next, &sample);
+    EXPECT_EQ(fault.empty(), k != 150);
+    EXPECT_EQ(sample.gyro.z(), 0);
+    if (k == 150) {
+      EXPECT_THAT(fault, HasSubstr("gyroscope jumps by 2 rad/s"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alidade
