@@ -5,6 +5,7 @@
 
 #include "eval/config/config_keys.h"
 #include "eval/files/csv.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/strict_yaml.h"
 #include "eval/files/suggest.h"
@@ -191,7 +192,7 @@ Status ReadConfigLayer(const std::string& path, int depth, const ConfigKeys& sch
                             " is the ninth nested base file, expected no cycle");
     }
     const std::filesystem::path file = std::filesystem::path(path).parent_path() / base.Scalar();
-    if (!std::filesystem::is_regular_file(file)) {
+    if (!MayExist(file.string())) {
       return Status::Config(YamlPlace(path, base) + ": base: no file " + file.lexically_normal().string() +
                             ", expected a path relative to this file");
     }

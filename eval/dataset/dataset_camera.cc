@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/regular_file.h"
 #include "eval/dataset/dataset_tracks.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/sensor_table.h"
@@ -12,6 +13,7 @@
 #include "eval/files/output_file.h"
 
 namespace alidade {
+#include "eval/files/input_file.h"
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,9 +52,8 @@ std::optional<std::pair<int, int>> PngSize(const std::string& path) {
 }
 
 Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraModel& camera) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(image.path, ignored)) {
-    return Status::Input(csv.Place() + ": image " + image.path + " is missing");
+  if (const Result<std::uintmax_t> size = RegularFileSize(image.path); !size.ok()) {
+    return Status::Input(csv.Place() + ": image " + size.message());
   }
   const std::optional<std::pair<int, int>> size = PngSize(image.path);
   if (size.has_value() && (size->first != camera.width_px() || size->second != camera.height_px())) {
@@ -108,17 +109,17 @@ Status AddEmptyFrames(const std::string& tracks_path, Dataset* dataset) {
 /// The three sources a camera folder may hold; at least one must be there.
 Status ReadSources(const fs::path& folder, Dataset* dataset) {
   const std::string tracks_path = (folder / "tracks.csv").string();
-  if (fs::exists(tracks_path)) {
+  if (MayExist(tracks_path)) {
     Result<std::vector<TrackFrame>> tracks = ReadTracks(tracks_path);
     ALIDADE_RETURN_IF_ERROR(tracks.status());
     dataset->tracks = std::move(tracks).value();
   }
-  if (fs::exists(folder / "timestamps.csv")) {
+  if (MayExist((folder / "timestamps.csv").string())) {
     Result<std::vector<TimeNs>> stamps = ReadStamps((folder / "timestamps.csv").string());
     ALIDADE_RETURN_IF_ERROR(stamps.status());
     dataset->camera_stamps = std::move(stamps).value();
   }
-  if (fs::exists(folder / "data.csv")) {
+  if (MayExist((folder / "data.csv").string())) {
     Result<std::vector<ImageEntry>> images = ReadImages(folder, dataset->rig.camera);
     ALIDADE_RETURN_IF_ERROR(images.status());
     dataset->images = std::move(images).value();
@@ -159,9 +160,9 @@ Status ReadFirstCamera(const fs::path& folder, Dataset* dataset) {
 
 /// cam1, cam2, ... where they hold tracks.csv.
 Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
-  for (int k = 1; fs::is_directory(fs::path(mav) / ("cam" + std::to_string(k))); ++k) {
+  for (int k = 1; MayBeFolder(mav + "/cam" + std::to_string(k)); ++k) {
     const fs::path folder = fs::path(mav) / ("cam" + std::to_string(k));
-    if (!fs::exists(folder / "tracks.csv")) {
+    if (!MayExist((folder / "tracks.csv").string())) {
       continue;
     }
     const Result<CameraSensor> sensor = ReadCameraSensor((folder / "sensor.yaml").string());
@@ -218,7 +219,7 @@ void AddFrames(const std::vector<TrackFrame>& frames, LogHasher* hasher) {
 
 Status ReadCameraFolders(const std::string& mav, Dataset* dataset) {
   const fs::path first = fs::path(mav) / "cam0";
-  if (!fs::is_directory(first)) {
+  if (!MayBeFolder(first.string())) {
     return Status::Ok();
   }
   ALIDADE_RETURN_IF_ERROR(ReadFirstCamera(first, dataset));

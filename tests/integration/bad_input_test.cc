@@ -26,6 +26,8 @@ class BadInput : public testing::Test {
                 " --set=duration_s=5,path_m=6.5 --output=" + folder_.File("seq") + " --quiet");
     ASSERT_EQ(made.code, 0) << made.output;
     folder_.Write("unknown_key.yaml", "base: " + Source("configs/base.yaml") + "\nfilter:\n  windw: 3\n");
+    folder_.Write("long_base.yaml", "base: " + std::string(300, 'x') + "\n");
+    std::filesystem::create_symlink(folder_.File("loop"), folder_.File("loop"));
     folder_.Write("torn.tum", "1.0 2.0 3.0\n");
     folder_.Write("plan.yaml",
                   "estimators: [" + Source("configs/base.yaml") + "]\nsequences: [{paht: seq}]\n");
@@ -47,6 +49,7 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
   const std::string base = Source("configs/base.yaml");
   const std::string seq = folder_.File("seq"), out = folder_.File("out");
   const std::string run = "run --dataset=" + seq + " --output=" + out;
+  const std::string longer = folder_.File(std::string(300, 'x'));
   const std::vector<BadCall> calls = {
       {"", 2, "Usage: alidade <command>"},
       {"evalute", 2, "did you mean 'evaluate'"},
@@ -71,6 +74,17 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
            " --set=init.method=truth --output=" + out,
        4, "no ground truth"},
+      {run + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
+      {run + " --config=" + folder_.File("loop"), 3, "Too many levels of symbolic links"},
+      {"run --dataset=" + longer + " --config=" + base + " --output=" + out, 4, "File name too long"},
+      {"run --dataset=" + folder_.File("loop") + " --config=" + base + " --output=" + out, 4,
+       "Too many levels of symbolic links"},
+      {"check --dataset=" + longer, 4, "File name too long"},
+      {"track --dataset=" + longer + " --output=" + out, 4, "File name too long"},
+      {"convert --dataset=" + longer + " --output=" + out + ".bag", 4, "File name too long"},
+      {"convert --dataset=" + seq + " --output=" + longer + ".bag", 6, "File name too long"},
+      {"spp --obs=" + longer + " --nav=x --output=" + out, 4, "File name too long"},
+      {"spp --obs=x --nav=x --output=" + longer, 4, "x: cannot be read"},
       {"run --dataset=" + seq + " --config=" + base + " --output=" + seq, 6, "--overwrite"},
       {"run --dataset=" + seq + " --config=" + base + " --output=" + folder_.File("file") + "/x", 6,
        "file/x"},

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <ostream>
@@ -238,7 +239,7 @@ const FileCase kCameraCases[] = {
     {"image missing",
      "cam0/data.csv",
      "#timestamp [ns],filename\n1000,1000.png\n",
-     {"data.csv:2", "1000.png", "missing"}},
+     {"data.csv:2", "1000.png", "No such file"}},
 };
 INSTANTIATE_TEST_SUITE_P(Camera, BadSequence, testing::ValuesIn(kCameraCases));
 
@@ -265,6 +266,55 @@ const FileCase kTruthCases[] = {
     {"truth header alone", kTruthFile, kTruthHeader, {"data_pose.csv", "no pose"}},
 };
 INSTANTIATE_TEST_SUITE_P(Truth, BadSequence, testing::ValuesIn(kTruthCases));
+
+class NotAFile : public testing::TestWithParam<const char*> {};
+
+TEST_P(NotAFile, IsRefusedAtOnceWithItsName) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  const std::string name = std::string("mav0/") + GetParam();
+  const std::string path = folder.File(name);
+  std::filesystem::remove(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const Result<Dataset> pipe = ReadDataset(folder.path());
+  EXPECT_EQ(pipe.code(), StatusCode::kInput);
+  EXPECT_THAT(pipe.message(), HasSubstr(name + ": is a pipe, expected a file"));
+
+  std::filesystem::remove(path);
+  std::filesystem::create_symlink("/dev/zero", path);
+  const Result<Dataset> device = ReadDataset(folder.path());
+  EXPECT_EQ(device.code(), StatusCode::kInput);
+  EXPECT_THAT(device.message(), HasSubstr(name + ": is a device, expected a file"));
+
+  std::filesystem::remove(path);
+  std::filesystem::create_symlink(path, path);
+  const Result<Dataset> loop = ReadDataset(folder.path());
+  EXPECT_EQ(loop.code(), StatusCode::kInput);
+  EXPECT_THAT(loop.message(), HasSubstr(name + ": cannot be read: Too many levels of symbolic links"));
+
+  std::filesystem::remove(path);
+  folder.Write(name, "");
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 33);
+  const Result<Dataset> sparse = ReadDataset(folder.path());
+  EXPECT_EQ(sparse.code(), StatusCode::kInput);
+  EXPECT_THAT(sparse.message(), HasSubstr(name + ": is larger than expected"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Path, NotAFile,
+                         testing::Values("imu0/sensor.yaml", "imu0/data.csv", "cam0/sensor.yaml",
+                                         "cam0/tracks.csv", "cam0/data.csv", "cam0/timestamps.csv",
+                                         "state_groundtruth_estimate0/data_pose.csv"));
+
+TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsTold) {
+  const test::TemporaryFolder folder;
+  const Result<Dataset> longer = ReadDataset(folder.File(std::string(300, 'x')));
+  EXPECT_EQ(longer.code(), StatusCode::kInput);
+  EXPECT_THAT(longer.message(), HasSubstr("File name too long"));
+  std::filesystem::create_directory_symlink(folder.File("loop"), folder.File("loop"));
+  const Result<Dataset> loop = ReadDataset(folder.File("loop"));
+  EXPECT_EQ(loop.code(), StatusCode::kInput);
+  EXPECT_THAT(loop.message(), HasSubstr("Too many levels of symbolic links"));
+}
 
 TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
   const test::TemporaryFolder folder;
