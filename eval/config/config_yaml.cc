@@ -212,11 +212,11 @@ Result<YAML::Node> SettingTree(const std::string& setting, const std::string& wh
   const std::string text = setting.substr(equals + 1);
   YAML::Node value(text);
   if (text.starts_with('[')) {
-    try {
-      value = YAML::Load(text);
-    } catch (const YAML::Exception& error) {
-      return Status::Config(where + ": " + *key + ": is not a list: " + error.msg);
+    const Result<YAML::Node> list = LoadYaml(text, "value", StatusCode::kConfig);
+    if (!list.ok()) {
+      return Status::Config(where + ": " + *key + ": is not a list: " + list.message());
     }
+    value.reset(*list);
   }
   std::string path = *key;
   while (true) {

@@ -26,6 +26,7 @@ class BadInput : public testing::Test {
                 " --set=duration_s=5,path_m=6.5 --output=" + folder_.File("seq") + " --quiet");
     ASSERT_EQ(made.code, 0) << made.output;
     folder_.Write("unknown_key.yaml", "base: " + Source("configs/base.yaml") + "\nfilter:\n  windw: 3\n");
+    folder_.Write("comma.yaml", ",");
     folder_.Write("long_base.yaml", "base: " + std::string(300, 'x') + "\n");
     std::filesystem::create_symlink(folder_.File("loop"), folder_.File("loop"));
     folder_.Write("torn.tum", "1.0 2.0 3.0\n");
@@ -74,6 +75,7 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
            " --set=init.method=truth --output=" + out,
        4, "no ground truth"},
+      {run + " --config=" + folder_.File("comma.yaml"), 3, "comma.yaml:1:1"},
       {run + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
       {run + " --config=" + folder_.File("loop"), 3, "Too many levels of symbolic links"},
       {"run --dataset=" + longer + " --config=" + base + " --output=" + out, 4, "File name too long"},
