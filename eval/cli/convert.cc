@@ -22,6 +22,9 @@ int FolderToBag(BagCompression compression) {
     return Report(dataset.status());
   }
   std::error_code ignored;
+  for (const std::string& remark : dataset->remarks) {
+    Say(remark);
+  }
   if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output, ignored)) {
     return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
   }

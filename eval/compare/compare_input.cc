@@ -46,6 +46,7 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     dataset->truth = std::move(*truth);
   }
   std::optional<FrontendSummary> frontend;
+  const size_t imu_rejected = dataset->imu_rejections.dropped();
   if (dataset->tracks.empty() && !dataset->images.empty()) {
     Result<FrontendRun> run =
         RunFrontend(*dataset_digest, options, [&](const PipelineOptions& with_statistics) {
@@ -60,9 +61,9 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     return log.status();
   }
   std::string input_digest = DigestOf(*log);
-  return Data{std::move(*log),         std::move(dataset->truth), std::move(*dataset_digest),
-              std::move(input_digest), std::move(frontend),       std::nullopt,
-              std::move(remarks)};
+  return Data{std::move(*log),         std::move(dataset->truth),     std::move(*dataset_digest),
+              std::move(input_digest), std::move(frontend),           std::nullopt,
+              std::move(remarks),      static_cast<int>(imu_rejected)};
 }
 
 Result<FrontendRun> CompareInput::RunFrontend(

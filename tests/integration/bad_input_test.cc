@@ -46,6 +46,35 @@ class BadInput : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are told and
+// counted, and its states are those of a clean file.
+TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
+  std::filesystem::copy(folder_.File("seq"), folder_.File("faulty"),
+                        std::filesystem::copy_options::recursive);
+  std::string table = ReadFile(folder_.File("seq/mav0/imu0/data.csv"));
+  size_t start = 0;
+  for (int line = 0; line < 100; ++line) {
+    start = table.find('\n', start) + 1;
+  }
+  const std::string row = table.substr(start, table.find('\n', start) + 1 - start);
+  const std::string nan = row.substr(0, row.find(',')) + ",nan,0,0,0,0,9.81\n";
+  table.insert(start, row + nan);
+  folder_.Write("faulty/mav0/imu0/data.csv", table + row);
+  const std::string words =
+      "run --config=" + Source("configs/base.yaml") + " --set=init.method=truth --dataset=";
+  const CommandResult clean = Alidade(words + folder_.File("seq") + " --output=" + folder_.File("of_clean"));
+  ASSERT_EQ(clean.code, 0) << clean.output;
+  const CommandResult faulty =
+      Alidade(words + folder_.File("faulty") + " --output=" + folder_.File("of_faulty"));
+  ASSERT_EQ(faulty.code, 0) << faulty.output;
+  EXPECT_THAT(faulty.output, HasSubstr("3 dropped (1 duplicate, 1 late, 1 not finite)"));
+  EXPECT_THAT(ReadFile(folder_.File("of_clean/run.json")), HasSubstr("\"imu_rejected\": 0"));
+  EXPECT_THAT(ReadFile(folder_.File("of_faulty/run.json")), HasSubstr("\"imu_rejected\": 3"));
+  EXPECT_EQ(ReadFile(folder_.File("of_faulty/states.csv")), ReadFile(folder_.File("of_clean/states.csv")));
+  const CommandResult check = Alidade("check --dataset=" + folder_.File("faulty"));
+  EXPECT_THAT(check.output, HasSubstr("warning  imu0: samples 3 dropped"));
+}
+
 TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
   const std::string base = Source("configs/base.yaml");
   const std::string seq = folder_.File("seq"), out = folder_.File("out");
