@@ -33,9 +33,14 @@ class ReportInBrowser : public ::testing::Test {
   }
 
   /// The page with `script` run after its own scripts.
-  [[nodiscard]] std::string WithScript(const std::string& script) const {
-    std::string page = page_;
-    return page.insert(page.rfind("</body>"), "<script>" + script + "</script>");
+  [[nodiscard]] std::string WithScript(const std::string& script) const { return Probed(page_, script); }
+  /// A page with a script of the test, which its security policy lets run beside its own.
+  [[nodiscard]] static std::string Probed(std::string page, const std::string& script) {
+    const std::string sources = "script-src ";
+    const std::size_t policy = page.find(sources);
+    EXPECT_NE(policy, std::string::npos);
+    page.insert(policy + sources.size(), "'nonce-test' ");
+    return page.insert(page.rfind("</body>"), "<script nonce=\"test\">" + script + "</script>");
   }
 
   TemporaryFolder folder_;
