@@ -1,5 +1,6 @@
 #include "eval/dataset/dataset_camera.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -65,6 +66,12 @@ Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraMod
   return Status::Ok();
 }
 
+/// No absolute path and no way up: a sequence from elsewhere must not make other files of this machine read.
+bool StaysInFolder(std::string_view name) {
+  const fs::path path = name;
+  return !path.is_absolute() && std::find(path.begin(), path.end(), "..") == path.end();
+}
+
 Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraModel& camera) {
   const std::string path = (folder / "data.csv").string();
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}, {"filename"}});
@@ -77,6 +84,9 @@ Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraM
     ImageEntry image;
     ALIDADE_RETURN_IF_ERROR(
         csv->ReadStamp(images.empty(), images.empty() ? 0 : images.back().stamp_ns, &image.stamp_ns));
+    if (!StaysInFolder(csv->field(1))) {
+      return csv->Fault(1, "filename", "the name of a file in the folder data beside this one");
+    }
     image.path = (folder / "data" / std::string(csv->field(1))).string();
     ALIDADE_RETURN_IF_ERROR(CheckImage(*csv, image, camera));
     images.push_back(std::move(image));

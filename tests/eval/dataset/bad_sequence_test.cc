@@ -253,6 +253,14 @@ const FileCase kCameraCases[] = {
      "cam0/data.csv",
      "#timestamp [ns],filename\n1000,1000.png\n",
      {"data.csv:2", "1000.png", "No such file"}},
+    {"image above the folder",
+     "cam0/data.csv",
+     "#timestamp [ns],filename\n1000,../../../../../../etc/passwd\n",
+     {"data.csv:2", "column 2 (filename)", "'../../../../../../etc/passwd'", "in the folder data"}},
+    {"image elsewhere",
+     "cam0/data.csv",
+     "#timestamp [ns],filename\n1000,/etc/passwd\n",
+     {"data.csv:2", "'/etc/passwd'", "in the folder data"}},
 };
 INSTANTIATE_TEST_SUITE_P(Camera, BadSequence, testing::ValuesIn(kCameraCases));
 
