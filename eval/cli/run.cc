@@ -36,8 +36,11 @@ Result<EstimatorConfig> LoadConfig() {
 Result<MeasurementLog> LogWithProgress(const Dataset& dataset, const FrontendConfig& frontend,
                                        const std::atomic<bool>* stop) {
   ProgressLine progress("images");
-  return MakeLog(dataset, frontend,
-                 {stop, [&progress](size_t done, size_t total) { progress.Update(done, total); }});
+  PipelineOptions options;
+  options.stop = stop;
+  options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
+  options.remark = Say;
+  return MakeLog(dataset, frontend, options);
 }
 
 RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const Dataset& dataset,

@@ -48,8 +48,10 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
   std::optional<FrontendSummary> frontend;
   const size_t imu_rejected = dataset->imu_rejections.dropped();
   if (dataset->tracks.empty() && !dataset->images.empty()) {
+    PipelineOptions telling = options;
+    telling.remark = [&remarks](const std::string& text) { remarks.push_back(text); };
     Result<FrontendRun> run =
-        RunFrontend(*dataset_digest, options, [&](const PipelineOptions& with_statistics) {
+        RunFrontend(*dataset_digest, telling, [&](const PipelineOptions& with_statistics) {
           return TrackImages(*dataset, frontend_, with_statistics);
         });
     ALIDADE_RETURN_IF_ERROR(run.status());

@@ -22,6 +22,9 @@ struct ImageEntry {
   std::optional<InBag> in_bag = std::nullopt;
 };
 
+/// The largest share of a sequence's images that may be unreadable.
+inline constexpr double kMaxUnreadableShare = 0.05;
+
 /// IMU samples that a reader could not use as they are.
 struct ImuRejections {
   std::size_t duplicate = 0;   ///< dropped: the stamp of a sample before

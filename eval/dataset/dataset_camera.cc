@@ -6,15 +6,16 @@
 #include <optional>
 #include <utility>
 
+#include "core/format.h"
 #include "core/regular_file.h"
 #include "eval/dataset/dataset_tracks.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {
-#include "eval/files/input_file.h"
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,6 +80,8 @@ Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraM
     return csv.status();
   }
   std::vector<ImageEntry> images;
+  size_t unusable = 0;
+  Status first_fault;
   while (csv->NextRow()) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(2));
     ImageEntry image;
@@ -88,11 +91,19 @@ Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraM
       return csv->Fault(1, "filename", "the name of a file in the folder data beside this one");
     }
     image.path = (folder / "data" / std::string(csv->field(1))).string();
-    ALIDADE_RETURN_IF_ERROR(CheckImage(*csv, image, camera));
+    if (const Status usable = CheckImage(*csv, image, camera); !usable.ok() && unusable++ == 0) {
+      first_fault = usable;
+    }
     images.push_back(std::move(image));
   }
   if (images.empty()) {
     return Status::Input(path + ": lists no image, expected at least one row");
+  }
+  // Fewer are the business of whoever decodes them.
+  if (static_cast<double>(unusable) > kMaxUnreadableShare * static_cast<double>(images.size())) {
+    return Status::Input(first_fault.message() +
+                         Format("; %zu of %zu images cannot be used, expected at most %.0f %%", unusable,
+                                images.size(), 100 * kMaxUnreadableShare));
   }
   return images;
 }
