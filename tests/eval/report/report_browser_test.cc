@@ -219,7 +219,8 @@ TEST_F(ReportInBrowser, GivenAPageWithAFaultThenTheFaultIsSeen) {
   ASSERT_NE(call, std::string::npos);
   std::string broken = page_;
   broken.replace(call, 12, "noSuchThing();");
-  const PageVisit visit = Open(broken);
+  broken.replace(broken.rfind("<script>", call), 8, "<script nonce=\"test\">");
+  const PageVisit visit = Open(Admitting(broken));
   EXPECT_THAT(visit.console, HasSubstr("noSuchThing"));
   EXPECT_THAT(visit.Mark("errors"), HasSubstr("noSuchThing"));
   EXPECT_EQ(visit.Mark("ready"), "");

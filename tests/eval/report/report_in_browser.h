@@ -36,11 +36,15 @@ class ReportInBrowser : public ::testing::Test {
   [[nodiscard]] std::string WithScript(const std::string& script) const { return Probed(page_, script); }
   /// A page with a script of the test, which its security policy lets run beside its own.
   [[nodiscard]] static std::string Probed(std::string page, const std::string& script) {
+    page = Admitting(std::move(page));
+    return page.insert(page.rfind("</body>"), "<script nonce=\"test\">" + script + "</script>");
+  }
+  /// A page whose security policy also admits scripts with the nonce "test".
+  [[nodiscard]] static std::string Admitting(std::string page) {
     const std::string sources = "script-src ";
     const std::size_t policy = page.find(sources);
     EXPECT_NE(policy, std::string::npos);
-    page.insert(policy + sources.size(), "'nonce-test' ");
-    return page.insert(page.rfind("</body>"), "<script nonce=\"test\">" + script + "</script>");
+    return page.insert(policy + sources.size(), "'nonce-test' ");
   }
 
   TemporaryFolder folder_;
