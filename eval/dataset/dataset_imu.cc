@@ -131,10 +131,6 @@ void CheckImuValues(const std::vector<ImuSample>& imu, const ImuNoise& noise, Fi
         Format("imu0: %zu rows (%.1f %%) repeat the values of the row before; the real rate is lower",
                repeated, 100 * share));
   }
-  if (noise.gyro_noise_density_radps_sqrthz <= 0 || noise.accel_noise_density_mps2_sqrthz <= 0) {
-    findings->Warning(
-        "imu0: a noise density of zero in sensor.yaml: every covariance built on it will be too small");
-  }
   if (noise.gyro_noise_density_radps_sqrthz > 0.05 || noise.accel_noise_density_mps2_sqrthz > 0.5) {
     findings->Warning(
         "imu0: noise densities in sensor.yaml are large: are they discrete standard deviations or in deg?");
