@@ -16,14 +16,17 @@ Result<bool> BagImu::Take(const BagMessage& message, BagContext* bag) {
   if (message.connection->type != "sensor_msgs/Imu" || topic != bag->topics["imu"]) {
     return false;
   }
+  const std::size_t kept = bag->dataset.imu.size();
   KeepDecoded(DecodeImu(message.data), topic, &bag->dataset.imu, &bag->remarks);
+  bag->dataset.imu_rejections.not_finite += bag->dataset.imu.size() == kept ? 1 : 0;
   return true;
 }
 
 Status BagImu::Assemble(BagContext* bag) {
   Dataset& dataset = bag->dataset;
   const std::string& topic = bag->topics["imu"];
-  bag->remarks.AddDropped(topic, SortByStamp(&dataset.imu));
+  dataset.imu_rejections.duplicate = SortByStamp(&dataset.imu);
+  bag->remarks.AddDropped(topic, dataset.imu_rejections.duplicate);
   if (dataset.imu.size() < 2) {
     return Status::Input(bag->path + ": " + topic + ": " + std::to_string(dataset.imu.size()) +
                          " samples, expected at least two");

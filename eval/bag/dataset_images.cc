@@ -30,4 +30,15 @@ Result<GreyImage> DatasetImages::Read(const ImageEntry& image) {
   return *std::move(grey);
 }
 
+Result<GreyImage> DatasetImages::ReadFor(const CameraModel& camera, const ImageEntry& image) {
+  Result<GreyImage> grey = Read(image);
+  if (grey.ok() && (grey->width_px != camera.width_px() || grey->height_px != camera.height_px())) {
+    return Status::Input(image.path + ": image at " + std::to_string(image.stamp_ns) + " ns of " +
+                         std::to_string(grey->width_px) + " x " + std::to_string(grey->height_px) +
+                         " px, expected the resolution " + std::to_string(camera.width_px()) + " x " +
+                         std::to_string(camera.height_px()) + " of sensor.yaml");
+  }
+  return grey;
+}
+
 }  // namespace alidade

@@ -14,6 +14,8 @@ class DatasetImages {
   /// Fastest in the order of the stamps. kInput: missing, does not decode, or of another encoding than mono,
   /// rgb or bgr.
   Result<GreyImage> Read(const ImageEntry& image);
+  /// Read, and kInput when the image has not the camera's resolution.
+  Result<GreyImage> ReadFor(const CameraModel& camera, const ImageEntry& image);
 
  private:
   std::optional<RosbagReader> bag_;

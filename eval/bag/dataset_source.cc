@@ -12,11 +12,16 @@ namespace alidade {
 
 Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string>* remarks) {
   if (!IsBag(source.path)) {
-    return source.topics.empty() && source.calibration.empty()
-               ? ReadDataset(source.path)
-               : Status::Usage(source.path +
-                               ": is not a bag; topics and calibration apply to bags, a folder has its "
-                               "own sensor.yaml");
+    if (!source.topics.empty() || !source.calibration.empty()) {
+      return Status::Usage(source.path +
+                           ": is not a bag; topics and calibration apply to bags, a folder has its own "
+                           "sensor.yaml");
+    }
+    Result<Dataset> dataset = ReadDataset(source.path);
+    if (dataset.ok()) {
+      *remarks = dataset->remarks;
+    }
+    return dataset;
   }
   BagImportOptions options;
   ALIDADE_RETURN_IF_ERROR(MakeBagTopics(source.topics).status());  // before the calibration's errors

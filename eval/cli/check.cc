@@ -1,5 +1,8 @@
 #include <cstdio>
+#include <utility>
 
+#include "core/format.h"
+#include "eval/bag/dataset_images.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -22,6 +25,24 @@ const char* Word(DatasetFinding::Severity severity) {
   return "fact";
 }
 
+/// Decodes every image and names those that the front end would skip.
+void CheckImages(const Dataset& dataset, Findings* findings) {
+  DatasetImages images;
+  ProgressLine progress("images");
+  size_t unreadable = 0;
+  for (size_t i = 0; i < dataset.images.size(); ++i) {
+    if (const Result<GreyImage> image = images.ReadFor(dataset.rig.camera, dataset.images[i]); !image.ok()) {
+      ++unreadable;
+      findings->Warning("cam0: " + image.message());
+    }
+    progress.Update(i + 1, dataset.images.size());
+  }
+  if (static_cast<double>(unreadable) > kMaxUnreadableShare * static_cast<double>(dataset.images.size())) {
+    findings->Error(Format("cam0: %zu of %zu images cannot be used, expected at most %.0f %%", unreadable,
+                           dataset.images.size(), 100 * kMaxUnreadableShare));
+  }
+}
+
 }  // namespace
 
 int RunCheck(const std::vector<std::string>&) {
@@ -30,7 +51,13 @@ int RunCheck(const std::vector<std::string>&) {
     return Report(dataset.status());
   }
   bool faulty = false;
-  for (const DatasetFinding& finding : CheckDataset(*dataset)) {
+  Findings findings;
+  CheckImages(*dataset, &findings);
+  std::vector<DatasetFinding> list = CheckDataset(*dataset);
+  for (DatasetFinding& finding : findings.Take()) {
+    list.push_back(std::move(finding));
+  }
+  for (const DatasetFinding& finding : list) {
     std::printf("%-8s %s\n", Word(finding.severity), finding.text.c_str());
     faulty = faulty || finding.severity == DatasetFinding::Severity::kError;
   }

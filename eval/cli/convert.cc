@@ -21,7 +21,11 @@ int FolderToBag(BagCompression compression) {
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
-  if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output)) {
+  std::error_code ignored;
+  for (const std::string& remark : dataset->remarks) {
+    Say(remark);
+  }
+  if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output, ignored)) {
     return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
   }
   BagExportOptions options{FLAGS_topics, compression, InstallInterruptHandler(), {}};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
@@ -11,6 +10,7 @@
 #include "eval/compare/compare_input.h"
 #include "eval/compare/plan_parser.h"
 #include "eval/config/config_yaml.h"
+#include "eval/files/input_file.h"
 #include "eval/record/recorder_reader.h"
 #include "eval/study/gnss_study_tables.h"
 
@@ -74,7 +74,7 @@ class Study {
     std::vector<std::pair<GnssStudyRow*, RunResult>> runs;
     for (std::size_t i = first_row_; i < rows_.size(); ++i) {
       const std::string folder = RunFolder(rows_[i].estimator, sequence.name, seed);
-      if (!std::filesystem::exists(folder + "/run.json")) {
+      if (!MayExist(folder + "/run.json")) {
         continue;
       }
       Result<RunResult> run = ReadRun(folder);
@@ -122,7 +122,7 @@ class Study {
           continue;
         }
         const std::string folder = RunFolder(estimator.name, other.name, seed);
-        if (!std::filesystem::exists(folder + "/run.json")) {
+        if (!MayExist(folder + "/run.json")) {
           continue;
         }
         const Result<RunResult> run = ReadRun(folder);

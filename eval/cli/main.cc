@@ -60,5 +60,8 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fputs("alidade: out of memory\n", stderr);
     return alidade::cli::kExitInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "alidade: unexpected failure: %s\n", error.what());
+    return alidade::cli::kExitInput;
   }
 }

@@ -36,8 +36,11 @@ Result<EstimatorConfig> LoadConfig() {
 Result<MeasurementLog> LogWithProgress(const Dataset& dataset, const FrontendConfig& frontend,
                                        const std::atomic<bool>* stop) {
   ProgressLine progress("images");
-  return MakeLog(dataset, frontend,
-                 {stop, [&progress](size_t done, size_t total) { progress.Update(done, total); }});
+  PipelineOptions options;
+  options.stop = stop;
+  options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
+  options.remark = Say;
+  return MakeLog(dataset, frontend, options);
 }
 
 RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const Dataset& dataset,
@@ -86,7 +89,8 @@ int RunRun(const std::vector<std::string>&) {
   const RunIdentity identity{*config,    dataset->name,   *dataset_digest,    DigestOf(*log),
                              FLAGS_seed, log->imu.size(), log->frames.size(), FLAGS_audit};
   Say(DescribeLog(*log, identity.input_digest));
-  const RunResult result = RunWithProgress(*config, *log, *dataset, stop);
+  RunResult result = RunWithProgress(*config, *log, *dataset, stop);
+  result.imu_rejected += static_cast<int>(dataset->imu_rejections.dropped());
   if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {
     return Report(status);
   }

@@ -1,9 +1,9 @@
 #include "eval/cli/score.h"
 
 #include <cstdio>
-#include <filesystem>
 
 #include "eval/cli/flags.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/frontend_run/track_score.h"
 #include "eval/render/hall_file.h"
@@ -28,7 +28,7 @@ std::vector<std::optional<Pose>> PosesAt(const std::vector<TrackFrame>& tracks, 
 /// What was drawn, of a rendered sequence; else the truth, if it has orientations.
 Result<TrackTruth> TruthOf(const Dataset& dataset, const std::vector<TrackFrame>& tracks) {
   TrackTruth truth;
-  if (!std::filesystem::exists(HallPath(dataset.path))) {
+  if (!MayExist(HallPath(dataset.path))) {
     if (dataset.truth.has_value() && dataset.truth->has_orientation) {
       truth.T_WC =
           PosesAt(tracks, *dataset.truth, SecondsToNs(dataset.rig.camera_time_offset_s), dataset.rig.T_BC);

@@ -29,6 +29,7 @@ Status Draw(const SimulatorConfig& config, const Simulation& simulation) {
 }  // namespace
 
 int RunSimulate(const std::vector<std::string>&) {
+  ExitOnInterrupt();
   Result<SimulatorConfig> config = LoadSimulatorConfig(FLAGS_config, SplitSettings(FLAGS_set));
   if (config.ok() && FLAGS_render) {
     config->render.enabled = true;

@@ -102,7 +102,8 @@ int Run() {
 }  // namespace
 
 int RunSpp(const std::vector<std::string>&) {
-  if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output)) {
+  std::error_code ignored;
+  if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output, ignored)) {
     return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
   }
   return Run();

@@ -51,6 +51,7 @@ Result<std::vector<StartOutcome>> StudySequence(const Plan& plan, const PlanSequ
 }  // namespace
 
 int RunStarts(const std::vector<std::string>&) {
+  ExitOnInterrupt();
   if (FLAGS_starts < 1 || !(FLAGS_limit > 0)) {
     return Report(Status::Usage("starts: --starts must be at least 1 and --limit positive"));
   }

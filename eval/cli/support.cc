@@ -110,6 +110,12 @@ void ProgressLine::Update(size_t done, size_t total) {
   std::fprintf(stderr, terminal_ ? "\r%s %zu/%zu" : "%s %zu/%zu\n", label_.c_str(), done, total);
 }
 
+void ExitOnInterrupt() {
+  const auto leave = [](int) { _exit(kExitInterrupted); };
+  std::signal(SIGINT, leave);
+  std::signal(SIGTERM, leave);
+}
+
 const std::atomic<bool>* InstallInterruptHandler() {
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);

@@ -42,6 +42,10 @@ class ProgressLine {
 /// Reads it; what was guessed or passed over goes to standard error.
 Result<Dataset> ReadDatasetFromFlags();
 
+/// From here on SIGINT and SIGTERM end the program at once with its exit code, for work that does not poll; a
+/// file that is being written is completed first. InstallInterruptHandler replaces it.
+void ExitOnInterrupt();
+
 /// Set by SIGINT and SIGTERM once the handler is installed. A second signal ends the program at once.
 [[nodiscard]] const std::atomic<bool>* InstallInterruptHandler();
 

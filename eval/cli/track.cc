@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "eval/bag/dataset_images.h"
@@ -33,7 +34,13 @@ Status DrawOverlays(const Dataset& dataset, const std::vector<TrackFrame>& frame
   const auto step = static_cast<size_t>(FLAGS_overlay);
   DatasetImages images;
   for (size_t i = 0; step > 0 && i < frames.size(); i += step) {
-    const Result<GreyImage> image = images.Read(dataset.images[i]);
+    const auto entry = std::find_if(
+        dataset.images.begin(), dataset.images.end(),
+        [&frames, i](const ImageEntry& candidate) { return candidate.stamp_ns == frames[i].stamp_ns; });
+    if (entry == dataset.images.end()) {
+      continue;
+    }
+    const Result<GreyImage> image = images.Read(*entry);
     ALIDADE_RETURN_IF_ERROR(image.status());
     ALIDADE_RETURN_IF_ERROR(WriteTrackOverlay(
         *image, frames, i, FLAGS_output + "/overlay/" + std::to_string(frames[i].stamp_ns) + ".png"));
@@ -67,6 +74,7 @@ int TrackAndWrite(const FrontendConfig& config, Dataset* dataset) {
   options.statistics = &statistics;
   options.cpu_ms = &cpu_ms;
   options.stop = InstallInterruptHandler();
+  options.remark = Say;
   ProgressLine progress("images");
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   Result<std::vector<TrackFrame>> frames = TrackImages(*dataset, config, options);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "eval/compare/compare_cell.h"
 #include "eval/compare/compare_configs.h"
 #include "eval/comparison/cell_score.h"
+#include "eval/files/input_file.h"
 #include "eval/report/report.h"
 #include "eval/report/tables.h"
 #include "eval/run/make_estimator.h"
@@ -56,7 +56,7 @@ class Comparer {
         ALIDADE_RETURN_IF_ERROR(AddSimulation(sequence));
       } else {
         FrontendConfig frontend;
-        if (!std::filesystem::exists(sequence.dataset.path + "/mav0/cam0/tracks.csv")) {
+        if (!MayExist(sequence.dataset.path + "/mav0/cam0/tracks.csv")) {
           ALIDADE_RETURN_IF_ERROR(configs_.CommonFrontend(sequence, &frontend));
         }
         inputs_.push_back(std::make_unique<CompareInput>(sequence, frontend, CacheOf(sequence, 0)));

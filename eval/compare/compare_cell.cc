@@ -49,7 +49,8 @@ Status RunAndWrite(const RunIdentity& identity, const CompareInput::Data& data, 
   run_options.seed = cell.seed;
   run_options.stop = options.stop;
   run_options.audit = identity.audited;
-  const RunResult result = RunEstimator(*cell.config, data.log, run_options);
+  RunResult result = RunEstimator(*cell.config, data.log, run_options);
+  result.imu_rejected += data.imu_rejected;
   return result.interrupted ? Status::Input("interrupted") : WriteRun(identity, result, cell.folder);
 }
 

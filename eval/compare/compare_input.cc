@@ -46,9 +46,12 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     dataset->truth = std::move(*truth);
   }
   std::optional<FrontendSummary> frontend;
+  const size_t imu_rejected = dataset->imu_rejections.dropped();
   if (dataset->tracks.empty() && !dataset->images.empty()) {
+    PipelineOptions telling = options;
+    telling.remark = [&remarks](const std::string& text) { remarks.push_back(text); };
     Result<FrontendRun> run =
-        RunFrontend(*dataset_digest, options, [&](const PipelineOptions& with_statistics) {
+        RunFrontend(*dataset_digest, telling, [&](const PipelineOptions& with_statistics) {
           return TrackImages(*dataset, frontend_, with_statistics);
         });
     ALIDADE_RETURN_IF_ERROR(run.status());
@@ -60,9 +63,9 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     return log.status();
   }
   std::string input_digest = DigestOf(*log);
-  return Data{std::move(*log),         std::move(dataset->truth), std::move(*dataset_digest),
-              std::move(input_digest), std::move(frontend),       std::nullopt,
-              std::move(remarks)};
+  return Data{std::move(*log),         std::move(dataset->truth),     std::move(*dataset_digest),
+              std::move(input_digest), std::move(frontend),           std::nullopt,
+              std::move(remarks),      static_cast<int>(imu_rejected)};
 }
 
 Result<FrontendRun> CompareInput::RunFrontend(

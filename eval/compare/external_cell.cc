@@ -66,7 +66,7 @@ std::optional<ExternalRun> EarlierRun(const ExternalCell& cell, const fs::path& 
                                         : nlohmann::json(nlohmann::json::value_t::discarded);
   if (!json.is_object() || json.value("command", "") != cell.estimator.command.text ||
       json.value("dataset_digest", "") != cell.dataset_digest ||
-      !fs::exists(output / cell.estimator.command.result)) {
+      !MayExist((output / cell.estimator.command.result).string())) {
     return std::nullopt;
   }
   return ExternalRun{json.value("wall_s", 0.0), json.value("cpu_s", 0.0)};

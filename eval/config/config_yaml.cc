@@ -5,6 +5,7 @@
 
 #include "eval/config/config_keys.h"
 #include "eval/files/csv.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/strict_yaml.h"
 #include "eval/files/suggest.h"
@@ -191,7 +192,7 @@ Status ReadConfigLayer(const std::string& path, int depth, const ConfigKeys& sch
                             " is the ninth nested base file, expected no cycle");
     }
     const std::filesystem::path file = std::filesystem::path(path).parent_path() / base.Scalar();
-    if (!std::filesystem::is_regular_file(file)) {
+    if (!MayExist(file.string())) {
       return Status::Config(YamlPlace(path, base) + ": base: no file " + file.lexically_normal().string() +
                             ", expected a path relative to this file");
     }
@@ -211,11 +212,11 @@ Result<YAML::Node> SettingTree(const std::string& setting, const std::string& wh
   const std::string text = setting.substr(equals + 1);
   YAML::Node value(text);
   if (text.starts_with('[')) {
-    try {
-      value = YAML::Load(text);
-    } catch (const YAML::Exception& error) {
-      return Status::Config(where + ": " + *key + ": is not a list: " + error.msg);
+    const Result<YAML::Node> list = LoadYaml(text, "value", StatusCode::kConfig);
+    if (!list.ok()) {
+      return Status::Config(where + ": " + *key + ": is not a list: " + list.message());
     }
+    value.reset(*list);
   }
   std::string path = *key;
   while (true) {

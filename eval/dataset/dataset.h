@@ -22,6 +22,18 @@ struct ImageEntry {
   std::optional<InBag> in_bag = std::nullopt;
 };
 
+/// The largest share of a sequence's images that may be unreadable.
+inline constexpr double kMaxUnreadableShare = 0.05;
+
+/// IMU samples that a reader could not use as they are.
+struct ImuRejections {
+  std::size_t duplicate = 0;   ///< dropped: the stamp of a sample before
+  std::size_t late = 0;        ///< dropped: out of order by more than kMaxImuLatenessNs
+  std::size_t not_finite = 0;  ///< dropped: a NaN or an infinity
+  std::size_t reordered = 0;   ///< kept: out of order by less
+  [[nodiscard]] std::size_t dropped() const { return duplicate + late + not_finite; }
+};
+
 /// A sequence in the extended ASL layout (contract: <seq>/mav0/{imu0,cam0,state_groundtruth_estimate0}).
 struct Dataset {
   std::string path;
@@ -32,6 +44,8 @@ struct Dataset {
   double imu_rate_hz = 0;
   double camera_rate_hz = 0;
   std::vector<ImuSample> imu;
+  ImuRejections imu_rejections;
+  std::vector<std::string> remarks;        ///< what the reader of a folder passed over, as text
   std::vector<TrackFrame> tracks;          ///< cam0/tracks.csv, grouped by stamp; empty when there is none
   std::vector<ExtraCamera> extra_cameras;  ///< cam1, cam2, ... that have tracks
   std::vector<ImageEntry> images;          ///< cam0/data.csv, or of a bag; empty when there is none

@@ -1,14 +1,18 @@
 #include "eval/dataset/dataset_camera.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <utility>
 
+#include "core/format.h"
+#include "core/regular_file.h"
 #include "eval/dataset/dataset_tracks.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {
@@ -50,9 +54,8 @@ std::optional<std::pair<int, int>> PngSize(const std::string& path) {
 }
 
 Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraModel& camera) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(image.path, ignored)) {
-    return Status::Input(csv.Place() + ": image " + image.path + " is missing");
+  if (const Result<std::uintmax_t> size = RegularFileSize(image.path); !size.ok()) {
+    return Status::Input(csv.Place() + ": image " + size.message());
   }
   const std::optional<std::pair<int, int>> size = PngSize(image.path);
   if (size.has_value() && (size->first != camera.width_px() || size->second != camera.height_px())) {
@@ -64,6 +67,12 @@ Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraMod
   return Status::Ok();
 }
 
+/// No absolute path and no way up: a sequence from elsewhere must not make other files of this machine read.
+bool StaysInFolder(std::string_view name) {
+  const fs::path path = name;
+  return !path.is_absolute() && std::find(path.begin(), path.end(), "..") == path.end();
+}
+
 Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraModel& camera) {
   const std::string path = (folder / "data.csv").string();
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}, {"filename"}});
@@ -71,17 +80,30 @@ Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraM
     return csv.status();
   }
   std::vector<ImageEntry> images;
+  size_t unusable = 0;
+  Status first_fault;
   while (csv->NextRow()) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(2));
     ImageEntry image;
     ALIDADE_RETURN_IF_ERROR(
         csv->ReadStamp(images.empty(), images.empty() ? 0 : images.back().stamp_ns, &image.stamp_ns));
+    if (!StaysInFolder(csv->field(1))) {
+      return csv->Fault(1, "filename", "the name of a file in the folder data beside this one");
+    }
     image.path = (folder / "data" / std::string(csv->field(1))).string();
-    ALIDADE_RETURN_IF_ERROR(CheckImage(*csv, image, camera));
+    if (const Status usable = CheckImage(*csv, image, camera); !usable.ok() && unusable++ == 0) {
+      first_fault = usable;
+    }
     images.push_back(std::move(image));
   }
   if (images.empty()) {
     return Status::Input(path + ": lists no image, expected at least one row");
+  }
+  // Fewer are the business of whoever decodes them.
+  if (static_cast<double>(unusable) > kMaxUnreadableShare * static_cast<double>(images.size())) {
+    return Status::Input(first_fault.message() +
+                         Format("; %zu of %zu images cannot be used, expected at most %.0f %%", unusable,
+                                images.size(), 100 * kMaxUnreadableShare));
   }
   return images;
 }
@@ -108,17 +130,17 @@ Status AddEmptyFrames(const std::string& tracks_path, Dataset* dataset) {
 /// The three sources a camera folder may hold; at least one must be there.
 Status ReadSources(const fs::path& folder, Dataset* dataset) {
   const std::string tracks_path = (folder / "tracks.csv").string();
-  if (fs::exists(tracks_path)) {
+  if (MayExist(tracks_path)) {
     Result<std::vector<TrackFrame>> tracks = ReadTracks(tracks_path);
     ALIDADE_RETURN_IF_ERROR(tracks.status());
     dataset->tracks = std::move(tracks).value();
   }
-  if (fs::exists(folder / "timestamps.csv")) {
+  if (MayExist((folder / "timestamps.csv").string())) {
     Result<std::vector<TimeNs>> stamps = ReadStamps((folder / "timestamps.csv").string());
     ALIDADE_RETURN_IF_ERROR(stamps.status());
     dataset->camera_stamps = std::move(stamps).value();
   }
-  if (fs::exists(folder / "data.csv")) {
+  if (MayExist((folder / "data.csv").string())) {
     Result<std::vector<ImageEntry>> images = ReadImages(folder, dataset->rig.camera);
     ALIDADE_RETURN_IF_ERROR(images.status());
     dataset->images = std::move(images).value();
@@ -159,9 +181,9 @@ Status ReadFirstCamera(const fs::path& folder, Dataset* dataset) {
 
 /// cam1, cam2, ... where they hold tracks.csv.
 Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
-  for (int k = 1; fs::is_directory(fs::path(mav) / ("cam" + std::to_string(k))); ++k) {
+  for (int k = 1; MayBeFolder(mav + "/cam" + std::to_string(k)); ++k) {
     const fs::path folder = fs::path(mav) / ("cam" + std::to_string(k));
-    if (!fs::exists(folder / "tracks.csv")) {
+    if (!MayExist((folder / "tracks.csv").string())) {
       continue;
     }
     const Result<CameraSensor> sensor = ReadCameraSensor((folder / "sensor.yaml").string());
@@ -218,7 +240,7 @@ void AddFrames(const std::vector<TrackFrame>& frames, LogHasher* hasher) {
 
 Status ReadCameraFolders(const std::string& mav, Dataset* dataset) {
   const fs::path first = fs::path(mav) / "cam0";
-  if (!fs::is_directory(first)) {
+  if (!MayBeFolder(first.string())) {
     return Status::Ok();
   }
   ALIDADE_RETURN_IF_ERROR(ReadFirstCamera(first, dataset));

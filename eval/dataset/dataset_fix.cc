@@ -10,6 +10,7 @@
 #include "eval/dataset/sensor_file.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/nmea_reader.h"
 #include "eval/trajectory/position_file_reader.h"
@@ -186,7 +187,7 @@ void SortFixes(const std::vector<FixSensor>& sensors, std::vector<PositionFix>* 
 Status ReadFixFolders(const std::string& mav, Dataset* dataset) {
   for (int sensor = 0;; ++sensor) {
     const fs::path folder = fs::path(mav) / ("fix" + std::to_string(sensor));
-    if (!fs::is_directory(folder)) {
+    if (!MayBeFolder(folder.string())) {
       break;
     }
     const std::string sheet_path = (folder / "sensor.yaml").string();

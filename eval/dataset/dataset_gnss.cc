@@ -8,6 +8,7 @@
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/strict_yaml.h"
 #include "gnss/formats/rinex_observation.h"
@@ -154,7 +155,7 @@ Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& whe
 
 Status ReadGnssFolder(const std::string& mav, Dataset* dataset) {
   const std::string folder = (fs::path(mav) / "gnss0").string();
-  if (!fs::is_directory(folder)) {
+  if (!MayBeFolder(folder)) {
     return Status::Ok();
   }
   const std::string sheet = (fs::path(folder) / "sensor.yaml").string();

@@ -7,6 +7,7 @@
 
 #include "core/format.h"
 #include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/imu_intake.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
@@ -17,7 +18,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::vector<ImuSample>> ReadImuTable(const std::string& path) {
+/// Reads the current row; a NaN or an infinity is a value here, for the intake to drop.
+Status ReadImuRow(const CsvReader& csv, const std::vector<CsvColumn>& header, ImuSample* sample) {
+  ALIDADE_RETURN_IF_ERROR(csv.ExpectColumns(header.size()));
+  ALIDADE_RETURN_IF_ERROR(csv.ReadInt64(0, header[0].name, &sample->stamp_ns));
+  for (int i = 0; i < 3; ++i) {
+    const size_t column = static_cast<size_t>(i) + 1;
+    ALIDADE_RETURN_IF_ERROR(csv.ReadRealOrNotFinite(column, header[column].name, &sample->gyro[i]));
+    ALIDADE_RETURN_IF_ERROR(csv.ReadRealOrNotFinite(column + 3, header[column + 3].name, &sample->accel[i]));
+  }
+  return Status::Ok();
+}
+
+Status ReadImuTable(const std::string& path, Dataset* dataset) {
   // Units are required here: a gyroscope in deg/s or an accelerometer in g must not pass for SI.
   const std::vector<CsvColumn> header = {{"timestamp", "ns"},
                                          {"w_RS_S_x", "rad s^-1", true},
@@ -27,26 +40,34 @@ Result<std::vector<ImuSample>> ReadImuTable(const std::string& path) {
                                          {"a_RS_S_y", "m s^-2", true},
                                          {"a_RS_S_z", "m s^-2", true}};
   Result<CsvReader> csv = OpenTable(path, header);
-  if (!csv.ok()) {
-    return csv.status();
-  }
-  std::vector<ImuSample> imu;
-  while (csv->NextRow()) {
-    ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
+  ALIDADE_RETURN_IF_ERROR(csv.status());
+  ImuIntake intake;
+  std::string first_fault;
+  size_t rows = 0;
+  for (; csv->NextRow(); ++rows) {
     ImuSample sample;
-    ALIDADE_RETURN_IF_ERROR(
-        csv->ReadStamp(imu.empty(), imu.empty() ? 0 : imu.back().stamp_ns, &sample.stamp_ns));
-    for (int i = 0; i < 3; ++i) {
-      const size_t column = static_cast<size_t>(i) + 1;
-      ALIDADE_RETURN_IF_ERROR(csv->ReadReal(column, header[column].name, &sample.gyro[i]));
-      ALIDADE_RETURN_IF_ERROR(csv->ReadReal(column + 3, header[column + 3].name, &sample.accel[i]));
+    ALIDADE_RETURN_IF_ERROR(ReadImuRow(*csv, header, &sample));
+    if (const std::optional<Status> fault = intake.Add(sample); fault && first_fault.empty()) {
+      first_fault = csv->Place() + ": " + fault->message();
     }
-    imu.push_back(sample);
   }
-  if (imu.size() < 2) {
-    return Status::Input(path + ": holds " + std::to_string(imu.size()) + " samples, expected at least two");
+  const ImuRejections& rejections = intake.rejections();
+  if (static_cast<double>(rejections.dropped()) > kMaxRejectedImuShare * static_cast<double>(rows)) {
+    return Status::Input(first_fault + Format("; of %zu rows %s, expected at most %.0f %% dropped", rows,
+                                              DescribeRejections(rejections).c_str(),
+                                              100 * kMaxRejectedImuShare));
   }
-  return imu;
+  if (intake.samples().size() < 2) {
+    return Status::Input(path +
+                         Format(": holds %zu samples, expected at least two", intake.samples().size()));
+  }
+  dataset->imu = intake.samples();
+  dataset->imu_rejections = rejections;
+  if (const std::string told = DescribeRejections(rejections); !told.empty()) {
+    dataset->remarks.push_back(path + Format(": of %zu rows ", rows) + told +
+                               (first_fault.empty() ? "" : "; the first: " + first_fault));
+  }
+  return Status::Ok();
 }
 
 std::string ImuCsv(const std::vector<ImuSample>& imu) {
@@ -110,10 +131,6 @@ void CheckImuValues(const std::vector<ImuSample>& imu, const ImuNoise& noise, Fi
         Format("imu0: %zu rows (%.1f %%) repeat the values of the row before; the real rate is lower",
                repeated, 100 * share));
   }
-  if (noise.gyro_noise_density_radps_sqrthz <= 0 || noise.accel_noise_density_mps2_sqrthz <= 0) {
-    findings->Warning(
-        "imu0: a noise density of zero in sensor.yaml: every covariance built on it will be too small");
-  }
   if (noise.gyro_noise_density_radps_sqrthz > 0.05 || noise.accel_noise_density_mps2_sqrthz > 0.5) {
     findings->Warning(
         "imu0: noise densities in sensor.yaml are large: are they discrete standard deviations or in deg?");
@@ -127,9 +144,7 @@ Status ReadImuFolder(const std::string& mav, Dataset* dataset) {
   const Result<ImuSensor> sensor = ReadImuSensor((folder / "sensor.yaml").string());
   ALIDADE_RETURN_IF_ERROR(sensor.status());
   dataset->rig.imu_noise = sensor->noise;
-  Result<std::vector<ImuSample>> imu = ReadImuTable((folder / "data.csv").string());
-  ALIDADE_RETURN_IF_ERROR(imu.status());
-  dataset->imu = std::move(imu).value();
+  ALIDADE_RETURN_IF_ERROR(ReadImuTable((folder / "data.csv").string(), dataset));
   dataset->imu_rate_hz = sensor->rate_hz.value_or(
       MeasuredRate(dataset->imu.front().stamp_ns, dataset->imu.back().stamp_ns, dataset->imu.size()));
   return Status::Ok();
@@ -157,6 +172,9 @@ void CheckImu(const Dataset& dataset, Findings* findings) {
     stamps.push_back(sample.stamp_ns);
   }
   CheckStamps("imu0", stamps, dataset.imu_rate_hz, findings);
+  if (const std::string told = DescribeRejections(dataset.imu_rejections); !told.empty()) {
+    findings->Warning("imu0: samples " + told);
+  }
   if (stamps.size() < 2) {
     return;
   }

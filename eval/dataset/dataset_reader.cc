@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "eval/dataset/dataset_parts.h"
+#include "eval/files/input_file.h"
 
 namespace alidade {
 namespace {
@@ -10,15 +11,13 @@ namespace {
 namespace fs = std::filesystem;
 
 Status CheckFolders(const std::string& path, const fs::path& mav) {
-  if (!fs::is_directory(path)) {
-    return Status::Input(path + ": no such folder, expected a sequence (a folder that holds mav0)");
-  }
-  if (!fs::is_directory(mav)) {
-    const bool inside = fs::is_directory(fs::path(path) / "imu0");
+  ALIDADE_RETURN_IF_ERROR(ExpectFolder(path, "a sequence (a folder that holds mav0)"));
+  if (!MayBeFolder(mav.string())) {
+    const bool inside = MayBeFolder(path + "/imu0");
     return Status::Input(path + ": expected a folder mav0 in it" +
                          (inside ? " (this seems to be mav0 itself: give the folder that contains it)" : ""));
   }
-  if (!fs::is_directory(mav / "cam0") && !fs::is_directory(mav / "gnss0")) {
+  if (!MayBeFolder((mav / "cam0").string()) && !MayBeFolder((mav / "gnss0").string())) {
     return Status::Input((mav / "cam0").string() +
                          ": no such folder, expected a camera (or gnss0 beside it)");
   }

@@ -7,6 +7,7 @@
 #include "core/format.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/sensor_table.h"
+#include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/trajectory_reader.h"
 #include "eval/trajectory/truth_covariance.h"
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 Status ReadOneTruth(const fs::path& folder, Dataset* dataset) {
   for (const char* name : {"data.csv", "data_pose.csv", "data_position.csv"}) {
     const fs::path path = folder / name;
-    if (!fs::exists(path)) {
+    if (!MayExist(path.string())) {
       continue;
     }
     Result<Trajectory> truth = ReadTrajectory(path.string());
@@ -28,7 +29,7 @@ Status ReadOneTruth(const fs::path& folder, Dataset* dataset) {
     dataset->truth_path = path.string();
     return Status::Ok();
   }
-  if (fs::is_directory(folder)) {
+  if (MayBeFolder(folder.string())) {
     return Status::Input(folder.string() +
                          ": expected data.csv, data_pose.csv or data_position.csv; found none");
   }

@@ -98,6 +98,12 @@ std::string RateLine(double rate_hz) {
   return rate_hz > 0 ? Line("rate_hz", rate_hz, "") : std::string();
 }
 
+/// A density of zero makes propagation exact and every covariance built on it singular or too small.
+Status ReadDensity(const SensorFile& file, const char* key, double* density) {
+  ALIDADE_RETURN_IF_ERROR(file.ReadReal(key, 0, density));
+  return *density > 0 ? Status::Ok() : file.Fault(key, "a noise density greater than 0");
+}
+
 Result<ImuSensor> MakeImuSensor(const Result<YAML::Node>& root, const std::string& path) {
   const Result<SensorFile> file = SensorFile::Make(root, path, "imu");
   if (!file.ok()) {
@@ -114,10 +120,10 @@ Result<ImuSensor> MakeImuSensor(const Result<YAML::Node>& root, const std::strin
   ALIDADE_RETURN_IF_ERROR(file->ReadRate(&sensor.rate_hz));
   ImuNoise& noise = sensor.noise;
   ALIDADE_RETURN_IF_ERROR(
-      file->ReadReal("gyroscope_noise_density", 0, &noise.gyro_noise_density_radps_sqrthz));
+      ReadDensity(*file, "gyroscope_noise_density", &noise.gyro_noise_density_radps_sqrthz));
   ALIDADE_RETURN_IF_ERROR(file->ReadReal("gyroscope_random_walk", 0, &noise.gyro_random_walk_radps2_sqrthz));
   ALIDADE_RETURN_IF_ERROR(
-      file->ReadReal("accelerometer_noise_density", 0, &noise.accel_noise_density_mps2_sqrthz));
+      ReadDensity(*file, "accelerometer_noise_density", &noise.accel_noise_density_mps2_sqrthz));
   ALIDADE_RETURN_IF_ERROR(
       file->ReadReal("accelerometer_random_walk", 0, &noise.accel_random_walk_mps3_sqrthz));
   return sensor;

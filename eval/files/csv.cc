@@ -153,12 +153,15 @@ Status CsvReader::ReadInt64(size_t column, std::string_view name, std::int64_t* 
 }
 
 Status CsvReader::ReadReal(size_t column, std::string_view name, double* value) const {
+  ALIDADE_RETURN_IF_ERROR(ReadRealOrNotFinite(column, name, value));
+  return std::isfinite(*value) ? Status::Ok() : Fault(column, name, "a finite number");
+}
+
+Status CsvReader::ReadRealOrNotFinite(size_t column, std::string_view name, double* value) const {
   const std::string_view text = fields_[column];
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(*value)) {
-    return Fault(column, name, "a finite number");
-  }
-  return Status::Ok();
+  return error == std::errc() && end == text.data() + text.size() ? Status::Ok()
+                                                                  : Fault(column, name, "a finite number");
 }
 
 Status CsvReader::ReadStamp(bool first, TimeNs previous, TimeNs* stamp) const {

@@ -40,6 +40,8 @@ class CsvReader {
 
   Status ReadInt64(size_t column, std::string_view name, std::int64_t* value) const;
   Status ReadReal(size_t column, std::string_view name, double* value) const;
+  /// ReadReal that also takes "nan" and "inf", of either sign and case.
+  Status ReadRealOrNotFinite(size_t column, std::string_view name, double* value) const;
   /// A stamp [ns] in column 0 that must be later than `previous` unless `first`.
   Status ReadStamp(bool first, TimeNs previous, TimeNs* stamp) const;
   /// The fault of a column of the current row.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/check.h"
-#include "eval/files/input_file.h"
+#include "core/regular_file.h"
 
 namespace alidade {
 
@@ -48,15 +48,14 @@ std::string Sha256Hex(std::string_view bytes) {
 namespace {
 
 /// Piece by piece: a bag may be larger than memory.
-Result<std::string> DigestOfFile(const std::string& path) {
+Status AddFile(const std::string& path, Sha256* hash) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> piece(std::size_t{1} << 20);
-  Sha256 hash;
   while (file) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    hash.Add({piece.data(), static_cast<std::size_t>(file.gcount())});
+    hash->Add({piece.data(), static_cast<std::size_t>(file.gcount())});
   }
-  return file.eof() ? Result<std::string>(hash.Hex()) : Status::Input(path + ": cannot be read");
+  return file.eof() ? Status::Ok() : Status::Input(path + ": cannot be read");
 }
 
 }  // namespace
@@ -66,7 +65,9 @@ Result<std::string> DigestOfFolder(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
   if (fs::is_regular_file(folder, error)) {
-    return DigestOfFile(folder);
+    Sha256 hash;
+    ALIDADE_RETURN_IF_ERROR(AddFile(folder, &hash));
+    return hash.Hex();
   }
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     if (it->is_regular_file(error)) {
@@ -79,13 +80,12 @@ Result<std::string> DigestOfFolder(const std::string& folder) {
   std::sort(names.begin(), names.end());
   Sha256 hash;
   for (const std::string& name : names) {
-    const Result<std::string> content = ReadWholeFile((fs::path(folder) / name).string());
-    if (!content.ok()) {
-      return content.status();
-    }
+    const std::string path = (fs::path(folder) / name).string();
+    const Result<std::uintmax_t> size = RegularFileSize(path);
+    ALIDADE_RETURN_IF_ERROR(size.status());
     // Lengths keep a name from running into a content.
-    hash.Add(std::to_string(name.size()) + ":" + name + std::to_string(content->size()) + ":");
-    hash.Add(*content);
+    hash.Add(std::to_string(name.size()) + ":" + name + std::to_string(*size) + ":");
+    ALIDADE_RETURN_IF_ERROR(AddFile(path, &hash));
   }
   return hash.Hex();
 }

@@ -3,10 +3,10 @@
 #include <charconv>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "eval/files/csv.h"
 #include "eval/files/input_file.h"
+#include "eval/files/yaml_bounds.h"
 
 namespace alidade {
 namespace {
@@ -65,40 +65,36 @@ bool IsNotFiniteWord(std::string_view text) {
 
 }  // namespace
 
+Result<YAML::Node> LoadYaml(const std::string& text, const std::string& where, StatusCode code) {
+  ALIDADE_RETURN_IF_ERROR(CheckYamlBounds(text, where, code));
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    return Status(code, where + ": is not valid YAML: " + error.msg);
+  }
+}
+
 Result<YAML::Node> ParseYaml(const std::string& text, const std::string& where, StatusCode code) {
   std::string content = text;
   if (content.starts_with(
           "%YAML:")) {  // OpenCV writes a colon where YAML wants a blank; a comment keeps the line count
     content[0] = '#';
   }
-  std::vector<YAML::Node> documents;
-  try {
-    documents = YAML::LoadAll(content);
-  } catch (const YAML::Exception& error) {
-    std::string place = where;
-    if (!error.mark.is_null()) {
-      place += ":" + std::to_string(error.mark.line + 1) + ":" + std::to_string(error.mark.column + 1);
-    }
-    return Status(code, place + ": is not valid YAML: " + error.msg);
-  }
-  if (documents.size() > 1) {
-    return Status(code, YamlPlace(where, documents[1]) + ": found a second document, expected one");
-  }
-  if (documents.empty() || documents[0].IsNull()) {
+  const Result<YAML::Node> root = LoadYaml(content, where, code);
+  ALIDADE_RETURN_IF_ERROR(root.status());
+  if (root->IsNull()) {
     return Status(code, where + ": is empty, expected keys and values");
   }
-  if (!documents[0].IsMap()) {
-    return Status(code, YamlPlace(where, documents[0]) + ": found " + YamlText(documents[0]) +
-                            ", expected keys and values");
+  if (!root->IsMap()) {
+    return Status(code,
+                  YamlPlace(where, *root) + ": found " + YamlText(*root) + ", expected keys and values");
   }
-  if (Status keys = CheckKeys(documents[0], where, code); !keys.ok()) {
-    return keys;
-  }
-  return documents[0];
+  ALIDADE_RETURN_IF_ERROR(CheckKeys(*root, where, code));
+  return root;
 }
 
 Result<YAML::Node> ParseYamlFile(const std::string& path, StatusCode code) {
-  const Result<std::string> text = ReadWholeFile(path, code);
+  const Result<std::string> text = ReadWholeFile(path, code, kMaxYamlBytes);
   return text.ok() ? ParseYaml(*text, path, code) : Result<YAML::Node>(text.status());
 }
 

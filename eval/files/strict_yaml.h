@@ -10,6 +10,9 @@
 
 namespace alidade {
 
+/// The only call of yaml-cpp's loader: text of at most one document, within CheckYamlBounds. Errors (`code`):
+/// "where:line:column: ...".
+Result<YAML::Node> LoadYaml(const std::string& text, const std::string& where, StatusCode code);
 /// Parses text of one YAML document (OpenCV's first line "%YAML:1.0" is tolerated) and rejects input that
 /// yaml-cpp accepts: duplicate keys, keys that are not scalars, several documents. Errors (`code`):
 /// "where:line:column: ...".

@@ -1,12 +1,47 @@
 #include "eval/frontend_run/image_pipeline.h"
 
 #include "core/cpu_time.h"
+#include "core/format.h"
 #include "core/stopwatch.h"
 #include "eval/bag/dataset_images.h"
 #include "frontend/tracking/image_reader.h"
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade {
+namespace {
+
+/// Counts them, and ends the tracking when there are too many.
+class UnreadableImages {
+ public:
+  explicit UnreadableImages(size_t images) : images_(images) {}
+
+  Status Add(const std::string& sequence, const Status& fault) {
+    if (count_++ == 0) {
+      first_ = fault.message();
+    }
+    const double share = static_cast<double>(count_) / static_cast<double>(images_);
+    return share <= kMaxUnreadableShare
+               ? Status::Ok()
+               : Status::Input(sequence +
+                               Format(": %zu of %zu images cannot be used, expected at most %.0f %%; "
+                                      "the first: ",
+                                      count_, images_, 100 * kMaxUnreadableShare) +
+                               first_);
+  }
+
+  void Tell(const std::string& sequence, const std::function<void(const std::string&)>& remark) const {
+    if (count_ > 0) {
+      remark(sequence + Format(": %zu of %zu images skipped, the first: ", count_, images_) + first_);
+    }
+  }
+
+ private:
+  size_t images_;
+  size_t count_ = 0;
+  std::string first_;
+};
+
+}  // namespace
 
 Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::vector<TimeNs>& stamps,
                                             const ImageSource& image_of, const FrontendConfig& config,
@@ -15,6 +50,7 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
   std::vector<TrackFrame> frames;
   frames.reserve(stamps.size());
   size_t next_imu = 0;
+  size_t next_image = 0;
   for (const TimeNs stamp_ns : stamps) {
     if (options.stop != nullptr && options.stop->load()) {
       return Status::Diverged("interrupted");
@@ -24,8 +60,11 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
            (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
       tracker.AddImu(dataset.imu[next_imu++]);
     }
-    const Result<GreyImage> grey = image_of(frames.size());
-    ALIDADE_RETURN_IF_ERROR(grey.status());
+    const Result<GreyImage> grey = image_of(next_image++);
+    if (!grey.ok()) {
+      ALIDADE_RETURN_IF_ERROR(options.unreadable ? options.unreadable(grey.status()) : grey.status());
+      continue;
+    }
     const double cpu_start_s = ThreadCpuSeconds();
     Result<TrackFrame> frame = tracker.Track(stamp_ns, grey->pixels.data(), grey->width_px, grey->height_px);
     ALIDADE_RETURN_IF_ERROR(frame.status());
@@ -37,7 +76,7 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
       options.statistics->push_back(tracker.statistics());
     }
     if (options.progress) {
-      options.progress(frames.size(), stamps.size());
+      options.progress(next_image, stamps.size());
     }
   }
   return frames;
@@ -56,11 +95,19 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
   std::vector<double> decode_ms;
   const auto image_of = [&](size_t i) -> Result<GreyImage> {
     const Stopwatch stopwatch;
-    Result<GreyImage> grey = images.Read(dataset.images[i]);
-    decode_ms.push_back(stopwatch.ElapsedMs());
+    Result<GreyImage> grey = images.ReadFor(dataset.rig.camera, dataset.images[i]);
+    if (grey.ok()) {
+      decode_ms.push_back(stopwatch.ElapsedMs());
+    }
     return grey;
   };
-  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, stamps, image_of, config, options);
+  UnreadableImages unreadable(dataset.images.size());
+  PipelineOptions skipping = options;
+  skipping.unreadable = [&](const Status& fault) { return unreadable.Add(dataset.path, fault); };
+  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, stamps, image_of, config, skipping);
+  if (options.remark) {
+    unreadable.Tell(dataset.path, options.remark);
+  }
   for (size_t i = 0; frames.ok() && i < frames->size(); ++i) {
     (*frames)[i].frontend_ms += decode_ms[i];
   }

@@ -15,7 +15,10 @@ struct PipelineOptions {
   const std::atomic<bool>* stop = nullptr;                               ///< polled once an image
   std::function<void(size_t images_done, size_t images)> progress = {};  ///< by one thread at a time
   int jobs = 1;  ///< threads that draw images, where they are drawn; they change no byte
-  std::vector<TrackerStatistics>* statistics = nullptr;  ///< one an image, where asked for
+  /// Told of an image that cannot be read; Ok skips its frame, an error ends the tracking. None: it ends.
+  std::function<Status(const Status& fault)> unreadable = {};
+  std::function<void(const std::string& text)> remark = {};  ///< told what was skipped
+  std::vector<TrackerStatistics>* statistics = nullptr;      ///< one an image, where asked for
   std::vector<double>* cpu_ms = nullptr;  ///< CPU time of the tracker an image, where asked for
 };
 
@@ -30,8 +33,9 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
                                             const PipelineOptions& options);
 
 /// Runs the front end over the images of a sequence, with the gyroscope up to each image. The tracks carry
-/// the wall time of decoding and tracking. Errors (kInput): no images; an image that cannot be read or has
-/// the wrong size; kDiverged: stopped.
+/// the wall time of decoding and tracking. An image that cannot be read or has the wrong size is skipped,
+/// with a remark. Errors (kInput): no images; more than kMaxUnreadableShare of them skipped; kDiverged:
+/// stopped.
 Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
                                             const PipelineOptions& options);
 

@@ -273,7 +273,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
     return result;  // tables of a header alone
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
-  if (std::filesystem::exists(In(folder, "covariance.csv"))) {
+  if (MayExist(In(folder, "covariance.csv"))) {
     ALIDADE_RETURN_IF_ERROR(
         ReadRows(In(folder, "covariance.csv"), kMotionCovarianceColumns, &result, ReadMotionCovarianceRow));
   }
@@ -282,10 +282,10 @@ Result<RunResult> ReadRun(const std::string& folder) {
   if (Get(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
   }
-  if (std::filesystem::exists(In(folder, "gnss.csv"))) {
+  if (MayExist(In(folder, "gnss.csv"))) {
     ALIDADE_RETURN_IF_ERROR(ReadSatellites(In(folder, "gnss.csv"), &result));
   }
-  if (std::filesystem::exists(In(folder, "bound.csv"))) {
+  if (MayExist(In(folder, "bound.csv"))) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "bound.csv"), 22, &result, ReadBoundRow));
   }
   return result;

@@ -1,7 +1,6 @@
 #include "eval/rosbag/rosbag_reader.h"
 
-#include <filesystem>
-
+#include "core/regular_file.h"
 #include "eval/files/byte_io.h"
 #include "eval/rosbag/rosbag_chunk.h"
 
@@ -20,11 +19,8 @@ Result<std::string> Unpack(const BagFields& fields, std::string_view data) {
 }  // namespace
 
 Result<RosbagReader> RosbagReader::Open(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return Status::Input(path + ": no such file, expected a bag");
-  }
-  const std::uint64_t size = std::filesystem::file_size(path, error);
+  const Result<std::uintmax_t> size = RegularFileSize(path);
+  ALIDADE_RETURN_IF_ERROR(size.status());
   std::ifstream file(path, std::ios::binary);
   std::string magic(kBagMagic.size(), '\0');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
@@ -33,7 +29,7 @@ Result<RosbagReader> RosbagReader::Open(const std::string& path) {
     return Status::Input(path + ": found " + (older ? "a bag of format 1.x" : "no bag") +
                          ", expected a ROS bag of format 2.0 (first line '#ROSBAG V2.0')");
   }
-  return RosbagReader(path, std::move(file), size);
+  return RosbagReader(path, std::move(file), *size);
 }
 
 bool RosbagReader::ReadBlock(std::uint64_t limit, std::string* block) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/format.h"
+#include "eval/files/input_file.h"
 #include "eval/trajectory/trajectory_reader.h"
 
 namespace alidade {
@@ -30,21 +31,21 @@ Status In(const std::string& path, const Status& status) {
 }  // namespace
 
 Result<std::string> FindTruth(const std::string& source, const std::string& truth_file) {
-  if (fs::is_regular_file(source)) {
+  if (MayExist(source) && !MayBeFolder(source)) {
     return source;
   }
-  if (!fs::is_directory(source)) {
+  if (!MayExist(source)) {
     return Status::Input(source + ": no such file, expected a trajectory or a dataset folder");
   }
   const fs::path folder = fs::path(source) / "mav0" / "state_groundtruth_estimate0";
   if (truth_file != "auto") {
     const fs::path path = folder / truth_file;
-    return fs::is_regular_file(path)
+    return MayExist(path.string())
                ? Result<std::string>(path.string())
                : Status::Input(path.string() + ": no such file, expected the one that truth_file names");
   }
   for (const char* name : {"data_recomputed.csv", "data.csv", "data_pose.csv"}) {
-    if (fs::is_regular_file(folder / name)) {
+    if (MayExist((folder / name).string())) {
       return (folder / name).string();
     }
   }

@@ -1,7 +1,7 @@
 #include <cmath>
-#include <filesystem>
 
 #include "core/format.h"
+#include "eval/files/input_file.h"
 #include "eval/simulation/simulator_config.h"
 
 namespace alidade {
@@ -22,7 +22,7 @@ Status ValidateRecording(const SimulatorConfig& config) {
     return Status::Config("trajectory_file: none; trajectory: file expected a path");
   }
   if (config.camera_view == SimCameraView::kDataset && !config.IsHybrid() &&
-      !(reads_file && std::filesystem::is_directory(config.trajectory_file))) {
+      !(reads_file && MayBeFolder(config.trajectory_file))) {
     return Status::Config(
         "camera_view: dataset; expected trajectory: file and a dataset folder in trajectory_file");
   }

@@ -4,6 +4,7 @@
 
 #include "eval/files/csv.h"
 #include "eval/files/csv_text.h"
+#include "eval/files/input_file.h"
 #include "eval/trajectory/pose_covariance.h"
 
 namespace alidade {
@@ -28,7 +29,7 @@ std::string CovariancePath(const std::string& truth_path) {
 
 Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth) {
   const std::string path = CovariancePath(truth_path);
-  if (!fs::is_regular_file(path)) {
+  if (!MayExist(path)) {
     return Status::Ok();
   }
   Result<CsvReader> csv = CsvReader::Open(path);

@@ -5,6 +5,7 @@
 
 #include "eval/dataset/dataset_imu.h"
 #include "eval/dataset/dataset_truth.h"
+#include "eval/files/input_file.h"
 #include "eval/trajectory/trajectory_point.h"
 
 namespace alidade {
@@ -28,6 +29,16 @@ Status In(const fs::path& path, const std::error_code& error) {
   return Status::Output(path.string() + ": cannot be written: " + error.message());
 }
 
+Result<std::vector<fs::path>> EntriesOf(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> entries;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    entries.push_back(it->path());
+  }
+  return error ? Status::Input(folder.string() + ": cannot be read: " + error.message())
+               : Result<std::vector<fs::path>>(std::move(entries));
+}
+
 /// A sensor's folder: its files, and its folders (images) as links.
 Status CopySensor(const fs::path& from, const fs::path& to) {
   std::error_code error;
@@ -35,13 +46,15 @@ Status CopySensor(const fs::path& from, const fs::path& to) {
   if (error) {
     return In(to, error);
   }
-  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
-    const fs::path target = to / entry.path().filename();
+  const Result<std::vector<fs::path>> entries = EntriesOf(from);
+  ALIDADE_RETURN_IF_ERROR(entries.status());
+  for (const fs::path& entry : *entries) {
+    const fs::path target = to / entry.filename();
     fs::remove_all(target, error);
-    if (entry.is_directory()) {
-      fs::create_directory_symlink(fs::canonical(entry.path()), target, error);
+    if (fs::is_directory(entry, error)) {
+      fs::create_directory_symlink(fs::canonical(entry, error), target, error);
     } else {
-      fs::copy_file(entry.path(), target, fs::copy_options::overwrite_existing, error);
+      fs::copy_file(entry, target, fs::copy_options::overwrite_existing, error);
     }
     if (error) {
       return In(target, error);
@@ -83,10 +96,12 @@ Trajectory TruthOf(const RefinedTruth& refined) {
 
 Status WriteRefined(const Dataset& dataset, const RefinedTruth& refined, const std::string& output) {
   const fs::path to = fs::path(output) / "mav0";
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(dataset.path) / "mav0")) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_directory() && name != "state_groundtruth_estimate0" && name != "mocap0") {
-      ALIDADE_RETURN_IF_ERROR(CopySensor(entry.path(), to / name));
+  const Result<std::vector<fs::path>> entries = EntriesOf(fs::path(dataset.path) / "mav0");
+  ALIDADE_RETURN_IF_ERROR(entries.status());
+  for (const fs::path& entry : *entries) {
+    const std::string name = entry.filename().string();
+    if (MayBeFolder(entry.string()) && name != "state_groundtruth_estimate0" && name != "mocap0") {
+      ALIDADE_RETURN_IF_ERROR(CopySensor(entry, to / name));
     }
   }
   Dataset with_truth;

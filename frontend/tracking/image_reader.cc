@@ -1,23 +1,25 @@
 #include "frontend/tracking/image_reader.h"
 
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
-#include <system_error>
+
+#include "core/regular_file.h"
 
 namespace alidade {
 namespace {
 
+constexpr std::uintmax_t kMaxImageBytes = std::uintmax_t{1} << 28;
+
 Result<std::vector<unsigned char>> ReadBytes(const std::string& path) {
-  // A stream opens a folder without complaint and then reads nothing.
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return Status::Input(path + ": no such image file");
+  const Result<std::uintmax_t> size = RegularFileSize(path);
+  ALIDADE_RETURN_IF_ERROR(size.status());
+  if (*size > kMaxImageBytes) {
+    return Status::Input(path + ": holds " + std::to_string(*size) + " bytes, expected an image of at most " +
+                         std::to_string(kMaxImageBytes));
   }
   std::ifstream file(path, std::ios::binary);
-  std::vector<unsigned char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.good() && !file.eof()) {
+  std::vector<unsigned char> bytes(*size);
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     return Status::Input(path + ": cannot be read");
   }
   return bytes;

@@ -6,10 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 
 #include "core/format.h"
+#include "core/regular_file.h"
 
 namespace alidade {
 namespace {
@@ -23,10 +23,7 @@ bool IsBlank(char c) {
 }  // namespace
 
 Result<std::string> ReadTextFile(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    return Status::Input(path + ": is a folder, expected a file");
-  }
+  ALIDADE_RETURN_IF_ERROR(RegularFileSize(path).status());
   errno = 0;
   // zlib passes a file that is not gzip through unchanged.
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);

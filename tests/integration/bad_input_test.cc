@@ -26,6 +26,9 @@ class BadInput : public testing::Test {
                 " --set=duration_s=5,path_m=6.5 --output=" + folder_.File("seq") + " --quiet");
     ASSERT_EQ(made.code, 0) << made.output;
     folder_.Write("unknown_key.yaml", "base: " + Source("configs/base.yaml") + "\nfilter:\n  windw: 3\n");
+    folder_.Write("comma.yaml", ",");
+    folder_.Write("long_base.yaml", "base: " + std::string(300, 'x') + "\n");
+    std::filesystem::create_symlink(folder_.File("loop"), folder_.File("loop"));
     folder_.Write("torn.tum", "1.0 2.0 3.0\n");
     folder_.Write("plan.yaml",
                   "estimators: [" + Source("configs/base.yaml") + "]\nsequences: [{paht: seq}]\n");
@@ -43,10 +46,40 @@ class BadInput : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are told and
+// counted, and its states are those of a clean file.
+TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
+  std::filesystem::copy(folder_.File("seq"), folder_.File("faulty"),
+                        std::filesystem::copy_options::recursive);
+  std::string table = ReadFile(folder_.File("seq/mav0/imu0/data.csv"));
+  size_t start = 0;
+  for (int line = 0; line < 100; ++line) {
+    start = table.find('\n', start) + 1;
+  }
+  const std::string row = table.substr(start, table.find('\n', start) + 1 - start);
+  const std::string nan = row.substr(0, row.find(',')) + ",nan,0,0,0,0,9.81\n";
+  table.insert(start, row + nan);
+  folder_.Write("faulty/mav0/imu0/data.csv", table + row);
+  const std::string words =
+      "run --config=" + Source("configs/base.yaml") + " --set=init.method=truth --dataset=";
+  const CommandResult clean = Alidade(words + folder_.File("seq") + " --output=" + folder_.File("of_clean"));
+  ASSERT_EQ(clean.code, 0) << clean.output;
+  const CommandResult faulty =
+      Alidade(words + folder_.File("faulty") + " --output=" + folder_.File("of_faulty"));
+  ASSERT_EQ(faulty.code, 0) << faulty.output;
+  EXPECT_THAT(faulty.output, HasSubstr("3 dropped (1 duplicate, 1 late, 1 not finite)"));
+  EXPECT_THAT(ReadFile(folder_.File("of_clean/run.json")), HasSubstr("\"imu_rejected\": 0"));
+  EXPECT_THAT(ReadFile(folder_.File("of_faulty/run.json")), HasSubstr("\"imu_rejected\": 3"));
+  EXPECT_EQ(ReadFile(folder_.File("of_faulty/states.csv")), ReadFile(folder_.File("of_clean/states.csv")));
+  const CommandResult check = Alidade("check --dataset=" + folder_.File("faulty"));
+  EXPECT_THAT(check.output, HasSubstr("warning  imu0: samples 3 dropped"));
+}
+
 TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
   const std::string base = Source("configs/base.yaml");
   const std::string seq = folder_.File("seq"), out = folder_.File("out");
   const std::string run = "run --dataset=" + seq + " --output=" + out;
+  const std::string longer = folder_.File(std::string(300, 'x'));
   const std::vector<BadCall> calls = {
       {"", 2, "Usage: alidade <command>"},
       {"evalute", 2, "did you mean 'evaluate'"},
@@ -71,6 +104,18 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
            " --set=init.method=truth --output=" + out,
        4, "no ground truth"},
+      {run + " --config=" + folder_.File("comma.yaml"), 3, "comma.yaml:1:1"},
+      {run + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
+      {run + " --config=" + folder_.File("loop"), 3, "Too many levels of symbolic links"},
+      {"run --dataset=" + longer + " --config=" + base + " --output=" + out, 4, "File name too long"},
+      {"run --dataset=" + folder_.File("loop") + " --config=" + base + " --output=" + out, 4,
+       "Too many levels of symbolic links"},
+      {"check --dataset=" + longer, 4, "File name too long"},
+      {"track --dataset=" + longer + " --output=" + out, 4, "File name too long"},
+      {"convert --dataset=" + longer + " --output=" + out + ".bag", 4, "File name too long"},
+      {"convert --dataset=" + seq + " --output=" + longer + ".bag", 6, "File name too long"},
+      {"spp --obs=" + longer + " --nav=x --output=" + out, 4, "File name too long"},
+      {"spp --obs=x --nav=x --output=" + longer, 4, "x: cannot be read"},
       {"run --dataset=" + seq + " --config=" + base + " --output=" + seq, 6, "--overwrite"},
       {"run --dataset=" + seq + " --config=" + base + " --output=" + folder_.File("file") + "/x", 6,
        "file/x"},

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <regex>
@@ -40,6 +41,49 @@ TEST(Images, TrackAndRunMakeTheSameMeasurementLog) {
 const char* const kTiny =
     "name: tiny\nduration_s: 3\npath_m: 4\nwidth_px: 188\nheight_px: 120\nfocal_px: 115\n"
     "landmark_min_distance_m: 0.8\n";
+
+/// The image of rank `index` in the sequence.
+std::string ImageOf(const std::string& sequence, size_t index) {
+  std::vector<std::string> images;
+  for (const auto& entry : std::filesystem::directory_iterator(sequence + "/mav0/cam0/data")) {
+    images.push_back(entry.path().string());
+  }
+  std::sort(images.begin(), images.end());
+  return images.at(index);
+}
+
+// GIVEN a torn image among many WHEN the front end meets it THEN it is skipped and named; GIVEN more than one
+// of twenty THEN the sequence is refused.
+TEST(Images, GivenATornImageThenItIsSkippedAndMoreThanAFewEndTheRun) {
+  TemporaryFolder folder;
+  const std::string seq = folder.File("seq");
+  const std::string simulate =
+      "simulate --render --quiet --jobs=2 --config=" + folder.Write("tiny.yaml", kTiny);
+  ASSERT_EQ(Alidade(simulate + " --output=" + seq).code, 0);
+  const std::string torn = ImageOf(seq, 7);
+  std::filesystem::resize_file(torn, 100);
+  const std::string track =
+      "track --dataset=" + seq + " --overlay=10 --overwrite --output=" + folder.File("tracked");
+  const CommandResult tracked = Alidade(track);
+  EXPECT_EQ(tracked.code, 0) << tracked.output;
+  EXPECT_THAT(tracked.output, testing::HasSubstr("30 frames"));
+  EXPECT_THAT(tracked.output, testing::HasSubstr("1 of 31 images skipped, the first: " + torn));
+  const CommandResult check = Alidade("check --dataset=" + seq);
+  EXPECT_EQ(check.code, 0) << check.output;
+  EXPECT_THAT(check.output, testing::HasSubstr("warning  cam0: " + torn));
+
+  const std::string missing = ImageOf(seq, 20);
+  std::filesystem::remove(missing);
+  const CommandResult refused = Alidade(track);
+  EXPECT_EQ(refused.code, 4) << refused.output;
+  EXPECT_THAT(refused.output, testing::HasSubstr("2 of 31 images cannot be used, expected at most 5 %"));
+  const CommandResult run = Alidade("run --dataset=" + seq + " --config=" + Source("configs/base.yaml") +
+                                    " --output=" + folder.File("run"));
+  EXPECT_EQ(run.code, 4) << run.output;
+  const CommandResult checked = Alidade("check --dataset=" + seq);
+  EXPECT_EQ(checked.code, 4) << checked.output;
+  EXPECT_THAT(checked.output, testing::HasSubstr(missing));
+}
 
 // GIVEN a simulation WHEN it is rendered THEN a folder of images comes out that the front end tracks and
 // draws.

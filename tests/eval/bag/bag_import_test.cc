@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "eval/bag/bag_folder.h"
@@ -91,6 +92,12 @@ class ForeignBag : public testing::Test {
       sample.stamp_ns = i == 4 ? local - 2 * kSecondNs + 1 : local;  // one out of order
       sample.accel = {0, 0, 9.81};
       write(imu, EncodeImu(sample));
+      if (i == 5) {
+        write(imu, EncodeImu(sample));
+        sample.stamp_ns += 1;
+        sample.accel.x() = std::nan("");
+        write(imu, EncodeImu(sample));
+      }
       const std::string pattern(32, static_cast<char>('a' + i));
       write(camera, EncodeImage(local, 8, 4, pattern));
       // Carrier: float, then fixed. The antenna goes north.
@@ -146,6 +153,13 @@ TEST_F(ForeignBag, StampsOutOfOrderAreSorted) {
   for (size_t i = 1; i < imu.size(); ++i) {
     EXPECT_LT(imu[i - 1].stamp_ns, imu[i].stamp_ns);
   }
+}
+
+TEST_F(ForeignBag, ImuSamplesThatCannotBeUsedAreCounted) {
+  const Result<BagImport> import = Read();
+  ASSERT_TRUE(import.ok()) << import.message();
+  EXPECT_EQ(import->dataset.imu_rejections.duplicate, 1u);
+  EXPECT_EQ(import->dataset.imu_rejections.not_finite, 1u);
 }
 
 TEST_F(ForeignBag, BecomesAFolderThatReads) {

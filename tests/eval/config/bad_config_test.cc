@@ -42,6 +42,7 @@ const ConfigCase kConfigCases[] = {
     {"empty", "", {"estimator.yaml", "is empty"}},
     {"a list", "- filter\n", {"estimator.yaml:1:1", "a list", "keys and values"}},
     {"broken", "filter:\n  window: [1\n", {"estimator.yaml:", "not valid YAML"}},
+    {"a comma alone", ",", {"estimator.yaml:1:1", "','"}},
     {"two documents", "name: a\n---\nname: b\n", {"estimator.yaml:3:1", "second document"}},
     {"unknown key",
      "filter:\n  windw: 20\n",
@@ -123,6 +124,7 @@ const SettingCase kSettingCases[] = {
     {"filter.window=1000", {"[3, 200]"}},
     {"filter.window=010", {"octal"}},
     {"filter.window=[3", {"not a list"}},
+    {"filter.window=[3],", {"not a list", "value:1:4"}},
     {"gnss.enabled=1", {"true or false"}},
     {"base=other.yaml", {"unknown key"}},
 };

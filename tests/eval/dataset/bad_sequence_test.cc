@@ -4,11 +4,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <ostream>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_check.h"
 #include "eval/dataset/dataset_reader.h"
 #include "tests/support/temporary_folder.h"
 
@@ -109,8 +111,8 @@ const FileCase kImuCases[] = {
     {"NaN",
      "imu0/data.csv",
      Imu("1000,0,0,nan,0,0,9.81\n"),
-     {"data.csv:2", "column 4 (w_RS_S_z)", "'nan'", "finite"}},
-    {"infinite", "imu0/data.csv", Imu("1000,0,0,0,0,-inf,9.81\n"), {"data.csv:2", "column 6", "'-inf'"}},
+     {"data.csv:2", "not finite", "of 1 rows 1 dropped", "at most 5 %"}},
+    {"infinite", "imu0/data.csv", Imu("1000,0,0,0,0,-inf,9.81\n"), {"data.csv:2", "not finite"}},
     {"overflow", "imu0/data.csv", Imu("1000,0,0,0,0,1e999,9.81\n"), {"data.csv:2", "column 6", "'1e999'"}},
     {"word",
      "imu0/data.csv",
@@ -132,11 +134,15 @@ const FileCase kImuCases[] = {
     {"stamps repeat",
      "imu0/data.csv",
      Imu("1000,0,0,0,0,0,9\n1000,0,0,0,0,0,9\n"),
-     {"data.csv:3", "'1000'", "later than 1000"}},
+     {"data.csv:3", "'1000'", "expected it once", "of 2 rows 1 dropped (1 duplicate, 0 late, 0 not finite)"}},
     {"stamps go back",
      "imu0/data.csv",
-     Imu("2000,0,0,0,0,0,9\r\n1999,0,0,0,0,0,9\r\n"),
-     {"data.csv:3", "'1999'", "later than 2000"}},
+     Imu("50002000,0,0,0,0,0,9\r\n1999,0,0,0,0,0,9\r\n"),
+     {"data.csv:3", "'1999'", "50 ms before 50002000", "1 late"}},
+    {"stamps whose difference overflows",
+     "imu0/data.csv",
+     Imu("9223372036854775807,0,0,0,0,0,9\n-9223372036854775808,0,0,0,0,0,9\n"),
+     {"data.csv:3", "'-9223372036854775808'", "1 late"}},
     {"missing IMU sheet", "imu0/sensor.yaml", "", {"imu0/sensor.yaml", "No such file"}},
     {"noise missing",
      "imu0/sensor.yaml",
@@ -146,6 +152,14 @@ const FileCase kImuCases[] = {
      "imu0/sensor.yaml",
      std::string(kImuYaml).replace(std::string(kImuYaml).find("1e-5"), 4, "-1.0"),
      {"sensor.yaml:4:24", "gyroscope_random_walk", "'-1.0'"}},
+    {"gyroscope without noise",
+     "imu0/sensor.yaml",
+     std::string(kImuYaml).replace(std::string(kImuYaml).find("1e-4"), 4, "0.0"),
+     {"sensor.yaml:3:26", "gyroscope_noise_density", "'0.0'", "greater than 0"}},
+    {"accelerometer without noise",
+     "imu0/sensor.yaml",
+     std::string(kImuYaml).replace(std::string(kImuYaml).find("2e-3"), 4, "0"),
+     {"sensor.yaml:5:", "accelerometer_noise_density", "'0'", "greater than 0"}},
     {"body is another sensor",
      "imu0/sensor.yaml",
      std::string(kImuYaml) +
@@ -238,7 +252,15 @@ const FileCase kCameraCases[] = {
     {"image missing",
      "cam0/data.csv",
      "#timestamp [ns],filename\n1000,1000.png\n",
-     {"data.csv:2", "1000.png", "missing"}},
+     {"data.csv:2", "1000.png", "No such file"}},
+    {"image above the folder",
+     "cam0/data.csv",
+     "#timestamp [ns],filename\n1000,../../../../../../etc/passwd\n",
+     {"data.csv:2", "column 2 (filename)", "'../../../../../../etc/passwd'", "in the folder data"}},
+    {"image elsewhere",
+     "cam0/data.csv",
+     "#timestamp [ns],filename\n1000,/etc/passwd\n",
+     {"data.csv:2", "'/etc/passwd'", "in the folder data"}},
 };
 INSTANTIATE_TEST_SUITE_P(Camera, BadSequence, testing::ValuesIn(kCameraCases));
 
@@ -265,6 +287,124 @@ const FileCase kTruthCases[] = {
     {"truth header alone", kTruthFile, kTruthHeader, {"data_pose.csv", "no pose"}},
 };
 INSTANTIATE_TEST_SUITE_P(Truth, BadSequence, testing::ValuesIn(kTruthCases));
+
+/// Rows of a still IMU at 200 Hz from stamp 1000.
+std::vector<std::string> StillRows(int count) {
+  std::vector<std::string> rows;
+  for (int i = 0; i < count; ++i) {
+    rows.push_back(std::to_string(1000 + 5'000'000LL * i) + ",0,0,0,0,0," + std::to_string(9 + i % 2) + "\n");
+  }
+  return rows;
+}
+
+std::string Joined(const std::vector<std::string>& rows) {
+  std::string text;
+  for (const std::string& row : rows) {
+    text += row;
+  }
+  return text;
+}
+
+TEST(FaultyImuRows, GivenFewOfThemThenTheSamplesAreThoseOfACleanFileAndTheyAreCounted) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  folder.Write("mav0/imu0/data.csv", Imu(Joined(StillRows(100))));
+  const Result<Dataset> clean = ReadDataset(folder.path());
+  ASSERT_TRUE(clean.ok()) << clean.message();
+  EXPECT_TRUE(clean->remarks.empty());
+
+  std::vector<std::string> rows = StillRows(100);
+  std::swap(rows[20], rows[25]);             // five of them come after a later stamp
+  rows.insert(rows.begin() + 11, rows[10]);  // a duplicate
+  rows.insert(rows.begin() + 60, rows[40]);  // 80 ms late
+  rows.insert(rows.begin() + 70, "350001500,nan,0,0,0,0,9\n");
+  folder.Write("mav0/imu0/data.csv", Imu(Joined(rows)));
+  const Result<Dataset> faulty = ReadDataset(folder.path());
+  ASSERT_TRUE(faulty.ok()) << faulty.message();
+  EXPECT_EQ(faulty->imu_rejections.duplicate, 1u);
+  EXPECT_EQ(faulty->imu_rejections.late, 1u);
+  EXPECT_EQ(faulty->imu_rejections.not_finite, 1u);
+  EXPECT_EQ(faulty->imu_rejections.reordered, 5u);
+  ASSERT_EQ(faulty->imu.size(), clean->imu.size());
+  for (size_t i = 0; i < clean->imu.size(); ++i) {
+    EXPECT_EQ(faulty->imu[i].stamp_ns, clean->imu[i].stamp_ns);
+    EXPECT_EQ(faulty->imu[i].accel, clean->imu[i].accel);
+  }
+  ASSERT_EQ(faulty->remarks.size(), 1u);
+  EXPECT_THAT(
+      faulty->remarks[0],
+      testing::AllOf(HasSubstr("data.csv: of 103 rows 3 dropped (1 duplicate, 1 late, 1 not finite), 5 "
+                               "put in order"),
+                     HasSubstr("data.csv:13: ")));
+  bool told = false;
+  for (const DatasetFinding& finding : CheckDataset(*faulty)) {
+    told = told || finding.text.find("imu0: samples 3 dropped") != std::string::npos;
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST(FaultyImuRows, GivenMoreThanFivePerCentThenTheSequenceIsRefused) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  std::vector<std::string> rows = StillRows(100);
+  for (int i = 0; i < 6; ++i) {
+    rows.push_back(rows.back());
+  }
+  folder.Write("mav0/imu0/data.csv", Imu(Joined(rows)));
+  const Result<Dataset> dataset = ReadDataset(folder.path());
+  EXPECT_EQ(dataset.code(), StatusCode::kInput);
+  EXPECT_THAT(dataset.message(),
+              testing::AllOf(HasSubstr("data.csv:102: "), HasSubstr("of 106 rows 6 dropped")));
+}
+
+class NotAFile : public testing::TestWithParam<const char*> {};
+
+TEST_P(NotAFile, IsRefusedAtOnceWithItsName) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  const std::string name = std::string("mav0/") + GetParam();
+  const std::string path = folder.File(name);
+  std::filesystem::remove(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const Result<Dataset> pipe = ReadDataset(folder.path());
+  EXPECT_EQ(pipe.code(), StatusCode::kInput);
+  EXPECT_THAT(pipe.message(), HasSubstr(name + ": is a pipe, expected a file"));
+
+  std::filesystem::remove(path);
+  std::filesystem::create_symlink("/dev/zero", path);
+  const Result<Dataset> device = ReadDataset(folder.path());
+  EXPECT_EQ(device.code(), StatusCode::kInput);
+  EXPECT_THAT(device.message(), HasSubstr(name + ": is a device, expected a file"));
+
+  std::filesystem::remove(path);
+  std::filesystem::create_symlink(path, path);
+  const Result<Dataset> loop = ReadDataset(folder.path());
+  EXPECT_EQ(loop.code(), StatusCode::kInput);
+  EXPECT_THAT(loop.message(), HasSubstr(name + ": cannot be read: Too many levels of symbolic links"));
+
+  std::filesystem::remove(path);
+  folder.Write(name, "");
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 33);
+  const Result<Dataset> sparse = ReadDataset(folder.path());
+  EXPECT_EQ(sparse.code(), StatusCode::kInput);
+  EXPECT_THAT(sparse.message(), HasSubstr(name + ": is larger than expected"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Path, NotAFile,
+                         testing::Values("imu0/sensor.yaml", "imu0/data.csv", "cam0/sensor.yaml",
+                                         "cam0/tracks.csv", "cam0/data.csv", "cam0/timestamps.csv",
+                                         "state_groundtruth_estimate0/data_pose.csv"));
+
+TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsTold) {
+  const test::TemporaryFolder folder;
+  const Result<Dataset> longer = ReadDataset(folder.File(std::string(300, 'x')));
+  EXPECT_EQ(longer.code(), StatusCode::kInput);
+  EXPECT_THAT(longer.message(), HasSubstr("File name too long"));
+  std::filesystem::create_directory_symlink(folder.File("loop"), folder.File("loop"));
+  const Result<Dataset> loop = ReadDataset(folder.File("loop"));
+  EXPECT_EQ(loop.code(), StatusCode::kInput);
+  EXPECT_THAT(loop.message(), HasSubstr("Too many levels of symbolic links"));
+}
 
 TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
   const test::TemporaryFolder folder;

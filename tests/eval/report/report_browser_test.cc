@@ -172,6 +172,19 @@ TEST_F(ReportInBrowser, GivenThePageThenItAsksTheNetworkForNothing) {
   EXPECT_EQ(visit.Mark("requests"), "0");
 }
 
+TEST_F(ReportInBrowser, GivenAScriptOrAnImageThatIsNotThePagesThenTheBrowserRefusesIt) {
+  std::string page = page_;
+  page.insert(page.rfind("</body>"),
+              "<script>document.documentElement.setAttribute('data-foreign', 'ran');</script>"
+              "<img src='picture.svg'>");
+  const PageVisit visit = Open(page);
+  EXPECT_EQ(visit.Mark("ready"), "true");
+  EXPECT_EQ(visit.Mark("foreign"), "");
+  const std::string console = ::testing::PrintToString(visit.console);
+  EXPECT_THAT(console, HasSubstr("Content Security Policy"));
+  EXPECT_THAT(console, HasSubstr("picture.svg"));
+}
+
 TEST_F(ReportInBrowser, GivenAPhoneThenOnlyTheTablesScrollSidewaysEachInItsBox) {
   for (const int width : {390, 1400}) {
     const PageVisit visit = Open(InFrame("report.html", width));
@@ -206,7 +219,8 @@ TEST_F(ReportInBrowser, GivenAPageWithAFaultThenTheFaultIsSeen) {
   ASSERT_NE(call, std::string::npos);
   std::string broken = page_;
   broken.replace(call, 12, "noSuchThing();");
-  const PageVisit visit = Open(broken);
+  broken.replace(broken.rfind("<script>", call), 8, "<script nonce=\"test\">");
+  const PageVisit visit = Open(Admitting(broken));
   EXPECT_THAT(visit.console, HasSubstr("noSuchThing"));
   EXPECT_THAT(visit.Mark("errors"), HasSubstr("noSuchThing"));
   EXPECT_EQ(visit.Mark("ready"), "");

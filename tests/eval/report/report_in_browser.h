@@ -33,9 +33,18 @@ class ReportInBrowser : public ::testing::Test {
   }
 
   /// The page with `script` run after its own scripts.
-  [[nodiscard]] std::string WithScript(const std::string& script) const {
-    std::string page = page_;
-    return page.insert(page.rfind("</body>"), "<script>" + script + "</script>");
+  [[nodiscard]] std::string WithScript(const std::string& script) const { return Probed(page_, script); }
+  /// A page with a script of the test, which its security policy lets run beside its own.
+  [[nodiscard]] static std::string Probed(std::string page, const std::string& script) {
+    page = Admitting(std::move(page));
+    return page.insert(page.rfind("</body>"), "<script nonce=\"test\">" + script + "</script>");
+  }
+  /// A page whose security policy also admits scripts with the nonce "test".
+  [[nodiscard]] static std::string Admitting(std::string page) {
+    const std::string sources = "script-src ";
+    const std::size_t policy = page.find(sources);
+    EXPECT_NE(policy, std::string::npos);
+    return page.insert(policy + sources.size(), "'nonce-test' ");
   }
 
   TemporaryFolder folder_;

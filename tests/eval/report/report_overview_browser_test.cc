@@ -106,14 +106,12 @@ TEST_F(ReportInBrowser, GivenNamesOfMarkupThenTheyAreTextEverywhere) {
   comparison.cells.back().status = evil;
   comparison.cells[0].sky = {{evil, {0, 1}, {10, 11}, {40, 41}, {0.1, 0.2}, 1, 0.1}};
   ASSERT_TRUE(WriteReport(comparison, folder_.File("evil.html")).ok());
-  std::string page = ReadFile(folder_.File("evil.html"));
-  page.insert(page.rfind("</body>"), R"(<script>
+  const PageVisit visit = Open(Probed(ReadFile(folder_.File("evil.html")), R"(
     document.querySelector('#chips .chip').click();
     document.documentElement.setAttribute('data-images', document.images.length);
     document.documentElement.setAttribute('data-heading', document.querySelector('h1').textContent.length);
     document.documentElement.setAttribute('data-address', decodeURIComponent(location.hash).length);
-  </script>)");
-  const PageVisit visit = Open(page);
+  )"));
   EXPECT_THAT(visit.console, IsEmpty());
   EXPECT_EQ(visit.Mark("errors"), "");
   EXPECT_EQ(visit.Mark("ready"), "true");

@@ -256,6 +256,21 @@ TEST(ReportJson, GivenAComparisonThenProgramsFindItsTables) {
   EXPECT_FALSE(json["cells"][0].contains("series"));
 }
 
+TEST(Report, GivenItThenItsPolicyAllowsOnlyItsOwnScripts) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(WriteReport(test::SyntheticComparison(30), folder.File("report.html")).ok());
+  const std::string page = ReadFile(folder.File("report.html"));
+  const std::string start = "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+  const size_t found = page.find(start);
+  ASSERT_NE(found, std::string::npos);
+  EXPECT_LT(found, page.find("<link")) << "what comes before the policy is free of it";
+  const std::string policy =
+      page.substr(found + start.size(), page.find('"', found + start.size()) - found - start.size());
+  EXPECT_THAT(policy, ::testing::MatchesRegex("default-src 'none'; script-src 'sha256-[^']{43}=' "
+                                              "'sha256-[^']{43}='; style-src 'unsafe-inline'; img-src data:; "
+                                              "base-uri 'none'; form-action 'none'"));
+}
+
 TEST(ReportData, GivenTextThatEndsScriptsThenTheDataCannot) {
   const std::string data = ReportData(test::SyntheticComparison(30));
   EXPECT_THAT(data, Not(HasSubstr("<")));
