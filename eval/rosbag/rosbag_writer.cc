@@ -1,6 +1,8 @@
 #include "eval/rosbag/rosbag_writer.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "eval/files/byte_io.h"
@@ -34,9 +36,10 @@ Result<RosbagWriter> RosbagWriter::Create(const std::string& path, BagCompressio
   if (!folder.empty()) {
     std::filesystem::create_directories(folder, error);
   }
+  errno = 0;
   writer.file_.open(TemporaryName(path), std::ios::binary | std::ios::trunc);
   if (!writer.file_) {
-    return Status::Output(path + ": cannot be written");
+    return Status::Output(path + ": cannot be written: " + std::strerror(errno));
   }
   writer.open_ = true;
   writer.Put(kBagMagic);
