@@ -27,7 +27,7 @@ class ImuIntake {
   ImuRejections rejections_;
 };
 
-/// "3 duplicate, 1 late, 2 not finite; 4 put in order"; empty when there is none of them.
+/// "6 dropped (3 duplicate, 1 late, 2 not finite), 4 put in order"; empty when there is none of them.
 [[nodiscard]] std::string DescribeRejections(const ImuRejections& rejections);
 
 }  // namespace alidade
