@@ -114,7 +114,7 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"track --dataset=" + longer + " --output=" + out, 4, "File name too long"},
       {"convert --dataset=" + longer + " --output=" + out + ".bag", 4, "File name too long"},
       {"convert --dataset=" + seq + " --output=" + longer + ".bag", 6, "File name too long"},
-      {"spp --obs=" + longer + " --nav=x --output=" + out, 4, "File name too long"},
+      {"spp --obs=" + longer + " --nav=x --output=" + folder_.File("z.pos"), 4, "File name too long"},
       {"spp --obs=x --nav=x --output=" + longer, 4, "x: cannot be read"},
       {"run --dataset=" + seq + " --config=" + base + " --output=" + seq, 6, "--overwrite"},
       {"run --dataset=" + seq + " --config=" + base + " --output=" + folder_.File("file") + "/x", 6,
