@@ -229,7 +229,8 @@ TEST(RosDefinitions, HaveThePublishedSums) {
 
 TEST(RosbagOpen, NamesWhatIsNoBag) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT(RosbagReader::Open(folder.File("none.bag")).message(), HasSubstr("cannot be read: No such file"));
+  EXPECT_THAT(RosbagReader::Open(folder.File("none.bag")).message(),
+              HasSubstr("cannot be read: No such file"));
   EXPECT_THAT(RosbagReader::Open(folder.Write("old.bag", "#ROSBAG V1.2\nxxxxxxxx")).message(),
               HasSubstr("format 1.x"));
   EXPECT_THAT(RosbagReader::Open(folder.Write("text.bag", "hello")).message(), HasSubstr("found no bag"));
