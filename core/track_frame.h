@@ -8,8 +8,8 @@
 
 namespace alidade {
 
-/// One tracked feature in one frame. Ids are unique in a log: a track that ends never comes back under its
-/// id.
+/// One tracked feature in one frame. Ids are unique in a log. A track may pause, when frames between are not
+/// used (eval/run/degradation.h), and then goes on under its id.
 struct TrackObservation {
   std::int64_t track_id = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< raw (distorted) image coordinates [px]

@@ -32,6 +32,7 @@ struct MeasurementLog {
   /// Of all sensors, in the order of IMU time (stamp + the sensor's offset); those of one sensor with
   /// strictly increasing stamps.
   std::vector<PositionFix> fixes = {};
+  int imu_rejected = 0;  ///< samples that the reader dropped
 };
 
 /// Copies the measurements of SensorEntries. `From`, `To`: MeasurementLog, or what has its fields.

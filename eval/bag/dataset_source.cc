@@ -10,18 +10,14 @@
 
 namespace alidade {
 
-Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string>* remarks) {
+Result<Dataset> ReadDataset(const DatasetSource& source) {
   if (!IsBag(source.path)) {
     if (!source.topics.empty() || !source.calibration.empty()) {
       return Status::Usage(source.path +
                            ": is not a bag; topics and calibration apply to bags, a folder has its own "
                            "sensor.yaml");
     }
-    Result<Dataset> dataset = ReadDataset(source.path);
-    if (dataset.ok()) {
-      *remarks = dataset->remarks;
-    }
-    return dataset;
+    return ReadDataset(source.path);
   }
   BagImportOptions options;
   ALIDADE_RETURN_IF_ERROR(MakeBagTopics(source.topics).status());  // before the calibration's errors
@@ -35,7 +31,7 @@ Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string
   }
   Result<BagImport> import = ReadBag(source.path, options);
   ALIDADE_RETURN_IF_ERROR(import.status());
-  *remarks = std::move(import->remarks);
+  import->dataset.remarks = std::move(import->remarks);
   return std::move(import->dataset);
 }
 

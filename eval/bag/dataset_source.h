@@ -18,9 +18,10 @@ struct DatasetSource {
   std::string camera = "cam0";           ///< camera to use in those files
 };
 
-/// ReadDataset; `remarks` receives assumptions and skipped messages of a bag as text. kUsage: invalid topics,
-/// or topics or calibration for a folder, which has its own; kInput: as ReadDataset and ImportCalibration.
-Result<Dataset> ReadDataset(const DatasetSource& source, std::vector<std::string>* remarks);
+/// ReadDataset of a folder or ReadBag, with the remarks of either in Dataset::remarks. kUsage: invalid
+/// topics, or topics or calibration for a folder, which has its own; kInput: as ReadDataset and
+/// ImportCalibration.
+Result<Dataset> ReadDataset(const DatasetSource& source);
 
 /// SHA-256 (hex) over everything that the sequence is read from.
 Result<std::string> DigestOf(const DatasetSource& source);

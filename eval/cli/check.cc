@@ -3,6 +3,7 @@
 
 #include "core/format.h"
 #include "eval/bag/dataset_images.h"
+#include "eval/bag/dataset_source.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -46,7 +47,7 @@ void CheckImages(const Dataset& dataset, Findings* findings) {
 }  // namespace
 
 int RunCheck(const std::vector<std::string>&) {
-  const Result<Dataset> dataset = ReadDatasetFromFlags();
+  const Result<Dataset> dataset = ReadDataset(SourceFromFlags());
   if (!dataset.ok()) {
     return Report(dataset.status());
   }

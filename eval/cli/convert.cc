@@ -21,10 +21,10 @@ int FolderToBag(BagCompression compression) {
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
-  std::error_code ignored;
   for (const std::string& remark : dataset->remarks) {
     Say(remark);
   }
+  std::error_code ignored;
   if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output, ignored)) {
     return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
   }

@@ -89,8 +89,7 @@ int RunRun(const std::vector<std::string>&) {
   const RunIdentity identity{*config,    dataset->name,   *dataset_digest,    DigestOf(*log),
                              FLAGS_seed, log->imu.size(), log->frames.size(), FLAGS_audit};
   Say(DescribeLog(*log, identity.input_digest));
-  RunResult result = RunWithProgress(*config, *log, *dataset, stop);
-  result.imu_rejected += static_cast<int>(dataset->imu_rejections.dropped());
+  const RunResult result = RunWithProgress(*config, *log, *dataset, stop);
   if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {
     return Report(status);
   }

@@ -33,10 +33,11 @@ DatasetSource SourceFromFlags() {
 }
 
 Result<Dataset> ReadDatasetFromFlags() {
-  std::vector<std::string> remarks;
-  Result<Dataset> dataset = ReadDataset(SourceFromFlags(), &remarks);
-  for (const std::string& remark : remarks) {
-    Say(remark);
+  Result<Dataset> dataset = ReadDataset(SourceFromFlags());
+  if (dataset.ok()) {
+    for (const std::string& remark : dataset->remarks) {
+      Say(remark);
+    }
   }
   return dataset;
 }

@@ -49,8 +49,7 @@ Status RunAndWrite(const RunIdentity& identity, const CompareInput::Data& data, 
   run_options.seed = cell.seed;
   run_options.stop = options.stop;
   run_options.audit = identity.audited;
-  RunResult result = RunEstimator(*cell.config, data.log, run_options);
-  result.imu_rejected += data.imu_rejected;
+  const RunResult result = RunEstimator(*cell.config, data.log, run_options);
   return result.interrupted ? Status::Input("interrupted") : WriteRun(identity, result, cell.folder);
 }
 

@@ -29,8 +29,7 @@ Result<CompareInput::Data> CompareInput::Load(const PipelineOptions& options) co
 }
 
 Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& options) const {
-  std::vector<std::string> remarks;
-  Result<Dataset> dataset = ReadDataset(sequence_.dataset, &remarks);
+  Result<Dataset> dataset = ReadDataset(sequence_.dataset);
   if (!dataset.ok()) {
     return dataset.status();
   }
@@ -45,8 +44,8 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     }
     dataset->truth = std::move(*truth);
   }
+  std::vector<std::string> remarks = dataset->remarks;
   std::optional<FrontendSummary> frontend;
-  const size_t imu_rejected = dataset->imu_rejections.dropped();
   if (dataset->tracks.empty() && !dataset->images.empty()) {
     PipelineOptions telling = options;
     telling.remark = [&remarks](const std::string& text) { remarks.push_back(text); };
@@ -63,9 +62,9 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
     return log.status();
   }
   std::string input_digest = DigestOf(*log);
-  return Data{std::move(*log),         std::move(dataset->truth),     std::move(*dataset_digest),
-              std::move(input_digest), std::move(frontend),           std::nullopt,
-              std::move(remarks),      static_cast<int>(imu_rejected)};
+  return Data{std::move(*log),         std::move(dataset->truth), std::move(*dataset_digest),
+              std::move(input_digest), std::move(frontend),       std::nullopt,
+              std::move(remarks)};
 }
 
 Result<FrontendRun> CompareInput::RunFrontend(

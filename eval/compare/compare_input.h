@@ -31,7 +31,6 @@ class CompareInput {
         frontend;  ///< where the front end ran here, now or in an earlier comparison
     std::optional<RigCalibration> true_rig = {};  ///< Dataset::true_rig
     std::vector<std::string> remarks = {};        ///< remarks of the reader, as text
-    int imu_rejected = 0;                         ///< samples that the reader dropped
   };
 
   /// A dataset folder. `frontend` is used when it has images but no tracks.

@@ -8,6 +8,7 @@ MeasurementLog MeasurementsOf(Dataset dataset) {
   MeasurementLog log{std::move(dataset.rig), std::move(dataset.imu), std::move(dataset.tracks),
                      std::move(dataset.extra_cameras), std::move(dataset.gnss)};
   CopyMeasurements(dataset, &log);
+  log.imu_rejected = static_cast<int>(dataset.imu_rejections.dropped());
   return log;
 }
 

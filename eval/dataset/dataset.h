@@ -45,7 +45,7 @@ struct Dataset {
   double camera_rate_hz = 0;
   std::vector<ImuSample> imu;
   ImuRejections imu_rejections;
-  std::vector<std::string> remarks;        ///< what the reader of a folder passed over, as text
+  std::vector<std::string> remarks;        ///< what the reader passed over or assumed, as text
   std::vector<TrackFrame> tracks;          ///< cam0/tracks.csv, grouped by stamp; empty when there is none
   std::vector<ExtraCamera> extra_cameras;  ///< cam1, cam2, ... that have tracks
   std::vector<ImageEntry> images;          ///< cam0/data.csv, or of a bag; empty when there is none

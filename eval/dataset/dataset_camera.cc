@@ -67,12 +67,6 @@ Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraMod
   return Status::Ok();
 }
 
-/// No absolute path and no way up: a sequence from elsewhere must not make other files of this machine read.
-bool StaysInFolder(std::string_view name) {
-  const fs::path path = name;
-  return !path.is_absolute() && std::find(path.begin(), path.end(), "..") == path.end();
-}
-
 Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraModel& camera) {
   const std::string path = (folder / "data.csv").string();
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}, {"filename"}});

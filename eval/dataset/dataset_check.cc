@@ -8,6 +8,9 @@ namespace alidade {
 std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
   constexpr size_t kLeastSamples = 2;  // of the IMU, the first part, with whose time the others are compared
   Findings findings;
+  for (const std::string& remark : dataset.remarks) {
+    findings.Warning(remark);
+  }
   for (const DatasetPart& part : DatasetParts()) {
     part.check(dataset, &findings);
     if (dataset.imu.size() < kLeastSamples) {

@@ -83,10 +83,10 @@ Result<FixSheet> MakeFixSheet(const Result<YAML::Node>& root, const std::string&
     sheet.anchor_llh_deg = llh;
   }
   if (file->Has("positions")) {
-    if (!(*file)["positions"].IsScalar()) {
-      return file->Fault("positions", "a file name");
+    sheet.positions = (*file)["positions"].IsScalar() ? (*file)["positions"].Scalar() : std::string();
+    if (sheet.positions.empty() || !StaysInFolder(sheet.positions)) {
+      return file->Fault("positions", "the name of a file in the folder of this sheet");
     }
-    sheet.positions = (*file)["positions"].Scalar();
   }
   ALIDADE_RETURN_IF_ERROR(ReadDate(*file, &sheet.date));
   return sheet;

@@ -1,5 +1,6 @@
 #include "eval/dataset/dataset_gnss.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -59,6 +60,9 @@ Status ReadNames(const std::string& path, const YAML::Node& root, const char* ke
   }
   if (node.IsScalar()) {
     names->push_back(node.Scalar());
+  }
+  if (!std::all_of(names->begin(), names->end(), StaysInFolder)) {
+    return Fault(path, node, key, "names of files in the folder of this sheet");
   }
   return names->empty() ? Fault(path, node, key, "a file name or a list of them") : Status::Ok();
 }

@@ -152,6 +152,13 @@ Status ReadImuFolder(const std::string& mav, Dataset* dataset) {
 
 Status WriteImuFolder(const Dataset& dataset, const std::string& mav) {
   const fs::path folder = fs::path(mav) / "imu0";
+  const ImuNoise& noise = dataset.rig.imu_noise;
+  if (!(noise.gyro_noise_density_radps_sqrthz > 0) || !(noise.accel_noise_density_mps2_sqrthz > 0)) {
+    return Status::Config(
+        Format("imu0: noise densities %g rad/s/sqrt(Hz) and %g m/s^2/sqrt(Hz), expected both "
+               "greater than 0 in a sheet",
+               noise.gyro_noise_density_radps_sqrthz, noise.accel_noise_density_mps2_sqrthz));
+  }
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((folder / "sensor.yaml").string(),
                                               ImuSensorYaml(dataset.rig.imu_noise, dataset.imu_rate_hz)));
   return WriteFileAtomically((folder / "data.csv").string(), ImuCsv(dataset.imu));
@@ -172,9 +179,6 @@ void CheckImu(const Dataset& dataset, Findings* findings) {
     stamps.push_back(sample.stamp_ns);
   }
   CheckStamps("imu0", stamps, dataset.imu_rate_hz, findings);
-  if (const std::string told = DescribeRejections(dataset.imu_rejections); !told.empty()) {
-    findings->Warning("imu0: samples " + told);
-  }
   if (stamps.size() < 2) {
     return;
   }

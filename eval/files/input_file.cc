@@ -3,9 +3,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include "core/regular_file.h"
@@ -48,6 +50,11 @@ Result<std::string> ReadWholeFile(const std::string& path, StatusCode code, std:
     return Status(code, path + ": cannot be read: " + std::strerror(errno));
   }
   return content;
+}
+
+bool StaysInFolder(std::string_view name) {
+  const std::filesystem::path path = name;
+  return !path.is_absolute() && std::find(path.begin(), path.end(), "..") == path.end();
 }
 
 bool MayExist(const std::string& path) {

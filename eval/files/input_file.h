@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "core/status.h"
 
@@ -15,6 +16,8 @@ inline constexpr std::size_t kMaxInputBytes = std::size_t{1} << 30;
 Result<std::string> ReadWholeFile(const std::string& path, StatusCode code = StatusCode::kInput,
                                   std::size_t max_bytes = kMaxInputBytes);
 
+/// No absolute path and no way up: a sequence from elsewhere must not make other files of this machine read.
+[[nodiscard]] bool StaysInFolder(std::string_view name);
 /// False when there is certainly nothing. True also when the system refuses to look (permission, a loop of
 /// links, a name too long): whoever opens the path then gets the reason.
 [[nodiscard]] bool MayExist(const std::string& path);

@@ -46,6 +46,7 @@ SessionOptions LogPlayer::OptionsOfSession() const {
 RunResult LogPlayer::Play() {
   const Stopwatch wall;
   const double cpu_start = ThreadCpuSeconds();
+  result_.imu_rejected = log_.imu_rejected;
   if (config_.gnss.enabled && log_.gnss == nullptr) {
     result_.align_report = "the sequence has no GNSS";
   }

@@ -44,7 +44,7 @@ struct RunResult {
   TimeNs init_stamp_ns = 0;
   int frames_skipped = 0;                     ///< refused by the estimator after initialisation
   std::string skip_report;                    ///< why the first of them was
-  int imu_rejected = 0;                       ///< samples refused by the estimator
+  int imu_rejected = 0;                       ///< samples dropped by the reader or refused by the run
   std::optional<GlobalFrame> global;          ///< once aligned with GNSS or position fixes
   std::string align_report;                   ///< what the alignment found, or why it did not
   int epochs_used = 0;                        ///< GNSS epochs the estimator took

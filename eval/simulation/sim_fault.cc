@@ -40,9 +40,9 @@ void BlackOut(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>*
   }
 }
 
-void ShuffleIds(const std::function<bool(TimeNs)>& fails, std::uint64_t seed,
+void ShuffleIds(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, const std::string& camera,
                 std::vector<TrackFrame>* frames) {
-  RandomStream random(seed, "fault/tracks");
+  RandomStream random(seed, "fault/tracks" + camera);
   for (TrackFrame& frame : *frames) {
     if (!fails(frame.stamp_ns)) {
       continue;
@@ -110,16 +110,16 @@ void AddSpike(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, bool
   }
 }
 
-/// Of the tracks of one camera.
-void ApplyToTracks(SimFaultKind fault, std::uint64_t seed, const std::function<bool(TimeNs)>& fails,
-                   std::vector<TrackFrame>* frames) {
+/// Of the tracks of one camera; `camera` names its stream, empty for the first one.
+void ApplyToTracks(SimFaultKind fault, std::uint64_t seed, const std::string& camera,
+                   const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
   switch (fault) {
     case SimFaultKind::kBlackout:
     case SimFaultKind::kBlackoutAndImu:
       BlackOut(fails, frames);
       break;
     case SimFaultKind::kTracks:
-      ShuffleIds(fails, seed, frames);
+      ShuffleIds(fails, seed, camera, frames);
       break;
     case SimFaultKind::kFrozen:
       Freeze(fails, frames);
@@ -204,11 +204,10 @@ void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_
   const TimeNs begin_ns = start_ns + SecondsToNs(config.fault_start_s);
   const TimeNs end_ns = begin_ns + SecondsToNs(config.fault_duration_s);
   const auto fails = [=](TimeNs stamp_ns) { return stamp_ns >= begin_ns && stamp_ns < end_ns; };
-  ApplyToTracks(config.fault, seed, fails, &dataset->tracks);
-  if (config.fault != SimFaultKind::kTracks) {
-    for (ExtraCamera& extra : dataset->extra_cameras) {
-      ApplyToTracks(config.fault, seed, fails, &extra.frames);
-    }
+  ApplyToTracks(config.fault, seed, "", fails, &dataset->tracks);
+  for (std::size_t i = 0; i < dataset->extra_cameras.size(); ++i) {
+    ApplyToTracks(config.fault, seed, "/cam" + std::to_string(i + 1), fails,
+                  &dataset->extra_cameras[i].frames);
   }
   ApplyToImu(config.fault, seed, fails, &dataset->imu);
 }

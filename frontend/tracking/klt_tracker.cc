@@ -5,7 +5,6 @@
 #include <mutex>
 #include <numeric>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "frontend/tracking/epipolar_rejection.h"
 #include "frontend/tracking/feature_track.h"
 #include "frontend/tracking/gyro_rotation.h"
+#include "frontend/tracking/image_preparation.h"
 #include "frontend/tracking/optical_flow.h"
 
 namespace alidade {
@@ -23,9 +23,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Contrast limit and tiles: enough to see into shadows, not enough to make corners of sensor noise.
-constexpr double kClaheClipLimit = 3.0;
-constexpr int kClaheTiles = 8;
 // Of a track that its template does not confirm: what noise leaves of a track that did not slide.
 constexpr double kReturnPx = 0.5;
 // A camera that repeats its image for longer: the rotation since then finds no track again.
@@ -51,14 +48,10 @@ struct KltTracker::Implementation {
         flow(front_end),
         grid(front_end, rig_calibration.camera.width_px(), rig_calibration.camera.height_px(),
              BorderPx(front_end)),
-        clahe(cv::createCLAHE(kClaheClipLimit, cv::Size(kClaheTiles, kClaheTiles))) {}
+        images(front_end, rig_calibration.camera.width_px(), rig_calibration.camera.height_px()) {}
 
   [[nodiscard]] Status CheckInput(TimeNs stamp_ns, const unsigned char* grey, int width_px,
                                   int height_px) const;
-  /// Whether it is, to the last bit, the image before: a camera that repeats itself. What it shows is where
-  /// it was.
-  bool Repeats(const unsigned char* grey);
-  void AddImage(const unsigned char* grey);
   /// R_C1C0 from the last image to this one, when the gyroscope covers the time between.
   std::optional<Matrix3d> RotationSinceLast(TimeNs stamp_ns);
   [[nodiscard]] std::vector<cv::Point2f> Predict(const std::optional<Matrix3d>& R_C1C0) const;
@@ -75,19 +68,17 @@ struct KltTracker::Implementation {
   void Detect();
   /// A repeated image: all tracks stay where they are.
   void KeepAll(TimeNs stamp_ns);
-  void Advance(TimeNs stamp_ns, const unsigned char* grey);
+  /// To the newest of `images`.
+  void Advance(TimeNs stamp_ns);
   [[nodiscard]] TrackFrame Observations(TimeNs stamp_ns) const;
 
   FrontendConfig config;
   RigCalibration rig;
   OpticalFlow flow;
   CornerGrid grid;
-  cv::Ptr<cv::CLAHE> clahe;
+  ImagePreparation images;
   GyroRotation gyro;
 
-  std::vector<unsigned char> last_grey;
-  cv::Mat equalized;
-  cv::Mat smoothed;
   std::optional<TimeNs> last_stamp_ns;
   std::optional<TimeNs> image_ns;    // of the last image that did not repeat the one before it
   std::vector<FeatureTrack> tracks;  // sorted by id
@@ -111,28 +102,6 @@ Status KltTracker::Implementation::CheckInput(TimeNs stamp_ns, const unsigned ch
                          " ns");
   }
   return Status::Ok();
-}
-
-bool KltTracker::Implementation::Repeats(const unsigned char* grey) {
-  const size_t size =
-      static_cast<size_t>(rig.camera.width_px()) * static_cast<size_t>(rig.camera.height_px());
-  const bool repeats = last_grey.size() == size && std::equal(last_grey.begin(), last_grey.end(), grey);
-  last_grey.assign(grey, grey + size);
-  return repeats;
-}
-
-void KltTracker::Implementation::AddImage(const unsigned char* grey) {
-  // OpenCV has no view of constant memory; the pixels are only read.
-  const cv::Mat image(rig.camera.height_px(), rig.camera.width_px(), CV_8UC1,
-                      const_cast<unsigned char*>(grey));
-  if (config.equalize) {
-    clahe->apply(image, equalized);
-  }
-  if (config.template_px > 0) {
-    // Bilinear sampling of a sharper image depends on where between the pixels it falls.
-    cv::GaussianBlur(image, smoothed, cv::Size(3, 3), 0);
-  }
-  flow.Add(config.equalize ? equalized : image);
 }
 
 std::optional<Matrix3d> KltTracker::Implementation::RotationSinceLast(TimeNs stamp_ns) {
@@ -170,13 +139,13 @@ std::vector<bool> KltTracker::Implementation::Confirm(const std::optional<Matrix
   std::vector<bool> unconfirmed(tracks.size());
   for (size_t i = 0; i < tracks.size(); ++i) {
     unconfirmed[i] =
-        alive[i] && !MatchTemplate(smoothed, config, DeformationBy(R_C1C0, rig.camera, tracks[i]), &tracks[i],
-                                   &(*pixels)[i]);
+        alive[i] && !MatchTemplate(images.smoothed(), config, DeformationBy(R_C1C0, rig.camera, tracks[i]),
+                                   &tracks[i], &(*pixels)[i]);
   }
   RequireReturn(unconfirmed, *pixels, kReturnPx, &alive);
   for (size_t i = 0; i < tracks.size(); ++i) {
     if (unconfirmed[i] && alive[i]) {
-      BeginTemplate(smoothed, config, (*pixels)[i], &tracks[i]);
+      BeginTemplate(images.smoothed(), config, (*pixels)[i], &tracks[i]);
     }
   }
   return alive;
@@ -262,8 +231,8 @@ void KltTracker::Implementation::KeepAll(TimeNs stamp_ns) {
   statistics.tracked = static_cast<int>(tracks.size());
 }
 
-void KltTracker::Implementation::Advance(TimeNs stamp_ns, const unsigned char* grey) {
-  AddImage(grey);
+void KltTracker::Implementation::Advance(TimeNs stamp_ns) {
+  flow.Add(images.contrasted());
   if (image_ns.has_value()) {
     Follow(RotationSinceLast(stamp_ns), SecondsBetween(*image_ns, stamp_ns));
     Spread();
@@ -282,7 +251,7 @@ void KltTracker::Implementation::Detect() {
       continue;
     }
     if (config.template_px > 0) {
-      BeginTemplate(smoothed, config, corner, &track);
+      BeginTemplate(images.smoothed(), config, corner, &track);
     }
     tracks.push_back(std::move(track));
     ++next_id;
@@ -319,10 +288,10 @@ Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey,
   Implementation& tracker = *implementation_;
   ALIDADE_RETURN_IF_ERROR(tracker.CheckInput(stamp_ns, grey, width_px, height_px));
   tracker.statistics = TrackerStatistics{.imu_ignored = tracker.statistics.imu_ignored};
-  if (tracker.Repeats(grey)) {
-    tracker.KeepAll(stamp_ns);
+  if (tracker.images.Add(grey)) {
+    tracker.Advance(stamp_ns);
   } else {
-    tracker.Advance(stamp_ns, grey);
+    tracker.KeepAll(stamp_ns);
   }
   tracker.last_stamp_ns = stamp_ns;
   double length_sum = 0;

@@ -72,7 +72,7 @@ TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
   EXPECT_THAT(ReadFile(folder_.File("of_faulty/run.json")), HasSubstr("\"imu_rejected\": 3"));
   EXPECT_EQ(ReadFile(folder_.File("of_faulty/states.csv")), ReadFile(folder_.File("of_clean/states.csv")));
   const CommandResult check = Alidade("check --dataset=" + folder_.File("faulty"));
-  EXPECT_THAT(check.output, HasSubstr("warning  imu0: samples 3 dropped"));
+  EXPECT_THAT(check.output, HasSubstr("rows 3 dropped"));
 }
 
 TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {

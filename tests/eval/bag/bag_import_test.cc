@@ -243,12 +243,11 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
                                   "body_T_cam0: {rows: 4, cols: 4, dt: d,\n"
                                   "  data: [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n")
                   .ok());
-  std::vector<std::string> remarks;
-  const Result<Dataset> dataset = ReadDataset(source, &remarks);
+  const Result<Dataset> dataset = ReadDataset(source);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   EXPECT_EQ(dataset->images.size(), 6u);
   EXPECT_NEAR(dataset->rig.T_BC.translation.x(), 0.1, 1e-12);
-  EXPECT_THAT(remarks, Contains(HasSubstr("lever arm")));
+  EXPECT_THAT(dataset->remarks, Contains(HasSubstr("lever arm")));
   const std::string digest = DigestOf(source).value();
   ASSERT_TRUE(
       WriteFileAtomically(source.calibration[0], "acc_n: 0.09\ngyr_n: 0.004\nacc_w: 0.00004\ngyr_w: 2.0e-6\n")
@@ -256,9 +255,9 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
   EXPECT_NE(DigestOf(source).value(), digest)
       << "the front end's tracks would be taken for those of another rig";
   source.topics = "cam0=/none";
-  EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("no topic /none"));
+  EXPECT_THAT(ReadDataset(source).message(), HasSubstr("no topic /none"));
   source.path = folder_.path();
-  EXPECT_THAT(ReadDataset(source, &remarks).message(), HasSubstr("is not a bag"));
+  EXPECT_THAT(ReadDataset(source).message(), HasSubstr("is not a bag"));
 }
 
 TEST_F(ForeignBag, ObservationsWithoutEphemerisAreLeftOut) {

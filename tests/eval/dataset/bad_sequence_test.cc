@@ -12,6 +12,7 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_check.h"
 #include "eval/dataset/dataset_reader.h"
+#include "tests/support/good_sequence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -19,32 +20,14 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kImuHeader[] =
-    "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
-    "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
-constexpr char kImuRows[] = "1000,0,0,0,0,0,9.81\n2000,0,0,0,0,0,9.81\n3000,0,0,0,0,0,9.81\n";
-constexpr char kImuYaml[] =
-    "sensor_type: imu\nrate_hz: 200\ngyroscope_noise_density: 1e-4\ngyroscope_random_walk: 1e-5\n"
-    "accelerometer_noise_density: 2e-3\naccelerometer_random_walk: 3e-3\n";
-constexpr char kIdentity[] = "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]";
-constexpr char kTracksHeader[] = "#timestamp [ns],track_id,u [px],v [px]\n";
-constexpr char kTruthHeader[] = "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n";
-
-std::string CameraYaml(const std::string& transform, const std::string& lens) {
-  return "%YAML:1.0\nsensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: " + transform +
-         "\nresolution: [640, 480]\nintrinsics: [400, 400, 320, 240]\n" + lens;
-}
-
-const std::string kNoLens = "distortion_model: none\n";
-
-void WriteGoodSequence(const test::TemporaryFolder& folder) {
-  folder.Write("mav0/imu0/sensor.yaml", kImuYaml);
-  folder.Write("mav0/imu0/data.csv", std::string(kImuHeader) + kImuRows);
-  folder.Write("mav0/cam0/sensor.yaml", CameraYaml(kIdentity, kNoLens));
-  folder.Write("mav0/cam0/tracks.csv", std::string(kTracksHeader) + "1000,1,10,20\n2000,1,11,21\n");
-  folder.Write("mav0/state_groundtruth_estimate0/data_pose.csv",
-               std::string(kTruthHeader) + "1000,0,0,0,1,0,0,0\n2000,1,0,0,1,0,0,0\n");
-}
+using test::CameraYaml;
+using test::kIdentity;
+using test::kImuHeader;
+using test::kImuRows;
+using test::kNoLens;
+using test::kTracksHeader;
+using test::kTruthHeader;
+using test::WriteGoodSequence;
 
 struct FileCase {
   const char* story;
@@ -287,75 +270,16 @@ const FileCase kTruthCases[] = {
     {"truth header alone", kTruthFile, kTruthHeader, {"data_pose.csv", "no pose"}},
 };
 INSTANTIATE_TEST_SUITE_P(Truth, BadSequence, testing::ValuesIn(kTruthCases));
-
-/// Rows of a still IMU at 200 Hz from stamp 1000.
-std::vector<std::string> StillRows(int count) {
-  std::vector<std::string> rows;
-  for (int i = 0; i < count; ++i) {
-    rows.push_back(std::to_string(1000 + 5'000'000LL * i) + ",0,0,0,0,0," + std::to_string(9 + i % 2) + "\n");
-  }
-  return rows;
-}
-
-std::string Joined(const std::vector<std::string>& rows) {
-  std::string text;
-  for (const std::string& row : rows) {
-    text += row;
-  }
-  return text;
-}
-
-TEST(FaultyImuRows, GivenFewOfThemThenTheSamplesAreThoseOfACleanFileAndTheyAreCounted) {
-  const test::TemporaryFolder folder;
-  WriteGoodSequence(folder);
-  folder.Write("mav0/imu0/data.csv", Imu(Joined(StillRows(100))));
-  const Result<Dataset> clean = ReadDataset(folder.path());
-  ASSERT_TRUE(clean.ok()) << clean.message();
-  EXPECT_TRUE(clean->remarks.empty());
-
-  std::vector<std::string> rows = StillRows(100);
-  std::swap(rows[20], rows[25]);             // five of them come after a later stamp
-  rows.insert(rows.begin() + 11, rows[10]);  // a duplicate
-  rows.insert(rows.begin() + 60, rows[40]);  // 80 ms late
-  rows.insert(rows.begin() + 70, "350001500,nan,0,0,0,0,9\n");
-  folder.Write("mav0/imu0/data.csv", Imu(Joined(rows)));
-  const Result<Dataset> faulty = ReadDataset(folder.path());
-  ASSERT_TRUE(faulty.ok()) << faulty.message();
-  EXPECT_EQ(faulty->imu_rejections.duplicate, 1u);
-  EXPECT_EQ(faulty->imu_rejections.late, 1u);
-  EXPECT_EQ(faulty->imu_rejections.not_finite, 1u);
-  EXPECT_EQ(faulty->imu_rejections.reordered, 5u);
-  ASSERT_EQ(faulty->imu.size(), clean->imu.size());
-  for (size_t i = 0; i < clean->imu.size(); ++i) {
-    EXPECT_EQ(faulty->imu[i].stamp_ns, clean->imu[i].stamp_ns);
-    EXPECT_EQ(faulty->imu[i].accel, clean->imu[i].accel);
-  }
-  ASSERT_EQ(faulty->remarks.size(), 1u);
-  EXPECT_THAT(
-      faulty->remarks[0],
-      testing::AllOf(HasSubstr("data.csv: of 103 rows 3 dropped (1 duplicate, 1 late, 1 not finite), 5 "
-                               "put in order"),
-                     HasSubstr("data.csv:13: ")));
-  bool told = false;
-  for (const DatasetFinding& finding : CheckDataset(*faulty)) {
-    told = told || finding.text.find("imu0: samples 3 dropped") != std::string::npos;
-  }
-  EXPECT_TRUE(told);
-}
-
-TEST(FaultyImuRows, GivenMoreThanFivePerCentThenTheSequenceIsRefused) {
-  const test::TemporaryFolder folder;
-  WriteGoodSequence(folder);
-  std::vector<std::string> rows = StillRows(100);
-  for (int i = 0; i < 6; ++i) {
-    rows.push_back(rows.back());
-  }
-  folder.Write("mav0/imu0/data.csv", Imu(Joined(rows)));
-  const Result<Dataset> dataset = ReadDataset(folder.path());
-  EXPECT_EQ(dataset.code(), StatusCode::kInput);
-  EXPECT_THAT(dataset.message(),
-              testing::AllOf(HasSubstr("data.csv:102: "), HasSubstr("of 106 rows 6 dropped")));
-}
+INSTANTIATE_TEST_SUITE_P(Gnss, BadSequence,
+                         testing::Values(FileCase{"observations elsewhere",
+                                                  "gnss0/sensor.yaml",
+                                                  "p_BA: unknown\nobservations: ../../other/obs.rnx\n",
+                                                  {"sensor.yaml:2", "observations",
+                                                   "files in the folder of this sheet"}},
+                                         FileCase{"ephemerides elsewhere",
+                                                  "gnss0/sensor.yaml",
+                                                  "p_BA: unknown\nnavigation: [nav.rnx, /tmp/nav.rnx]\n",
+                                                  {"navigation", "files in the folder of this sheet"}}));
 
 class NotAFile : public testing::TestWithParam<const char*> {};
 

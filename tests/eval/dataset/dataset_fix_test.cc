@@ -133,6 +133,8 @@ INSTANTIATE_TEST_SUITE_P(
                "anchor_llh_deg: found"},
         BadFix{"type", "sensor_type: camera\np_BA: unknown\n", kGood.c_str(), "'position'"},
         BadFix{"extension", "p_BA: unknown\npositions: data.ubx\n", kGood.c_str(), "ends in .csv"},
+        BadFix{"elsewhere", "p_BA: unknown\npositions: ../cam0/data.csv\n", kGood.c_str(),
+               "expected the name of a file in the folder of this sheet"},
         BadFix{"header", kSheet, "#timestamp [ns],x\n", "data.csv:1"},
         BadFix{"torn", kSheet, kTorn.c_str(), "data.csv:3"},
         BadFix{"late", kSheet, kLate.c_str(), "data.csv:3"},

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "core/random.h"
+#include "eval/dataset/dataset.h"
+#include "eval/dataset/dataset_reader.h"
 #include "eval/run/imu_stream.h"
+#include "tests/support/shared_data.h"
 
 namespace alidade {
 namespace {
@@ -111,6 +114,26 @@ TEST(ImuGuardTest, TellsWhichSensorJumpedAndByHowMuch) {
     }
   }
 }
+
+/// A folder of ../shared/data: EuRoC, TUM VI, a phone and a walk, none with a faulty sample.
+class ImuGuardOnRealImu : public testing::TestWithParam<const char*> {};
+
+TEST_P(ImuGuardOnRealImu, TouchesNoSample) {
+  ALIDADE_SKIP_WITHOUT_SHARED_DATA();
+  const Result<Dataset> dataset = ReadDataset(test::SharedDir() + "/data/" + GetParam());
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  int faults = 0;
+  const std::vector<ImuSample> used = Delivered(dataset->imu, 10, &faults);
+  EXPECT_GT(used.size(), 1000u);
+  EXPECT_EQ(faults, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(SharedData, ImuGuardOnRealImu,
+                         testing::Values("euroc/MH_03_medium", "euroc/MH_05_difficult", "euroc/V1_01_easy",
+                                         "euroc/V1_02_medium", "euroc/V2_01_easy", "euroc/V2_02_medium",
+                                         "tumvi/room1", "tumvi/room3", "tumvi/room5",
+                                         "real_images/phone_102213", "gnss_imu/walk_0827",
+                                         "tracks/tango_7hz"));
 
 }  // namespace
 }  // namespace alidade
