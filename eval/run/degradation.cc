@@ -1,5 +1,7 @@
 #include "eval/run/degradation.h"
 
+#include <cmath>
+
 #include "core/format.h"
 #include "core/imu_gap.h"
 
@@ -31,7 +33,18 @@ bool Degradation::IsFrozen(const TrackFrame& frame) {
   return frozen_;
 }
 
+std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics) {
+  const double kept = dof_ > 0 ? std::exp(-SecondsBetween(weighed_ns_, imu_ns) / kInnovationsS) : 0;
+  weighed_ns_ = imu_ns;
+  nis_ = kept * nis_ + statistics.nis;
+  dof_ = kept * dof_ + statistics.nis_dof;
+  constexpr double kSigmas = 4;
+  const double bound = kMaxInnovations + kSigmas * std::sqrt(2 / dof_);
+  return dof_ > 0 && nis_ > bound * dof_ ? std::optional(nis_ / dof_) : std::nullopt;
+}
+
 std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics) {
+  const std::optional<double> innovations = LargeInnovations(imu_ns, statistics);
   if (statistics.tracks_in > 0 || sighted_ns_ == INT64_MIN) {
     sighted_ns_ = imu_ns;
   }
@@ -44,6 +57,12 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics)
   }
   if (silent_until_ns_ != INT64_MIN && SecondsBetween(silent_until_ns_, imu_ns) < kSettlingS) {
     return Format("the IMU was silent for %.2f s", silence_s_);
+  }
+  if (innovations) {
+    return Format(
+        "innovations are %.2f times as large as predicted: noise, extrinsics, lens or time offset "
+        "are not as given",
+        std::sqrt(*innovations));
   }
   return {};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/estimator/estimator.h"
@@ -8,7 +9,8 @@
 namespace alidade {
 
 /// Tells when an estimate goes on without what it needs, though nothing contradicts it: frames without
-/// tracks, images that do not change, an IMU that was silent.
+/// tracks, images that do not change, an IMU that was silent; or with a model that does not hold: innovations
+/// larger than predicted for long.
 class Degradation {
  public:
   /// Without tracks for this long the estimate is dead reckoning.
@@ -17,6 +19,11 @@ class Degradation {
   static constexpr double kSettlingS = 0.5;
   /// Fewer equal pixels may be chance.
   static constexpr size_t kMinFrozen = 8;
+  /// Sum of normalised innovations squared over the sum of their degrees of freedom, one in the mean where
+  /// noise and calibration are right. Older frames count less, with this time constant. Wrong tracks do not
+  /// raise it: the gates refuse them.
+  static constexpr double kMaxInnovations = 1.1;
+  static constexpr double kInnovationsS = 10;
 
   /// Every sample that is delivered, in order.
   void OnImu(TimeNs stamp_ns);
@@ -28,15 +35,24 @@ class Degradation {
   /// IsFrozen of it.
   [[nodiscard]] std::string Check(TimeNs imu_ns, const FrameStatistics& statistics);
   /// After a start.
-  void Reset() { sighted_ns_ = INT64_MIN; }
+  void Reset() {
+    sighted_ns_ = INT64_MIN;
+    nis_ = dof_ = 0;
+  }
 
  private:
+  /// The mean of kInnovationsS where it is larger than chance makes it, else nothing.
+  std::optional<double> LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics);
+
   TimeNs last_imu_ns_ = INT64_MIN;
   TimeNs silent_until_ns_ = INT64_MIN;
   double silence_s_ = 0;
   TimeNs sighted_ns_ = INT64_MIN;  ///< the last frame with tracks
   std::vector<TrackObservation> shown_;
   bool frozen_ = false;
+  TimeNs weighed_ns_ = 0;
+  double nis_ = 0;
+  double dof_ = 0;
 };
 
 }  // namespace alidade

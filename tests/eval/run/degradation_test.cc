@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "core/random.h"
+
 namespace alidade {
 namespace {
 
@@ -65,6 +69,45 @@ TEST(DegradationTest, ASilentImuIsToldUntilTheEstimateHasSettled) {
   EXPECT_THAT(degradation.Check(SecondsToNs(0.6), Saw(20)), HasSubstr("silent for 0.21 s"));
   EXPECT_NE(degradation.Check(SecondsToNs(1.1), Saw(20)), "");
   EXPECT_EQ(degradation.Check(SecondsToNs(1.3), Saw(20)), "");
+}
+
+FrameStatistics Weighed(double nis, int dof) {
+  FrameStatistics statistics = Saw(20);
+  statistics.nis = nis;
+  statistics.nis_dof = dof;
+  return statistics;
+}
+
+/// Seconds of 60, at 10 Hz, in which innovations drawn with `variance`, `dof` a frame, are told.
+double SecondsTold(double variance, int dof) {
+  Degradation degradation;
+  RandomStream random(5, "innovations");
+  int told = 0;
+  for (int k = 0; k < 600; ++k) {
+    double nis = 0;
+    for (int i = 0; i < dof; ++i) {
+      nis += variance * std::pow(random.Normal(), 2);
+    }
+    told += degradation.Check(SecondsToNs(0.1 * k), Weighed(nis, dof)).empty() ? 0 : 1;
+  }
+  return 0.1 * told;
+}
+
+TEST(DegradationTest, InnovationsThatAreLargerThanPredictedForLongAreTold) {
+  EXPECT_EQ(SecondsTold(1.0, 200), 0);
+  EXPECT_EQ(SecondsTold(1.0, 4), 0);
+  EXPECT_EQ(SecondsTold(0.1, 200), 0);  // a cautious noise is no fault
+  EXPECT_GT(SecondsTold(1.3, 200), 55);
+  EXPECT_GT(SecondsTold(2.0, 4), 45);
+}
+
+TEST(DegradationTest, OneFrameOfLargeInnovationsIsForgotten) {
+  Degradation degradation;
+  int told = 0;
+  for (int k = 0; k < 600; ++k) {
+    told += degradation.Check(SecondsToNs(0.1 * k), Weighed(k == 100 ? 2000 : 190, 200)).empty() ? 0 : 1;
+  }
+  EXPECT_LT(told, 20);
 }
 
 }  // namespace
