@@ -141,8 +141,8 @@ std::string DescribePairs(const ToolRpeOptions& options) {
   if (options.method != RpeMethod::kEvo) {
     return "sub-trajectories";
   }
-  return std::string(options.all_pairs ? "all" : "consecutive") + " pairs along the " +
-         (options.pairs_from_truth ? "truth" : "estimate");
+  return std::string("pairs (") + (options.all_pairs ? "all" : "consecutive") + ", along the " +
+         (options.pairs_from_truth ? "truth)" : "estimate)");
 }
 
 void AppendToolRpe(std::string& text, const Evaluation& evaluation) {

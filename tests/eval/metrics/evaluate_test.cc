@@ -155,7 +155,7 @@ TEST(FormatEvaluation, GivenAToolsRelativeErrorThenTextAndJsonNameIt) {
   EXPECT_NEAR(delta["trans_part"]["rmse"].get<double>(), 0.02, 2e-3);  // 1 % of 2 m
   EXPECT_THAT(FormatEvaluationText(*evaluation),
               HasSubstr("relative error by evo over 2 m: " + std::to_string(evaluation->tool_rpe[0].count) +
-                        " consecutive pairs along the estimate"));
+                        " pairs (consecutive, along the estimate)"));
 }
 
 TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
