@@ -101,6 +101,14 @@ const std::vector<Command>& Commands() {
        {"dataset", "output"},
        0,
        RunRefineTruth},
+      {"data",
+       "list [NAME] | fetch NAME --output=DIR | verify NAME --data=DIR: published data sets; NAME is a set "
+       "or "
+       "SET/FILE",
+       {"output", "data", "mirror", "catalogue", "quiet"},
+       {},
+       2,
+       RunData},
       {"config",
        "--show F | --check F | --diff F F2 | --list: print, check or compare configurations; list the "
        "shipped ones",

@@ -13,11 +13,12 @@ DEFINE_bool(audit, false, "write observability.csv: the observability audit of t
 DEFINE_string(backend, "", "filter | smoother | batch: overrides the key `backend` of the configuration");
 DEFINE_string(calibration, "", "calibration files of Kalibr, OpenVINS or VINS, separated by commas");
 DEFINE_string(camera, "cam0", "camera to use from calibration files with several");
+DEFINE_string(catalogue, "", "catalogue of data sets, instead of the shipped one");
 DEFINE_bool(check, false, "report the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(compression, "none", "none | bz2 | lz4: compression of the chunks of a bag");
 DEFINE_string(config, "", "configuration: a YAML file, or the name of a shipped one");
-DEFINE_string(data, "", "folder that replaces ${data} in a plan");
+DEFINE_string(data, "", "folder that replaces ${data} in a plan, or that data fetch wrote to");
 DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout, or a ROS 1 bag");
 DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
 DEFINE_string(error, "right_invariant",
@@ -43,6 +44,7 @@ DEFINE_string(kind, "estimator", "estimator | simulator | plan: kind of the conf
 DEFINE_double(limit, 5, "duration of the data available to a start [s]");
 DEFINE_double(max_dt, 0.01, "largest stamp difference of a pair [s]; 0.02 with --association=rpg");
 DEFINE_bool(list, false, "print the names of the shipped configurations of this kind");
+DEFINE_string(mirror, "", "URL that replaces the first part of the URLs of a data set (`base`)");
 DEFINE_string(model, "",
               "pose_only | inverse_depth | imu_propagation | preintegration | pseudorange | doppler: the "
               "measurement model");
@@ -76,9 +78,9 @@ DEFINE_string(set, "", "a.b=value,...: override keys of the configuration file; 
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
 DEFINE_int32(starts, 100, "total number of starts, distributed over the sequences of the plan");
+DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows are paired [s]");
 DEFINE_string(
     topics, "",
-DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows are paired [s]");
     "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones (docs/bags.md)");
 DEFINE_string(tracks, "", "tracks.csv to judge with --score, instead of tracks of the front end");
 DEFINE_string(truth, "", "ground-truth trajectory file");
