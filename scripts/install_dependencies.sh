@@ -10,7 +10,7 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-video-dev libopencv-calib3d-dev
   libopencv-features2d-dev
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev
-  libgeographiclib-dev zlib1g-dev libbz2-dev liblz4-dev
+  libcurl4-openssl-dev libgeographiclib-dev zlib1g-dev libbz2-dev liblz4-dev
   libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3 librsvg2-bin
   dpkg-dev file
 )

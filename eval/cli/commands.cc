@@ -29,8 +29,9 @@ const std::vector<Command>& Commands() {
        RunRun},
       {"evaluate",
        "errors and consistency of a trajectory with respect to truth",
-       {"truth", "estimate", "align", "align_share", "anchor_at_first", "max_dt", "interpolate", "rpe",
-        "export", "json"},
+       {"truth", "estimate", "align", "align_share", "anchor_at_first", "association", "max_dt",
+        "time_offset", "interpolate", "rpe", "rpe_by", "rpe_unit", "rpe_all_pairs", "rpe_pairs_from_truth",
+        "rpe_tolerance", "export", "json"},
        {"truth", "estimate"},
        0,
        RunEvaluate},
@@ -100,6 +101,14 @@ const std::vector<Command>& Commands() {
        {"dataset", "output"},
        0,
        RunRefineTruth},
+      {"data",
+       "list [NAME] | fetch NAME --output=DIR | verify NAME --data=DIR: published data sets; NAME is a set "
+       "or "
+       "SET/FILE",
+       {"output", "data", "mirror", "catalogue", "quiet"},
+       {},
+       2,
+       RunData},
       {"config",
        "--show F | --check F | --diff F F2 | --list: print, check or compare configurations; list the "
        "shipped ones",

@@ -20,6 +20,7 @@ int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
 int RunConvert(const std::vector<std::string>& arguments);
 int RunRefineTruth(const std::vector<std::string>& arguments);
+int RunData(const std::vector<std::string>& arguments);
 int RunConfig(const std::vector<std::string>& arguments);
 int RunManual(const std::vector<std::string>& arguments);
 int RunCompletion(const std::vector<std::string>& arguments);

@@ -19,6 +19,11 @@ _alidade_configs() {
   compgen -f -- "$2"
 }
 
+# The data sets that start with $1, as program $2 knows them.
+_alidade_sets() {
+  "${2/#\~/$HOME}" data list 2>/dev/null | awk 'NR > 1 { print $1 }' | grep "^$1"
+}
+
 # The kind of configuration that the words of `alidade config` are about.
 _alidade_kind() {
   local i kind=estimator
@@ -56,6 +61,9 @@ _alidade() {
     return
   elif [[ $command == help ]]; then
     values=$_alidade_commands
+  elif [[ $command == data ]]; then
+    values="list fetch verify"
+    ((COMP_CWORD > 2)) && values=$(_alidade_sets "$current" "${COMP_WORDS[0]}")
   elif [[ $command == config ]]; then
     values=@$(_alidade_kind)
   else

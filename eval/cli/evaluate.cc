@@ -16,6 +16,73 @@
 namespace alidade::cli {
 namespace {
 
+bool IsGiven(const char* flag) {
+  return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default;
+}
+
+Status FillAssociation(AssociationOptions* association) {
+  const std::optional<AssociationMethod> method = ParseAssociationMethod(FLAGS_association);
+  if (!method) {
+    return Status::Usage("evaluate: --association: found '" + FLAGS_association +
+                         "', expected alidade, evo or rpg");
+  }
+  association->method = *method;
+  association->max_dt_s = IsGiven("max_dt") ? FLAGS_max_dt : DefaultMaxDt(*method);
+  association->time_offset_s = FLAGS_time_offset;
+  association->interpolate = FLAGS_interpolate;
+  return Status::Ok();
+}
+
+Result<std::vector<double>> DeltasFromFlag() {
+  std::vector<double> deltas;
+  for (const std::string& word : SplitWords(FLAGS_rpe)) {
+    double delta = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), delta);
+    if (error != std::errc() || end != word.data() + word.size() || !(delta > 0 && delta < 1e9)) {
+      return Status::Usage("evaluate: --rpe: found '" + word +
+                           "', expected distances in metres, separated by commas");
+    }
+    deltas.push_back(delta);
+  }
+  return deltas;
+}
+
+Status FillRpe(EvaluationOptions* options) {
+  Result<std::vector<double>> deltas = DeltasFromFlag();
+  if (!deltas.ok()) {
+    return deltas.status();
+  }
+  options->rpe_distances_m = std::move(deltas).value();
+  const std::optional<RpeMethod> method = ParseRpeMethod(FLAGS_rpe_by);
+  if (!method) {
+    return Status::Usage("evaluate: --rpe_by: found '" + FLAGS_rpe_by + "', expected alidade, evo or rpg");
+  }
+  const std::optional<RpeUnit> unit = ParseRpeUnit(FLAGS_rpe_unit);
+  if (!unit) {
+    return Status::Usage("evaluate: --rpe_unit: found '" + FLAGS_rpe_unit +
+                         "', expected frames, m, deg or rad");
+  }
+  for (const char* flag : {"rpe_unit", "rpe_all_pairs", "rpe_pairs_from_truth", "rpe_tolerance"}) {
+    if (*method != RpeMethod::kEvo && IsGiven(flag)) {
+      return Status::Usage(std::string("evaluate: --") + flag + ": only with --rpe_by=evo");
+    }
+  }
+  if (!(FLAGS_rpe_tolerance >= 0 && FLAGS_rpe_tolerance < 1)) {
+    return Status::Usage(
+        Format("evaluate: --rpe_tolerance: found %g, expected at least 0 and below 1", FLAGS_rpe_tolerance));
+  }
+  ToolRpeOptions& tool = options->tool_rpe;
+  tool.method = *method;
+  tool.unit = *unit;
+  tool.all_pairs = FLAGS_rpe_all_pairs;
+  tool.pairs_from_truth = FLAGS_rpe_pairs_from_truth;
+  tool.tolerance = FLAGS_rpe_tolerance;
+  if (IsGiven("rpe")) {
+    tool.deltas = options->rpe_distances_m;
+  }
+  return Status::Ok();
+}
+
 Result<EvaluationOptions> OptionsFromFlags() {
   EvaluationOptions options;
   const std::optional<Alignment> alignment = ParseAlignment(FLAGS_align);
@@ -30,18 +97,8 @@ Result<EvaluationOptions> OptionsFromFlags() {
   }
   options.align_share = FLAGS_align_share;
   options.anchor_at_first = FLAGS_anchor_at_first;
-  options.association.max_dt_s = FLAGS_max_dt;
-  options.association.interpolate = FLAGS_interpolate;
-  options.rpe_distances_m.clear();
-  for (const std::string& word : SplitWords(FLAGS_rpe)) {
-    double distance = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), distance);
-    if (error != std::errc() || end != word.data() + word.size() || !(distance > 0 && distance < 1e9)) {
-      return Status::Usage("evaluate: --rpe: found '" + word +
-                           "', expected distances in metres, separated by commas");
-    }
-    options.rpe_distances_m.push_back(distance);
-  }
+  ALIDADE_RETURN_IF_ERROR(FillAssociation(&options.association));
+  ALIDADE_RETURN_IF_ERROR(FillRpe(&options));
   return options;
 }
 

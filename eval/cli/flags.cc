@@ -7,15 +7,18 @@ DEFINE_string(align, "posyaw",
               "none | pos | posyaw | se3 | sim3: alignment of the trajectory before the ATE");
 DEFINE_double(align_share, 1,
               "share of the pairs, from the first on, to which the alignment is fitted, 0 to 1");
+DEFINE_string(association, "alidade",
+              "alidade | evo | rpg: whose rule pairs the rows of truth and estimate (docs/evaluation.md)");
 DEFINE_bool(audit, false, "write observability.csv: the observability audit of the filter");
 DEFINE_string(backend, "", "filter | smoother | batch: overrides the key `backend` of the configuration");
 DEFINE_string(calibration, "", "calibration files of Kalibr, OpenVINS or VINS, separated by commas");
 DEFINE_string(camera, "cam0", "camera to use from calibration files with several");
+DEFINE_string(catalogue, "", "catalogue of data sets, instead of the shipped one");
 DEFINE_bool(check, false, "report the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(compression, "none", "none | bz2 | lz4: compression of the chunks of a bag");
 DEFINE_string(config, "", "configuration: a YAML file, or the name of a shipped one");
-DEFINE_string(data, "", "folder that replaces ${data} in a plan");
+DEFINE_string(data, "", "folder that replaces ${data} in a plan, or that data fetch wrote to");
 DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout, or a ROS 1 bag");
 DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
 DEFINE_string(error, "right_invariant",
@@ -39,8 +42,9 @@ DEFINE_int32(jobs, 1,
 DEFINE_bool(json, false, "print the result as JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: kind of the configuration file");
 DEFINE_double(limit, 5, "duration of the data available to a start [s]");
-DEFINE_double(max_dt, 0.01, "largest stamp difference of a pair [s]");
+DEFINE_double(max_dt, 0.01, "largest stamp difference of a pair [s]; 0.02 with --association=rpg");
 DEFINE_bool(list, false, "print the names of the shipped configurations of this kind");
+DEFINE_string(mirror, "", "URL that replaces the first part of the URLs of a data set (`base`)");
 DEFINE_string(model, "",
               "pose_only | inverse_depth | imu_propagation | preintegration | pseudorange | doppler: the "
               "measurement model");
@@ -57,7 +61,15 @@ DEFINE_string(plan, "", "comparison plan: a YAML file, or the name of a shipped 
 DEFINE_bool(quiet, false, "print only errors and results");
 DEFINE_bool(render, false, "render images instead of simulating tracks (render.enabled)");
 DEFINE_bool(resume, false, "keep the completed cells of an interrupted comparison");
-DEFINE_string(rpe, "8,16,24,32,40", "distances of the relative pose error [m], separated by commas");
+DEFINE_string(rpe, "8,16,24,32,40",
+              "distances of the relative pose error [m], separated by commas; with --rpe_by another tool's "
+              "deltas, by default those of the tool");
+DEFINE_bool(rpe_all_pairs, false, "of --rpe_by=evo: overlapping pairs instead of consecutive ones");
+DEFINE_string(rpe_by, "alidade", "alidade | evo | rpg: whose definition of the relative pose error");
+DEFINE_bool(rpe_pairs_from_truth, false,
+            "of --rpe_by=evo: measure the deltas along the truth instead of along the estimate");
+DEFINE_double(rpe_tolerance, 0.1, "of --rpe_by=evo: share of a delta by which a pair of all may miss it");
+DEFINE_string(rpe_unit, "frames", "frames | m | deg | rad: unit of the deltas of --rpe_by=evo");
 DEFINE_bool(score, false,
             "judge the tracks: life, loss, coverage, CPU time, consistency with the truth, and errors of "
             "corners in rendered images; writes score.json and score.csv");
@@ -66,6 +78,7 @@ DEFINE_string(set, "", "a.b=value,...: override keys of the configuration file; 
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
 DEFINE_int32(starts, 100, "total number of starts, distributed over the sequences of the plan");
+DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows are paired [s]");
 DEFINE_string(
     topics, "",
     "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones (docs/bags.md)");

@@ -18,6 +18,17 @@ Status ReadDistances(const PlanReader& reader, const Node& node, std::vector<dou
   });
 }
 
+Status ReadAssociation(const PlanReader& reader, const Node& node, AssociationMethod* method) {
+  std::string name;
+  ALIDADE_RETURN_IF_ERROR(reader.Text(node, "association", &name));
+  const std::optional<AssociationMethod> known = ParseAssociationMethod(name);
+  if (!known) {
+    return reader.Fault(node, "association", "alidade, evo or rpg");
+  }
+  *method = *known;
+  return Status::Ok();
+}
+
 }  // namespace
 
 Status ReadAlignment(const PlanReader& reader, const Node& node, Alignment* alignment) {
@@ -38,11 +49,12 @@ Status ReadAlignShare(const PlanReader& reader, const Node& node, double* share)
 
 Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions* metrics) {
   AssociationOptions& association = metrics->association;
-  return reader.Map(
+  ALIDADE_RETURN_IF_ERROR(reader.Map(
       node, "metrics",
       {{"align", [&](const Node& n) { return ReadAlignment(reader, n, &metrics->alignment); }},
        {"align_share", [&](const Node& n) { return ReadAlignShare(reader, n, &metrics->align_share); }},
        {"rpe", [&](const Node& n) { return ReadDistances(reader, n, &metrics->rpe_distances_m); }},
+       {"association", [&](const Node& n) { return ReadAssociation(reader, n, &association.method); }},
        {"max_dt",
         [&](const Node& n) { return reader.Real(n, "max_dt", 0, kMaxSeconds, &association.max_dt_s); }},
        {"anchor_at_first",
@@ -50,7 +62,14 @@ Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions
        {"interpolate",
         [&](const Node& n) { return reader.Boolean(n, "interpolate", &association.interpolate); }},
        {"max_gap",
-        [&](const Node& n) { return reader.Real(n, "max_gap", 0, kMaxSeconds, &association.max_gap_s); }}});
+        [&](const Node& n) { return reader.Real(n, "max_gap", 0, kMaxSeconds, &association.max_gap_s); }}}));
+  if (!node["max_dt"]) {
+    association.max_dt_s = DefaultMaxDt(association.method);
+  }
+  if (association.interpolate && association.method != AssociationMethod::kAlidade) {
+    return reader.Fault(node["interpolate"], "interpolate", "association: alidade, which alone interpolates");
+  }
+  return Status::Ok();
 }
 
 }  // namespace alidade

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/numbers.h"
 
@@ -139,6 +140,24 @@ PairedDifference Pool(const std::vector<const PairedDifference*>& parts, Ideal i
   return pool;
 }
 
+/// Sets holm_p_value; a family is the pairs of one sequence and figure.
+void CorrectForNumber(std::vector<PairedDifference>* pairs) {
+  std::map<std::pair<std::string, size_t>, std::vector<PairedDifference*>> families;
+  for (PairedDifference& pair : *pairs) {
+    families[{pair.sequence, pair.figure}].push_back(&pair);
+  }
+  for (const auto& [place, family] : families) {
+    std::vector<double> p_values;
+    for (const PairedDifference* pair : family) {
+      p_values.push_back(pair->difference.p_value);
+    }
+    const std::vector<double> corrected = HolmCorrect(p_values);
+    for (size_t i = 0; i < family.size(); ++i) {
+      family[i]->holm_p_value = corrected[i];
+    }
+  }
+}
+
 }  // namespace
 
 std::string ToString(PairVerdict verdict) {
@@ -178,6 +197,23 @@ PairedT TestPairs(const std::vector<double>& differences) {
   return test;
 }
 
+std::vector<double> HolmCorrect(const std::vector<double>& p_values) {
+  std::vector<size_t> order;
+  for (size_t i = 0; i < p_values.size(); ++i) {
+    if (!std::isnan(p_values[i])) {
+      order.push_back(i);
+    }
+  }
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return p_values[a] < p_values[b]; });
+  std::vector<double> corrected(p_values.size(), kNan);
+  double largest = 0;
+  for (size_t i = 0; i < order.size(); ++i) {
+    largest = std::max(largest, static_cast<double>(order.size() - i) * p_values[order[i]]);
+    corrected[order[i]] = std::min(1.0, largest);
+  }
+  return corrected;
+}
+
 double SignTest(int lower, int higher) {
   const int count = lower + higher;
   if (count == 0) {
@@ -200,6 +236,7 @@ std::vector<PairedDifference> ComparePairs(const Comparison& comparison, const s
     const std::vector<PairedDifference> across = PoolSequences(pairs, figures);
     pairs.insert(pairs.end(), across.begin(), across.end());
   }
+  CorrectForNumber(&pairs);
   return pairs;
 }
 
@@ -219,6 +256,7 @@ std::vector<PairedDifference> PoolSequences(const std::vector<PairedDifference>&
   for (const Key& key : order) {
     pools.push_back(Pool(parts.at(key), figures[std::get<0>(key)].ideal));
   }
+  CorrectForNumber(&pools);
   return pools;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,12 @@ struct PairedT {
 /// 1 without any pair.
 [[nodiscard]] double SignTest(int lower, int higher);
 
+/// The p-values corrected for their number by Holm's step-down method (Holm 1979), in the same order: of m
+/// sorted ones p(i) becomes the largest min(1, (m - j + 1) p(j)) of j <= i. Of those below alpha then none is
+/// by chance with a probability of at least 1 - alpha, however the tests depend on each other. NaN stays and
+/// is not counted.
+[[nodiscard]] std::vector<double> HolmCorrect(const std::vector<double>& p_values);
+
 /// One figure of two estimators on the runs of one sequence that both finished on the same input.
 struct PairedDifference {
   std::string sequence;
@@ -43,9 +50,11 @@ struct PairedDifference {
   double first_mean = 0, second_mean = 0;
   PairedT difference;                     ///< of first - second
   int first_lower = 0, second_lower = 0;  ///< runs
-  double sign_p_value = 0;                ///< SignTest of these, robust against outliers
-  int only_first = 0, only_second = 0;    ///< runs that only one of them has a value for
-  int neither = 0;                        ///< runs of the sequence that none of them has a value for
+  /// HolmCorrect over the pairs of the same sequence and figure; NaN with too few runs.
+  double holm_p_value = std::numeric_limits<double>::quiet_NaN();
+  double sign_p_value = 0;              ///< SignTest of these, robust against outliers
+  int only_first = 0, only_second = 0;  ///< runs that only one of them has a value for
+  int neither = 0;                      ///< runs of the sequence that none of them has a value for
   PairVerdict verdict = PairVerdict::kTooFew;
 };
 
@@ -59,8 +68,8 @@ inline constexpr const char* kAllSequences = "all sequences";
 /// pair of runs has the same seed and input digest and both runs ended ok. Pairs of rows of which no run has
 /// the value are left out. With Comparison::pair_across rows over all sequences follow, one sample a sequence
 /// (its mean difference), so the interval generalises over sequences; their counts of runs are sums, `pairs`
-/// and `lower` count sequences. The intervals are not corrected for the number of comparisons: of twenty
-/// pairs without a difference one will look significant.
+/// and `lower` count sequences. Intervals and verdicts are not corrected for the number of
+/// comparisons: of twenty pairs without a difference one will look significant. `holm_p_value` is.
 [[nodiscard]] std::vector<PairedDifference> ComparePairs(const Comparison& comparison,
                                                          const std::vector<Figure>& figures);
 

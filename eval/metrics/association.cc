@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/format.h"
+#include "eval/metrics/tool_association.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
 namespace alidade {
@@ -28,12 +29,6 @@ std::string Seconds(double value) {
 
 TimeNs Distance(TimeNs a, TimeNs b) {
   return a < b ? b - a : a - b;
-}
-
-/// The double nearest to the stamp in seconds, as it is read from a decimal text: a long double holds all 63
-/// bits of the stamp.
-double ToDoubleSeconds(TimeNs stamp_ns) {
-  return static_cast<double>(static_cast<long double>(stamp_ns) / 1e9L);
 }
 
 /// Whether two stamps are within the tolerance. At Unix time doubles of seconds, which evo and the rpg tools
@@ -94,6 +89,16 @@ std::vector<StatePair> PairByInterpolation(const Trajectory& truth, const Trajec
     } else if (after > 0 && next.stamp_ns - truth.points[after - 1].stamp_ns <= max_gap_ns) {
       pairs.push_back({Interpolate(truth.points[after - 1], next, point.stamp_ns), point});
     }
+  }
+  return pairs;
+}
+
+std::vector<StatePair> PairByTool(const Trajectory& truth, const Trajectory& estimate,
+                                  const AssociationOptions& options) {
+  const auto match = options.method == AssociationMethod::kEvo ? MatchAsEvo : MatchAsRpg;
+  std::vector<StatePair> pairs;
+  for (const auto& [t, e] : match(truth, estimate, options.max_dt_s)) {
+    pairs.push_back({truth.points[t], estimate.points[e]});
   }
   return pairs;
 }
@@ -225,12 +230,43 @@ Status CheckTolerance(const char* name, double value) {
                        Seconds(kMaximumTolerance) + " s");
 }
 
+Status CheckOptions(const AssociationOptions& options) {
+  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_dt_s", options.max_dt_s));
+  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_gap_s", options.max_gap_s));
+  ALIDADE_RETURN_IF_ERROR(CheckTolerance("time_offset_s", std::abs(options.time_offset_s)));
+  if (options.interpolate && options.method != AssociationMethod::kAlidade) {
+    return Status::Usage("interpolate: " + std::string(ToString(options.method)) +
+                         " pairs rows; only association alidade interpolates the truth");
+  }
+  return Status::Ok();
+}
+
+Trajectory Shifted(Trajectory trajectory, double offset_s) {
+  for (TrajectoryPoint& point : trajectory.points) {
+    point.stamp_ns += SecondsToNs(offset_s);
+  }
+  return trajectory;
+}
+
+std::vector<StatePair> Pair(const Trajectory& truth, const Trajectory& estimate,
+                            const AssociationOptions& options) {
+  if (options.method != AssociationMethod::kAlidade) {
+    return PairByTool(truth, estimate, options);
+  }
+  return options.interpolate ? PairByInterpolation(truth, estimate, SecondsToNs(options.max_gap_s))
+                             : PairByNearest(truth, estimate, options.max_dt_s);
+}
+
 }  // namespace
 
 Result<std::vector<StatePair>> Associate(const Trajectory& truth, const Trajectory& estimate,
                                          const AssociationOptions& options) {
-  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_dt_s", options.max_dt_s));
-  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_gap_s", options.max_gap_s));
+  ALIDADE_RETURN_IF_ERROR(CheckOptions(options));
+  if (options.time_offset_s != 0) {
+    AssociationOptions shifted = options;
+    shifted.time_offset_s = 0;
+    return Associate(truth, Shifted(estimate, options.time_offset_s), shifted);
+  }
   for (const Trajectory* trajectory : {&truth, &estimate}) {
     if (trajectory->points.size() < kMinimumPairs) {
       return Status::Input(std::string(trajectory == &truth ? "the truth" : "the estimate") + " has " +
@@ -238,9 +274,7 @@ Result<std::vector<StatePair>> Associate(const Trajectory& truth, const Trajecto
                            std::to_string(kMinimumPairs));
     }
   }
-  std::vector<StatePair> pairs = options.interpolate
-                                     ? PairByInterpolation(truth, estimate, SecondsToNs(options.max_gap_s))
-                                     : PairByNearest(truth, estimate, options.max_dt_s);
+  std::vector<StatePair> pairs = Pair(truth, estimate, options);
   if (pairs.size() < kMinimumPairs) {
     return TooFewPairs(truth, estimate, options, pairs.size());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/numbers.h"
@@ -36,7 +37,49 @@ void ForgetUnknownNees(const Trajectory& truth, NeesResult* nees) {
   }
 }
 
+/// Statistics of the aligned pairs' errors, as evo prints them.
+void DescribeAte(const std::vector<StatePair>& aligned, Evaluation* evaluation) {
+  std::vector<double> pos_m, ori_deg;
+  for (const StatePair& pair : aligned) {
+    const NavState& truth = pair.truth.nav;
+    const NavState& estimate = pair.estimate.nav;
+    pos_m.push_back((truth.p_WB - estimate.p_WB).norm());
+    ori_deg.push_back(so3::Log(estimate.R_WB.transpose() * truth.R_WB).norm() * 180 / std::numbers::pi);
+  }
+  evaluation->ate_pos_m = ComputeErrorStatistics(pos_m);
+  evaluation->ate_ori_deg = ComputeErrorStatistics(ori_deg);
+}
+
+Status ComputeRelativeErrors(const Trajectory& truth, const std::vector<StatePair>& aligned, bool oriented,
+                             Evaluation* evaluation) {
+  ToolRpeOptions& tool = evaluation->options.tool_rpe;
+  if (tool.method == RpeMethod::kAlidade) {
+    evaluation->rpe =
+        ComputeRpe(oriented ? aligned : WithoutOrientation(aligned), evaluation->options.rpe_distances_m);
+    return Status::Ok();
+  }
+  if (!oriented) {
+    return Status::Usage("relative errors by " + std::string(ToString(tool.method)) +
+                         " need orientations, but one of the trajectories has none");
+  }
+  if (tool.method == RpeMethod::kRpg) {
+    if (tool.deltas.empty()) {
+      tool.deltas = DefaultRpgLengths(truth);
+    }
+    evaluation->tool_rpe =
+        ComputeRpgRelativeErrors(evaluation->pairs, evaluation->transform.scale, tool.deltas);
+    return Status::Ok();
+  }
+  Result<std::vector<ToolRpeResult>> results = ComputeEvoRpe(aligned, tool);
+  if (!results.ok()) {
+    return results.status();
+  }
+  evaluation->tool_rpe = std::move(results).value();
+  return Status::Ok();
+}
+
 void ForgetOrientation(Evaluation* evaluation) {
+  evaluation->ate_ori_deg = ErrorStatistics();
   evaluation->unaligned.ori_deg = evaluation->ate.ori_deg = kNan;
   for (RpeResult& rpe : evaluation->rpe) {
     rpe.ori_rmse_deg = kNan;
@@ -71,7 +114,8 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
   const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
   evaluation.unaligned = ComputeAte(evaluation.pairs);
   evaluation.ate = ComputeAte(aligned);
-  evaluation.rpe = ComputeRpe(oriented ? aligned : WithoutOrientation(aligned), options.rpe_distances_m);
+  DescribeAte(aligned, &evaluation);
+  ALIDADE_RETURN_IF_ERROR(ComputeRelativeErrors(truth, aligned, oriented, &evaluation));
   if (!oriented) {
     ForgetOrientation(&evaluation);
   } else if (estimate.has_covariance) {

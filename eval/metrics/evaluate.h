@@ -5,9 +5,11 @@
 
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/association.h"
+#include "eval/metrics/error_statistics.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/state_pair.h"
+#include "eval/metrics/tool_rpe.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {
@@ -21,6 +23,7 @@ struct EvaluationOptions {
   /// Otherwise "unaligned" errors and NEES of such an estimate are not meaningful.
   bool anchor_at_first = false;
   std::vector<double> rpe_distances_m = {8, 16, 24, 32, 40};
+  ToolRpeOptions tool_rpe;  ///< the relative error as evo or rpg_trajectory_evaluation define it, instead
 };
 
 /// The evaluation of one estimate against one truth.
@@ -34,15 +37,18 @@ struct Evaluation {
   double path_m = 0;      ///< truth path through the pairs
   AlignmentTransform transform;
   AteResult unaligned;
-  AteResult ate;                      ///< after the alignment
-  std::vector<RpeResult> rpe;         ///< after the alignment (only its scale matters here)
-  std::optional<NeesResult> nees;     ///< unaligned; absent when the estimate has no covariance
-  bool truth_has_covariance = false;  ///< which `nees` then includes (ErrorCovariance)
+  AteResult ate;                        ///< after the alignment
+  ErrorStatistics ate_pos_m;            ///< of its position errors
+  ErrorStatistics ate_ori_deg;          ///< of its rotation angles
+  std::vector<RpeResult> rpe;           ///< after the alignment (only its scale matters here)
+  std::vector<ToolRpeResult> tool_rpe;  ///< instead of `rpe`, by the method of options.tool_rpe
+  std::optional<NeesResult> nees;       ///< unaligned; absent when the estimate has no covariance
+  bool truth_has_covariance = false;    ///< which `nees` then includes (ErrorCovariance)
 };
 
 /// Associates, aligns and scores. When one of the two has no orientation, figures of it are NaN and there is
 /// no NEES; the relative error is then that of displacements in the truth's world. Errors: those of
-/// Associate; kUsage: anchor_at_first without orientation.
+/// Associate and of the tool's RPE; kUsage: anchor_at_first or a tool's RPE without orientation.
 Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
                             const EvaluationOptions& options);
 

@@ -74,6 +74,36 @@ Json RpeJson(const std::vector<RpeResult>& results) {
   return list;
 }
 
+Json StatisticsJson(const ErrorStatistics& statistics) {
+  return {{"rmse", Number(statistics.rmse)},     {"mean", Number(statistics.mean)},
+          {"median", Number(statistics.median)}, {"std", Number(statistics.std)},
+          {"min", Number(statistics.min)},       {"max", Number(statistics.max)},
+          {"sse", Number(statistics.sse)}};
+}
+
+Json ToolRpeJson(const Evaluation& evaluation) {
+  const ToolRpeOptions& options = evaluation.options.tool_rpe;
+  Json object = {{"tool", std::string(ToString(options.method))}};
+  if (options.method == RpeMethod::kEvo) {
+    object["unit"] = std::string(ToString(options.unit));
+    object["all_pairs"] = options.all_pairs;
+    object["pairs_from_truth"] = options.pairs_from_truth;
+    object["tolerance"] = Number(options.tolerance);
+  } else {
+    object["unit"] = "m";
+  }
+  object["deltas"] = Json::array();
+  for (const ToolRpeResult& result : evaluation.tool_rpe) {
+    Json delta = {{"delta", Number(result.delta)}, {"count", result.count}};
+    for (const RelationError& relation : result.relations) {
+      delta[relation.name] = StatisticsJson(relation.statistics);
+      delta[relation.name]["unit"] = relation.unit;
+    }
+    object["deltas"].push_back(delta);
+  }
+  return object;
+}
+
 Json NeesJson(const NeesResult& nees, bool truth_has_covariance) {
   Json object = Json::object();
   for (const NeesLine& line : NeesLines(nees)) {
@@ -91,27 +121,11 @@ void AppendAte(std::string& text, const std::string& name, const AteResult& ate)
   text += Format("%-22s%14.6f%14.6f%14.6f\n", name.c_str(), ate.pos_m, ate.ori_deg, ate.pos_max_m);
 }
 
-}  // namespace
-
-std::string FormatEvaluationText(const Evaluation& evaluation) {
-  const AssociationOptions& association = evaluation.options.association;
-  std::string text;
-  text += Format("pairs      %zu of %zu estimate and %zu truth rows (%s %g s)\n", evaluation.pairs.size(),
-                 evaluation.estimate_rows, evaluation.truth_rows,
-                 association.interpolate ? "interpolated over at most" : "nearest within",
-                 association.interpolate ? association.max_gap_s : association.max_dt_s);
-  text += Format("duration   %.3f s, truth path %.3f m\n", evaluation.duration_s, evaluation.path_m);
-  if (evaluation.options.alignment == Alignment::kSim3) {
-    text += Format("scale      %.6f\n", evaluation.transform.scale);
-  }
-  text += Format("\n%-22s%14s%14s%14s\n", "absolute error", "rmse [m]", "rmse [deg]", "max [m]");
-  AppendAte(text, "unaligned", evaluation.unaligned);
-  AppendAte(text, "aligned (" + std::string(ToString(evaluation.options.alignment)) + ")", evaluation.ate);
-
-  if (!evaluation.rpe.empty()) {
+void AppendRpe(std::string& text, const std::vector<RpeResult>& results) {
+  if (!results.empty()) {
     text += Format("\n%-22s%14s%14s%14s\n", "relative error over", "rmse [m]", "rmse [deg]", "count");
   }
-  for (const RpeResult& rpe : evaluation.rpe) {
+  for (const RpeResult& rpe : results) {
     const std::string distance = Format("%g m", rpe.distance_m);
     if (rpe.count == 0) {
       text += Format("%-22s%14s%14s%14d\n", distance.c_str(), "-", "-", 0);
@@ -120,6 +134,68 @@ std::string FormatEvaluationText(const Evaluation& evaluation) {
           Format("%-22s%14.6f%14.6f%14d\n", distance.c_str(), rpe.pos_rmse_m, rpe.ori_rmse_deg, rpe.count);
     }
   }
+}
+
+/// How evo finds pairs; empty of another tool.
+std::string DescribePairs(const ToolRpeOptions& options) {
+  if (options.method != RpeMethod::kEvo) {
+    return "sub-trajectories";
+  }
+  return std::string("pairs (") + (options.all_pairs ? "all" : "consecutive") + ", along the " +
+         (options.pairs_from_truth ? "truth)" : "estimate)");
+}
+
+void AppendToolRpe(std::string& text, const Evaluation& evaluation) {
+  const ToolRpeOptions& options = evaluation.options.tool_rpe;
+  const std::string unit(options.method == RpeMethod::kEvo ? ToString(options.unit) : "m");
+  for (const ToolRpeResult& result : evaluation.tool_rpe) {
+    text +=
+        Format("\nrelative error by %s over %g %s: %zu %s\n", std::string(ToString(options.method)).c_str(),
+               result.delta, unit.c_str(), result.count, DescribePairs(options).c_str());
+    if (result.count == 0) {
+      continue;
+    }
+    text += Format("%-31s%13s%13s%13s%13s%13s%13s%13s\n", "", "rmse", "mean", "median", "std", "min", "max",
+                   "sse");
+    for (const RelationError& relation : result.relations) {
+      const ErrorStatistics& s = relation.statistics;
+      const std::string name = relation.name + (relation.unit.empty() ? "" : " [" + relation.unit + "]");
+      text += Format("%-31s%13.6f%13.6f%13.6f%13.6f%13.6f%13.6f%13.6f\n", name.c_str(), s.rmse, s.mean,
+                     s.median, s.std, s.min, s.max, s.sse);
+    }
+  }
+}
+
+/// The rule by which rows became pairs.
+std::string DescribeAssociation(const AssociationOptions& association) {
+  std::string text = association.interpolate ? Format("interpolated over at most %g s", association.max_gap_s)
+                                             : Format("nearest within %g s", association.max_dt_s);
+  if (association.method != AssociationMethod::kAlidade) {
+    text += " by the rule of " + std::string(ToString(association.method));
+  }
+  if (association.time_offset_s != 0) {
+    text += Format(", estimate %+g s", association.time_offset_s);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string FormatEvaluationText(const Evaluation& evaluation) {
+  std::string text;
+  text += Format("pairs      %zu of %zu estimate and %zu truth rows (%s)\n", evaluation.pairs.size(),
+                 evaluation.estimate_rows, evaluation.truth_rows,
+                 DescribeAssociation(evaluation.options.association).c_str());
+  text += Format("duration   %.3f s, truth path %.3f m\n", evaluation.duration_s, evaluation.path_m);
+  if (evaluation.options.alignment == Alignment::kSim3) {
+    text += Format("scale      %.6f\n", evaluation.transform.scale);
+  }
+  text += Format("\n%-22s%14s%14s%14s\n", "absolute error", "rmse [m]", "rmse [deg]", "max [m]");
+  AppendAte(text, "unaligned", evaluation.unaligned);
+  AppendAte(text, "aligned (" + std::string(ToString(evaluation.options.alignment)) + ")", evaluation.ate);
+
+  AppendRpe(text, evaluation.rpe);
+  AppendToolRpe(text, evaluation);
 
   if (evaluation.nees) {
     text += Format("\n%-22s%14s%14s   95 %% band for independent pairs\n", "NEES (unaligned)", "mean",
@@ -142,7 +218,9 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
   object["pairs"] = evaluation.pairs.size();
   object["truth_rows"] = evaluation.truth_rows;
   object["estimate_rows"] = evaluation.estimate_rows;
-  object["association"] = {{"interpolate", association.interpolate},
+  object["association"] = {{"rule", std::string(ToString(association.method))},
+                           {"time_offset_s", Number(association.time_offset_s)},
+                           {"interpolate", association.interpolate},
                            {"max_dt_s", Number(association.max_dt_s)},
                            {"max_gap_s", Number(association.max_gap_s)}};
   object["duration_s"] = Number(evaluation.duration_s);
@@ -152,7 +230,12 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
   object["alignment"] = AlignmentJson(evaluation);
   object["unaligned"] = AteJson(evaluation.unaligned);
   object["ate"] = AteJson(evaluation.ate);
+  object["ate_statistics"] = {{"pos_m", StatisticsJson(evaluation.ate_pos_m)},
+                              {"ori_deg", StatisticsJson(evaluation.ate_ori_deg)}};
   object["rpe"] = RpeJson(evaluation.rpe);
+  if (evaluation.options.tool_rpe.method != RpeMethod::kAlidade) {
+    object["rpe_by_tool"] = ToolRpeJson(evaluation);
+  }
   object["nees"] =
       evaluation.nees ? NeesJson(*evaluation.nees, evaluation.truth_has_covariance) : Json(nullptr);
   return object.dump(2) + "\n";

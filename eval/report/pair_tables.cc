@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "core/format.h"
 #include "eval/files/csv_text.h"
 
 namespace alidade {
@@ -49,12 +50,19 @@ std::string ShortVerdict(PairVerdict verdict) {
   return "";
 }
 
+/// "p 0.012", or "p < 0.001".
+std::string PValue(const std::string& name, double p) {
+  return name + (p < 0.001 ? std::string(" < 0.001") : Format(" %.2g", p));
+}
+
 TextCell PairCell(const PairedDifference& pair, int decimals, const std::string& plus_minus) {
   const PairedT& test = pair.difference;
   const std::string half = FormatValue(0.5 * (test.high - test.low), decimals);
   const int lost = pair.only_first + pair.only_second + pair.neither;
   return {(test.mean < 0 ? kMinus : "") + FormatValue(std::abs(test.mean), decimals) + plus_minus + half +
-              " " + ShortVerdict(pair.verdict) + (lost > 0 ? " (" + std::to_string(lost) + " lost)" : ""),
+              " " + ShortVerdict(pair.verdict) + " (" + PValue("p", test.p_value) + ", " +
+              PValue("Holm", pair.holm_p_value) + ")" +
+              (lost > 0 ? " (" + std::to_string(lost) + " lost)" : ""),
           pair.verdict == PairVerdict::kBetter};
 }
 
@@ -133,7 +141,7 @@ std::vector<TextTable> LayOutPairTables(const Comparison& comparison, const std:
 std::string PairsCsv(const Comparison& comparison, const std::vector<Figure>& figures) {
   std::string text =
       "sequence,figure,a,b,pairs,only_a,only_b,neither,a_mean,b_mean,ratio,difference,standard_error,"
-      "ci95_low,ci95_high,p_value,a_lower,b_lower,sign_p_value,verdict\n";
+      "ci95_low,ci95_high,p_value,a_lower,b_lower,sign_p_value,verdict,holm_p_value\n";
   for (const PairedDifference& pair : ComparePairs(comparison, figures)) {
     const PairedT& test = pair.difference;
     std::vector<std::string> fields = {CsvText(pair.sequence), figures[pair.figure].key, CsvText(pair.first),
@@ -149,6 +157,7 @@ std::string PairsCsv(const Comparison& comparison, const std::vector<Figure>& fi
     fields.push_back(std::to_string(pair.second_lower));
     fields.push_back(CsvNumber(pair.sign_p_value));
     fields.push_back(ToString(pair.verdict));
+    fields.push_back(CsvNumber(pair.holm_p_value));
     text += JoinCsv(fields);
   }
   return text;

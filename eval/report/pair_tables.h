@@ -12,7 +12,8 @@ namespace alidade {
 inline constexpr const char* kPairTitle = "Pairs: ";
 
 /// One matrix a sequence and figure of Comparison::pair_figures: estimators down and across, row minus column
-/// with half of the 95 % interval and the verdict on the row. With Comparison::pair_across one matrix a
+/// with half of the 95 % interval, the verdict on the row, the p-value and that corrected for the
+/// number of pairs of the matrix. With Comparison::pair_across one matrix a
 /// figure, over the sequences. A sequence with too few pairs gets none.
 [[nodiscard]] std::vector<TextTable> LayOutPairTables(const Comparison& comparison,
                                                       const std::vector<Figure>& figures,

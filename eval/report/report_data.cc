@@ -115,8 +115,8 @@ Json AggregateData(const AggregateRow& row) {
 }
 
 /// Of each pair: [sequence, figure, first, second (indices), pairs, lost, difference, half of its interval,
-/// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference; p-value]; sequence -1 is all
-/// of them. Pairs that are too few to judge are left out.
+/// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference; p-value; that by Holm];
+/// sequence -1 is all of them. Pairs that are too few to judge are left out.
 Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
               const std::vector<AggregateRow>& rows) {
   const std::vector<std::string> sequences = ListSequences(rows);
@@ -140,7 +140,7 @@ Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
     list.push_back({place(sequences, pair.sequence), pair.figure, place(labels, pair.first),
                     place(labels, pair.second), test.count, pair.only_first + pair.only_second + pair.neither,
                     RoundedJson(test.mean, 4), RoundedJson(0.5 * (test.high - test.low), 3), verdict,
-                    RoundedJson(test.p_value, 2)});
+                    RoundedJson(test.p_value, 2), RoundedJson(pair.holm_p_value, 2)});
   }
   return list;
 }

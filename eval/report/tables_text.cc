@@ -96,7 +96,9 @@ const char* const kReading =
     "of the instants at which the NEES averaged over the runs is in its 95 % chi-square band; the verdict "
     "compares the mean NEES with the band of that many independent runs. Pairs: differences on equal input "
     "and seed, with half of their 95 % interval (Student's t); significant when the interval excludes zero, "
-    "not corrected for the number of pairs; bold when significantly better. pairs.csv has all pairs. "
+    "bold "
+    "when significantly better. p: of the pair alone; Holm: corrected for the number of pairs of the table. "
+    "pairs.csv has all pairs. "
     "Efficiency: bound divided by achieved RMSE on the runs that both finished; hindsight is the batch "
     "estimate's own RMSE, smoothing the deviation it predicts for itself, filtering the deviation given only "
     "the data up to each frame, the bound of online estimators.";

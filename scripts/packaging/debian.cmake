@@ -31,7 +31,7 @@ string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "alidade (= ${PROJECT_VERSION})" pkg-config libeigen3-dev libceres-dev libopenblas-pthread-dev liblapacke-dev libboost-dev
   libboost-math-dev libgoogle-glog-dev libgflags-dev libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libopencv-video-dev libopencv-calib3d-dev libopencv-features2d-dev libgeographiclib-dev libyaml-cpp-dev libssl-dev
-  zlib1g-dev libbz2-dev liblz4-dev)
+  libcurl4-openssl-dev zlib1g-dev libbz2-dev liblz4-dev)
 
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/strip_archives.cmake)
 

@@ -37,6 +37,7 @@ std::vector<std::string> Replies(const std::string& words, const std::string& fo
 TEST(Completion, OffersCommands) {
   EXPECT_THAT(Replies("''"), IsSupersetOf({"simulate", "run", "compare", "spp", "help", "--version"}));
   EXPECT_THAT(Replies("co"), ElementsAre("compare", "convert", "config", "completion"));
+  EXPECT_THAT(Replies("da"), ElementsAre("data"));
   EXPECT_THAT(Replies("help ev"), ElementsAre("evaluate"));
 }
 
@@ -53,6 +54,12 @@ TEST(Completion, OffersTheWordsThatAFlagTakes) {
   EXPECT_THAT(Replies("evaluate --align ''"), alignments);
   EXPECT_THAT(Replies("evaluate --align = pos"), ElementsAre("pos", "posyaw"));
   EXPECT_THAT(Replies("run --seed = 1"), IsEmpty());
+}
+
+TEST(Completion, OffersWhatDataDoesAndItsSets) {
+  EXPECT_THAT(Replies("data ''"), ElementsAre("list", "fetch", "verify"));
+  EXPECT_THAT(Replies("data fetch tu"), ElementsAre("tumvi"));
+  EXPECT_THAT(Replies("data fetch --mi"), ElementsAre("--mirror="));
 }
 
 TEST(Completion, OffersShippedConfigurationsOfTheRightKindAndFiles) {

@@ -38,7 +38,8 @@ TEST(Consumer, ARobotNeedsTheSessionAlone) {
       Shell(std::string(ALIDADE_CMAKE) + " -G Ninja -S " + Source("tests/package/robot") + " -B " +
             folder.File("build") + " -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH='" ALIDADE_PREFIX "'" +
             " -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON" +
-            " -DCMAKE_DISABLE_FIND_PACKAGE_BZip2=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenSSL=ON");
+            " -DCMAKE_DISABLE_FIND_PACKAGE_BZip2=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenSSL=ON" +
+            " -DCMAKE_DISABLE_FIND_PACKAGE_CURL=ON");
   ASSERT_EQ(configured.code, 0) << configured.output;
   const CommandResult built = Shell(std::string(ALIDADE_CMAKE) + " --build " + folder.File("build"));
   ASSERT_EQ(built.code, 0) << built.output;

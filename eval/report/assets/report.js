@@ -59,7 +59,7 @@
     const align = report.alignment(cells);
     element('sequence-title').textContent = state.sequence || '';
     element('sequence-note').textContent = (ran ? report.digits(ran.duration) + ' s, ' + report.digits(ran.path) + ' m, ' +
-      ran.frames + ' frames. ' : '') + 'RMSE is of the raw estimate' + (align ? '; ATE after alignment \u201c' + align + '\u201d' : '') + '.';
+      ran.frames + ' frames. ' : '') + ['rmse_', 'ate_', 'rpe_', 'nees_'].map(function (key) { return report.meaning(key, align); }).join(' ');
     element('sequence-table').innerHTML = report.sequenceTable(state.sequence);
     report.drawEfficiency(state.sequence);
     report.drawFrontend(state.sequence);

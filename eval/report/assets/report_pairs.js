@@ -7,7 +7,7 @@
     const shade = word === 'better' || word === 'worse' ? ' class="' + word + '"' : '';
     return '<td' + shade + '>' + report.format(pair.difference, figure.decimals).replace(/^-/, '\u2212') +
       '<span class="sub">\u00b1 ' + report.formatError(pair.half, pair.difference, figure.decimals) + '</span><span class="sub">' +
-      word + '</span>' + (pair.lost ? '<span class="sub bad">' + pair.lost + ' lost</span>' : '') + '</td>';
+      word + '</span><span class="sub">' + report.pText('p', pair.p) + '</span><span class="sub">' + report.pText('Holm', pair.holm) + '</span>' + (pair.lost ? '<span class="sub bad">' + pair.lost + ' lost</span>' : '') + '</td>';
   }
 
   // Empty where nothing is paired. `most.count` becomes the largest number of pairs.
@@ -40,7 +40,8 @@
     document.getElementById('pairs-note').textContent = figure.label + (figure.unit ? ' [' + figure.unit + ']' : '') +
       ', row minus column on the same input and seed, with half of the 95 % interval of the mean (Student\u2019s t' +
       (here ? ', ' + sequence + ', ' + most.count + ' pairs' : '') +
-      '). Shaded where the interval excludes zero; not corrected for the number of pairs. The figure is selected in the overview; pairs.csv has all figures.';
+      '). Shaded where the interval excludes zero. p: of the pair alone. Holm: corrected for the number of pairs of the table, so that with probability 95 % none ' +
+      'below 0.05 is by chance. The figure is selected in the overview; pairs.csv has all figures.';
     document.getElementById('pairs-table').innerHTML = here + (across ? '<p class="note">Over all ' + data.sequences.length +
       ' sequences, one sample a sequence:</p>' + across : '');
   };

@@ -2,7 +2,7 @@
 (function () {
   const data = report.data;
   // Columns of an entry of data.pairs; see eval/report_data.cc.
-  const SEQUENCE = 0, FIGURE = 1, FIRST = 2, SECOND = 3, COUNT = 4, LOST = 5, DIFFERENCE = 6, HALF = 7, VERDICT = 8, P = 9;
+  const SEQUENCE = 0, FIGURE = 1, FIRST = 2, SECOND = 3, COUNT = 4, LOST = 5, DIFFERENCE = 6, HALF = 7, VERDICT = 8, P = 9, HOLM = 10;
   const ACROSS = -1;
 
   const byPlace = {};
@@ -20,8 +20,11 @@
     if (!found) { return null; }
     const sign = direct ? 1 : -1;
     return { count: found[COUNT], lost: found[LOST], difference: sign * found[DIFFERENCE], half: found[HALF],
-      verdict: sign * found[VERDICT], p: found[P] };
+      verdict: sign * found[VERDICT], p: found[P], holm: found[HOLM] };
   };
+
+  // 'p = 0.02' of a p-value rounded to two digits.
+  report.pText = function (name, p) { return p < 0.001 ? name + ' < 0.001' : name + ' = ' + p; };
 
   report.verdictWord = function (verdict, figure) {
     if (verdict === 0) { return 'no difference'; }
@@ -50,10 +53,10 @@
     const figure = data.figures[i];
     const pair = other && other !== name ? report.pair(name, other, sequence, i) : null;
     if (!pair) { return ''; }
-    const p = pair.p < 0.001 ? 'p < 0.001' : 'p = ' + pair.p;
     const sign = pair.verdict === 0 ? '\u2248 ' : pair.verdict < 0 ? '\u25bc ' : '\u25b2 ';
     const detail = 'difference to ' + other + ': ' + report.digits(pair.difference).replace(/^-/, '\u2212') + ' \u00b1 ' + report.digits(pair.half) +
-      ' (95 % interval, ' + pair.count + ' pairs): ' + report.verdictWord(pair.verdict, figure);
-    return '<span class="sub test' + (pair.verdict === 0 ? ' tie' : '') + '" title="' + report.escape(detail) + '">' + sign + p + '</span>';
+      ' (95 % interval, ' + pair.count + ' pairs): ' + report.verdictWord(pair.verdict, figure) + '; ' +
+      report.pText('Holm p', pair.holm);
+    return '<span class="sub test' + (pair.verdict === 0 ? ' tie' : '') + '" title="' + report.escape(detail) + '">' + sign + report.pText('p', pair.p) + ', ' + report.pText('Holm', pair.holm) + '</span>';
   };
 })();

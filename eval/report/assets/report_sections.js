@@ -76,9 +76,11 @@
     const runs = allSeeds() ? d3.max(entries, function (entry) { return entry.cells.length; }) || 1 : 1;
     const band = data.nees_bands[runs - 1];
     const few = allSeeds() && entries.some(function (entry) { return entry.cells.length < runs; });
-    const grid = group('Consistency', 'Normalised estimation error squared of the pose (6 degrees of freedom; ideal mean 6). Shaded: where ' +
+    const grid = group('Consistency', 'Normalised estimation error squared (NEES) of the pose: squared error in units of the claimed covariance, 6 on average when the claim is true, ' +
+      'more when it is overconfident. Shaded: where ' +
       (runs > 1 ? 'the mean of ' + runs + ' independent runs' : 'a single run') + ' lies with 95 % probability (' + report.digits(band[0]) + ' to ' +
       report.digits(band[1]) + '). Dashed: mean over time.' + (few ? ' An estimator that lost runs has a wider band than the one shown.' : '') +
+      ' Boxes: the relative position error (RPE) of the motion over stretches of each length of the path.' +
       (runs > 1 ? insideText(entries) : ''), true);
     const all = !allSeeds() ? lines(entries, function (series) { return series.nees; }) : entries.map(function (entry) {
       const average = report.neesOverTime(entry.name, state.sequence);

@@ -134,7 +134,13 @@
     if (!data.pairs.some(function (pair) { return pair[1] === i; })) { return ''; }
     const against = report.state.against === report.BEST ? 'the best of the column' : report.state.against;
     return ' Below a value, the test of its difference to ' + against + ' (paired t-test on equal inputs; the mean: one sample a sequence): ' +
-      '\u2248 not significant at 5 %, \u25bc significantly lower, \u25b2 significantly higher; not corrected for the number of tests.';
+      '\u2248 not significant at 5 %, \u25bc significantly lower, \u25b2 significantly higher. Holm: ' +
+      'the p-value corrected for the number of pairs of estimators of the column; the signs are of p, not corrected.';
+  }
+
+  function meaningNote(key) {
+    const meaning = report.meaning(key, report.alignment(data.cells));
+    return meaning ? ' ' + meaning : '';
   }
 
   report.overviewNote = function (key) {
@@ -142,7 +148,7 @@
     const ideal = figure.ideal === 'low' ? 'Lower is better.' : figure.ideal === 'target' ?
       'Ideal is ' + Number(figure.target.toFixed(4)) + '.' : 'No value is better than another.';
     const unit = figure.unit ? ' in ' + figure.unit : '';
-    return figure.label + unit + ', mean over the seeds that ended ok \u00b1 its standard error. ' + ideal +
+    return figure.label + unit + ', mean over the seeds that ended ok \u00b1 its standard error. ' + ideal + meaningNote(key) +
       (figure.ideal === 'none' ? '' : ' The best of each column is shaded, among the shown estimators that lost the fewest runs.') +
       testNote(i) + (data.references.length ? ' Published figures are in italics.' : '');
   };

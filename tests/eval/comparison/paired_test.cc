@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -81,6 +82,69 @@ TEST(PairedT, GivenFewOrEqualDifferencesThenThereIsNoFalseCertainty) {
   EXPECT_TRUE(std::isnan(TestPairs({1.0}).low));
   EXPECT_EQ(TestPairs({0, 0, 0}).p_value, 1);
   EXPECT_EQ(TestPairs({2, 2, 2}).low, 2);
+}
+
+// By hand: 4 x 0.005 = 0.02, 3 x 0.01 = 0.03, 2 x 0.03 = 0.06, and 1 x 0.04 raised to the one before.
+TEST(HolmCorrect, GivenFourPValuesThenTheyAreThoseComputedByHand) {
+  const std::vector<double> corrected = HolmCorrect({0.01, 0.04, 0.03, 0.005});
+  ASSERT_EQ(corrected.size(), 4U);
+  EXPECT_NEAR(corrected[0], 0.03, 1e-12);
+  EXPECT_NEAR(corrected[1], 0.06, 1e-12);
+  EXPECT_NEAR(corrected[2], 0.06, 1e-12);
+  EXPECT_NEAR(corrected[3], 0.02, 1e-12);
+  EXPECT_TRUE(HolmCorrect({}).empty());
+}
+
+TEST(HolmCorrect, GivenAMissingOneThenItIsNotCounted) {
+  const std::vector<double> corrected = HolmCorrect({std::nan(""), 0.02, 0.7});
+  EXPECT_TRUE(std::isnan(corrected[0]));
+  EXPECT_NEAR(corrected[1], 0.04, 1e-12);
+  EXPECT_NEAR(corrected[2], 0.7, 1e-12);
+  EXPECT_EQ(HolmCorrect({0.6, 0.9})[0], 1);
+}
+
+// GIVEN studies of ten equal estimators WHEN every pair is tested THEN most find a false difference, and
+// after the correction about one in twenty does.
+TEST(HolmCorrect, KeepsTheChanceOfAnyFalseDifference) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  int plain = 0, holm = 0;
+  constexpr int kStudies = 1000;
+  for (int study = 0; study < kStudies; ++study) {
+    std::vector<double> p_values;
+    for (int test = 0; test < 45; ++test) {
+      std::vector<double> differences;
+      for (int i = 0; i < 8; ++i) {
+        differences.push_back(normal(random));
+      }
+      p_values.push_back(TestPairs(differences).p_value);
+    }
+    const std::vector<double> corrected = HolmCorrect(p_values);
+    plain += *std::min_element(p_values.begin(), p_values.end()) < 0.05 ? 1 : 0;
+    holm += *std::min_element(corrected.begin(), corrected.end()) < 0.05 ? 1 : 0;
+  }
+  EXPECT_GT(plain, 0.8 * kStudies);
+  EXPECT_NEAR(holm / static_cast<double>(kStudies), 0.05, 0.025);
+}
+
+// GIVEN three estimators on two sequences WHEN corrected THEN the pairs of one sequence and figure count, and
+// no others.
+TEST(ComparePairs, CorrectsOverThePairsOfOneSequenceAndFigure) {
+  Comparison comparison;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    for (const char* name : {"a", "b", "c"}) {
+      for (const char* sequence : {"walk", "run"}) {
+        CellResult cell = Cell(name, seed, 1 + 0.1 * (name[0] - 'a') * seed);
+        cell.sequence = sequence;
+        comparison.cells.push_back(cell);
+      }
+    }
+  }
+  // Differences of a, b: 0.1 seed; t = 0.25 / 0.06455 = 3.8730 with 3 degrees of freedom, p = 0.0305. All
+  // three pairs have the same t, so each p becomes three times its value.
+  const PairedDifference pair = PairOf(comparison, "rmse_pos_m", "walk");
+  EXPECT_NEAR(pair.difference.p_value, 0.030466, 1e-5);
+  EXPECT_NEAR(pair.holm_p_value, 3 * pair.difference.p_value, 1e-12);
 }
 
 TEST(SignTest, GivenSplitsThenTheChancesAreThoseOfACoin) {
@@ -177,9 +241,9 @@ TEST(PairTables, GivenAMatrixThenBothSidesOfThePairAgree) {
   comparison.pair_figures = {"rmse_pos_m"};
   const std::vector<TextTable> tables = LayOutPairTables(comparison, ListFigures(comparison), "+-");
   ASSERT_EQ(tables.size(), 1U);
-  EXPECT_EQ(tables[0].rows[0].cells[2].text, "\u22120.750+-0.459 better");
+  EXPECT_EQ(tables[0].rows[0].cells[2].text, "\u22120.750+-0.459 better (p 0.014, Holm 0.014)");
   EXPECT_TRUE(tables[0].rows[0].cells[2].best);
-  EXPECT_EQ(tables[0].rows[1].cells[1].text, "0.750+-0.459 worse");
+  EXPECT_EQ(tables[0].rows[1].cells[1].text, "0.750+-0.459 worse (p 0.014, Holm 0.014)");
   EXPECT_THAT(PairsCsv(comparison, ListFigures(comparison)),
               HasSubstr("walk,rmse_pos_m,a,b,4,0,0,0,1.25,2,0.625,-0.75,"));
 }

@@ -141,6 +141,23 @@ TEST(Evaluate, AlignsByTheFirstShare) {
   EXPECT_NEAR(Evaluate(truth, estimate, options)->ate.pos_m, std::sqrt(0.05 * 0.95), 1e-2);
 }
 
+TEST(FormatEvaluation, GivenAToolsRelativeErrorThenTextAndJsonNameIt) {
+  EvaluationOptions options;
+  options.tool_rpe = {.method = RpeMethod::kEvo, .deltas = {2}, .unit = RpeUnit::kMetres};
+  const Result<Evaluation> evaluation = Evaluate(MakeTrajectory(400), ScaledEstimate(true), options);
+  ASSERT_TRUE(evaluation.ok()) << evaluation.message();
+  const nlohmann::json json = nlohmann::json::parse(FormatEvaluationJson(*evaluation));
+  EXPECT_TRUE(json["rpe"].empty());
+  EXPECT_EQ(json["rpe_by_tool"]["tool"], "evo");
+  EXPECT_EQ(json["rpe_by_tool"]["unit"], "m");
+  const nlohmann::json& delta = json["rpe_by_tool"]["deltas"][0];
+  EXPECT_GT(delta["count"], 5);
+  EXPECT_NEAR(delta["trans_part"]["rmse"].get<double>(), 0.02, 2e-3);  // 1 % of 2 m
+  EXPECT_THAT(FormatEvaluationText(*evaluation),
+              HasSubstr("relative error by evo over 2 m: " + std::to_string(evaluation->tool_rpe[0].count) +
+                        " pairs (consecutive, along the estimate)"));
+}
+
 TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
   const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
   const std::string text = FormatEvaluationJson(evaluation);
@@ -149,9 +166,12 @@ TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
   for (const auto& [key, value] : json.items()) {
     keys.push_back(key);
   }
-  EXPECT_EQ(keys, (std::vector<std::string>{"pairs", "truth_rows", "estimate_rows", "association",
-                                            "duration_s", "path_m", "anchor_at_first", "align_share",
-                                            "alignment", "unaligned", "ate", "rpe", "nees"}));
+  EXPECT_EQ(keys,
+            (std::vector<std::string>{"pairs", "truth_rows", "estimate_rows", "association", "duration_s",
+                                      "path_m", "anchor_at_first", "align_share", "alignment", "unaligned",
+                                      "ate", "ate_statistics", "rpe", "nees"}));
+  EXPECT_EQ(json["association"]["rule"], "alidade");
+  EXPECT_EQ(json["ate_statistics"]["pos_m"]["rmse"], json["ate"]["pos_rmse_m"]);
   EXPECT_EQ(json["pairs"], 300);
   EXPECT_EQ(json["alignment"]["name"], "sim3");
   EXPECT_EQ(json["alignment"]["scale"].get<double>(), 0.99009901);

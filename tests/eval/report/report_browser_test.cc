@@ -90,6 +90,9 @@ TEST_F(ReportInBrowser, GivenSeveralSeedsThenPairsAndTheBandOverTimeAreTold) {
   EXPECT_THAT(visit.dom, HasSubstr("row \u2212 column"));
   EXPECT_THAT(visit.dom, HasSubstr(", 2 pairs)"));
   EXPECT_THAT(visit.dom, HasSubstr("</span><span class=\"sub\">no difference</span>"));
+  EXPECT_THAT(visit.dom, HasSubstr("<span class=\"sub\">Holm = "));
+  EXPECT_THAT(visit.dom, HasSubstr("NEES: squared error in units of the covariance"));
+  EXPECT_THAT(visit.dom, HasSubstr("in position and yaw about gravity"));
   EXPECT_TRUE(
       std::regex_search(visit.dom, std::regex("Inside: po_invio_multi [0-9.]+ %, invio_l5 [0-9.]+ %")));
 }
