@@ -64,6 +64,7 @@ Result<std::unique_ptr<Tracker>> Tracker::Create(const CameraModel& camera, cons
   if (!made) {
     return Status::Input("VINS-Mono has no lens model fov");
   }
+  cv::setNumThreads(1);
   MAX_CNT = settings.max_features;
   MIN_DIST = settings.min_distance_px;
   F_THRESHOLD = settings.ransac_px;
