@@ -202,6 +202,9 @@ class Comparer {
     for (const auto& [name, path] : plan_.absent) {
       notes.push_back(name + ": its data is missing, expected " + path);
     }
+    for (const auto& [name, path] : plan_.absent_programs) {
+      notes.push_back(name + ": its program is missing, expected " + path);
+    }
     for (const PlanEstimator& estimator : plan_.estimators) {
       if (std::none_of(cells_.begin(), cells_.end(),
                        [&](const CompareCell& cell) { return cell.estimator == &estimator; })) {

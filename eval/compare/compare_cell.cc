@@ -35,8 +35,12 @@ bool RunExternalCell(const Plan& plan, const CompareOptions& options, const Comp
   if (!outcome->run) {
     return false;
   }
-  // All of the program: it is one process to us.
-  cell->result.backend_ms = 1e3 * outcome->run->wall_s / std::max(1, cell->result.frames);
+  if (outcome->times) {
+    ScoreTimes(outcome->times->frontend_ms, outcome->times->backend_ms, &cell->result);
+  } else {
+    // All of the program: it is one process to us.
+    cell->result.backend_ms = 1e3 * outcome->run->wall_s / std::max(1, cell->result.frames);
+  }
   return outcome->reused;
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kTimes[] = "timing.csv";
+
 ExternalContext ContextOf(const ExternalCell& cell) {
   ExternalContext context;
   const GnssReceiver& receiver = cell.log.rig.gnss;
@@ -77,11 +79,15 @@ Result<ExternalRun> RunCommand(const ExternalCell& cell, const fs::path& output,
   std::error_code ignored;
   fs::create_directories(output, ignored);
   fs::remove(output / cell.estimator.command.result, ignored);
+  fs::remove(output / kTimes, ignored);
   std::map<std::string, std::string> values = {{"output", output.string()},
                                                {"sequence", cell.sequence.name},
                                                {"seed", std::to_string(cell.seed)},
                                                {"dataset", ""},
                                                {"bag", ""}};
+  if (!cell.estimator.command.program.empty()) {
+    values["program"] = fs::absolute(cell.estimator.command.program).string();
+  }
   // Words are checked before anything is written.
   ALIDADE_RETURN_IF_ERROR(FillCommand(cell.estimator.command.text, values).status());
   ALIDADE_RETURN_IF_ERROR(PrepareInput(cell, output, &values));
@@ -116,6 +122,11 @@ Result<ExternalOutcome> TrajectoryOfExternal(const ExternalCell& cell, bool resu
       const Result<ExternalRun> run = RunCommand(cell, output, stop);
       ALIDADE_RETURN_IF_ERROR(run.status());
       outcome.run = *run;
+    }
+    if (const std::string times = (output / kTimes).string(); MayExist(times)) {
+      Result<ExternalTimes> read = ReadExternalTimes(times);
+      ALIDADE_RETURN_IF_ERROR(read.status());
+      outcome.times = std::move(*read);
     }
   }
   ExternalContext context = ContextOf(cell);

@@ -6,6 +6,7 @@
 
 #include "core/estimator/measurement_log.h"
 #include "eval/compare/external_run.h"
+#include "eval/compare/external_times.h"
 #include "eval/compare/plan.h"
 
 namespace alidade {
@@ -23,14 +24,15 @@ struct ExternalCell {
 
 struct ExternalOutcome {
   Trajectory trajectory;
-  std::optional<ExternalRun> run;  ///< of a command
-  bool reused = false;             ///< kept from an earlier run
+  std::optional<ExternalRun> run;      ///< of a command
+  std::optional<ExternalTimes> times;  ///< of a command that wrote timing.csv into {output}
+  bool reused = false;                 ///< kept from an earlier run
 };
 
 /// Reads the cell's trajectory file, or runs its command and reads the result. Placeholders of a command:
 /// {dataset} (the sequence's folder; for a simulation it is written), {bag} (the same as a bag, written on
-/// request), {output}, {sequence} and {seed}. external.json beside the result records command, input and
-/// times; with `resume` an unchanged command on unchanged input is not run again. Errors: those of
+/// request), {output}, {program}, {sequence} and {seed}. external.json beside the result records command,
+/// input and times; with `resume` an unchanged command on unchanged input is not run again. Errors: those of
 /// RunExternal, WriteBag and ReadExternalTrajectory; kOutput.
 Result<ExternalOutcome> TrajectoryOfExternal(const ExternalCell& cell, bool resume,
                                              const std::atomic<bool>* stop);

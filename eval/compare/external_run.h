@@ -11,6 +11,7 @@ namespace alidade {
 /// A command line of a plan, with {placeholders}.
 struct ExternalCommand {
   std::string text;                       ///< for /bin/sh
+  std::string program;                    ///< path of {program}; may be empty
   std::string result = "trajectory.tum";  ///< result file below {output}
   double timeout_s = 3600;                ///< time limit [s]
 };

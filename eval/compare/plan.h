@@ -60,6 +60,8 @@ struct Plan {
   /// skip_missing: a sequence whose folder is missing is skipped and listed in `absent` (name, path).
   bool skip_missing = false;
   std::vector<std::pair<std::string, std::string>> absent;
+  /// Estimators whose `program` is missing (name, path): they are listed as not run.
+  std::vector<std::pair<std::string, std::string>> absent_programs;
 
   [[nodiscard]] EvaluationOptions MetricsOf(const PlanEstimator& estimator,
                                             const PlanSequence& sequence) const;

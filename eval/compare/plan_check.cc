@@ -19,6 +19,12 @@ std::vector<std::string> SequenceNames(const Plan& plan) {
 }
 
 Status CheckAnyThere(const Plan& plan) {
+  if (plan.estimators.empty()) {
+    return Status::Input(plan.path + ": none of its " + std::to_string(plan.absent_programs.size()) +
+                         " estimators can be run; the program of the first, " +
+                         plan.absent_programs.front().first + ", was expected as " +
+                         plan.absent_programs.front().second);
+  }
   return !plan.sequences.empty()
              ? Status::Ok()
              : Status::Input(plan.path + ": none of its " + std::to_string(plan.absent.size()) +

@@ -78,6 +78,7 @@ class PlanParser {
            {"set", [&](const Node& n) { return reader_.Settings(n, "set", &estimator.settings); }},
            {"trajectories", [&](const Node& n) { return ReadTrajectories(n, &estimator.trajectories); }},
            {"command", [&](const Node& n) { return reader_.Text(n, "command", &estimator.command.text); }},
+           {"program", [&](const Node& n) { return reader_.Path(n, "program", &estimator.command.program); }},
            {"result", [&](const Node& n) { return reader_.Text(n, "result", &estimator.command.result); }},
            {"timeout",
             [&](const Node& n) {
@@ -98,8 +99,17 @@ class PlanParser {
     if (estimator.external() && (estimator.name.empty() || !estimator.settings.empty())) {
       return reader_.Fault(node, "estimators", "`trajectories` or `command` with a `name` and without `set`");
     }
+    if (estimator.command.text.empty() && !estimator.command.program.empty()) {
+      return reader_.Fault(node, "estimators", "`program` only with `command`");
+    }
     if (estimator.name.empty()) {
       estimator.name = Stem(estimator.config);
+    }
+    std::error_code ignored;
+    if (!estimator.command.program.empty() &&
+        !std::filesystem::is_regular_file(estimator.command.program, ignored)) {
+      plan_.absent_programs.emplace_back(estimator.name, estimator.command.program);
+      return Status::Ok();
     }
     return Add(node, "estimators", std::move(estimator), &plan_.estimators);
   }

@@ -223,6 +223,16 @@ void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const 
   Score(truth, estimate, nullptr, options, cell);
 }
 
+void ScoreTimes(const std::vector<double>& frontend_ms, const std::vector<double>& backend_ms,
+                CellResult* cell) {
+  cell->frontend_ms = Mean(frontend_ms);
+  if (cell->frontend_ms == 0.0) {
+    cell->frontend_ms.reset();
+  }
+  cell->backend_ms = Mean(backend_ms);
+  cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
+}
+
 void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOptions& options,
               CellResult* cell) {
   cell->status = StatusWord(run);
@@ -238,16 +248,11 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
     used += record.statistics.features_used;
     gated += record.statistics.features_gated;
   }
-  cell->frontend_ms = Mean(frontend_ms);
-  if (cell->frontend_ms == 0.0) {
-    cell->frontend_ms.reset();
-  }
-  cell->backend_ms = Mean(backend_ms);
+  ScoreTimes(frontend_ms, backend_ms, cell);
   cell->propagate_ms = Mean(propagate_ms);
   cell->update_ms = Mean(update_ms);
   cell->innovations = Summarize(run.records, kVision);
   cell->gnss_innovations = Summarize(run.records, kGnss);
-  cell->backend_ms_p95 = Percentile(backend_ms, 0.95);
   cell->features_per_frame = Mean(features);
   if (used + gated > 0) {
     cell->gated_share = gated / (used + gated);

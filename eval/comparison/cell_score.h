@@ -11,6 +11,10 @@ namespace alidade {
 void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,
                      CellResult* cell);
 
+/// Fills the times of `cell` from those of its frames [ms]; a front end without any is unknown.
+void ScoreTimes(const std::vector<double>& frontend_ms, const std::vector<double>& backend_ms,
+                CellResult* cell);
+
 /// ScoreTrajectory, and status, frames, times and features of the run.
 void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOptions& options,
               CellResult* cell);

@@ -159,13 +159,19 @@ TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
 TEST_F(CompareCommand, ACommandIsRunTimedScoredAndKept) {
   const std::string script = folder_.Write(
       "program.sh",
-      "set -e\ntest -s $1/mav0/imu0/data.csv\ntest -s $3\nsleep 0.3\necho ran >> " + folder_.File("runs") +
+      "set -e\ntest -s $1/mav0/imu0/data.csv\ntest -s $3\nsleep 0.3\n[ -z \"$4\" ] || echo ran >> " +
+          folder_.File("runs") +
           "\nawk -F, '!/#/{printf \"%.9f %s %s %s %s %s %s %s\\n\", $1/1e9, $2+1, $3, $4, $6, $7, $8, $5}' "
           "$1/mav0/state_groundtruth_estimate0/data.csv > $2/out.txt\n");
   const std::string plan = folder_.Write(
       "external.yaml",
       "estimators:\n  - {name: theirs, command: 'sh " + script +
-          " {dataset} {output} {bag}', result: out.txt}\n"
+          " {dataset} {output} {bag} note', result: out.txt}\n"
+          "  - {name: timed, program: " +
+          script +
+          ", command: 'sh {program} {dataset} {output} {bag} && printf "
+          "\"frontend_ms,backend_ms\\\\n1.5,2\\\\n2.5,4\\\\n\" > {output}/timing.csv', result: out.txt}\n"
+          "  - {name: gone, program: none, command: '{program}'}\n"
           "  - {name: broken, command: 'echo no luck; exit 4'}\n"
           "sequences:\n  - {config: " +
           Source("configs/datasets/figure8_short.yaml") +
@@ -178,6 +184,8 @@ TEST_F(CompareCommand, ACommandIsRunTimedScoredAndKept) {
   EXPECT_THAT(first.output, HasSubstr("code 4: no luck"));
   const std::string summary = ReadFile(folder_.File("out/summary.csv"));
   EXPECT_THAT(summary, HasSubstr("theirs,external,short,1,ok,"));
+  EXPECT_THAT(summary, testing::ContainsRegex("timed,external,short,1,ok,.*,2,3,4,"));
+  EXPECT_THAT(ReadFile(folder_.File("out/tables.md")), HasSubstr("gone: its program is missing, expected "));
   // One metre off along x, whatever is printed of it.
   EXPECT_THAT(summary, testing::ContainsRegex(",(1|1\\.0000000[0-9]*|0\\.9999999[0-9]*),"));
   EXPECT_THAT(ReadFile(folder_.File("out/cells/theirs/short/1/external.json")), HasSubstr("\"wall_s\": "));

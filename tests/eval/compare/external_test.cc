@@ -3,6 +3,7 @@
 
 #include "core/lie.h"
 #include "eval/compare/external_run.h"
+#include "eval/compare/external_times.h"
 #include "eval/trajectory/external_trajectory.h"
 #include "gnss/base/geodesy.h"
 #include "tests/support/read_file.h"
@@ -109,6 +110,21 @@ TEST(FillCommandTest, WordsAreQuotedAndChecked) {
   EXPECT_EQ(*FillCommand("run {dataset} > {output}/x ${HOME} {1}", {{"dataset", "/a b's"}, {"output", "/o"}}),
             "run '/a b'\\''s' > '/o'/x ${HOME} {1}");
   EXPECT_THAT(FillCommand("run {datset}", {{"dataset", "x"}}).message(), HasSubstr("dataset"));
+}
+
+TEST(ExternalTimesTest, ColumnsAreFoundByTheirNames) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& text) {
+    return ReadExternalTimes(folder.Write("timing.csv", text));
+  };
+  const Result<ExternalTimes> times =
+      read("timestamp_ns,frontend_ms,propagate_ms,backend_ms\n1,2,9,3\n2,4,9,5\n");
+  ASSERT_TRUE(times.ok()) << times.message();
+  EXPECT_THAT(times->frontend_ms, testing::ElementsAre(2, 4));
+  EXPECT_THAT(times->backend_ms, testing::ElementsAre(3, 5));
+  EXPECT_THAT(read("timestamp_ns,frontend_ms\n1,2\n").message(), HasSubstr("a column backend_ms"));
+  EXPECT_THAT(read("frontend_ms,backend_ms\n1,x\n").message(), HasSubstr("timing.csv:2"));
+  EXPECT_THAT(read("frontend_ms,backend_ms\n").message(), HasSubstr("no row"));
 }
 
 TEST(RunExternalTest, TimesSucceedsFailsAndEnds) {

@@ -175,11 +175,26 @@ TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
   EXPECT_EQ(theirs.command.timeout_s, 60);
   EXPECT_TRUE(theirs.camera_frame);
   for (const char* wrong : {"{name: x, command: a, config: estimators/a.yaml}", "{command: a}",
-                            "{name: x, command: a, frame: lens}", "{name: x, command: a, set: {b: 1}}"}) {
+                            "{name: x, command: a, frame: lens}", "{name: x, command: a, set: {b: 1}}",
+                            "{config: estimators/a.yaml, program: other.tum}"}) {
     const Result<Plan> refused =
         Read(std::string("estimators:\n  - ") + wrong + "\nsequences:\n  - config: sim.yaml\n");
     EXPECT_EQ(refused.code(), StatusCode::kConfig) << wrong;
   }
+}
+
+TEST_F(PlanTest, AnEstimatorWhoseProgramIsMissingIsListedAsAbsent) {
+  const std::string there = "  - {name: there, program: other.tum, command: '{program} {dataset}'}\n";
+  const std::string missing = "  - {name: gone, program: build/gone, command: '{program} {dataset}'}\n";
+  const std::string rest = "sequences:\n  - config: sim.yaml\n";
+  const Result<Plan> plan = Read("estimators:\n" + missing + there + rest);
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  ASSERT_EQ(plan->estimators.size(), 1u);
+  EXPECT_EQ(plan->estimators[0].command.program, folder_.File("other.tum"));
+  EXPECT_THAT(plan->absent_programs, ElementsAre(testing::Pair("gone", folder_.File("build/gone"))));
+  const Result<Plan> none = Read("estimators:\n" + missing + rest);
+  EXPECT_EQ(none.code(), StatusCode::kInput);
+  EXPECT_THAT(none.message(), HasSubstr("the program of the first, gone, was expected as"));
 }
 
 TEST_F(PlanTest, ABagMayBringItsTopicsAndCalibration) {

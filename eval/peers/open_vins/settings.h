@@ -1,0 +1,19 @@
+#pragma once
+
+#include <core/VioManagerOptions.h>
+
+#include <string>
+
+#include "core/rig_calibration.h"
+#include "core/status.h"
+#include "eval/peers/peer_flags.h"
+
+namespace alidade::open_vins {
+
+/// OpenVINS' settings: its own file `config/<--config>/estimator_config.yaml` of the checkout, with one
+/// camera and the calibration of `rig` in place of that file's, without threads, and without limits of time
+/// in its initialisation, so that equal inputs give equal results. Flags that are not "own" replace more of
+/// it. kUsage: an invalid flag; kInput: no such file, or a lens model that OpenVINS has not.
+Result<ov_msckf::VioManagerOptions> MakeSettings(const PeerFlags& flags, const RigCalibration& rig);
+
+}  // namespace alidade::open_vins

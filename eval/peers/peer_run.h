@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "eval/trajectory/trajectory.h"
+
+namespace alidade {
+
+/// CPU time of a frame, of all threads [ms].
+struct PeerTimes {
+  double frontend_ms = 0;  ///< 0 where tracks were given
+  double backend_ms = 0;
+};
+
+/// What a driver writes of a run: one entry a frame for which the other system has a state.
+struct PeerRun {
+  Trajectory trajectory;         ///< stamps in IMU time
+  std::vector<PeerTimes> times;  ///< of the same frames
+};
+
+/// Writes trajectory.csv (EuRoC's columns, as far as the trajectory has them), trajectory_covariance.csv
+/// where there are covariances, and timing.csv (`timestamp_ns,frontend_ms,backend_ms`) into `folder`. The
+/// first is what `result` of a plan names. Errors: kDiverged: no frame has a state; kOutput.
+Status WritePeerRun(const PeerRun& run, const std::string& folder);
+
+/// CPU time that all threads of this process have spent so far [s].
+[[nodiscard]] double ProcessCpuSeconds();
+
+}  // namespace alidade
