@@ -10,8 +10,7 @@ Result<PeerSequence> ReadPeerSequence(const std::string& path, const std::string
   }
   DatasetSource source;
   source.path = path;
-  std::vector<std::string> remarks;
-  Result<Dataset> dataset = ReadDataset(source, &remarks);
+  Result<Dataset> dataset = ReadDataset(source);
   ALIDADE_RETURN_IF_ERROR(dataset.status());
   PeerSequence sequence;
   sequence.dataset = std::move(*dataset);

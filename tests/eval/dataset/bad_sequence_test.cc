@@ -24,6 +24,7 @@ using test::CameraYaml;
 using test::kIdentity;
 using test::kImuHeader;
 using test::kImuRows;
+using test::kImuYaml;
 using test::kNoLens;
 using test::kTracksHeader;
 using test::kTruthHeader;
