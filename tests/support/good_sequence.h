@@ -22,7 +22,7 @@ inline std::string CameraYaml(const std::string& transform, const std::string& l
          "\nresolution: [640, 480]\nintrinsics: [400, 400, 320, 240]\n" + lens;
 }
 
-inline constexpr char kNoLens[] = "distortion_model: none\n";
+inline const std::string kNoLens = "distortion_model: none\n";
 
 /// Three IMU samples, one track in two frames and two poses of the truth.
 inline void WriteGoodSequence(const TemporaryFolder& folder) {
