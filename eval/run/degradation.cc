@@ -38,7 +38,7 @@ std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameSt
   weighed_ns_ = imu_ns;
   nis_ = kept * nis_ + statistics.nis;
   dof_ = kept * dof_ + statistics.nis_dof;
-  constexpr double kSigmas = 4;
+  constexpr double kSigmas = 3;
   const double bound = kMaxInnovations + kSigmas * std::sqrt(2 / dof_);
   return dof_ > 0 && nis_ > bound * dof_ ? std::optional(nis_ / dof_) : std::nullopt;
 }

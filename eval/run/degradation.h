@@ -22,7 +22,7 @@ class Degradation {
   /// Sum of normalised innovations squared over the sum of their degrees of freedom, one in the mean where
   /// noise and calibration are right. Older frames count less, with this time constant. Wrong tracks do not
   /// raise it: the gates refuse them.
-  static constexpr double kMaxInnovations = 1.1;
+  static constexpr double kMaxInnovations = 1.05;
   static constexpr double kInnovationsS = 10;
 
   /// Every sample that is delivered, in order.
