@@ -46,13 +46,19 @@ case "$mode" in
     ;;
   tidy)
     tool=$(find_tool clang-tidy)
-    # Of its own: clang reads neither the groups nor the precompiled headers of the build.
+    compiler=$(find_tool clang++)
+    # Of its own: with clang's precompiled headers, which halve the time, and no groups, in which the analyzer sees headers alone.
     cmake -S . -B build-tidy -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DALIDADE_UNITY=OFF \
-      -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+      -DCMAKE_CXX_COMPILER="$compiler" -DALIDADE_CCACHE=OFF >/dev/null
+    ninja -C build-tidy -t targets all | sed -n 's/^\(.*cmake_pch.*\.pch\): .*/\1/p' | xargs ninja -C build-tidy >&2
     [[ $# -gt 0 ]] && folders=("$@")
-    sources "${folders[@]}" | grep '\.cc$' |
-      xargs -P "$(nproc)" -n 1 "$tool" -p build-tidy --quiet --extra-arg=-Wno-unknown-warning-option \
-        --extra-arg=-Wno-unused-command-line-argument
+    # Sources that no target of ours compiles, as the drivers of other systems, have no commands.
+    sources "${folders[@]}" | grep '\.cc$' | while read -r file; do
+      if grep -q "/$file\"" build-tidy/compile_commands.json; then
+        echo "$file"
+      fi
+    done | xargs -P "$(nproc)" -n 1 "$tool" -p build-tidy --quiet --extra-arg=-Wno-unknown-warning-option \
+      --extra-arg=-Wno-unused-command-line-argument
     ;;
   *)
     echo "usage: $0 [format | fix | layers | tidy [folder or file ...]]" >&2

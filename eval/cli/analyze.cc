@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/format.h"
+#include "core/numbers.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -12,8 +13,6 @@
 
 namespace alidade::cli {
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 /// "5,10,25" -> numbers.
 Result<std::vector<int>> Windows() {
@@ -68,7 +67,7 @@ void PrintJson(const std::vector<int>& windows, const Table& table) {
                       {"window", windows[column]},
                       {"nees_ratio", prediction.nees_ratio},
                       {"rmse_pos_m", prediction.position_m},
-                      {"rmse_ori_deg", prediction.orientation_rad * kDegrees}});
+                      {"rmse_ori_deg", prediction.orientation_rad * kDegreesPerRadian}});
     }
   }
   std::printf("%s\n", rows.dump(2).c_str());
@@ -123,7 +122,7 @@ int RunAnalyze(const std::vector<std::string>&) {
   PrintTable("Predicted RMSE of position [m]", *windows, *table,
              [](const ReusePrediction& p) { return p.position_m; });
   PrintTable("Predicted RMSE of orientation [deg]", *windows, *table,
-             [](const ReusePrediction& p) { return p.orientation_rad * kDegrees; });
+             [](const ReusePrediction& p) { return p.orientation_rad * kDegreesPerRadian; });
   return kExitDone;
 }
 

@@ -181,10 +181,9 @@ void FillPredicted(const RunResult& run, CellResult* cell) {
     filtering_pos += filtering.diagonal().tail<3>().sum();
   }
   const double count = static_cast<double>(run.records.size());
-  const double degrees = 180 / std::numbers::pi;
-  cell->sigma_ori_deg = Known(degrees * std::sqrt(ori / count));
+  cell->sigma_ori_deg = Known(kDegreesPerRadian * std::sqrt(ori / count));
   cell->sigma_pos_m = Known(std::sqrt(pos / count));
-  cell->filtering_sigma_ori_deg = Known(degrees * std::sqrt(filtering_ori / count));
+  cell->filtering_sigma_ori_deg = Known(kDegreesPerRadian * std::sqrt(filtering_ori / count));
   cell->filtering_sigma_pos_m = Known(std::sqrt(filtering_pos / count));
 }
 

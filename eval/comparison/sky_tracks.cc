@@ -3,6 +3,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/numbers.h"
+
 namespace alidade {
 
 std::vector<SkyTrack> MakeSkyTracks(const std::vector<GnssResiduals>& epochs, std::size_t most) {
@@ -12,7 +14,6 @@ std::vector<SkyTrack> MakeSkyTracks(const std::vector<GnssResiduals>& epochs, st
     int used = 0;
     int seen = 0;
   };
-  constexpr double kDegrees = 180 / M_PI;
   std::map<SatelliteId, Sum> sums;
   const std::size_t stride = (epochs.size() + most - 1) / std::max<std::size_t>(most, 1);
   for (std::size_t k = 0; k < epochs.size(); ++k) {
@@ -23,8 +24,8 @@ std::vector<SkyTrack> MakeSkyTracks(const std::vector<GnssResiduals>& epochs, st
       sum.squares += s.used ? s.residual_m * s.residual_m : 0;
       if (k % stride == 0) {
         sum.track.time_s.push_back(SecondsBetween(epochs.front().stamp_ns, epochs[k].stamp_ns));
-        sum.track.azimuth_deg.push_back(s.direction.azimuth_rad * kDegrees);
-        sum.track.elevation_deg.push_back(s.direction.elevation_rad * kDegrees);
+        sum.track.azimuth_deg.push_back(s.direction.azimuth_rad * kDegreesPerRadian);
+        sum.track.elevation_deg.push_back(s.direction.elevation_rad * kDegreesPerRadian);
         sum.track.residual_m.push_back(s.residual_m);
       }
     }

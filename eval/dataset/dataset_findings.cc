@@ -4,17 +4,9 @@
 #include <cmath>
 
 #include "core/format.h"
+#include "core/median.h"
 
 namespace alidade {
-namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
 
 void Findings::Fact(std::string text) {
   list_.push_back({DatasetFinding::Severity::kFact, std::move(text)});

@@ -10,7 +10,6 @@
 namespace alidade {
 namespace {
 
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 /// A sub-trajectory may miss the wanted length by this share of it: sparse pairs then count for nothing
 /// rather than for another distance.
 constexpr double kRpeLengthTolerance = 0.1;
@@ -66,7 +65,7 @@ RpeResult RpeOver(const std::vector<StatePair>& pairs, const std::vector<double>
   }
   result.count = static_cast<int>(result.pos_errors_m.size());
   result.pos_rmse_m = RootMeanSquare(pos_squares, result.pos_errors_m.size());
-  result.ori_rmse_deg = RootMeanSquare(ori_squares, result.pos_errors_m.size()) * kRadToDeg;
+  result.ori_rmse_deg = RootMeanSquare(ori_squares, result.pos_errors_m.size()) * kDegreesPerRadian;
   return result;
 }
 
@@ -82,7 +81,7 @@ AteResult ComputeAte(const std::vector<StatePair>& aligned_pairs) {
     ori_squares += so3::Log(pair.estimate.nav.R_WB.transpose() * pair.truth.nav.R_WB).squaredNorm();
   }
   result.pos_m = RootMeanSquare(pos_squares, aligned_pairs.size());
-  result.ori_deg = RootMeanSquare(ori_squares, aligned_pairs.size()) * kRadToDeg;
+  result.ori_deg = RootMeanSquare(ori_squares, aligned_pairs.size()) * kDegreesPerRadian;
   result.pos_max_m = aligned_pairs.empty() ? kNan : std::sqrt(pos_squares_max);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/format.h"
+#include "core/numbers.h"
 #include "eval/files/output_file.h"
 #include "gnss/positioning/position_file.h"
 
@@ -56,17 +57,17 @@ std::string AntennaPositions(const RunResult& result, double time_offset_s) {
 }
 
 std::string SatelliteTable(const RunResult& result) {
-  constexpr double kDegrees = 180 / M_PI;
   std::string text =
       "timestamp_ns,satellite,azimuth_deg,elevation_deg,residual_m,deviation_m,used,rate_residual_mps,"
       "rate_used\n";
   for (const GnssResiduals& epoch : result.gnss_residuals) {
     for (const SatelliteResidual& s : epoch.satellites) {
-      text += std::to_string(epoch.stamp_ns) + "," + ToString(s.satellite) +
-              Format(",%.2f,%.2f,%.4f,%.4f,%d,", s.direction.azimuth_rad * kDegrees,
-                     s.direction.elevation_rad * kDegrees, s.residual_m, s.deviation_m, s.used ? 1 : 0) +
-              (s.range_rate_residual_mps ? Format("%.5f", *s.range_rate_residual_mps) : "") +
-              (s.range_rate_used ? ",1\n" : ",0\n");
+      text +=
+          std::to_string(epoch.stamp_ns) + "," + ToString(s.satellite) +
+          Format(",%.2f,%.2f,%.4f,%.4f,%d,", s.direction.azimuth_rad * kDegreesPerRadian,
+                 s.direction.elevation_rad * kDegreesPerRadian, s.residual_m, s.deviation_m, s.used ? 1 : 0) +
+          (s.range_rate_residual_mps ? Format("%.5f", *s.range_rate_residual_mps) : "") +
+          (s.range_rate_used ? ",1\n" : ",0\n");
     }
   }
   return text;

@@ -7,6 +7,7 @@
 
 #include "core/dense_solvers.h"
 #include "core/format.h"
+#include "core/median.h"
 #include "core/robust.h"
 
 namespace alidade {
@@ -18,14 +19,8 @@ using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 constexpr std::size_t kMaxPoints = 40;  // bounds the pairs
-constexpr double kRetryS = 0.5;
+constexpr double kFixRetryS = 0.5;
 constexpr int kRows = PositionFixModel::kRows;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -220,7 +215,7 @@ std::optional<GnssAlignment> FixAligner::TryAlign() {
     return std::nullopt;
   }
   const TimeNs newest = samples_.back().state.stamp_ns;
-  if (tried_ns_ != INT64_MIN && SecondsBetween(tried_ns_, newest) < kRetryS) {
+  if (tried_ns_ != INT64_MIN && SecondsBetween(tried_ns_, newest) < kFixRetryS) {
     return std::nullopt;
   }
   tried_ns_ = newest;

@@ -31,15 +31,15 @@ function(alidade_headers target)
 endfunction()
 
 # alidade_compile_fast(<target> [TEXT]): the target's sources start from the precompiled headers of the target ALIDADE_HEADERS, by default
-# those of core. TEXT: a room that reads, writes and arranges more than it computes; -O2 compiles it faster than -O3,
-# it starts from alidade_text_headers, and with ALIDADE_UNITY its sources are compiled in groups of eight, which parses its headers once a group:
-# names in anonymous namespaces must differ within such a room.
+# those of core. With ALIDADE_UNITY they are compiled in groups of eight, which parses headers and instantiates templates once a group:
+# names in anonymous namespaces must differ within a target. TEXT: a room that reads, writes and arranges more than it computes; -O2
+# compiles it faster than -O3, and it starts from alidade_text_headers.
 function(alidade_compile_fast target)
   cmake_parse_arguments(ARG "TEXT" "" "" ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ALIDADE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   if(ARG_TEXT)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
     target_precompile_headers(${target} REUSE_FROM alidade_text_headers)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ${ALIDADE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   elseif(DEFINED ALIDADE_HEADERS)
     target_precompile_headers(${target} REUSE_FROM ${ALIDADE_HEADERS})
   elseif(NOT target STREQUAL alidade_core)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
+
 namespace alidade {
 namespace {
 
@@ -21,12 +23,6 @@ constexpr double kVanishing = 0.05;
 
 double Square(double x) {
   return x * x;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double OrientationSquare(const Vector6d& residual) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/imu_buffer.h"
+#include "core/median.h"
 
 namespace alidade {
 namespace {
@@ -54,12 +55,6 @@ class GyroTurns {
   std::span<const ImuSample> imu_;
   std::vector<Matrix3d> turns_;
 };
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The same turn as the truth tells it, in the marker's frame, and the gyroscope, in that of the body.
 struct Turn {
