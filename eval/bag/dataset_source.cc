@@ -6,7 +6,7 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/digest.h"
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 
 namespace alidade {
 
@@ -40,7 +40,7 @@ Result<std::string> DigestOf(const DatasetSource& source) {
   if (!digest.ok() || (source.topics.empty() && source.calibration.empty())) {
     return digest;
   }
-  Sha256 hash;
+  Hash hash;
   hash.Add(*digest + source.topics + "\n" + source.camera + "\n");
   for (const std::string& file : source.calibration) {
     const Result<std::string> of_file = DigestOfFolder(file);

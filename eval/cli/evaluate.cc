@@ -21,7 +21,7 @@ bool IsGiven(const char* flag) {
 }
 
 Status FillAssociation(AssociationOptions* association) {
-  const std::optional<AssociationMethod> method = ParseAssociationMethod(FLAGS_association);
+  const std::optional<EvaluationTool> method = ParseEvaluationTool(FLAGS_association);
   if (!method) {
     return Status::Usage("evaluate: --association: found '" + FLAGS_association +
                          "', expected alidade, evo or rpg");
@@ -53,7 +53,7 @@ Status FillRpe(EvaluationOptions* options) {
     return deltas.status();
   }
   options->rpe_distances_m = std::move(deltas).value();
-  const std::optional<RpeMethod> method = ParseRpeMethod(FLAGS_rpe_by);
+  const std::optional<EvaluationTool> method = ParseEvaluationTool(FLAGS_rpe_by);
   if (!method) {
     return Status::Usage("evaluate: --rpe_by: found '" + FLAGS_rpe_by + "', expected alidade, evo or rpg");
   }
@@ -63,7 +63,7 @@ Status FillRpe(EvaluationOptions* options) {
                          "', expected frames, m, deg or rad");
   }
   for (const char* flag : {"rpe_unit", "rpe_all_pairs", "rpe_pairs_from_truth", "rpe_tolerance"}) {
-    if (*method != RpeMethod::kEvo && IsGiven(flag)) {
+    if (*method != EvaluationTool::kEvo && IsGiven(flag)) {
       return Status::Usage(std::string("evaluate: --") + flag + ": only with --rpe_by=evo");
     }
   }

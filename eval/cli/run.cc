@@ -7,7 +7,7 @@
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
 #include "eval/dataset/digest.h"
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/record/recorder.h"
 #include "eval/record/run_options.h"

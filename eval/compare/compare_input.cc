@@ -2,7 +2,7 @@
 
 #include "eval/config/config_writer.h"
 #include "eval/dataset/digest.h"
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 #include "eval/render/rendered_sequence.h"
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_reader.h"

@@ -18,28 +18,24 @@ Status ReadDistances(const PlanReader& reader, const Node& node, std::vector<dou
   });
 }
 
-Status ReadAssociation(const PlanReader& reader, const Node& node, AssociationMethod* method) {
+/// A word of a fixed set, by `parse`, which gives nothing for another one.
+template <typename Choice>
+Status ReadChoice(const PlanReader& reader, const Node& node, const char* key,
+                  std::optional<Choice> (*parse)(std::string_view), const char* expected, Choice* choice) {
   std::string name;
-  ALIDADE_RETURN_IF_ERROR(reader.Text(node, "association", &name));
-  const std::optional<AssociationMethod> known = ParseAssociationMethod(name);
+  ALIDADE_RETURN_IF_ERROR(reader.Text(node, key, &name));
+  const std::optional<Choice> known = parse(name);
   if (!known) {
-    return reader.Fault(node, "association", "alidade, evo or rpg");
+    return reader.Fault(node, key, expected);
   }
-  *method = *known;
+  *choice = *known;
   return Status::Ok();
 }
 
 }  // namespace
 
 Status ReadAlignment(const PlanReader& reader, const Node& node, Alignment* alignment) {
-  std::string name;
-  ALIDADE_RETURN_IF_ERROR(reader.Text(node, "align", &name));
-  const std::optional<Alignment> known = ParseAlignment(name);
-  if (!known) {
-    return reader.Fault(node, "align", "none, pos, posyaw, se3 or sim3");
-  }
-  *alignment = *known;
-  return Status::Ok();
+  return ReadChoice(reader, node, "align", ParseAlignment, "none, pos, posyaw, se3 or sim3", alignment);
 }
 
 Status ReadAlignShare(const PlanReader& reader, const Node& node, double* share) {
@@ -54,7 +50,11 @@ Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions
       {{"align", [&](const Node& n) { return ReadAlignment(reader, n, &metrics->alignment); }},
        {"align_share", [&](const Node& n) { return ReadAlignShare(reader, n, &metrics->align_share); }},
        {"rpe", [&](const Node& n) { return ReadDistances(reader, n, &metrics->rpe_distances_m); }},
-       {"association", [&](const Node& n) { return ReadAssociation(reader, n, &association.method); }},
+       {"association",
+        [&](const Node& n) {
+          return ReadChoice(reader, n, "association", ParseEvaluationTool, "alidade, evo or rpg",
+                            &association.method);
+        }},
        {"max_dt",
         [&](const Node& n) { return reader.Real(n, "max_dt", 0, kMaxSeconds, &association.max_dt_s); }},
        {"anchor_at_first",
@@ -66,7 +66,7 @@ Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions
   if (!node["max_dt"]) {
     association.max_dt_s = DefaultMaxDt(association.method);
   }
-  if (association.interpolate && association.method != AssociationMethod::kAlidade) {
+  if (association.interpolate && association.method != EvaluationTool::kAlidade) {
     return reader.Fault(node["interpolate"], "interpolate", "association: alidade, which alone interpolates");
   }
   return Status::Ok();

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 
 namespace alidade {
 
@@ -46,7 +46,7 @@ class LogHasher {
     block_.clear();
   }
 
-  Sha256 hash_;
+  Hash hash_;
   std::string block_;
 };
 

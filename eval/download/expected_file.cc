@@ -2,8 +2,7 @@
 
 #include <filesystem>
 
-#include "eval/files/md5.h"
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 
 namespace alidade {
 namespace {
@@ -25,14 +24,14 @@ Status CheckFile(const std::string& path, const ExpectedFile& expected) {
     return Mismatch(path, "size", std::to_string(bytes) + " bytes", std::to_string(*expected.bytes));
   }
   if (!expected.sha256.empty()) {
-    const Result<std::string> found = DigestOfFolder(path);
+    const Result<std::string> found = HashOfFile(path);
     ALIDADE_RETURN_IF_ERROR(found.status());
     if (*found != expected.sha256) {
       return Mismatch(path, "SHA-256", *found, expected.sha256);
     }
   }
   if (!expected.md5.empty()) {
-    const Result<std::string> found = Md5OfFile(path);
+    const Result<std::string> found = HashOfFile(path, HashKind::kMd5);
     ALIDADE_RETURN_IF_ERROR(found.status());
     if (*found != expected.md5) {
       return Mismatch(path, "MD5", *found, expected.md5);

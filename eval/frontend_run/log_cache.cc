@@ -6,9 +6,9 @@
 #include "eval/dataset/dataset_tracks.h"
 #include "eval/files/csv.h"
 #include "eval/files/csv_text.h"
+#include "eval/files/hash.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
-#include "eval/files/sha256.h"
 #include "eval/frontend_run/frontend_summary.h"
 
 namespace alidade {

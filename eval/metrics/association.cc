@@ -95,7 +95,7 @@ std::vector<StatePair> PairByInterpolation(const Trajectory& truth, const Trajec
 
 std::vector<StatePair> PairByTool(const Trajectory& truth, const Trajectory& estimate,
                                   const AssociationOptions& options) {
-  const auto match = options.method == AssociationMethod::kEvo ? MatchAsEvo : MatchAsRpg;
+  const auto match = options.method == EvaluationTool::kEvo ? MatchAsEvo : MatchAsRpg;
   std::vector<StatePair> pairs;
   for (const auto& [t, e] : match(truth, estimate, options.max_dt_s)) {
     pairs.push_back({truth.points[t], estimate.points[e]});
@@ -234,7 +234,7 @@ Status CheckOptions(const AssociationOptions& options) {
   ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_dt_s", options.max_dt_s));
   ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_gap_s", options.max_gap_s));
   ALIDADE_RETURN_IF_ERROR(CheckTolerance("time_offset_s", std::abs(options.time_offset_s)));
-  if (options.interpolate && options.method != AssociationMethod::kAlidade) {
+  if (options.interpolate && options.method != EvaluationTool::kAlidade) {
     return Status::Usage("interpolate: " + std::string(ToString(options.method)) +
                          " pairs rows; only association alidade interpolates the truth");
   }
@@ -250,7 +250,7 @@ Trajectory Shifted(Trajectory trajectory, double offset_s) {
 
 std::vector<StatePair> Pair(const Trajectory& truth, const Trajectory& estimate,
                             const AssociationOptions& options) {
-  if (options.method != AssociationMethod::kAlidade) {
+  if (options.method != EvaluationTool::kAlidade) {
     return PairByTool(truth, estimate, options);
   }
   return options.interpolate ? PairByInterpolation(truth, estimate, SecondsToNs(options.max_gap_s))

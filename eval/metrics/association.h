@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/status.h"
-#include "eval/metrics/association_method.h"
+#include "eval/metrics/evaluation_tool.h"
 #include "eval/metrics/state_pair.h"
 #include "eval/trajectory/trajectory.h"
 
@@ -15,7 +15,7 @@ namespace alidade {
 /// geodesic) between rows at most max_gap_s apart, never over longer gaps nor past the ends; max_dt_s is not
 /// used.
 struct AssociationOptions {
-  AssociationMethod method = AssociationMethod::kAlidade;
+  EvaluationTool method = EvaluationTool::kAlidade;
   double max_dt_s = 0.01;
   /// Added to the stamps of the estimate, so that they are in the clock of the truth [s].
   double time_offset_s = 0;

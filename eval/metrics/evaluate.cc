@@ -53,7 +53,7 @@ void DescribeAte(const std::vector<StatePair>& aligned, Evaluation* evaluation) 
 Status ComputeRelativeErrors(const Trajectory& truth, const std::vector<StatePair>& aligned, bool oriented,
                              Evaluation* evaluation) {
   ToolRpeOptions& tool = evaluation->options.tool_rpe;
-  if (tool.method == RpeMethod::kAlidade) {
+  if (tool.method == EvaluationTool::kAlidade) {
     evaluation->rpe =
         ComputeRpe(oriented ? aligned : WithoutOrientation(aligned), evaluation->options.rpe_distances_m);
     return Status::Ok();
@@ -62,7 +62,7 @@ Status ComputeRelativeErrors(const Trajectory& truth, const std::vector<StatePai
     return Status::Usage("relative errors by " + std::string(ToString(tool.method)) +
                          " need orientations, but one of the trajectories has none");
   }
-  if (tool.method == RpeMethod::kRpg) {
+  if (tool.method == EvaluationTool::kRpg) {
     if (tool.deltas.empty()) {
       tool.deltas = DefaultRpgLengths(truth);
     }

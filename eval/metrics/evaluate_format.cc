@@ -84,7 +84,7 @@ Json StatisticsJson(const ErrorStatistics& statistics) {
 Json ToolRpeJson(const Evaluation& evaluation) {
   const ToolRpeOptions& options = evaluation.options.tool_rpe;
   Json object = {{"tool", std::string(ToString(options.method))}};
-  if (options.method == RpeMethod::kEvo) {
+  if (options.method == EvaluationTool::kEvo) {
     object["unit"] = std::string(ToString(options.unit));
     object["all_pairs"] = options.all_pairs;
     object["pairs_from_truth"] = options.pairs_from_truth;
@@ -138,7 +138,7 @@ void AppendRpe(std::string& text, const std::vector<RpeResult>& results) {
 
 /// How evo finds pairs; empty of another tool.
 std::string DescribePairs(const ToolRpeOptions& options) {
-  if (options.method != RpeMethod::kEvo) {
+  if (options.method != EvaluationTool::kEvo) {
     return "sub-trajectories";
   }
   return std::string("pairs (") + (options.all_pairs ? "all" : "consecutive") + ", along the " +
@@ -147,7 +147,7 @@ std::string DescribePairs(const ToolRpeOptions& options) {
 
 void AppendToolRpe(std::string& text, const Evaluation& evaluation) {
   const ToolRpeOptions& options = evaluation.options.tool_rpe;
-  const std::string unit(options.method == RpeMethod::kEvo ? ToString(options.unit) : "m");
+  const std::string unit(options.method == EvaluationTool::kEvo ? ToString(options.unit) : "m");
   for (const ToolRpeResult& result : evaluation.tool_rpe) {
     text +=
         Format("\nrelative error by %s over %g %s: %zu %s\n", std::string(ToString(options.method)).c_str(),
@@ -170,7 +170,7 @@ void AppendToolRpe(std::string& text, const Evaluation& evaluation) {
 std::string DescribeAssociation(const AssociationOptions& association) {
   std::string text = association.interpolate ? Format("interpolated over at most %g s", association.max_gap_s)
                                              : Format("nearest within %g s", association.max_dt_s);
-  if (association.method != AssociationMethod::kAlidade) {
+  if (association.method != EvaluationTool::kAlidade) {
     text += " by the rule of " + std::string(ToString(association.method));
   }
   if (association.time_offset_s != 0) {
@@ -233,7 +233,7 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
   object["ate_statistics"] = {{"pos_m", StatisticsJson(evaluation.ate_pos_m)},
                               {"ori_deg", StatisticsJson(evaluation.ate_ori_deg)}};
   object["rpe"] = RpeJson(evaluation.rpe);
-  if (evaluation.options.tool_rpe.method != RpeMethod::kAlidade) {
+  if (evaluation.options.tool_rpe.method != EvaluationTool::kAlidade) {
     object["rpe_by_tool"] = ToolRpeJson(evaluation);
   }
   object["nees"] =

@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/format.h"
+#include "core/numbers.h"
 #include "eval/metrics/tool_rpe.h"
 
 namespace alidade {
 namespace {
-
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 using IndexPair = std::pair<std::size_t, std::size_t>;
 using Path = std::vector<NavState>;
@@ -103,13 +101,13 @@ std::vector<IndexPair> PairsOver(const Path& path, double delta, const ToolRpeOp
     return options.all_pairs ? AllByPath(path, delta, delta * options.tolerance)
                              : ConsecutiveByPath(path, delta);
   }
-  const double delta_rad = options.unit == RpeUnit::kDegrees ? delta / kRadToDeg : delta;
+  const double delta_rad = options.unit == RpeUnit::kDegrees ? delta / kDegreesPerRadian : delta;
   return options.all_pairs ? AllByAngle(path, delta_rad, delta_rad * options.tolerance)
                            : ConsecutiveByAngle(path, delta_rad);
 }
 
 /// Errors of every relation, one a pair.
-struct Errors {
+struct EvoErrors {
   std::vector<double> translation, rotation, full, angle_deg, angle_rad, distance, distance_percent;
 
   void Add(const Pose& truth, const Pose& estimate) {
@@ -119,7 +117,7 @@ struct Errors {
     rotation.push_back(std::sqrt(turn_squared));
     full.push_back(std::sqrt(turn_squared + error.translation.squaredNorm()));
     angle_rad.push_back(so3::Log(error.rotation).norm());
-    angle_deg.push_back(angle_rad.back() * kRadToDeg);
+    angle_deg.push_back(angle_rad.back() * kDegreesPerRadian);
     const double truth_distance = truth.translation.norm();
     distance.push_back(std::abs(truth_distance - estimate.translation.norm()));
     if (truth_distance != 0) {
@@ -165,7 +163,7 @@ Result<std::vector<ToolRpeResult>> ComputeEvoRpe(const std::vector<StatePair>& a
   for (const double delta : options.deltas.empty() ? std::vector<double>{1} : options.deltas) {
     ALIDADE_RETURN_IF_ERROR(CheckDelta(delta, options.unit));
     const std::vector<IndexPair> pairs = PairsOver(path, delta, options);
-    Errors errors;
+    EvoErrors errors;
     for (const auto& [i, j] : pairs) {
       errors.Add(aligned_pairs[i].truth.nav.T_WB().Inverse() * aligned_pairs[j].truth.nav.T_WB(),
                  aligned_pairs[i].estimate.nav.T_WB().Inverse() * aligned_pairs[j].estimate.nav.T_WB());

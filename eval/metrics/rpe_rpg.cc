@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/numbers.h"
 #include "eval/metrics/tool_rpe.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 /// Share of the length by which a sub-trajectory may miss it.
 constexpr double kLengthTolerance = 0.2;
 
@@ -39,7 +38,7 @@ std::vector<std::size_t> FindEnds(const std::vector<double>& travelled, double l
 }
 
 /// Errors of every relation, one a sub-trajectory.
-struct Errors {
+struct RpgErrors {
   std::vector<double> translation, percent, rotation, yaw, gravity, rotation_per_metre;
 
   /// `end_rotation`: R_WB of the estimate at the end, which turns the error into axes of its world.
@@ -48,12 +47,12 @@ struct Errors {
     const Eigen::Matrix3d turn = end_rotation * error.rotation * end_rotation.transpose();
     translation.push_back(error.translation.norm());
     percent.push_back(100 * translation.back() / length_m);
-    rotation.push_back(so3::Log(error.rotation).norm() * kRadToDeg);
+    rotation.push_back(so3::Log(error.rotation).norm() * kDegreesPerRadian);
     rotation_per_metre.push_back(rotation.back() / length_m);
     const double roll = std::atan2(turn(2, 1), turn(2, 2));
     const double pitch = std::atan2(-turn(2, 0), std::hypot(turn(0, 0), turn(1, 0)));
-    yaw.push_back(std::abs(std::atan2(turn(1, 0), turn(0, 0))) * kRadToDeg);
-    gravity.push_back(std::hypot(pitch, roll) * kRadToDeg);
+    yaw.push_back(std::abs(std::atan2(turn(1, 0), turn(0, 0))) * kDegreesPerRadian);
+    gravity.push_back(std::hypot(pitch, roll) * kDegreesPerRadian);
   }
 
   [[nodiscard]] std::vector<RelationError> Relations() const {
@@ -77,7 +76,7 @@ std::vector<ToolRpeResult> ComputeRpgRelativeErrors(const std::vector<StatePair>
     if (ends.size() < 2) {
       ends.clear();
     }
-    Errors errors;
+    RpgErrors errors;
     for (std::size_t k = 0; k < ends.size(); ++k) {
       const StatePair& first = unaligned_pairs[k];
       const StatePair& last = unaligned_pairs[ends[k]];

@@ -7,15 +7,10 @@
 
 #include "core/status.h"
 #include "eval/metrics/error_statistics.h"
+#include "eval/metrics/evaluation_tool.h"
 #include "eval/metrics/state_pair.h"
 
 namespace alidade {
-
-/// Whose definition of the relative pose error: ours (eval/metrics/metrics.h), or that of evo or
-/// rpg_trajectory_evaluation.
-enum class RpeMethod { kAlidade, kEvo, kRpg };
-[[nodiscard]] std::optional<RpeMethod> ParseRpeMethod(std::string_view name);  // alidade|evo|rpg
-[[nodiscard]] std::string_view ToString(RpeMethod method);
 
 /// What the deltas of evo count.
 enum class RpeUnit { kFrames, kMetres, kDegrees, kRadians };
@@ -23,7 +18,7 @@ enum class RpeUnit { kFrames, kMetres, kDegrees, kRadians };
 [[nodiscard]] std::string_view ToString(RpeUnit unit);
 
 struct ToolRpeOptions {
-  RpeMethod method = RpeMethod::kAlidade;
+  EvaluationTool method = EvaluationTool::kAlidade;
   /// evo: in `unit`. rpg: lengths of sub-trajectories [m]. Empty: the tool's own, 1 frame, or the lengths of
   /// DefaultRpgLengths.
   std::vector<double> deltas;

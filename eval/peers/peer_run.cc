@@ -1,6 +1,6 @@
 #include "eval/peers/peer_run.h"
 
-#include <time.h>
+#include <cstdio>
 
 #include "eval/dataset/dataset_truth.h"
 #include "eval/files/csv_text.h"
@@ -26,10 +26,13 @@ Status WritePeerRun(const PeerRun& run, const std::string& folder) {
   return WriteFileAtomically(path, TruthCsv(run.trajectory));
 }
 
-double ProcessCpuSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+int RunDriver(const char* name, int argc, char** argv,
+              Status (*execute)(const std::vector<std::string>& arguments)) {
+  const Status status = execute({argv + 1, argv + argc});
+  if (!status.ok()) {
+    std::fprintf(stderr, "%s: %s\n", name, status.message().c_str());
+  }
+  return status.ok() ? 0 : 1;
 }
 
 }  // namespace alidade

@@ -25,7 +25,9 @@ struct PeerRun {
 /// first is what `result` of a plan names. Errors: kDiverged: no frame has a state; kOutput.
 Status WritePeerRun(const PeerRun& run, const std::string& folder);
 
-/// CPU time that all threads of this process have spent so far [s].
-[[nodiscard]] double ProcessCpuSeconds();
+/// What is left of main() in a driver: runs `execute` with the arguments and tells its error after `name`.
+/// Returns the exit code, 0 or 1.
+int RunDriver(const char* name, int argc, char** argv,
+              Status (*execute)(const std::vector<std::string>& arguments));
 
 }  // namespace alidade

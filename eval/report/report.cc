@@ -4,8 +4,8 @@
 #include <string>
 
 #include "eval/files/escape_html.h"
+#include "eval/files/hash.h"
 #include "eval/files/output_file.h"
-#include "eval/files/sha256.h"
 #include "eval/report/report_assets.h"
 #include "eval/report/report_data.h"
 #include "eval/report/tables_terminal.h"

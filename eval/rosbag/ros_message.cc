@@ -1,10 +1,10 @@
 #include "eval/rosbag/ros_message.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <map>
 #include <sstream>
+
+#include "eval/files/hash.h"
 
 namespace alidade {
 namespace {
@@ -80,18 +80,6 @@ std::string MessageIn(const std::string& field_type) {
   return Fields().count(base) != 0 ? base : std::string();
 }
 
-std::string Md5Hex(const std::string& text) {
-  unsigned char digest[EVP_MAX_MD_SIZE];
-  unsigned size = 0;
-  EVP_Digest(text.data(), text.size(), digest, &size, EVP_md5(), nullptr);
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string hex;
-  for (unsigned i = 0; i < size; ++i) {
-    hex += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
-  }
-  return hex;
-}
-
 /// The messages inside `type`, each once, in the order in which they come up.
 void CollectInner(const std::string& type, std::vector<std::string>* inner) {
   std::istringstream fields(Fields().at(type));
@@ -141,7 +129,7 @@ std::string RosMd5(const std::string& type) {
     const std::string message = MessageIn(field);
     text += (text.empty() ? "" : "\n") + (message.empty() ? field : RosMd5(message)) + " " + name;
   }
-  return Md5Hex(text);
+  return HashHex(text, HashKind::kMd5);
 }
 
 }  // namespace alidade

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 #include "tests/eval/download/fault_server.h"
 #include "tests/integration/command.h"
 #include "tests/support/read_file.h"

@@ -3,8 +3,6 @@
 
 #include <utils/print.h>
 
-#include <cstdio>
-
 #include "eval/peers/open_vins/settings.h"
 #include "eval/peers/open_vins/system.h"
 
@@ -56,9 +54,5 @@ Status Execute(const std::vector<std::string>& arguments) {
 }  // namespace alidade::open_vins
 
 int main(int argc, char** argv) {
-  const alidade::Status status = alidade::open_vins::Execute({argv + 1, argv + argc});
-  if (!status.ok()) {
-    std::fprintf(stderr, "alidade_open_vins: %s\n", status.message().c_str());
-  }
-  return status.ok() ? 0 : 1;
+  return alidade::RunDriver("alidade_open_vins", argc, argv, alidade::open_vins::Execute);
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cpu_time.h"
 #include "eval/peers/open_vins/trackers.h"
 
 // In place of VioManager::retriangulate_active_tracks (linked with --wrap): it serves drawing alone, and

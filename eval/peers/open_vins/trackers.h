@@ -5,8 +5,8 @@
 #include <memory>
 #include <unordered_map>
 
+#include "core/cpu_time.h"
 #include "core/track_frame.h"
-#include "eval/peers/peer_run.h"
 
 namespace alidade::open_vins {
 

@@ -66,9 +66,5 @@ Status Execute(const std::vector<std::string>& arguments) {
 }  // namespace alidade::vins_mono
 
 int main(int argc, char** argv) {
-  const alidade::Status status = alidade::vins_mono::Execute({argv + 1, argv + argc});
-  if (!status.ok()) {
-    std::fprintf(stderr, "alidade_vins_mono: %s\n", status.message().c_str());
-  }
-  return status.ok() ? 0 : 1;
+  return alidade::RunDriver("alidade_vins_mono", argc, argv, alidade::vins_mono::Execute);
 }

@@ -1,5 +1,7 @@
 #include "eval/peers/vins_mono/system.h"
 
+#include "core/cpu_time.h"
+
 namespace alidade::vins_mono {
 namespace {
 

@@ -5,8 +5,7 @@
 
 #include <filesystem>
 
-#include "eval/files/md5.h"
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 #include "tests/eval/download/fault_server.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
@@ -276,13 +275,6 @@ TEST_F(DownloadTest, GivenAFolderThatCannotBeMadeThenItIsAnOutputError) {
   DownloadRequest request = Request(server);
   request.path = folder_.File("blocked/file.bin");
   EXPECT_EQ(Download(request).code(), StatusCode::kOutput);
-}
-
-// RFC 1321.
-TEST(Md5, GivenThePublishedExampleThenItIsItsDigest) {
-  const test::TemporaryFolder folder;
-  EXPECT_EQ(*Md5OfFile(folder.Write("a", "message digest")), "f96b697d7cb7938d525a2f31aaf161d0");
-  EXPECT_FALSE(Md5OfFile(folder.File("absent")).ok());
 }
 
 }  // namespace

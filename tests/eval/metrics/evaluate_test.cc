@@ -143,7 +143,7 @@ TEST(Evaluate, AlignsByTheFirstShare) {
 
 TEST(FormatEvaluation, GivenAToolsRelativeErrorThenTextAndJsonNameIt) {
   EvaluationOptions options;
-  options.tool_rpe = {.method = RpeMethod::kEvo, .deltas = {2}, .unit = RpeUnit::kMetres};
+  options.tool_rpe = {.method = EvaluationTool::kEvo, .deltas = {2}, .unit = RpeUnit::kMetres};
   const Result<Evaluation> evaluation = Evaluate(MakeTrajectory(400), ScaledEstimate(true), options);
   ASSERT_TRUE(evaluation.ok()) << evaluation.message();
   const nlohmann::json json = nlohmann::json::parse(FormatEvaluationJson(*evaluation));

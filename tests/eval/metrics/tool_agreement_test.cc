@@ -80,11 +80,11 @@ Evaluation EvaluateAs(const std::string& name, Alignment alignment, const Associ
 }
 
 AssociationOptions AsEvo(const std::string& name, double offset_s = 0) {
-  return {.method = AssociationMethod::kEvo, .max_dt_s = EvoMaxDt(name), .time_offset_s = offset_s};
+  return {.method = EvaluationTool::kEvo, .max_dt_s = EvoMaxDt(name), .time_offset_s = offset_s};
 }
 
 AssociationOptions AsRpg() {
-  return {.method = AssociationMethod::kRpg, .max_dt_s = DefaultMaxDt(AssociationMethod::kRpg)};
+  return {.method = EvaluationTool::kRpg, .max_dt_s = DefaultMaxDt(EvaluationTool::kRpg)};
 }
 
 ErrorStatistics Find(const ToolRpeResult& result, const std::string& relation) {
@@ -112,7 +112,7 @@ TEST(EvoAgreement, AbsoluteErrors) {
 // Words: kind, trajectories, alignment, delta, unit, pairs, along, tolerance, relation, count.
 TEST(EvoAgreement, RelativeErrors) {
   for (const FigureRow& row : ReadFigures("evo_figures.txt", "rpe", 7)) {
-    const ToolRpeOptions options{.method = RpeMethod::kEvo,
+    const ToolRpeOptions options{.method = EvaluationTool::kEvo,
                                  .deltas = {std::stod(row.words[3])},
                                  .unit = *ParseRpeUnit(row.words[4]),
                                  .all_pairs = row.words[5] == "all",
@@ -141,7 +141,7 @@ TEST(RpgAgreement, RelativeErrors) {
   for (const FigureRow& row : ReadFigures("rpg_figures.txt", "rel", 6)) {
     const Evaluation evaluation =
         EvaluateAs(row.words[1], *ParseAlignment(row.words[2]), AsRpg(),
-                   {.method = RpeMethod::kRpg, .deltas = {std::stod(row.words[3])}});
+                   {.method = EvaluationTool::kRpg, .deltas = {std::stod(row.words[3])}});
     ASSERT_EQ(evaluation.tool_rpe.size(), 1U);
     EXPECT_EQ(evaluation.tool_rpe[0].count, std::stoul(row.words[5])) << row.text;
     ExpectAsRpg(Find(evaluation.tool_rpe[0], row.words[4]), row);
@@ -177,9 +177,8 @@ TEST(OvEvalAgreement, AbsoluteErrors) {
 // several times, rpg and ours each once.
 TEST(ToolAssociation, RulesDifferWhereEstimatesCompeteForARow) {
   const test::TrajectoryPair pair = FormulaPair("crowded");
-  std::map<AssociationMethod, std::size_t> most_shared, pairs;
-  for (const AssociationMethod method :
-       {AssociationMethod::kAlidade, AssociationMethod::kEvo, AssociationMethod::kRpg}) {
+  std::map<EvaluationTool, std::size_t> most_shared, pairs;
+  for (const EvaluationTool method : {EvaluationTool::kAlidade, EvaluationTool::kEvo, EvaluationTool::kRpg}) {
     const auto matched = Associate(pair.truth, pair.estimate, {.method = method, .max_dt_s = 0.04});
     ASSERT_TRUE(matched.ok()) << matched.message();
     pairs[method] = matched->size();
@@ -188,10 +187,10 @@ TEST(ToolAssociation, RulesDifferWhereEstimatesCompeteForARow) {
       most_shared[method] = std::max(most_shared[method], ++uses[entry.truth.stamp_ns]);
     }
   }
-  EXPECT_GT(most_shared[AssociationMethod::kEvo], 1U);
-  EXPECT_EQ(most_shared[AssociationMethod::kRpg], 1U);
-  EXPECT_EQ(most_shared[AssociationMethod::kAlidade], 1U);
-  EXPECT_GT(pairs[AssociationMethod::kEvo], pairs[AssociationMethod::kRpg]);
+  EXPECT_GT(most_shared[EvaluationTool::kEvo], 1U);
+  EXPECT_EQ(most_shared[EvaluationTool::kRpg], 1U);
+  EXPECT_EQ(most_shared[EvaluationTool::kAlidade], 1U);
+  EXPECT_GT(pairs[EvaluationTool::kEvo], pairs[EvaluationTool::kRpg]);
 }
 
 TEST(ToolRpe, GivenAnImpossibleRequestThenItIsRefused) {
@@ -203,24 +202,24 @@ TEST(ToolRpe, GivenAnImpossibleRequestThenItIsRefused) {
   };
   EvaluationOptions options;
   options.association.max_dt_s = 0.04;
-  options.tool_rpe = {.method = RpeMethod::kEvo, .deltas = {1.5}};
+  options.tool_rpe = {.method = EvaluationTool::kEvo, .deltas = {1.5}};
   EXPECT_THAT(message(options), testing::HasSubstr("a whole number of frames"));
-  options.tool_rpe = {.method = RpeMethod::kEvo, .deltas = {181}, .unit = RpeUnit::kDegrees};
+  options.tool_rpe = {.method = EvaluationTool::kEvo, .deltas = {181}, .unit = RpeUnit::kDegrees};
   EXPECT_THAT(message(options), testing::HasSubstr("at most 180"));
-  options.tool_rpe = {.method = RpeMethod::kRpg, .deltas = {}};
+  options.tool_rpe = {.method = EvaluationTool::kRpg, .deltas = {}};
   EXPECT_THAT(message(options, false), testing::HasSubstr("need orientations"));
   options = {};
-  options.association = {.method = AssociationMethod::kEvo, .interpolate = true};
+  options.association = {.method = EvaluationTool::kEvo, .interpolate = true};
   EXPECT_THAT(message(options), testing::HasSubstr("only association alidade interpolates"));
 }
 
 TEST(ToolRpe, GivenNoDeltasThenTheyAreTheToolsOwn) {
   const Evaluation evo =
-      EvaluateAs("camera", Alignment::kNone, AsEvo("camera"), {.method = RpeMethod::kEvo, .deltas = {}});
+      EvaluateAs("camera", Alignment::kNone, AsEvo("camera"), {.method = EvaluationTool::kEvo, .deltas = {}});
   ASSERT_EQ(evo.tool_rpe.size(), 1U);
   EXPECT_EQ(evo.tool_rpe[0].count, 969U);
   const Evaluation rpg =
-      EvaluateAs("camera", Alignment::kSe3, AsRpg(), {.method = RpeMethod::kRpg, .deltas = {}});
+      EvaluateAs("camera", Alignment::kSe3, AsRpg(), {.method = EvaluationTool::kRpg, .deltas = {}});
   ASSERT_EQ(rpg.tool_rpe.size(), 5U);
   EXPECT_DOUBLE_EQ(rpg.tool_rpe[1].delta, DefaultRpgLengths(FormulaPair("camera").truth)[1]);
 }

@@ -70,13 +70,18 @@ TEST(WritePeerRun, ARunWithoutAStateIsAFault) {
   EXPECT_EQ(WritePeerRun({}, folder.path()).code(), StatusCode::kDiverged);
 }
 
-TEST(ProcessCpuSeconds, CountsWork) {
-  const double before = ProcessCpuSeconds();
-  volatile double sum = 0;
-  for (int i = 0; i < 1000000; ++i) {
-    sum = sum + 1;
-  }
-  EXPECT_GT(ProcessCpuSeconds(), before);
+Status Accept(const std::vector<std::string>& arguments) {
+  return arguments == std::vector<std::string>{"--a=1", "--b=2"} ? Status::Ok()
+                                                                 : Status::Usage("other arguments");
+}
+
+TEST(RunDriver, HandsTheArgumentsOnAndTellsTheError) {
+  std::string name = "program", first = "--a=1", second = "--b=2";
+  char* arguments[] = {name.data(), first.data(), second.data()};
+  EXPECT_EQ(RunDriver("driver", 3, arguments, Accept), 0);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(RunDriver("driver", 2, arguments, Accept), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "driver: other arguments\n");
 }
 
 }  // namespace

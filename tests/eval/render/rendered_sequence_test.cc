@@ -13,7 +13,7 @@
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/digest.h"
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 #include "eval/render/hall_file.h"
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_reader.h"

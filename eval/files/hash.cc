@@ -1,4 +1,4 @@
-#include "eval/files/sha256.h"
+#include "eval/files/hash.h"
 
 #include <openssl/evp.h>
 
@@ -12,21 +12,22 @@
 
 namespace alidade {
 
-struct Sha256::Context {
+struct Hash::Context {
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> handle{EVP_MD_CTX_new(), &EVP_MD_CTX_free};
 };
 
-Sha256::Sha256() : context_(std::make_unique<Context>()) {
-  CHECK(context_->handle != nullptr && EVP_DigestInit_ex(context_->handle.get(), EVP_sha256(), nullptr) == 1);
+Hash::Hash(HashKind kind) : context_(std::make_unique<Context>()) {
+  const EVP_MD* function = kind == HashKind::kMd5 ? EVP_md5() : EVP_sha256();
+  CHECK(context_->handle != nullptr && EVP_DigestInit_ex(context_->handle.get(), function, nullptr) == 1);
 }
 
-Sha256::~Sha256() = default;
+Hash::~Hash() = default;
 
-void Sha256::Add(std::string_view bytes) {
+void Hash::Add(std::string_view bytes) {
   CHECK_EQ(EVP_DigestUpdate(context_->handle.get(), bytes.data(), bytes.size()), 1);
 }
 
-std::string Sha256::Hex() {
+std::string Hash::Hex() {
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned int size = 0;
   CHECK_EQ(EVP_DigestFinal_ex(context_->handle.get(), digest, &size), 1);
@@ -39,16 +40,20 @@ std::string Sha256::Hex() {
   return text;
 }
 
-std::string Sha256Hex(std::string_view bytes) {
-  Sha256 hash;
+std::string HashHex(std::string_view bytes, HashKind kind) {
+  Hash hash(kind);
   hash.Add(bytes);
   return hash.Hex();
+}
+
+std::string Sha256Hex(std::string_view bytes) {
+  return HashHex(bytes, HashKind::kSha256);
 }
 
 namespace {
 
 /// Piece by piece: a bag may be larger than memory.
-Status AddFile(const std::string& path, Sha256* hash) {
+Status AddFile(const std::string& path, Hash* hash) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> piece(std::size_t{1} << 20);
   while (file) {
@@ -60,14 +65,18 @@ Status AddFile(const std::string& path, Sha256* hash) {
 
 }  // namespace
 
+Result<std::string> HashOfFile(const std::string& path, HashKind kind) {
+  Hash hash(kind);
+  ALIDADE_RETURN_IF_ERROR(AddFile(path, &hash));
+  return hash.Hex();
+}
+
 Result<std::string> DigestOfFolder(const std::string& folder) {
   namespace fs = std::filesystem;
   std::vector<std::string> names;
   std::error_code error;
   if (fs::is_regular_file(folder, error)) {
-    Sha256 hash;
-    ALIDADE_RETURN_IF_ERROR(AddFile(folder, &hash));
-    return hash.Hex();
+    return HashOfFile(folder);
   }
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     if (it->is_regular_file(error)) {
@@ -78,7 +87,7 @@ Result<std::string> DigestOfFolder(const std::string& folder) {
     return Status::Input(folder + ": " + error.message() + ", expected a folder that can be read");
   }
   std::sort(names.begin(), names.end());
-  Sha256 hash;
+  Hash hash;
   for (const std::string& name : names) {
     const std::string path = (fs::path(folder) / name).string();
     const Result<std::uintmax_t> size = RegularFileSize(path);
