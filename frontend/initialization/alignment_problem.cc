@@ -25,6 +25,8 @@ constexpr int kLandmarkIterations = 3;
 // Cost of an observation whose landmark lies behind its view: far outside the kernel.
 constexpr double kBehindSquared = 400.0;
 constexpr double kMinDepthM = 1e-3;
+// Of a landmark's own rows: a depth that they do not tell.
+constexpr double kMinPivotRatio = 1e-6;
 
 }  // namespace
 
@@ -124,6 +126,7 @@ double AlignmentProblem::PriorCost(const Variables& variables) const {
 
 void AlignmentProblem::AddTrack(size_t t) {
   const SharedTrack& track = tracks_[t];
+  landmark_rows_[t] = LandmarkRows();
   std::vector<double> squared;
   if (!TrackResiduals(current_, t, &squared)) {
     return;
@@ -143,8 +146,11 @@ void AlignmentProblem::AddTrack(size_t t) {
   Eigen::Matrix<double, Eigen::Dynamic, 3> base =
       Eigen::Matrix<double, Eigen::Dynamic, 3>::Identity(2 * views, 3);
   base.applyOnTheLeft(factor.householderQ());
-  const Eigen::VectorXd residual = rows.residual - base * (base.transpose() * rows.residual);
-  Eigen::Matrix<double, 3, Eigen::Dynamic> of_landmark(3, 6 * views);
+  Eigen::Matrix<double, 3, Eigen::Dynamic>& of_landmark = landmark_rows_[t].jacobian;
+  of_landmark.resize(3, 6 * views);
+  landmark_rows_[t].R = factor.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  landmark_rows_[t].rhs = base.transpose() * rows.residual;
+  const Eigen::VectorXd residual = rows.residual - base * landmark_rows_[t].rhs;
   for (Eigen::Index k = 0; k < views; ++k) {
     const Eigen::Index at = 15 * track.frames[static_cast<size_t>(k)];
     const NavState& state = current_.states[static_cast<size_t>(track.frames[static_cast<size_t>(k)])];
@@ -194,10 +200,26 @@ void AlignmentProblem::AddPriors() {
   gauge_.diagonal().segment<3>(3).setConstant(1 / (settings_.position_std_m * settings_.position_std_m));
 }
 
+bool AlignmentProblem::StepLandmark(size_t t, const Eigen::VectorXd& step, Vector3d* landmark) const {
+  const LandmarkRows& rows = landmark_rows_[t];
+  const Vector3d pivots = rows.R.diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > kMinPivotRatio * pivots.maxCoeff())) {
+    return false;
+  }
+  Vector3d right = rows.rhs;
+  for (size_t k = 0; k < tracks_[t].frames.size(); ++k) {
+    right += rows.jacobian.middleCols<6>(6 * static_cast<Eigen::Index>(k)) *
+             step.segment<6>(15 * tracks_[t].frames[k]);
+  }
+  *landmark = current_.landmarks[t] - rows.R.triangularView<Eigen::Upper>().solve(right);
+  return true;
+}
+
 double AlignmentProblem::Linearize() {
   const Eigen::Index size = 15 * static_cast<Eigen::Index>(current_.states.size());
   information_.setZero(size, size);
   gradient_.setZero(size);
+  landmark_rows_.resize(tracks_.size());
   double cost = InertialCost(current_) + PriorCost(current_);
   for (size_t t = 0; t < active_.size(); ++t) {
     if (active_[t]) {
@@ -231,11 +253,21 @@ double AlignmentProblem::TryStep(double damping) {
     if (!active_[t]) {
       continue;
     }
-    // The landmark keeps its place in its first camera while that moves, then follows its own optimum.
+    // The landmark starts from its part of the step, which may double the scale, or, where that is no better
+    // (a depth hardly known), from its place in its first camera; then it follows its own optimum.
     const SharedTrack& track = tracks_[t];
     const std::vector<Pose> cameras = Cameras(trial_, track);
     const Pose before = current_.states[static_cast<size_t>(track.frames.front())].T_WB() * settings_.T_BC;
-    trial_.landmarks[t] = cameras.front() * (before.Inverse() * current_.landmarks[t]);
+    Vector3d& landmark = trial_.landmarks[t];
+    landmark = cameras.front() * (before.Inverse() * current_.landmarks[t]);
+    Vector3d stepped;
+    if (StepLandmark(t, step, &stepped)) {
+      const double kept_cost = TrackCost(trial_, t);
+      std::swap(landmark, stepped);
+      if (!(TrackCost(trial_, t) < kept_cost)) {
+        std::swap(landmark, stepped);
+      }
+    }
     std::vector<NormalizedObservation> weighted = track.observations;
     std::vector<double> squared;
     TrackResiduals(current_, t, &squared);
@@ -243,7 +275,7 @@ double AlignmentProblem::TryStep(double damping) {
       weighted[k].sqrt_information *=
           std::sqrt(RobustWeight(RobustKernel::kCauchy, kCauchyScale, squared[k]));
     }
-    static_cast<void>(RefineLandmark(cameras, weighted, kLandmarkIterations, &trial_.landmarks[t]));
+    static_cast<void>(RefineLandmark(cameras, weighted, kLandmarkIterations, &landmark));
     cost += TrackCost(trial_, t);
   }
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();

@@ -47,6 +47,14 @@ class AlignmentProblem {
     std::vector<ImuBias> biases;
     std::vector<Eigen::Vector3d> landmarks;
   };
+  /// What Linearize found of a track's landmark: R dp + jacobian dx + rhs = 0 of its own three rows.
+  struct LandmarkRows {
+    Eigen::Matrix3d R = Eigen::Matrix3d::Zero();  ///< upper triangular; zero: the track was left out
+    Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  ///< 3 x 6N over its views' (phi, dp) of the body
+  };
+  /// The landmark of a track after `step` of the states, to first order; false when it has no rows.
+  bool StepLandmark(size_t track, const Eigen::VectorXd& step, Eigen::Vector3d* landmark) const;
   void InitializeLandmarks();
   [[nodiscard]] std::vector<Pose> Cameras(const Variables& variables, const SharedTrack& track) const;
   /// Squared whitened residual of each observation; false when the landmark is behind a view.
@@ -66,8 +74,9 @@ class AlignmentProblem {
   bool valid_ = true;
   std::vector<bool> active_;
   Variables current_, trial_;
-  Eigen::MatrixXd information_;  // without the gauge prior; its lower triangle
-  Eigen::MatrixXd gauge_;        // 15 x 15 on the newest state
+  std::vector<LandmarkRows> landmark_rows_;  // of each track, at current_
+  Eigen::MatrixXd information_;              // without the gauge prior; its lower triangle
+  Eigen::MatrixXd gauge_;                    // 15 x 15 on the newest state
   Eigen::VectorXd gradient_;
 };
 

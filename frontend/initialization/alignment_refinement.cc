@@ -18,19 +18,32 @@ constexpr int kMinRefinedTracks = 8;
 // Squared residual of an observation (2 rows) that a good one exceeds once in 1800 times.
 constexpr double kMaxSquaredResidual = 15.0;
 
+/// Where a minimisation begins and what it must reach; dampings are relative to the diagonal.
+struct Round {
+  double first_damping;
+  /// The largest damping at which a small gain tells the minimum. The information of the scale is 1e-10 of a
+  /// position's own and less, so with more damping a step hardly moves along it.
+  double last_damping;
+};
+// Tracks that do not fit can block the way along the scale: it is sought once they are dropped.
+constexpr Round kRough{1e-4, 1};
+constexpr Round kSharp{1e-10, 1e-11};
+constexpr int kMaxSharpRounds = 3;
+constexpr double kLeastDamping = 1e-16;
+
 /// Levenberg-Marquardt until the cost stands still to a fiftieth of a squared deviation; false when it does
 /// not within kMaxIterations. Adds to the iterations taken.
-bool Minimize(AlignmentProblem* problem, int* iterations) {
-  double damping = 1e-4;
+bool Minimize(const Round& round, AlignmentProblem* problem, int* iterations) {
+  double damping = round.first_damping;
   double cost = problem->Linearize();
   int failures = 0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     ++*iterations;
     const double candidate_cost = problem->TryStep(damping);
     if (candidate_cost < cost) {
-      const bool converged = cost - candidate_cost < 0.02;
+      const bool converged = cost - candidate_cost < 0.02 && damping <= round.last_damping;
       problem->AcceptStep();
-      damping = std::max(damping * 0.1, 1e-9);
+      damping = std::max(damping * 0.03, kLeastDamping);
       failures = 0;
       cost = problem->Linearize();
       if (converged) {
@@ -79,9 +92,12 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
         "positive");
   }
   RefinedAlignment refined;
-  bool settled = Minimize(&problem, &refined.iterations);
-  for (int round = 0; settled && round < 2 && problem.DropAbove(kMaxSquaredResidual) > 0; ++round) {
-    settled = Minimize(&problem, &refined.iterations);
+  bool settled = Minimize(kRough, &problem, &refined.iterations);
+  for (int round = 0; settled && round < kMaxSharpRounds; ++round) {
+    if (problem.DropAbove(kMaxSquaredResidual) == 0 && round > 0) {
+      break;
+    }
+    settled = Minimize(kSharp, &problem, &refined.iterations);
   }
   if (!settled) {
     return Status::Diverged(Format("moving: no solution after %d iterations", refined.iterations));

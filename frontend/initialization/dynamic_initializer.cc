@@ -90,9 +90,9 @@ std::string ReasonAgainst(const RefinedAlignment& refined, double max_scale_std)
 
 Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
                                           const std::deque<TrackFrame>& frames, const DynamicLimits& limits,
-                                          ImuBuffer* imu) {
+                                          ImuBuffer* imu, Eigen::Vector3d* accel_bias) {
   DynamicWindow window;
-  ALIDADE_RETURN_IF_ERROR(BuildDynamicWindow(config, rig.camera, frames, imu, &window));
+  ALIDADE_RETURN_IF_ERROR(BuildDynamicWindow(config, rig.camera, frames, limits.longest_s, imu, &window));
   if (static_cast<int>(window.tracks.size()) < kMinWindowTracks) {
     return Status::Diverged(Format("moving: %zu tracks shared by frames of the window, need %d",
                                    window.tracks.size(), kMinWindowTracks));
@@ -104,10 +104,10 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
     return Status::Diverged(
         Format("moving: parallax %.1f px of %.1f", gyro.median_parallax_px, limits.min_parallax_px));
   }
-  preintegrations = PreintegrateWindow(window, {gyro.gyro_bias, Eigen::Vector3d::Zero()}, noise);
+  const ImuBias bias{gyro.gyro_bias, *accel_bias};
+  preintegrations = PreintegrateWindow(window, bias, noise);
   const Result<LinearAlignment> linear =
-      AlignLinear(window, preintegrations, {gyro.gyro_bias, Eigen::Vector3d::Zero()}, gyro.inlier, rig.T_BC,
-                  config.imu.gravity_mps2);
+      AlignLinear(window, preintegrations, bias, gyro.inlier, rig.T_BC, config.imu.gravity_mps2);
   if (!linear.ok()) {
     return linear.status();
   }
@@ -123,6 +123,8 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   if (!refined.ok()) {
     return refined.status();
   }
+  const bool plausible = refined->bias_prior_sigma <= kMaxBiasPriorSigma;
+  *accel_bias = plausible ? refined->newest.bias.accel : Eigen::Vector3d::Zero();
   if (const std::string reason = ReasonAgainst(*refined, limits.scale_std); !reason.empty()) {
     return Status::Diverged(reason);
   }

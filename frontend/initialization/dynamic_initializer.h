@@ -23,15 +23,18 @@ struct DynamicSolution {
 struct DynamicLimits {
   double scale_std = 0;        ///< relative standard deviation of the scale, at most
   double min_parallax_px = 0;  ///< median rotation-compensated motion over the window
+  double longest_s = 0;        ///< of the window
 };
 
 /// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),
 /// velocity and gravity in closed form (linear_alignment.h), maximum likelihood over the window,
 /// accelerometer bias included (alignment_refinement.h), then the checks that accept it. The IMU counts as
-/// noisier than its sheet where its samples scatter more. Stamps of `frames` are in IMU time. Error
-/// (kDiverged): why there is no solution yet, with the figure and its limit.
+/// noisier than its sheet where its samples scatter more. Stamps of `frames` are in IMU time. `accel_bias`
+/// [m/s^2] is where the search for it begins, zero at first; it becomes what this attempt found, refused or
+/// not, where that is plausible. Error (kDiverged): why there is no solution yet, with the figure and its
+/// limit.
 Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const RigCalibration& rig,
                                           const std::deque<TrackFrame>& frames, const DynamicLimits& limits,
-                                          ImuBuffer* imu);
+                                          ImuBuffer* imu, Eigen::Vector3d* accel_bias);
 
 }  // namespace alidade

@@ -10,9 +10,10 @@ namespace alidade {
 namespace {
 
 /// Indices of the frames to use, oldest first.
-std::vector<size_t> SelectFrames(const InitConfig& config, const std::deque<TrackFrame>& frames) {
+std::vector<size_t> SelectFrames(const InitConfig& config, const std::deque<TrackFrame>& frames,
+                                 double longest_s) {
   const TimeNs newest = frames.back().stamp_ns;
-  const TimeNs from = newest - SecondsToNs(kWindowGrowth * config.dynamic_window_s) - 1000;
+  const TimeNs from = newest - SecondsToNs(longest_s) - 1000;
   size_t first = 0;
   while (first < frames.size() && frames[first].stamp_ns < from) {
     ++first;
@@ -64,7 +65,8 @@ std::vector<SharedTrack> CollectTracks(const EstimatorConfig& config, const Came
 }  // namespace
 
 Status BuildDynamicWindow(const EstimatorConfig& config, const CameraModel& camera,
-                          const std::deque<TrackFrame>& frames, ImuBuffer* imu, DynamicWindow* window) {
+                          const std::deque<TrackFrame>& frames, double longest_s, ImuBuffer* imu,
+                          DynamicWindow* window) {
   *window = DynamicWindow();
   const double span_s = frames.empty() ? 0 : SecondsBetween(frames.front().stamp_ns, frames.back().stamp_ns);
   if (static_cast<int>(frames.size()) < config.init.dynamic_min_frames) {
@@ -75,7 +77,7 @@ Status BuildDynamicWindow(const EstimatorConfig& config, const CameraModel& came
     return Status::Diverged(
         Format("moving: %.2f s of %.2f s collected", span_s, config.init.dynamic_window_s));
   }
-  const std::vector<size_t> selected = SelectFrames(config.init, frames);
+  const std::vector<size_t> selected = SelectFrames(config.init, frames, longest_s);
   for (const size_t index : selected) {
     window->stamps_ns.push_back(frames[index].stamp_ns);
   }

@@ -29,14 +29,15 @@ struct DynamicWindow {
   std::vector<SharedTrack> tracks;          ///< longest first
 };
 
-/// Takes frames over init.dynamic_window_s up to the newest one, at least init.dynamic_min_frames of them
+/// Takes frames over at most `longest_s` up to the newest one, at least init.dynamic_min_frames of them
 /// (sparse frames stretch the window), at most kMaxWindowFrames, evenly thinned. Stamps of `frames` are in
-/// IMU time. Errors (kDiverged): too few frames, or inertial samples that do not cover them.
+/// IMU time. Errors (kDiverged): too few frames, less than init.dynamic_window_s, or inertial samples that do
+/// not cover them.
 inline constexpr int kMaxWindowFrames = 30;
-inline constexpr double kWindowGrowth = 2.5;
 inline constexpr int kMaxWindowTracks = 150;
 Status BuildDynamicWindow(const EstimatorConfig& config, const CameraModel& camera,
-                          const std::deque<TrackFrame>& frames, ImuBuffer* imu, DynamicWindow* window);
+                          const std::deque<TrackFrame>& frames, double longest_s, ImuBuffer* imu,
+                          DynamicWindow* window);
 
 /// One preintegration an interval, about `bias`.
 [[nodiscard]] std::vector<Preintegration> PreintegrateWindow(const DynamicWindow& window, const ImuBias& bias,

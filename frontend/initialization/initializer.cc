@@ -25,6 +25,10 @@ struct SearchStage {
   double windows, scale_std, parallax_share;
 };
 constexpr std::array<SearchStage, 3> kSearch = {{{1.0, 0.008, 1.0}, {2.0, 0.012, 0.5}, {2.5, 0.12, 0.25}}};
+// Length of the data that an attempt uses, in windows. Motion that is slow for its size tells its scale only
+// over a long time; but tracks that live shortly do not reach over it. So attempts take turns.
+constexpr double kUsualWindows = 2.5;
+constexpr double kLongestWindows = 8;
 
 /// Longest silence inside the samples; an interpolated gap would pass for rest.
 double LongestStep(const std::vector<ImuSample>& samples) {
@@ -55,6 +59,8 @@ struct Initializer::Implementation {
   TimeNs first_stamp_ns = 0;  // of the first frame: how long the search has been going on
   TimeNs next_attempt_ns = INT64_MIN;
   std::string last_refusal;  // of the last attempt in motion
+  bool next_is_long = false;
+  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();  // of that attempt [m/s^2]
 
   void Trim();
   std::optional<TrackMotion> MotionOverWindow() const;
@@ -68,7 +74,7 @@ struct Initializer::Implementation {
 /// reaches back to them.
 void Initializer::Implementation::Trim() {
   const TimeNs newest = frames.back().stamp_ns;
-  const TimeNs keep_from = newest - SecondsToNs((kWindowGrowth + 0.1) * config.init.dynamic_window_s);
+  const TimeNs keep_from = newest - SecondsToNs((kLongestWindows + 0.1) * config.init.dynamic_window_s);
   const size_t keep = static_cast<size_t>(config.init.dynamic_min_frames);
   while (frames.size() > keep && frames.front().stamp_ns < keep_from) {
     frames.pop_front();
@@ -150,7 +156,8 @@ DynamicLimits Initializer::Implementation::Limits() const {
   const double share = std::clamp((windows - from.windows) / (to.windows - from.windows), 0.0, 1.0);
   return {from.scale_std + share * (to.scale_std - from.scale_std),
           config.init.dynamic_min_parallax_px *
-              (from.parallax_share + share * (to.parallax_share - from.parallax_share))};
+              (from.parallax_share + share * (to.parallax_share - from.parallax_share)),
+          config.init.dynamic_window_s * (next_is_long ? kLongestWindows : kUsualWindows)};
 }
 
 Result<NavEstimate> Initializer::Implementation::TryDynamic() {
@@ -158,10 +165,12 @@ Result<NavEstimate> Initializer::Implementation::TryDynamic() {
   if (newest < next_attempt_ns) {
     return Status::Diverged(last_refusal);
   }
-  const Result<DynamicSolution> solution = InitializeDynamic(config, rig, frames, Limits(), &imu);
+  const Result<DynamicSolution> solution =
+      InitializeDynamic(config, rig, frames, Limits(), &imu, &accel_bias);
   if (!solution.ok()) {
     next_attempt_ns = newest + SecondsToNs(kAttemptEveryS);
     last_refusal = solution.message();
+    next_is_long = !next_is_long;
     return solution.status();
   }
   method = "dynamic";
