@@ -22,12 +22,14 @@ function(alidade_add_room folder room)
 endfunction()
 
 # alidade_headers(<target> [LIBRARIES library ...] [HEADERS header ...]): precompiled headers for other targets to start from, those of
-# core and these.
+# core and these; libraries: whose headers they are. ccache stays out of it: GCC knows the headers in a precompiled one by their times too, which a cached one has from
+# another checkout, and would read them twice.
 function(alidade_headers target)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
   add_library(${target} OBJECT ${CMAKE_SOURCE_DIR}/core/cmake/precompiled.cc)
-  target_link_libraries(${target} PRIVATE alidade_options alidade::core ${ARG_LIBRARIES})
+  target_link_libraries(${target} PRIVATE alidade_options ${ARG_LIBRARIES})
   target_precompile_headers(${target} PRIVATE ${ALIDADE_CORE_HEADERS} ${ARG_HEADERS})
+  set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER "")
 endfunction()
 
 # alidade_compile_fast(<target> [TEXT]): the target's sources start from the precompiled headers of the target ALIDADE_HEADERS, by default
@@ -42,8 +44,8 @@ function(alidade_compile_fast target)
     target_precompile_headers(${target} REUSE_FROM alidade_text_headers)
   elseif(DEFINED ALIDADE_HEADERS)
     target_precompile_headers(${target} REUSE_FROM ${ALIDADE_HEADERS})
-  elseif(NOT target STREQUAL alidade_core)
-    target_precompile_headers(${target} REUSE_FROM alidade_core)
+  else()
+    target_precompile_headers(${target} REUSE_FROM alidade_core_headers)
   endif()
 endfunction()
 
