@@ -22,8 +22,8 @@ function(alidade_add_room folder room)
 endfunction()
 
 # alidade_headers(<target> [LIBRARIES library ...] [HEADERS header ...]): precompiled headers for other targets to start from, those of
-# core and these; libraries: whose headers they are. ccache stays out of it: GCC knows the headers in a precompiled one by their times too, which a cached one has from
-# another checkout, and would read them twice.
+# core and these, which may belong to the libraries. ccache stays out of it: GCC knows the headers in a precompiled one by their times too,
+# which a cached one has from another checkout, and would read them twice.
 function(alidade_headers target)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
   add_library(${target} OBJECT ${CMAKE_SOURCE_DIR}/core/cmake/precompiled.cc)
