@@ -6,6 +6,7 @@
 
 #include "core/dense_solvers.h"
 #include "core/imu_statistics.h"
+#include "core/lie.h"
 
 namespace alidade {
 namespace {
@@ -28,6 +29,7 @@ RestDetector::RestDetector(const VisionConfig& vision, const InitConfig& init, c
 void RestDetector::Clear() {
   frame_count_ = 0;
   imu_.clear();
+  turned_ns_ = INT64_MIN;
 }
 
 void RestDetector::AddImu(std::span<const ImuSample> samples) {
@@ -38,12 +40,24 @@ void RestDetector::AddImu(std::span<const ImuSample> samples) {
   }
 }
 
-RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC) {
+void RestDetector::Turn(const Vector3d& gyro_bias_radps) {
+  for (size_t i = 1; i < imu_.size(); ++i) {
+    if (imu_[i - 1].stamp_ns >= turned_ns_) {
+      const Vector3d rate_radps = 0.5 * (imu_[i - 1].gyro + imu_[i].gyro) - gyro_bias_radps;
+      R_0B_ *= so3::Exp(rate_radps * SecondsBetween(imu_[i - 1].stamp_ns, imu_[i].stamp_ns));
+    }
+  }
+  turned_ns_ = imu_.empty() ? INT64_MIN : imu_.back().stamp_ns;
+}
+
+RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Vector3d& gyro_bias_radps,
+                                   const Matrix3d& R_BC) {
+  Turn(gyro_bias_radps);
   if (frame_count_ == frames_.size()) {
     frames_.emplace_back();
   }
   frames_[frame_count_].frame = frame;
-  frames_[frame_count_].R_WC = R_WC;
+  frames_[frame_count_].R_0B = R_0B_;
   ++frame_count_;
   const TimeNs window_ns = SecondsToNs(vision_.rest_window_s);
   const TimeNs start_ns = frame.stamp_ns - window_ns;
@@ -64,9 +78,10 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Matrix3d& R_WC
   // Under a constant force, as at a turning point, the camera passes the same place twice, with a calm IMU:
   // the ends of the window alone would not tell.
   const OrientedFrame& middle = frames_[frame_count_ / 2];
-  verdict.no_translation =
-      FlowIsZero(before.frame, frame, R_WC.transpose() * before.R_WC) &&
-      (frame_count_ == 2 || FlowIsZero(middle.frame, frame, R_WC.transpose() * middle.R_WC));
+  const auto flow_is_zero = [&](const OrientedFrame& since) {
+    return FlowIsZero(since.frame, frame, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC);
+  };
+  verdict.no_translation = flow_is_zero(before) && (frame_count_ == 2 || flow_is_zero(middle));
   verdict.no_rotation = verdict.no_translation && imu.gyro_std_radps < init_.static_max_gyro_std_radps &&
                         FlowIsZero(before.frame, frame, Matrix3d::Identity());
   return verdict;

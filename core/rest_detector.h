@@ -29,7 +29,7 @@ struct RestRates {
 /// rotation, an IMU alone cannot separate rest from constant velocity.
 ///
 /// No translation: the image flow since the oldest frame of the window and since its middle one, freed of the
-/// rig's turn, fitted by shift, zoom and roll over the common tracks, stays below
+/// rig's turn by the gyroscope, fitted by shift, zoom and roll over the common tracks, stays below
 /// VisionConfig::rest_max_flow_px at the image's corner, and the specific force spreads less than
 /// rest_max_accel_std_mps2. No rotation: so does the flow as it is, and the angular rate spreads less than
 /// InitConfig allows. Neglected: motion so slow or scenery so far that it moves tracks by less than the limit
@@ -40,9 +40,11 @@ class RestDetector {
 
   /// Inertial samples since the previous frame (ends included).
   void AddImu(std::span<const ImuSample> samples);
-  /// Verdict on the window that ends with this frame. R_WC: the camera's estimated attitude; only its change
-  /// within the window matters.
-  RestVerdict AddFrame(const TrackFrame& frame, const Eigen::Matrix3d& R_WC);
+  /// Verdict on the window that ends with this frame, at whose IMU time the samples end. The gyroscope and
+  /// not the estimate tells the turn: at rest corrections of the estimated attitude would look like motion.
+  /// R_BC: camera to body.
+  RestVerdict AddFrame(const TrackFrame& frame, const Eigen::Vector3d& gyro_bias_radps,
+                       const Eigen::Matrix3d& R_BC);
   void Clear();
 
   /// Over the present window.
@@ -51,12 +53,14 @@ class RestDetector {
  private:
   struct OrientedFrame {
     TrackFrame frame;
-    Eigen::Matrix3d R_WC;
+    Eigen::Matrix3d R_0B;  ///< attitude against that of the first sample
   };
   struct CommonTrack {
     Eigen::Vector2d before;
     Eigen::Vector2d flow;
   };
+  /// Carries R_0B_ on to the last sample.
+  void Turn(const Eigen::Vector3d& gyro_bias_radps);
   /// R_now_before: turn of the camera between the frames; identity takes the flow as it is.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
                                 const Eigen::Matrix3d& R_now_before);
@@ -71,6 +75,8 @@ class RestDetector {
   std::vector<OrientedFrame> frames_;  ///< the first frame_count_, oldest first; the rest is spare memory
   size_t frame_count_ = 0;
   std::vector<ImuSample> imu_;
+  Eigen::Matrix3d R_0B_ = Eigen::Matrix3d::Identity();
+  TimeNs turned_ns_ = INT64_MIN;  ///< stamp of the sample up to which R_0B_ was carried
   std::vector<CommonTrack> common_;
 };
 

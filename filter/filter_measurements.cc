@@ -22,7 +22,6 @@ Status FilterEstimator::Align(const GnssAlignment& alignment) {
     }
     track.memory.active = false;
   }
-  rest_.Clear();
   gnss_.Align(alignment, &state_);
   aligned_ = true;
   return Status::Ok();

@@ -51,7 +51,7 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      verdict = detector.AddFrame(frame, R_WC);
+      verdict = detector.AddFrame(frame, Vector3d(0, bias, 0), Matrix3d::Identity());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
@@ -94,7 +94,7 @@ TEST_F(RestDetectorTest, ATurningPointIsNotRest) {
 
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {
   RestDetector detector(VisionConfig(), InitConfig(), camera_);
-  EXPECT_FALSE(detector.AddFrame({}, Matrix3d::Identity()).no_translation);
+  EXPECT_FALSE(detector.AddFrame({}, Vector3d::Zero(), Matrix3d::Identity()).no_translation);
 }
 
 }  // namespace
