@@ -1,13 +1,12 @@
 #include "frontend/initialization/gyro_alignment.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/dense_solvers.h"
-#include "core/robust.h"
+#include "frontend/initialization/epipolar_ray.h"
 
 namespace alidade {
 namespace {
@@ -41,19 +40,16 @@ PairRotation RotationOver(const std::vector<Preintegration>& preintegrations, in
   return pair;
 }
 
-/// One track seen by both frames of a pair; rays in the body's axes, first frame's orientation for both.
-struct PairRay {
-  size_t track;
-  Vector3d ray_i;
-  Vector3d ray_j;  // R_ij f_j
-  Vector3d normal;
-  Matrix3d normal_bias;  // d normal / d bias
-  double sigma;
+/// The tracks seen by both frames of a pair; rays in the body's axes at the first frame.
+struct PairRays {
+  std::vector<EpipolarRay> rays;
+  std::vector<size_t> tracks;
+  std::vector<Matrix3d> normal_bias;  // d normal / d bias
 };
 
-std::vector<PairRay> CollectRays(const DynamicWindow& window, const PairRotation& rotation,
-                                 const Matrix3d& R_BC, int i, int j) {
-  std::vector<PairRay> rays;
+PairRays CollectRays(const DynamicWindow& window, const PairRotation& rotation, const Matrix3d& R_BC, int i,
+                     int j) {
+  PairRays pair;
   for (size_t t = 0; t < window.tracks.size(); ++t) {
     const SharedTrack& track = window.tracks[t];
     const auto at_i = std::lower_bound(track.frames.begin(), track.frames.end(), i);
@@ -65,51 +61,17 @@ std::vector<PairRay> CollectRays(const DynamicWindow& window, const PairRotation
         track.observations[static_cast<size_t>(at_i - track.frames.begin())];
     const NormalizedObservation& seen_j =
         track.observations[static_cast<size_t>(at_j - track.frames.begin())];
-    PairRay ray;
-    ray.track = t;
+    EpipolarRay ray;
     ray.ray_i = R_BC * BearingOf(seen_i);
     const Vector3d ray_body_j = R_BC * BearingOf(seen_j);
     ray.ray_j = rotation.R_ij * ray_body_j;
     ray.normal = ray.ray_i.cross(ray.ray_j);
-    ray.normal_bias = -Skew(ray.ray_i) * rotation.R_ij * Skew(ray_body_j) * rotation.bias_jacobian;
     ray.sigma = std::hypot(AngularDeviation(seen_i), AngularDeviation(seen_j));
-    rays.push_back(ray);
+    pair.rays.push_back(ray);
+    pair.tracks.push_back(t);
+    pair.normal_bias.push_back(-Skew(ray.ray_i) * rotation.R_ij * Skew(ray_body_j) * rotation.bias_jacobian);
   }
-  return rays;
-}
-
-/// Variance of direction . normal: noise of both rays across the plane they span with the direction. Near the
-/// epipole it vanishes to first order, hence the floor.
-double EpipolarVariance(const PairRay& ray, const Vector3d& direction) {
-  const double lever =
-      0.5 * (direction.cross(ray.ray_i).squaredNorm() + direction.cross(ray.ray_j).squaredNorm());
-  return ray.sigma * ray.sigma * (lever + 1e-4);
-}
-
-/// Translation direction: least eigenvector of the weighted scatter of the epipolar normals. The first
-/// estimate counts every track by its direction alone, which bounds what a wrong one can do; then Cauchy
-/// weights follow the residuals.
-Vector3d DirectionOf(const std::vector<PairRay>& rays, std::vector<double>* weights) {
-  weights->assign(rays.size(), 1.0);
-  for (size_t k = 0; k < rays.size(); ++k) {
-    const double floor = 3 * rays[k].sigma;
-    (*weights)[k] = 1.0 / (rays[k].normal.squaredNorm() + floor * floor);
-  }
-  Vector3d direction = Vector3d::UnitX();
-  for (int round = 0; round < 4; ++round) {
-    Matrix3d scatter = Matrix3d::Zero();
-    for (size_t k = 0; k < rays.size(); ++k) {
-      scatter += (*weights)[k] * rays[k].normal * rays[k].normal.transpose();
-    }
-    direction = Eigen::SelfAdjointEigenSolver<Matrix3d>(scatter).eigenvectors().col(0);
-    for (size_t k = 0; k < rays.size(); ++k) {
-      const double residual = direction.dot(rays[k].normal);
-      const double variance = EpipolarVariance(rays[k], direction);
-      (*weights)[k] =
-          RobustWeight(RobustKernel::kCauchy, kCauchyScale, residual * residual / variance) / variance;
-    }
-  }
-  return direction;
+  return pair;
 }
 
 /// Normal equations over the bias.
@@ -119,19 +81,19 @@ struct BiasEquations {
 };
 
 /// Adds a pair's rows with its translation direction eliminated.
-void AddPair(const std::vector<PairRay>& rays, BiasEquations* equations) {
+void AddPair(const PairRays& pair, BiasEquations* equations) {
   std::vector<double> weights;
-  const Vector3d direction = DirectionOf(rays, &weights);
+  const Vector3d direction = TranslationDirection(pair.rays, kCauchyScale, &weights);
   Eigen::Matrix<double, 3, 2> tangent;
   tangent.col(0) = direction.unitOrthogonal();
   tangent.col(1) = direction.cross(tangent.col(0));
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
   Eigen::Matrix<double, 5, 1> right_side = Eigen::Matrix<double, 5, 1>::Zero();
-  for (size_t k = 0; k < rays.size(); ++k) {
+  for (size_t k = 0; k < pair.rays.size(); ++k) {
     Eigen::Matrix<double, 5, 1> row;
-    row << rays[k].normal_bias.transpose() * direction, tangent.transpose() * rays[k].normal;
+    row << pair.normal_bias[k].transpose() * direction, tangent.transpose() * pair.rays[k].normal;
     normal += weights[k] * row * row.transpose();
-    right_side += weights[k] * direction.dot(rays[k].normal) * row;
+    right_side += weights[k] * direction.dot(pair.rays[k].normal) * row;
   }
   // Without parallax the direction is loose: the unit prior on its two angles keeps the elimination regular.
   const Eigen::Matrix2d loose = normal.bottomRightCorner<2, 2>() + Eigen::Matrix2d::Identity();
@@ -141,17 +103,17 @@ void AddPair(const std::vector<PairRay>& rays, BiasEquations* equations) {
 }
 
 /// Rays of every pair of frames that shares enough tracks.
-std::vector<std::vector<PairRay>> CollectPairs(const DynamicWindow& window,
-                                               const std::vector<Preintegration>& preintegrations,
-                                               const Matrix3d& R_BC, const Vector3d& gyro_bias) {
-  std::vector<std::vector<PairRay>> pairs;
+std::vector<PairRays> CollectPairs(const DynamicWindow& window,
+                                   const std::vector<Preintegration>& preintegrations, const Matrix3d& R_BC,
+                                   const Vector3d& gyro_bias) {
+  std::vector<PairRays> pairs;
   const int frames = static_cast<int>(window.stamps_ns.size());
   for (const int spacing : kSpacings) {
     for (int i = 0; i + spacing < frames; ++i) {
       const PairRotation rotation = RotationOver(preintegrations, i, i + spacing, gyro_bias);
-      std::vector<PairRay> rays = CollectRays(window, rotation, R_BC, i, i + spacing);
-      if (static_cast<int>(rays.size()) >= kMinPairTracks) {
-        pairs.push_back(std::move(rays));
+      PairRays pair = CollectRays(window, rotation, R_BC, i, i + spacing);
+      if (static_cast<int>(pair.rays.size()) >= kMinPairTracks) {
+        pairs.push_back(std::move(pair));
       }
     }
   }
@@ -159,16 +121,17 @@ std::vector<std::vector<PairRay>> CollectPairs(const DynamicWindow& window,
 }
 
 /// A track is an inlier unless it disagrees in most of its pairs.
-std::vector<bool> JudgeTracks(const std::vector<std::vector<PairRay>>& pairs, size_t tracks) {
+std::vector<bool> JudgeTracks(const std::vector<PairRays>& pairs, size_t tracks) {
   std::vector<int> votes(tracks, 0);
   std::vector<int> against(tracks, 0);
   std::vector<double> weights;
-  for (const std::vector<PairRay>& rays : pairs) {
-    const Vector3d direction = DirectionOf(rays, &weights);
-    for (const PairRay& ray : rays) {
+  for (const PairRays& pair : pairs) {
+    const Vector3d direction = TranslationDirection(pair.rays, kCauchyScale, &weights);
+    for (size_t k = 0; k < pair.rays.size(); ++k) {
+      const EpipolarRay& ray = pair.rays[k];
       const double limit = kInlierSigma * std::sqrt(EpipolarVariance(ray, direction));
-      ++votes[ray.track];
-      against[ray.track] += std::abs(direction.dot(ray.normal)) > limit ? 1 : 0;
+      ++votes[pair.tracks[k]];
+      against[pair.tracks[k]] += std::abs(direction.dot(ray.normal)) > limit ? 1 : 0;
     }
   }
   std::vector<bool> inlier;
@@ -212,9 +175,8 @@ GyroAlignment AlignGyro(const DynamicWindow& window, const std::vector<Preintegr
     BiasEquations equations;
     equations.information = Matrix3d::Identity() / (kBiasPriorRadps * kBiasPriorRadps);
     equations.gradient = equations.information * alignment.gyro_bias;
-    for (const std::vector<PairRay>& rays :
-         CollectPairs(window, preintegrations, R_BC, alignment.gyro_bias)) {
-      AddPair(rays, &equations);
+    for (const PairRays& pair : CollectPairs(window, preintegrations, R_BC, alignment.gyro_bias)) {
+      AddPair(pair, &equations);
     }
     const Vector3d step = SolveSymmetric(equations.information, equations.gradient);
     alignment.gyro_bias -= step;

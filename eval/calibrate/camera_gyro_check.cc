@@ -1,0 +1,154 @@
+#include "eval/calibrate/camera_gyro_check.h"
+
+#include <cmath>
+
+#include "core/format.h"
+#include "core/lie.h"
+#include "core/numbers.h"
+#include "eval/calibrate/camera_gyro_search.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Coordinate = CameraGyroCoordinate;
+
+constexpr double kSigmas = 5;
+
+double Angle(const Matrix3d& a, const Matrix3d& b) {
+  return so3::Log(a.transpose() * b).norm() * kDegreesPerRadian;
+}
+
+/// "x right, y down, z forward" in words of the body: the body axis next to each camera axis.
+std::string AxesText(const Matrix3d& R_BC) {
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    int largest = 0;
+    R_BC.col(axis).cwiseAbs().maxCoeff(&largest);
+    text += Format("%scamera %s = body %s%s", axis == 0 ? "" : ", ", kNames[static_cast<std::size_t>(axis)],
+                   R_BC(largest, axis) < 0 ? "-" : "", kNames[static_cast<std::size_t>(largest)]);
+  }
+  return text;
+}
+
+/// Other axes than the sheet's; nothing else is compared then.
+bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
+  constexpr double kOtherAxesDeg = 30;
+  constexpr double kSameDeg = 15;
+  constexpr double kMostStdDeg = 3;
+  const CameraGyroModel& found = fit.model;
+  if (fit.deviations.segment<3>(Coordinate::kRotation).maxCoeff() * kDegreesPerRadian > kMostStdDeg) {
+    return false;  // little rotation in the recording
+  }
+  if (found.gyro_sign < 0) {
+    findings->Error(
+        "imu0: the gyroscope's rates contradict the rotation of the images and agree with it once they are "
+        "negated: "
+        "wrong sign, or an axis of a left-handed system");
+    return true;
+  }
+  const double angle_deg = Angle(sheet.R_BC, found.R_BC);
+  if (angle_deg < kOtherAxesDeg) {
+    return false;
+  }
+  if (Angle(sheet.R_BC.transpose(), found.R_BC) < kSameDeg) {
+    findings->Error(
+        Format("cam0: T_BS is the inverse of what the images' rotation against the gyroscope says (body to "
+               "camera instead of camera to body; %.0f deg away)",
+               angle_deg));
+  } else {
+    findings->Error(
+        Format("cam0: T_BS has other axes than the images' rotation against the gyroscope says, %.0f deg "
+               "away; found: %s",
+               angle_deg, AxesText(found.R_BC).c_str()));
+  }
+  return true;
+}
+
+void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
+  constexpr double kTimeS = 2e-3, kRotationDeg = 0.5, kFocal = 0.01, kReadoutS = 3e-3;
+  const double time_s = fit.model.time_offset_s - sheet.time_offset_s;
+  const double time_std_s = fit.deviations[Coordinate::kTimeOffset];
+  if (std::abs(time_s) > kTimeS && std::abs(time_s) > kSigmas * time_std_s) {
+    findings->Warning(
+        Format("cam0: time_offset_s: images and gyroscope agree at %.4f +- %.4f s, the sheet says %.4f",
+               fit.model.time_offset_s, time_std_s, sheet.time_offset_s));
+  }
+  const Vector3d turn = so3::Log(sheet.R_BC.transpose() * fit.model.R_BC) * kDegreesPerRadian;
+  const Vector3d turn_std = fit.deviations.segment<3>(Coordinate::kRotation) * kDegreesPerRadian;
+  if (turn.norm() > kRotationDeg && (turn.cwiseAbs().array() > kSigmas * turn_std.array()).any()) {
+    findings->Warning(
+        Format("cam0: T_BS: images and gyroscope agree with the camera turned by (%.2f, %.2f, %.2f) +- "
+               "(%.2f, %.2f, %.2f) deg about its axes",
+               turn.x(), turn.y(), turn.z(), turn_std.x(), turn_std.y(), turn_std.z()));
+  }
+  const double focal = fit.model.camera.intrinsics()[0] / sheet.camera.intrinsics()[0] - 1;
+  const double focal_std = fit.deviations[Coordinate::kFocal];
+  if (std::abs(focal) > kFocal && std::abs(focal) > kSigmas * focal_std) {
+    findings->Warning(
+        Format("cam0: intrinsics: images and gyroscope agree at a focal length %+.1f +- %.1f %% of the "
+               "sheet's (fu %.1f px instead of %.1f), or at a gyroscope scaled by as much",
+               100 * focal, 100 * focal_std, fit.model.camera.intrinsics()[0], sheet.camera.intrinsics()[0]));
+  }
+  const double readout_s = fit.model.readout_s;
+  if (std::abs(readout_s) > kReadoutS &&
+      std::abs(readout_s) > kSigmas * fit.deviations[Coordinate::kReadout]) {
+    findings->Warning(
+        Format("cam0: rolling shutter: the rows of an image are exposed over %.1f +- %.1f ms; estimators "
+               "take them as exposed at once",
+               1e3 * readout_s, 1e3 * fit.deviations[Coordinate::kReadout]));
+  }
+}
+
+}  // namespace
+
+std::vector<FramePair> FramePairsOf(const MeasurementLog& log, std::size_t most) {
+  constexpr double kFlowShare = 0.1;  // of the image's width
+  FramePairOptions options;
+  options.least_flow_px = kFlowShare * log.rig.camera.width_px();
+  std::vector<FramePair> pairs = ChooseFramePairs(log.frames, log.imu, options);
+  if (pairs.size() <= most) {
+    return pairs;
+  }
+  std::vector<FramePair> some;
+  for (std::size_t k = 0; k < most; ++k) {
+    some.push_back(std::move(pairs[k * pairs.size() / most]));
+  }
+  return some;
+}
+
+CameraGyroModel ModelOfSheet(const RigCalibration& rig) {
+  CameraGyroModel model;
+  model.camera = rig.camera;
+  model.R_BC = rig.T_BC.rotation;
+  model.time_offset_s = rig.camera_time_offset_s;
+  return model;
+}
+
+void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, Findings* findings) {
+  const CameraGyroModel sheet = ModelOfSheet(log.rig);
+  CameraGyroSearchOptions options;
+  options.prior[Coordinate::kFocal] = 0.3;
+  options.prior[Coordinate::kReadout] = 0.03;
+  const std::vector<FramePair> pairs = FramePairsOf(log, most_pairs);
+  const Result<CameraGyroFit> fit = FindCameraGyro(pairs, log.imu, sheet, options);
+  if (!fit.ok()) {
+    findings->Fact("cam0 against the gyroscope: not compared: " + fit.message());
+    return;
+  }
+  findings->Fact(Format(
+      "cam0 against the gyroscope: %d pairs of images, %.2f px from the epipolar lines, %.0f %% "
+      "outliers; time offset %+.4f +- %.4f s from the sheet's, rotation %.2f deg, focal length %+.2f "
+      "+- %.2f %%",
+      fit->pairs, fit->residual_px, 100 * fit->outliers, fit->model.time_offset_s - sheet.time_offset_s,
+      fit->deviations[Coordinate::kTimeOffset], Angle(sheet.R_BC, fit->model.R_BC),
+      100 * (fit->model.camera.intrinsics()[0] / sheet.camera.intrinsics()[0] - 1),
+      100 * fit->deviations[Coordinate::kFocal]));
+  if (!TellAxes(sheet, *fit, findings)) {
+    TellDifferences(sheet, *fit, findings);
+  }
+}
+
+}  // namespace alidade

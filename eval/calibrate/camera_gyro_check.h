@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/estimator/measurement_log.h"
+#include "eval/calibrate/camera_gyro_fit.h"
+#include "eval/dataset/dataset_findings.h"
+
+namespace alidade {
+
+/// The pairs of a log for a fit, with a motion that suits its camera; `most`: at most that many, spread
+/// evenly.
+[[nodiscard]] std::vector<FramePair> FramePairsOf(const MeasurementLog& log, std::size_t most);
+
+/// The camera of a sheet as a start for a fit.
+[[nodiscard]] CameraGyroModel ModelOfSheet(const RigCalibration& rig);
+
+/// Compares the rotation of the images with the gyroscope: tells time offset, axes, rotation, focal length
+/// and readout time where they differ from the sheet by more than five standard deviations and by more than
+/// matters (2 ms, 0.5 deg, 1 %, 3 ms), as warnings; other axes than the sheet's are an error. A fact tells
+/// what was compared, or why nothing was. most_pairs: of images, spread evenly over the recording.
+void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, Findings* findings);
+
+}  // namespace alidade

@@ -1,0 +1,543 @@
+#include "eval/calibrate/camera_gyro_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "core/calibration.h"
+#include "core/dense_solvers.h"
+#include "core/format.h"
+#include "core/lie.h"
+#include "core/median.h"
+#include "core/robust.h"
+#include "core/visual_observation.h"
+#include "eval/calibrate/gyro_path.h"
+#include "frontend/initialization/dynamic_window.h"
+#include "frontend/initialization/epipolar_ray.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Coordinate = CameraGyroCoordinate;
+using Tangent = Eigen::Matrix<double, 3, 2>;
+using LensRows = Eigen::Matrix<double, 3, Coordinate::kCount - Coordinate::kFocal>;
+
+constexpr double kKernelSigma = 2.5;
+/// Cost of a view that the lens model cannot take, as of one four sigma off.
+constexpr double kUnseenSquared = 16;
+/// Variances of real recordings over those of independent errors, where one is too short to show it.
+constexpr double kInflationOfShort = 10;
+/// Share of the readout time: while rows are read the camera is taken to move as on average between its two
+/// frames.
+constexpr double kReadoutModel = 0.03;
+
+/// A unit ray in its camera and its derivative by the intrinsics, in the order of the coordinates.
+struct Ray {
+  Vector3d direction = Vector3d::UnitZ();
+  double sigma = 0;      ///< angle of one pixel [rad]
+  double pixel_row = 0;  ///< row / height - 1/2
+};
+
+bool RayOf(const CameraModel& camera, const Vector2d& pixel, Ray* ray) {
+  NormalizedObservation observation;
+  if (!NormalizeObservation(camera, pixel, 1.0, &observation)) {
+    return false;
+  }
+  ray->direction = BearingOf(observation);
+  ray->sigma = AngularDeviation(observation);
+  ray->pixel_row = pixel.y() / camera.height_px() - 0.5;
+  return true;
+}
+
+/// d direction / d (focal, ratio, centre, lens) at `direction`: the pixel is kept.
+LensRows IntrinsicsOfRay(const CameraModel& camera, const Vector3d& direction) {
+  LensRows rows = LensRows::Zero();
+  const Vector2d z = direction.head<2>() / direction.z();
+  Eigen::Matrix<double, 2, 8> pixel_rows;
+  Vector2d pixel;
+  Eigen::Matrix<double, 2, 3> projection;
+  if (!IntrinsicsJacobian(camera, z, &pixel_rows) ||
+      !camera.Project(Vector3d(z.x(), z.y(), 1), &pixel, &projection)) {
+    return rows;
+  }
+  const Eigen::Matrix<double, 2, 8> plane_rows = -projection.leftCols<2>().inverse() * pixel_rows;
+  Eigen::Matrix<double, 3, 2> to_ray;
+  const double length = std::hypot(1.0, z.norm());
+  to_ray << Eigen::Matrix2d::Identity(), 0, 0;
+  to_ray = (to_ray - direction * direction.head<2>().transpose()).eval() / length;
+  const Eigen::Vector4d& k = camera.intrinsics();
+  const Vector2d by_fu = plane_rows.col(0) * k[0];
+  const Vector2d by_fv = plane_rows.col(1) * k[1];
+  rows.col(0) = to_ray * (by_fu + by_fv);
+  rows.col(1) = to_ray * (by_fu - by_fv) / 2;
+  rows.middleCols<2>(2) = to_ray * plane_rows.middleCols<2>(2);
+  const int coefficients = std::min(CoefficientCount(camera.model()), 4);
+  rows.middleCols(4, coefficients) = to_ray * plane_rows.middleCols(4, coefficients);
+  return rows;
+}
+
+/// One frame of a pair at the present model.
+struct FrameMotion {
+  double t_s = 0;                        ///< IMU time of the middle row
+  Matrix3d R_0B = Matrix3d::Identity();  ///< body to the first body
+  Vector3d rate_C = Vector3d::Zero();    ///< of the camera, in its own axes [rad/s]
+};
+
+/// Camera orientations of a pair at the present model.
+struct PairMotion {
+  FrameMotion i, j;
+  Matrix3d R_ij = Matrix3d::Identity();  ///< camera j to camera i
+  Matrix3d bias_j = Matrix3d::Zero();    ///< R_ij(b + d) = R_ij Exp(bias_j d)
+};
+
+PairMotion MotionOf(const FramePair& pair, const CameraGyroModel& model, const GyroPath& path) {
+  PairMotion motion;
+  motion.i.t_s = pair.t_i_s + model.time_offset_s;
+  motion.j.t_s = pair.t_j_s + model.time_offset_s;
+  const GyroPath::Point i = path.At(motion.i.t_s);
+  const GyroPath::Point j = path.At(motion.j.t_s);
+  const Matrix3d R_CB = model.R_BC.transpose();
+  motion.i.R_0B = i.R_0t;
+  motion.j.R_0B = j.R_0t;
+  motion.i.rate_C = R_CB * i.rate_B;
+  motion.j.rate_C = R_CB * j.rate_B;
+  motion.R_ij = R_CB * i.R_0t.transpose() * j.R_0t * model.R_BC;
+  motion.bias_j = R_CB * GyroPath::BiasJacobian(i, j);
+  return motion;
+}
+
+/// A ray seen by its row's camera, in the axes of the middle row's.
+Vector3d TurnToMiddleRow(const Ray& ray, const FrameMotion& frame, const CameraGyroModel& model,
+                         const GyroPath& path) {
+  if (model.readout_s == 0) {
+    return ray.direction;
+  }
+  const Matrix3d R_0row = path.At(frame.t_s + model.readout_s * ray.pixel_row).R_0t;
+  return model.R_BC.transpose() * (frame.R_0B.transpose() * (R_0row * (model.R_BC * ray.direction)));
+}
+
+/// One view of a pair at a model: its rays in the middle rows' cameras.
+struct ViewRays {
+  bool seen = false;
+  Ray i, j;
+  EpipolarRay epipolar;
+};
+
+ViewRays RaysOf(const PairView& view, const CameraGyroModel& model, const PairMotion& motion,
+                const GyroPath& path, double noise_px) {
+  ViewRays rays;
+  if (!RayOf(model.camera, view.pixel_i, &rays.i) || !RayOf(model.camera, view.pixel_j, &rays.j)) {
+    return rays;
+  }
+  rays.seen = true;
+  rays.epipolar.ray_i = TurnToMiddleRow(rays.i, motion.i, model, path);
+  rays.epipolar.ray_j = motion.R_ij * TurnToMiddleRow(rays.j, motion.j, model, path);
+  rays.epipolar.normal = rays.epipolar.ray_i.cross(rays.epipolar.ray_j);
+  rays.epipolar.sigma = noise_px * std::hypot(rays.i.sigma, rays.j.sigma);
+  return rays;
+}
+
+Tangent TangentOf(const Vector3d& direction) {
+  Tangent tangent;
+  tangent.col(0) = direction.unitOrthogonal();
+  tangent.col(1) = direction.cross(tangent.col(0));
+  return tangent;
+}
+
+/// Normal equations of one pair with its direction eliminated, and what gives the direction's step back.
+struct PairEquations {
+  CameraGyroMatrix information = CameraGyroMatrix::Zero();
+  CameraGyroError gradient = CameraGyroError::Zero();
+  Eigen::Matrix<double, 2, Coordinate::kCount> direction_by_model =
+      Eigen::Matrix<double, 2, Coordinate::kCount>::Zero();
+  Vector2d direction_step = Vector2d::Zero();
+};
+
+/// The samples that pairs need at any time offset within its prior, so that few pairs of a long recording are
+/// cheap. Between them the path makes a step that no pair sees.
+std::vector<ImuSample> SamplesOf(const std::vector<FramePair>& pairs, const std::vector<ImuSample>& imu) {
+  constexpr double kMarginS = 0.6;
+  std::vector<ImuSample> samples;
+  auto pair = pairs.begin();
+  for (const ImuSample& sample : imu) {
+    const double t_s = SecondsBetween(imu.front().stamp_ns, sample.stamp_ns);
+    while (pair != pairs.end() && pair->t_j_s + kMarginS < t_s) {
+      ++pair;
+    }
+    // The first sample is the origin of time.
+    if (samples.empty() || (pair != pairs.end() && pair->t_i_s - kMarginS <= t_s)) {
+      samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
+class Fit {
+ public:
+  Fit(const std::vector<FramePair>& pairs, const std::vector<ImuSample>& imu, const CameraGyroModel& start,
+      const CameraGyroFitOptions& options)
+      : pairs_(pairs),
+        imu_(SamplesOf(pairs, imu)),
+        options_(options),
+        start_(start),
+        noise_px_(options.pixel_noise_px) {
+    fit_.model = start;
+    directions_.resize(pairs.size());
+    FindDirections();
+  }
+
+  CameraGyroFit Execute() {
+    constexpr int kRounds = 3;  // of the noise
+    for (int round = 0; round < kRounds; ++round) {
+      Iterate();
+      MeasureNoise();
+      if (!options_.estimate_noise || (std::abs(fit_.residual_px / noise_px_ - 1) < 0.02 && fit_.converged)) {
+        break;
+      }
+      noise_px_ = fit_.residual_px;
+    }
+    Conclude();
+    return fit_;
+  }
+
+ private:
+  void FindDirections() {
+    const GyroPath path(imu_, fit_.model.gyro_bias, fit_.model.gyro_sign);
+    std::vector<double> weights;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      const PairMotion motion = MotionOf(pairs_[k], fit_.model, path);
+      std::vector<EpipolarRay> rays;
+      for (const PairView& view : pairs_[k].views) {
+        if (const ViewRays at = RaysOf(view, fit_.model, motion, path, noise_px_); at.seen) {
+          rays.push_back(at.epipolar);
+        }
+      }
+      directions_[k] = rays.empty() ? Vector3d::UnitX() : TranslationDirection(rays, kKernelSigma, &weights);
+    }
+  }
+
+  /// Robust cost with the prior; `residuals`: whitened ones of all seen views.
+  [[nodiscard]] double Cost(const CameraGyroModel& model, const std::vector<Vector3d>& directions,
+                            std::vector<double>* residuals = nullptr) const {
+    double cost = 0;
+    const GyroPath path(imu_, model.gyro_bias, model.gyro_sign);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      const PairMotion motion = MotionOf(pairs_[k], model, path);
+      for (const PairView& view : pairs_[k].views) {
+        const ViewRays rays = RaysOf(view, model, motion, path, noise_px_);
+        double squared = kUnseenSquared;
+        if (rays.seen) {
+          const double residual = directions[k].dot(rays.epipolar.normal) /
+                                  std::sqrt(EpipolarVariance(rays.epipolar, directions[k]));
+          squared = residual * residual;
+          if (residuals != nullptr) {
+            residuals->push_back(std::abs(residual));
+          }
+        }
+        cost += RobustCost(RobustKernel::kCauchy, kKernelSigma, squared);
+      }
+    }
+    const CameraGyroError offset = CameraGyroOffset(start_, model);
+    for (int c = 0; c < Coordinate::kCount; ++c) {
+      if (options_.prior[c] > 0) {
+        cost += std::pow(offset[c] / options_.prior[c], 2);
+      }
+    }
+    return cost;
+  }
+
+  /// Adds one view's row over model and direction.
+  void AddView(const ViewRays& rays, const PairMotion& motion, const Vector3d& t, const Tangent& tangent,
+               Eigen::Matrix<double, Coordinate::kCount + 2, Coordinate::kCount + 2>* information,
+               Eigen::Matrix<double, Coordinate::kCount + 2, 1>* gradient) const {
+    const double variance = EpipolarVariance(rays.epipolar, t);
+    const double residual = t.dot(rays.epipolar.normal);
+    // Both rays moved onto their epipolar plane, each by its share of the noise.
+    Vector3d a = rays.epipolar.ray_i;
+    Vector3d q = rays.epipolar.ray_j;
+    const Vector3d by_a = q.cross(t);
+    const Vector3d by_q = t.cross(a);
+    const double squared_i = rays.i.sigma * rays.i.sigma, squared_j = rays.j.sigma * rays.j.sigma;
+    const double spread = squared_i * by_a.squaredNorm() + squared_j * by_q.squaredNorm();
+    if (spread > 1e-4 * (squared_i + squared_j)) {
+      a = (a - by_a * (residual * squared_i / spread)).normalized();
+      q = (q - by_q * (residual * squared_j / spread)).normalized();
+    }
+    const Vector3d u = t.cross(a);                   // d residual / d q
+    const Vector3d w = motion.R_ij.transpose() * u;  // d residual / d ray j in its own camera
+    const Vector3d b = motion.R_ij.transpose() * q;
+    const Vector3d by_turn_i = u.cross(q);
+    const Vector3d by_turn_j = b.cross(w);
+    Eigen::Matrix<double, Coordinate::kCount + 2, 1> row;
+    row.setZero();
+    row.segment<3>(Coordinate::kGyroBias) = motion.bias_j.transpose() * by_turn_j;
+    row.segment<3>(Coordinate::kRotation) = by_turn_i + by_turn_j;
+    row[Coordinate::kTimeOffset] = by_turn_i.dot(motion.i.rate_C) + by_turn_j.dot(motion.j.rate_C);
+    row[Coordinate::kReadout] =
+        rays.i.pixel_row * by_turn_i.dot(motion.i.rate_C) + rays.j.pixel_row * by_turn_j.dot(motion.j.rate_C);
+    if (intrinsics_free_) {
+      row.segment<Coordinate::kCount - Coordinate::kFocal>(Coordinate::kFocal) =
+          IntrinsicsOfRay(fit_.model.camera, a).transpose() * q.cross(t) +
+          IntrinsicsOfRay(fit_.model.camera, b).transpose() * w;
+    }
+    row.tail<2>() = tangent.transpose() * a.cross(q);
+    const double weight =
+        RobustWeight(RobustKernel::kCauchy, kKernelSigma, residual * residual / variance) / variance;
+    *information += weight * row * row.transpose();
+    *gradient += weight * residual * row;
+  }
+
+  [[nodiscard]] PairEquations EquationsOf(std::size_t k, const GyroPath& path) const {
+    const Vector3d& t = directions_[k];
+    const Tangent tangent = TangentOf(t);
+    const PairMotion motion = MotionOf(pairs_[k], fit_.model, path);
+    Eigen::Matrix<double, Coordinate::kCount + 2, Coordinate::kCount + 2> information;
+    Eigen::Matrix<double, Coordinate::kCount + 2, 1> gradient;
+    information.setZero();
+    gradient.setZero();
+    for (const PairView& view : pairs_[k].views) {
+      if (const ViewRays rays = RaysOf(view, fit_.model, motion, path, noise_px_); rays.seen) {
+        AddView(rays, motion, t, tangent, &information, &gradient);
+      }
+    }
+    // Without parallax the direction is loose: the unit prior on its two angles keeps the elimination
+    // regular.
+    const Eigen::Matrix2d loose =
+        (information.bottomRightCorner<2, 2>() + Eigen::Matrix2d::Identity()).inverse();
+    PairEquations equations;
+    equations.direction_by_model = loose * information.bottomLeftCorner<2, Coordinate::kCount>();
+    equations.direction_step = loose * gradient.tail<2>();
+    equations.information =
+        information.topLeftCorner<Coordinate::kCount, Coordinate::kCount>() -
+        information.topRightCorner<Coordinate::kCount, 2>() * equations.direction_by_model;
+    equations.gradient = gradient.head<Coordinate::kCount>() -
+                         information.topRightCorner<Coordinate::kCount, 2>() * equations.direction_step;
+    return equations;
+  }
+
+  /// Holds the fixed coordinates and adds the prior of the others.
+  void AddPrior(CameraGyroMatrix* information, CameraGyroError* gradient) const {
+    const CameraGyroError offset = CameraGyroOffset(start_, fit_.model);
+    for (int c = 0; c < Coordinate::kCount; ++c) {
+      if (options_.prior[c] > 0) {
+        const double weight = 1 / (options_.prior[c] * options_.prior[c]);
+        (*information)(c, c) += weight;
+        (*gradient)[c] += weight * offset[c];
+      } else {
+        information->row(c).setZero();
+        information->col(c).setZero();
+        (*information)(c, c) = 1;
+        (*gradient)[c] = 0;
+      }
+    }
+  }
+
+  void Iterate() {
+    constexpr double kLargestDamping = 1e8;
+    double damping = 1e-4;
+    double cost = Cost(fit_.model, directions_);
+    fit_.converged = false;
+    for (int iteration = 0; iteration < options_.iterations && !fit_.converged; ++iteration) {
+      const GyroPath path(imu_, fit_.model.gyro_bias, fit_.model.gyro_sign);
+      std::vector<PairEquations> equations;
+      CameraGyroMatrix information = CameraGyroMatrix::Zero();
+      CameraGyroError gradient = CameraGyroError::Zero();
+      for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        equations.push_back(EquationsOf(k, path));
+        information += equations.back().information;
+        gradient += equations.back().gradient;
+      }
+      AddPrior(&information, &gradient);
+      for (bool better = false; !better;) {
+        CameraGyroMatrix damped = information;
+        damped.diagonal() *= 1 + damping;
+        const CameraGyroError step = -SymmetricSolver(damped).Solve(gradient);
+        CameraGyroModel model = fit_.model;
+        std::vector<Vector3d> directions = directions_;
+        better = Retract(step, &model);
+        double next = cost;
+        if (better) {
+          for (std::size_t k = 0; k < pairs_.size(); ++k) {
+            const Vector2d angles = -equations[k].direction_step - equations[k].direction_by_model * step;
+            directions[k] = (directions_[k] + TangentOf(directions_[k]) * angles).normalized();
+          }
+          next = Cost(model, directions);
+          better = next <= cost;
+        }
+        if (better) {
+          fit_.converged = cost - next < 1e-6 * (1 + cost) && damping <= 1e-2;
+          fit_.model = model;
+          directions_ = std::move(directions);
+          cost = next;
+          damping = std::max(damping / 10, 1e-9);
+        } else if ((damping *= 10) > kLargestDamping) {
+          fit_.converged = true;
+          return;
+        }
+      }
+    }
+  }
+
+  /// The noise from the median residual. A pair's direction takes two of its residuals.
+  void MeasureNoise() {
+    std::vector<double> residuals;
+    fit_.cost = Cost(fit_.model, directions_, &residuals);
+    if (residuals.empty()) {
+      return;
+    }
+    constexpr double kNormalMedian = 0.6745;
+    constexpr double kLeastNoisePx = 0.02;
+    const double median = Median(residuals);
+    const double views = static_cast<double>(residuals.size());
+    const double free = std::max(1.0, views - 2.0 * static_cast<double>(pairs_.size()));
+    const double whitened = median / kNormalMedian * std::sqrt(views / free);
+    fit_.outliers = static_cast<double>(std::count_if(residuals.begin(), residuals.end(),
+                                                      [&](double r) { return r > 4 * whitened; })) /
+                    views;
+    fit_.residual_px = std::max(kLeastNoisePx, noise_px_ * whitened);
+  }
+
+  void Conclude() {
+    const GyroPath path(imu_, fit_.model.gyro_bias, fit_.model.gyro_sign);
+    CameraGyroMatrix information = CameraGyroMatrix::Zero();
+    CameraGyroError gradient = CameraGyroError::Zero();
+    std::vector<CameraGyroError> gradients;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      const PairEquations equations = EquationsOf(k, path);
+      information += equations.information;
+      gradient += equations.gradient;
+      gradients.push_back(equations.gradient);
+      fit_.views += static_cast<int>(pairs_[k].views.size());
+    }
+    fit_.pairs = static_cast<int>(pairs_.size());
+    fit_.cost /= std::max(1, fit_.views);
+    AddPrior(&information, &gradient);
+    const CameraGyroMatrix covariance = SymmetricSolver(information).Solve(CameraGyroMatrix::Identity());
+    const CameraGyroError alone = covariance.diagonal();
+    CameraGyroError variances = alone;
+    bool scattered = false;
+    for (const double block_s : {options_.block_s, 2 * options_.block_s}) {
+      if (const std::optional<CameraGyroError> scatter = VariancesByBlocks(covariance, gradients, block_s)) {
+        variances = variances.cwiseMax(*scatter);
+        scattered = true;
+      }
+    }
+    if (!scattered) {
+      variances *= kInflationOfShort;
+    }
+    variances[Coordinate::kReadout] += std::pow(kReadoutModel * fit_.model.readout_s, 2);
+    int free = 0;
+    fit_.inflation = 0;
+    for (int c = 0; c < Coordinate::kCount; ++c) {
+      const double prior = options_.prior[c];
+      fit_.deviations[c] = prior > 0 ? std::min(std::sqrt(variances[c]), prior) : 0;
+      fit_.inflation += prior > 0 ? variances[c] / alone[c] : 0;
+      free += prior > 0 ? 1 : 0;
+    }
+    fit_.inflation /= std::max(1, free);
+  }
+
+  /// Of the estimate, from the scatter of what each block of time moves it by; negative infinity for fewer
+  /// than four blocks. The sandwich estimator with clusters (Liang and Zeger 1986), each coordinate for
+  /// itself.
+  [[nodiscard]] std::optional<CameraGyroError> VariancesByBlocks(
+      const CameraGyroMatrix& covariance, const std::vector<CameraGyroError>& gradients,
+      double block_s) const {
+    constexpr std::size_t kLeastBlocks = 4;
+    std::map<long, CameraGyroError> blocks;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      const long block = std::lround((pairs_[k].t_i_s - pairs_.front().t_i_s) / block_s - 0.5);
+      blocks.try_emplace(block, CameraGyroError::Zero()).first->second += gradients[k];
+    }
+    if (blocks.size() < kLeastBlocks) {
+      return std::nullopt;
+    }
+    CameraGyroError squares = CameraGyroError::Zero();
+    for (auto& [block, of_block] : blocks) {
+      for (int c = 0; c < Coordinate::kCount; ++c) {
+        of_block[c] = options_.prior[c] > 0 ? of_block[c] : 0;
+      }
+      squares += (covariance * of_block).cwiseAbs2();
+    }
+    // The blocks' gradients sum to about zero at the estimate, and a few blocks know their own scatter badly.
+    const auto count = static_cast<double>(blocks.size());
+    return squares * ((count + 2) / (count - 1));
+  }
+
+  const std::vector<FramePair>& pairs_;
+  const std::vector<ImuSample> imu_;
+  const CameraGyroFitOptions& options_;
+  const CameraGyroModel start_;
+  const bool intrinsics_free_ =
+      (options_.prior.tail<Coordinate::kCount - Coordinate::kFocal>().array() > 0).any();
+  double noise_px_;
+  std::vector<Vector3d> directions_;  ///< translation of each pair, unit length
+  CameraGyroFit fit_;
+};
+
+}  // namespace
+
+bool Retract(const CameraGyroError& error, CameraGyroModel* model) {
+  if (!error.allFinite()) {
+    return false;
+  }
+  Eigen::Vector4d intrinsics = model->camera.intrinsics();
+  intrinsics[0] *= 1 + error[Coordinate::kFocal] + error[Coordinate::kFocalRatio] / 2;
+  intrinsics[1] *= 1 + error[Coordinate::kFocal] - error[Coordinate::kFocalRatio] / 2;
+  intrinsics.tail<2>() += error.segment<2>(Coordinate::kCentre);
+  const LensCoefficients lens = model->camera.coefficients() + error.segment<5>(Coordinate::kLens);
+  const std::vector<double> coefficients(lens.data(), lens.data() + CoefficientCount(model->camera.model()));
+  const Result<CameraModel> camera = CameraModel::Create(model->camera.model(), intrinsics, coefficients,
+                                                         model->camera.width_px(), model->camera.height_px());
+  if (!camera.ok()) {
+    return false;
+  }
+  model->camera = *camera;
+  model->gyro_bias += error.segment<3>(Coordinate::kGyroBias);
+  model->R_BC = so3::Normalize(model->R_BC * so3::Exp(error.segment<3>(Coordinate::kRotation)));
+  model->time_offset_s += error[Coordinate::kTimeOffset];
+  model->readout_s += error[Coordinate::kReadout];
+  return true;
+}
+
+CameraGyroError CameraGyroOffset(const CameraGyroModel& from, const CameraGyroModel& to) {
+  CameraGyroError error = CameraGyroError::Zero();
+  error.segment<3>(Coordinate::kGyroBias) = to.gyro_bias - from.gyro_bias;
+  error.segment<3>(Coordinate::kRotation) = so3::Log(from.R_BC.transpose() * to.R_BC);
+  error[Coordinate::kTimeOffset] = to.time_offset_s - from.time_offset_s;
+  error[Coordinate::kReadout] = to.readout_s - from.readout_s;
+  const Eigen::Vector4d& a = from.camera.intrinsics();
+  const Eigen::Vector4d& b = to.camera.intrinsics();
+  error[Coordinate::kFocal] = (b[0] / a[0] + b[1] / a[1]) / 2 - 1;
+  error[Coordinate::kFocalRatio] = b[0] / a[0] - b[1] / a[1];
+  error.segment<2>(Coordinate::kCentre) = b.tail<2>() - a.tail<2>();
+  error.segment<5>(Coordinate::kLens) = to.camera.coefficients() - from.camera.coefficients();
+  return error;
+}
+
+CameraGyroError CameraGyroPrior() {
+  CameraGyroError prior = CameraGyroError::Zero();
+  prior.segment<3>(Coordinate::kGyroBias).setConstant(0.1);
+  prior.segment<3>(Coordinate::kRotation).setConstant(1);
+  prior[Coordinate::kTimeOffset] = 0.3;
+  return prior;
+}
+
+Result<CameraGyroFit> FitCameraToGyro(const std::vector<FramePair>& pairs, const std::vector<ImuSample>& imu,
+                                      const CameraGyroModel& start, const CameraGyroFitOptions& options) {
+  constexpr std::size_t kLeastPairs = 6;
+  if (pairs.size() < kLeastPairs) {
+    return Status::Input(
+        Format("%zu pairs of images in motion share enough tracks, expected at least %zu: the recording is "
+               "too short, at "
+               "rest, or its tracks are",
+               pairs.size(), kLeastPairs));
+  }
+  return Fit(pairs, imu, start, options).Execute();
+}
+
+}  // namespace alidade

@@ -1,0 +1,116 @@
+#include "eval/calibrate/camera_gyro_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/eval/calibrate/shaken_camera.h"
+
+namespace alidade::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using Severity = DatasetFinding::Severity;
+
+/// What the check says of a recording whose sheet is changed by `spoil`; facts are left out.
+template <typename Spoil>
+std::vector<DatasetFinding> Check(const CameraGyroModel& truth, const Spoil& spoil) {
+  MeasurementLog log = ShakenCamera{truth}.Record();
+  spoil(&log);
+  Findings findings;
+  CheckCameraAgainstGyro(log, 200, &findings);
+  std::vector<DatasetFinding> list = findings.Take();
+  EXPECT_FALSE(list.empty());
+  std::erase_if(list, [](const DatasetFinding& finding) { return finding.severity == Severity::kFact; });
+  return list;
+}
+
+TEST(CameraGyroCheckTest, ARightSheetIsNotQuestioned) {
+  for (const DatasetFinding& finding : Check(PhoneModel(), [](MeasurementLog*) {})) {
+    ADD_FAILURE() << finding.text;
+  }
+}
+
+TEST(CameraGyroCheckTest, ATimeOffsetIsTold) {
+  const auto found = Check(PhoneModel(), [](MeasurementLog* log) { log->rig.camera_time_offset_s = 0.04; });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].severity, Severity::kWarning);
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("time_offset_s"), HasSubstr("the sheet says 0.0400")));
+}
+
+TEST(CameraGyroCheckTest, AnInvertedTransformIsTold) {
+  CameraGyroModel model = PhoneModel();
+  model.R_BC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const auto found = Check(model, [](MeasurementLog* log) {
+    log->rig.T_BC.rotation = log->rig.T_BC.rotation.transpose().eval();
+    log->rig.camera_time_offset_s = 0.03;
+  });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].severity, Severity::kError);
+  EXPECT_THAT(found[0].text, HasSubstr("T_BS is the inverse"));
+}
+
+TEST(CameraGyroCheckTest, OtherAxesAreTold) {
+  const auto found =
+      Check(PhoneModel(), [](MeasurementLog* log) { log->rig.T_BC.rotation = Eigen::Matrix3d::Identity(); });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].severity, Severity::kError);
+  EXPECT_THAT(found[0].text, HasSubstr("camera x = body -y, camera y = body -x, camera z = body -z"));
+}
+
+TEST(CameraGyroCheckTest, ANegatedGyroscopeIsTold) {
+  const auto found = Check(PhoneModel(), [](MeasurementLog* log) {
+    for (ImuSample& sample : log->imu) {
+      sample.gyro *= -1;
+    }
+  });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].severity, Severity::kError);
+  EXPECT_THAT(found[0].text, HasSubstr("negated"));
+}
+
+TEST(CameraGyroCheckTest, ATurnedCameraIsTold) {
+  const auto found = Check(PhoneModel(), [](MeasurementLog* log) {
+    log->rig.T_BC.rotation = log->rig.T_BC.rotation * so3::Exp(Eigen::Vector3d(0, 0.035, 0));
+  });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].severity, Severity::kWarning);
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("T_BS"), HasSubstr("-2.0")));
+}
+
+TEST(CameraGyroCheckTest, AFocalLengthIsTold) {
+  const auto found = Check(PhoneModel(), [](MeasurementLog* log) {
+    const CameraModel& camera = log->rig.camera;
+    Eigen::Vector4d intrinsics = camera.intrinsics();
+    intrinsics.head<2>() *= 1.02;
+    const Result<CameraModel> wrong = CameraModel::Create(
+        camera.model(), intrinsics, {0.08, -0.15, 0.001, -0.0007}, camera.width_px(), camera.height_px());
+    log->rig.camera = *wrong;
+  });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("focal length -1.9 +-"), HasSubstr("instead of 489.6")));
+}
+
+TEST(CameraGyroCheckTest, ARollingShutterIsTold) {
+  CameraGyroModel model = PhoneModel();
+  model.readout_s = 0.022;
+  const auto found = Check(model, [](MeasurementLog*) {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("rolling shutter"), HasSubstr("over 21.")));
+}
+
+TEST(CameraGyroCheckTest, ImagesOfAnotherRecordingAreNotCompared) {
+  MeasurementLog log = ShakenCamera{PhoneModel()}.Record();
+  RandomStream random(3, "another gyroscope");
+  for (ImuSample& sample : log.imu) {
+    sample.gyro = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
+  }
+  Findings findings;
+  CheckCameraAgainstGyro(log, 200, &findings);
+  const std::vector<DatasetFinding> list = findings.Take();
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_THAT(list[0].text, HasSubstr("relate"));
+}
+
+}  // namespace
+}  // namespace alidade::test
