@@ -1,28 +1,28 @@
 #include "eval/compare/compare.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
+#include <chrono>
+#include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
-#include <thread>
-#include <vector>
 
-#include "core/blas.h"
 #include "core/format.h"
 #include "core/numbers.h"
-#include "eval/compare/compare_cell.h"
-#include "eval/compare/compare_configs.h"
-#include "eval/comparison/cell_score.h"
+#include "eval/compare/cell_list.h"
+#include "eval/compare/cell_runner.h"
+#include "eval/compare/slurm_run.h"
+#include "eval/compare/worker_pool.h"
 #include "eval/files/input_file.h"
+#include "eval/files/output_file.h"
+#include "eval/files/time_left.h"
 #include "eval/report/report.h"
 #include "eval/report/tables.h"
-#include "eval/run/make_estimator.h"
 
 namespace alidade {
 namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 std::string OneLine(const CellResult& cell) {
   std::string figures;
@@ -37,121 +37,101 @@ std::string OneLine(const CellResult& cell) {
 /// One comparison from a plan to its tables.
 class Comparer {
  public:
-  Comparer(const Plan& plan, const CompareOptions& options) : plan_(plan), options_(options) {
-    pipeline_.stop = options.stop;
-    pipeline_.jobs = options.jobs;
-  }
+  Comparer(const Plan& plan, const CompareOptions& options) : plan_(plan), options_(options) {}
 
   Result<CompareOutcome> Execute() {
-    ALIDADE_RETURN_IF_ERROR(configs_.Load(plan_));
-    ALIDADE_RETURN_IF_ERROR(MakeCells());
-    RunAll();
+    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    ALIDADE_RETURN_IF_ERROR(RemoveEarlier());
+    ALIDADE_RETURN_IF_ERROR(WriteCellTable());
+    ALIDADE_RETURN_IF_ERROR(RunAll());
+    return Finish();
+  }
+
+  Result<CompareOutcome> Collect() {
+    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+      Take(cell, {});
+    }
     return Finish();
   }
 
  private:
-  Status MakeCells() {
-    for (const PlanSequence& sequence : plan_.sequences) {
-      if (sequence.dataset.path.empty()) {
-        ALIDADE_RETURN_IF_ERROR(AddSimulation(sequence));
-      } else {
-        FrontendConfig frontend;
-        if (!MayExist(sequence.dataset.path + "/mav0/cam0/tracks.csv")) {
-          ALIDADE_RETURN_IF_ERROR(configs_.CommonFrontend(sequence, &frontend));
-        }
-        inputs_.push_back(std::make_unique<CompareInput>(sequence, frontend, CacheOf(sequence, 0)));
-        for (const unsigned seed : sequence.seeds) {
-          AddCells(sequence, seed, inputs_.back().get());
-        }
+  /// Reports of an earlier comparison in this folder, and, unless its cells are to be kept, its tracks.
+  Status RemoveEarlier() const {
+    std::error_code error;
+    fs::remove_all(options_.output + "/scores", error);
+    if (!error && !options_.resume) {
+      fs::remove_all(options_.output + "/logs", error);
+    }
+    return error ? Status::Output(options_.output + ": cannot be emptied: " + error.message()) : Status::Ok();
+  }
+
+  /// cells.csv: what there is to do.
+  Status WriteCellTable() const {
+    std::string table = "estimator,sequence,seed\n";
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+      const CellResult& result = cells_.at(cell).result;
+      table += result.estimator + "," + result.sequence + "," + std::to_string(result.seed) + "\n";
+    }
+    return WriteFileAtomically(options_.output + "/cells.csv", table);
+  }
+
+  Status RunAll() {
+    if (options_.slurm) {
+      SlurmRun slurm(options_, cells_, [this](size_t cell, const std::string& fault) { End(cell, fault); });
+      return slurm.Run();
+    }
+    if (!options_.worker.empty()) {
+      WorkerPool pool(options_, cells_, [this](size_t cell, const std::string& fault) { End(cell, fault); });
+      return pool.Run();
+    }
+    CellRunner runner(plan_, options_, &cells_);
+    for (size_t cell = 0; cell < cells_.size() && !options_.Stopped(); ++cell) {
+      ALIDADE_RETURN_IF_ERROR(runner.Run(cell));
+      if (!options_.Stopped()) {
+        End(cell, {});
       }
     }
     return Status::Ok();
   }
 
-  Status AddSimulation(const PlanSequence& sequence) {
-    const Result<SimulatorConfig> config = LoadSimulatorConfig(sequence.config, sequence.settings);
-    if (!config.ok()) {
-      return Status(config.code(), "sequence " + sequence.name + ": " + config.message());
-    }
-    FrontendConfig frontend;
-    if (config->render.enabled) {
-      ALIDADE_RETURN_IF_ERROR(configs_.CommonFrontend(sequence, &frontend));
-    }
-    for (const unsigned seed : sequence.seeds) {
-      inputs_.push_back(
-          std::make_unique<CompareInput>(sequence, *config, seed, frontend, CacheOf(sequence, seed)));
-      AddCells(sequence, seed, inputs_.back().get());
-    }
-    return Status::Ok();
+  void End(size_t cell, const std::string& fault) {
+    Take(cell, fault);
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+    ++cells_done_;
+    Say("[" + std::to_string(cells_done_) + "/" + std::to_string(cells_.size()) +
+        TimeLeft(elapsed_s, cells_done_, cells_.size()) + "] " + OneLine(cells_.at(cell).result));
   }
 
-  void AddCells(const PlanSequence& sequence, unsigned seed, CompareInput* input) {
-    for (size_t i = 0; i < plan_.estimators.size(); ++i) {
-      const PlanEstimator& estimator = plan_.estimators[i];
-      if (!estimator.RunsOn(sequence.name)) {
-        continue;
-      }
-      const EstimatorConfig* config = configs_.Of(sequence, i);
-      CompareCell cell{&estimator, config, &sequence, input, seed, "", {}};
-      cell.folder =
-          options_.output + "/cells/" + estimator.name + "/" + sequence.name + "/" + std::to_string(seed);
-      cell.result.estimator = estimator.name;
-      cell.result.backend = estimator.external() ? "external" : std::string(ToString(config->backend));
-      cell.result.sequence = sequence.name;
-      cell.result.seed = seed;
-      input->AddUser();
-      cells_.push_back(std::move(cell));
+  /// Reads what the cell has left; `fault`: why it left nothing.
+  void Take(size_t index, const std::string& fault) {
+    CompareCell& cell = cells_.at(index);
+    Result<CellReport> report =
+        fault.empty() ? ReadCellFile(cell.report_file) : Result<CellReport>(Status::Input(fault));
+    if (!report.ok()) {
+      cell.result.status = "failed";
+      cell.result.message = report.message();
+      return;
     }
-  }
-
-  void RunAll() {
-    int jobs = options_.jobs;
-    if (jobs > 1 && !BlasIsThreadSafe()) {
-      Say("using one job: this OpenBLAS was built without locks; install libopenblas0-pthread");
-      jobs = 1;
-    }
-    std::vector<std::thread> threads;
-    for (int i = 1; i < jobs; ++i) {
-      threads.emplace_back([this] { Work(); });
-    }
-    Work();
-    for (std::thread& thread : threads) {
-      thread.join();
-    }
-  }
-
-  void Work() {
-    for (size_t i = next_cell_++; i < cells_.size() && !Stopped(); i = next_cell_++) {
-      CompareCell& cell = cells_[i];
-      const auto note = [this, &cell](const CompareInput::Data& data) { NoteInput(cell, data); };
-      cells_reused_ += RunCompareCell(plan_, options_, pipeline_, note, &cell) ? 1 : 0;
-      cell.input->Release();
-      Say("[" + std::to_string(++cells_done_) + "/" + std::to_string(cells_.size()) + "] " +
-          OneLine(cell.result));
-    }
+    cell.result = std::move(report->result);
+    cells_reused_ += report->reused ? 1 : 0;
+    NoteInput(cell, *report);
   }
 
   /// Says once an input what was odd about it and what its front end did, and keeps the latter for the
   /// tables.
-  void NoteInput(const CompareCell& cell, const CompareInput::Data& data) {
-    FrontendSummary summary = data.frontend.value_or(FrontendSummary());
-    summary.sequence = cell.sequence->name;
-    summary.seed = cell.seed;
-    {
-      const std::lock_guard<std::mutex> lock(noted_mutex_);
-      if (!noted_.insert(cell.input).second) {
-        return;
-      }
-      if (data.frontend) {
-        frontends_.emplace(cell.input, summary);
-      }
-    }
-    for (const std::string& remark : data.remarks) {
-      Say(remark);
-    }
-    if (!data.frontend) {
+  void NoteInput(const CompareCell& cell, const CellReport& report) {
+    if (!noted_.insert(cell.input).second) {
       return;
     }
+    for (const std::string& remark : report.remarks) {
+      Say(remark);
+    }
+    if (!report.frontend) {
+      return;
+    }
+    const FrontendSummary& summary = *report.frontend;
+    frontends_.emplace(cell.input, summary);
     Say("front end of " + summary.sequence + ": " +
         Format("%d images, %.2f ms each, %.0f features, tracks of %.0f frames, %.2f %% rejected",
                summary.images, summary.mean_ms, summary.features_per_frame, summary.mean_length,
@@ -160,7 +140,7 @@ class Comparer {
 
   Result<CompareOutcome> Finish() {
     CompareOutcome outcome;
-    outcome.interrupted = Stopped();
+    outcome.interrupted = options_.Stopped();
     outcome.cells_reused = cells_reused_;
     Comparison& comparison = outcome.comparison;
     comparison.title = plan_.title;
@@ -173,7 +153,7 @@ class Comparer {
         comparison.groups[sequence.name] = sequence.group;
       }
     }
-    for (const std::unique_ptr<CompareInput>& input : inputs_) {
+    for (const std::unique_ptr<CompareInput>& input : cells_.inputs()) {
       if (const auto found = frontends_.find(input.get()); found != frontends_.end()) {
         comparison.frontends.push_back(found->second);
       }
@@ -181,8 +161,8 @@ class Comparer {
     comparison.pair_figures = plan_.pair_figures;
     comparison.pair_across = plan_.pair_across;
     for (const PlanEstimator& estimator : plan_.estimators) {
-      for (CompareCell& cell : cells_) {
-        if (cell.estimator == &estimator) {
+      for (size_t i = 0; i < cells_.size(); ++i) {
+        if (CompareCell& cell = cells_.at(i); cell.estimator == &estimator) {
           outcome.cells_failed += cell.result.status == "ok" ? 0 : 1;
           comparison.cells.push_back(std::move(cell.result));
         }
@@ -205,23 +185,19 @@ class Comparer {
     for (const auto& [name, path] : plan_.absent_programs) {
       notes.push_back(name + ": its program is missing, expected " + path);
     }
+    std::set<const PlanEstimator*> used;
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+      used.insert(cells_.at(cell).estimator);
+    }
     for (const PlanEstimator& estimator : plan_.estimators) {
-      if (std::none_of(cells_.begin(), cells_.end(),
-                       [&](const CompareCell& cell) { return cell.estimator == &estimator; })) {
+      if (used.count(&estimator) == 0) {
         notes.push_back(estimator.name + ": all its sequences are missing");
       }
     }
     return notes;
   }
 
-  [[nodiscard]] FrontendCache CacheOf(const PlanSequence& sequence, unsigned seed) const {
-    return {options_.output + "/logs/" + sequence.name + "/" + std::to_string(seed), options_.resume};
-  }
-
-  [[nodiscard]] bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
-
-  void Say(const std::string& line) {
-    const std::lock_guard<std::mutex> lock(say_mutex_);
+  void Say(const std::string& line) const {
     if (options_.progress) {
       options_.progress(line);
     }
@@ -229,23 +205,40 @@ class Comparer {
 
   const Plan& plan_;
   const CompareOptions& options_;
-  PipelineOptions pipeline_;
-  CompareConfigs configs_;
-  std::vector<std::unique_ptr<CompareInput>> inputs_;
-  std::vector<CompareCell> cells_;
+  const Clock::time_point begin_ = Clock::now();
+  CellList cells_;
   std::map<const CompareInput*, FrontendSummary> frontends_;
   std::set<const CompareInput*> noted_;
-  std::mutex noted_mutex_;
-  std::atomic<size_t> next_cell_{0};
-  std::atomic<size_t> cells_done_{0};
-  std::atomic<int> cells_reused_{0};
-  std::mutex say_mutex_;
+  size_t cells_done_ = 0;
+  int cells_reused_ = 0;
 };
 
 }  // namespace
 
 Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options) {
   return Comparer(plan, options).Execute();
+}
+
+Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& options) {
+  return Comparer(plan, options).Collect();
+}
+
+Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part, bool inputs_alone) {
+  CellList cells;
+  ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
+  CellRunner runner(plan, options, &cells);
+  const CompareInput* prepared = nullptr;
+  for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()) && !options.Stopped(); ++cell) {
+    if (!inputs_alone) {
+      if (!MayExist(cells.at(cell).report_file)) {
+        ALIDADE_RETURN_IF_ERROR(runner.Run(cell));
+      }
+    } else if (cells.at(cell).input->may_track() && cells.at(cell).input != prepared) {
+      prepared = cells.at(cell).input;
+      ALIDADE_RETURN_IF_ERROR(runner.Prepare(cell));
+    }
+  }
+  return Status::Ok();
 }
 
 }  // namespace alidade

@@ -14,10 +14,18 @@ struct CompareOutcome {
 };
 
 /// Runs every estimator on every sequence and seed. All estimators read one measurement log a sequence and
-/// seed (the front end runs once); its digest is computed again for each cell. Writes
-/// cells/<estimator>/<sequence>/<seed>/ and the tables and the report of eval/comparison/comparison.h. A cell
-/// that fails does not stop the others. Errors: kConfig of an estimator's or a simulation's configuration,
-/// before anything runs; kOutput.
+/// seed (the front end runs once); its digest is computed again for each cell. Cells run in processes of
+/// their own (WorkerPool) or as jobs of Slurm (SlurmRun). Writes cells/<estimator>/<sequence>/<seed>/, the
+/// reports of the cells below scores/, and the tables and the report of eval/comparison/comparison.h. A cell
+/// that fails or whose process dies does not stop the others. Errors: kConfig of an estimator's or a
+/// simulation's configuration, before anything runs; kOutput.
 Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options);
+
+/// The `part` of the cells of a comparison that has begun elsewhere, in this process; those whose report is
+/// there are passed over. `inputs_alone`: only tracks the images of their inputs.
+Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part, bool inputs_alone);
+
+/// The tables of a comparison whose cells have run elsewhere; a cell without a report has failed.
+Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& options);
 
 }  // namespace alidade

@@ -18,7 +18,8 @@ struct CompareCell {
   const PlanSequence* sequence = nullptr;
   CompareInput* input = nullptr;
   unsigned seed = 0;
-  std::string folder;  ///< of its outputs
+  std::string folder;       ///< of its outputs
+  std::string report_file;  ///< of its CellReport (eval/comparison/cell_file.h)
   CellResult result;
 };
 

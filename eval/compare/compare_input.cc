@@ -10,18 +10,10 @@
 namespace alidade {
 
 const Result<CompareInput::Data>& CompareInput::Acquire(const PipelineOptions& options) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   if (!data_) {
     data_.emplace(Load(options));
   }
   return *data_;
-}
-
-void CompareInput::Release() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (--users_ == 0) {
-    data_.reset();
-  }
 }
 
 Result<CompareInput::Data> CompareInput::Load(const PipelineOptions& options) const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -19,7 +18,7 @@ struct FrontendCache {
   bool reuse = false;
 };
 
-/// The input of all estimators of one sequence and seed. Loaded for the first cell, released after the last.
+/// The input of all estimators of one sequence and seed.
 class CompareInput {
  public:
   struct Data {
@@ -33,24 +32,26 @@ class CompareInput {
     std::vector<std::string> remarks = {};        ///< remarks of the reader, as text
   };
 
-  /// A dataset folder. `frontend` is used when it has images but no tracks.
-  CompareInput(const PlanSequence& sequence, FrontendConfig frontend, FrontendCache cache = {})
-      : sequence_(sequence), frontend_(frontend), cache_(std::move(cache)) {}
+  /// A dataset folder. `frontend` is used when it has images but no tracks, which it may only be when
+  /// `may_track`.
+  CompareInput(const PlanSequence& sequence, FrontendConfig frontend, FrontendCache cache = {},
+               bool may_track = true)
+      : sequence_(sequence), frontend_(frontend), may_track_(may_track), cache_(std::move(cache)) {}
   /// A simulation with this seed. `frontend` is used when it has images.
   CompareInput(const PlanSequence& sequence, SimulatorConfig simulation, unsigned seed,
                FrontendConfig frontend, FrontendCache cache = {})
       : sequence_(sequence),
         frontend_(frontend),
+        may_track_(simulation.render.enabled),
         cache_(std::move(cache)),
         simulation_(std::move(simulation)),
         seed_(seed) {}
 
-  /// Registers one more cell that will use the data.
-  void AddUser() { ++users_; }
-  /// The data, or the reason why there is none; valid until Release. The first caller loads, others wait.
+  /// Whether loading it may take long, because its images are tracked first.
+  [[nodiscard]] bool may_track() const { return may_track_; }
+  /// The data, or the reason why there is none; valid until Release. The first call loads it.
   const Result<Data>& Acquire(const PipelineOptions& options);
-  /// Called once by every user.
-  void Release();
+  void Release() { data_.reset(); }
 
  private:
   Result<Data> Load(const PipelineOptions& options) const;
@@ -63,12 +64,11 @@ class CompareInput {
 
   const PlanSequence& sequence_;
   FrontendConfig frontend_;
+  bool may_track_;
   FrontendCache cache_;
   std::optional<SimulatorConfig> simulation_;
   unsigned seed_ = 0;
-  std::mutex mutex_;
   std::optional<Result<Data>> data_;
-  int users_ = 0;
 };
 
 }  // namespace alidade

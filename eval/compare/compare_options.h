@@ -1,12 +1,23 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "eval/report/figure_files.h"
 
 namespace alidade {
+
+/// Contiguous cells: the index-th of `parts` about equal parts, as one task of several does them.
+struct CellPart {
+  size_t index = 0;
+  size_t parts = 1;
+
+  [[nodiscard]] size_t First(size_t cells) const { return cells * index / parts; }
+  [[nodiscard]] size_t End(size_t cells) const { return cells * (index + 1) / parts; }
+};
 
 /// How a comparison runs and what it writes.
 struct CompareOptions {
@@ -17,7 +28,14 @@ struct CompareOptions {
   FigureFormats figures;  ///< for papers, into figures/
   std::string command;    ///< command line that repeats it, for the report
   const std::atomic<bool>* stop = nullptr;
-  std::function<void(const std::string& line)> progress;  ///< called by one thread at a time
+  /// Program and words that start a worker (CellWorker) of this comparison; empty: its cells run in this
+  /// process, one after the other.
+  std::vector<std::string> worker;
+  bool slurm = false;         ///< cells run as jobs of Slurm, started with the words of `worker`
+  std::string slurm_options;  ///< words for sbatch
+  std::function<void(const std::string& line)> progress;
+
+  [[nodiscard]] bool Stopped() const { return stop != nullptr && stop->load(); }
 };
 
 }  // namespace alidade

@@ -13,22 +13,13 @@
 #include <vector>
 
 #include "core/format.h"
+#include "eval/files/shell_quote.h"
 #include "eval/files/suggest.h"
-
-extern char** environ;
 
 namespace alidade {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string ShellQuoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) {
-    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return quoted + "'";
-}
 
 std::string LastLine(const std::string& path) {
   std::ifstream file(path);
@@ -69,6 +60,7 @@ double Seconds(const timeval& time) {
 
 Result<std::string> FillCommand(const std::string& text, const std::map<std::string, std::string>& values) {
   std::vector<std::string> known;
+  known.reserve(values.size());
   for (const auto& [word, value] : values) {
     known.push_back(word);
   }

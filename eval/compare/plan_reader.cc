@@ -49,6 +49,7 @@ Status PlanReader::Map(const YAML::Node& node, const std::string& name, const st
     return Fault(node, name, "keys and values");
   }
   std::vector<std::string> known;
+  known.reserve(keys.size());
   for (const Key& key : keys) {
     known.push_back(key.name);
   }

@@ -253,6 +253,7 @@ std::vector<PairedDifference> PoolSequences(const std::vector<PairedDifference>&
     parts[key].push_back(&pair);
   }
   std::vector<PairedDifference> pools;
+  pools.reserve(order.size());
   for (const Key& key : order) {
     pools.push_back(Pool(parts.at(key), figures[std::get<0>(key)].ideal));
   }

@@ -9,10 +9,19 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <regex>
 #include <thread>
 
 namespace alidade {
 namespace {
+
+constexpr char kTemporary[] = ".tmp";  // then process and thread: two cells never share a file
+
+bool IsTemporary(const std::string& name) {
+  const size_t mark = name.rfind(kTemporary);
+  return mark != std::string::npos &&
+         std::regex_match(name.substr(mark + sizeof kTemporary - 1), std::regex("[0-9]+_[0-9]+"));
+}
 
 std::string SystemReason() {
   return std::strerror(errno);
@@ -63,8 +72,7 @@ Status WriteFileAtomically(const std::string& path, std::string_view content) {
       return Status::Output(parent.string() + ": folder cannot be created: " + error.message());
     }
   }
-  // Process and thread in the name: two cells of a comparison never share a temporary file.
-  const std::string temporary = path + ".tmp" + std::to_string(::getpid()) + "_" +
+  const std::string temporary = path + kTemporary + std::to_string(::getpid()) + "_" +
                                 std::to_string(std::hash<std::thread::id>()(std::this_thread::get_id()));
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) {
@@ -81,6 +89,19 @@ Status WriteFileAtomically(const std::string& path, std::string_view content) {
     ::unlink(temporary.c_str());
   }
   return status;
+}
+
+void RemoveTemporaryFiles(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(folder, options, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (IsTemporary(entry->path().filename().string())) {
+      std::error_code ignored;
+      fs::remove(entry->path(), ignored);
+    }
+  }
 }
 
 std::string ShortestDouble(double value) {

@@ -11,6 +11,10 @@ namespace alidade {
 /// complete file or none. Creates missing folders. Errors: kOutput naming the path and the system's reason.
 Status WriteFileAtomically(const std::string& path, std::string_view content);
 
+/// Removes what processes that were killed left below `folder`: temporary files of WriteFileAtomically. Only
+/// for the one writer of the folder (LockFolder).
+void RemoveTemporaryFiles(const std::string& folder);
+
 /// Shortest decimal text that reads back to the same double.
 [[nodiscard]] std::string ShortestDouble(double value);
 

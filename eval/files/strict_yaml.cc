@@ -80,7 +80,7 @@ Result<YAML::Node> ParseYaml(const std::string& text, const std::string& where, 
           "%YAML:")) {  // OpenCV writes a colon where YAML wants a blank; a comment keeps the line count
     content[0] = '#';
   }
-  const Result<YAML::Node> root = LoadYaml(content, where, code);
+  Result<YAML::Node> root = LoadYaml(content, where, code);
   ALIDADE_RETURN_IF_ERROR(root.status());
   if (root->IsNull()) {
     return Status(code, where + ": is empty, expected keys and values");

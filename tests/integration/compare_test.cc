@@ -102,6 +102,74 @@ TEST_F(CompareCommand, ResumeRunsOnlyWhatIsMissing) {
   EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("out/summary.csv"))), WithoutTimes(summary));
 }
 
+// GIVEN a comparison that runs WHEN one of its workers is killed THEN that costs the cell it was at, --status
+// tells how far it is, a second comparison into the folder is refused, and a resumed one ends as if nothing
+// had been.
+TEST_F(CompareCommand, AWorkerThatDiesCostsItsCellAlone) {
+  folder_.Write("plan.yaml",
+                "set: {init.method: truth}\nestimators: [" +
+                    Source("configs/estimators/po_invio_multi.yaml") + ", " +
+                    Source("configs/estimators/vins_mono_class.yaml") +
+                    "]\nsequences:\n  - {config: " + Source("configs/datasets/figure8_short.yaml") +
+                    ", name: short, set: {duration_s: 12, path_m: 15.6}, seeds: 1..3}\n");
+  ASSERT_EQ(Compare("clean").code, 0);
+  const std::string program = std::string(ALIDADE_BINARY_DIR) + "/alidade";
+  const CommandResult killed =
+      Shell("exec 2>&1; export ALIDADE=" + program + " OUT=" + folder_.File("out") + " PLAN=" + plan_ +
+            "; $ALIDADE compare --plan=$PLAN --output=$OUT --quiet & main=$!"
+            "; until ls $OUT/scores/vins_mono_class/short/1.cbor.running 2>/dev/null; do sleep 0.02; done"
+            "; $ALIDADE compare --plan=$PLAN --output=$OUT --resume --quiet; echo second $?"
+            "; $ALIDADE compare --status=$OUT"
+            "; kill -9 $(pgrep -P $main); wait $main; echo main $?");
+  EXPECT_THAT(killed.output, HasSubstr("another process is writing there"));
+  EXPECT_THAT(killed.output, HasSubstr("second 6"));
+  EXPECT_THAT(killed.output, HasSubstr("1 of 6 cells are complete, 0 of them failed, 1 run"));
+  EXPECT_THAT(killed.output, HasSubstr("vins_mono_class/short/1: running on "));
+  EXPECT_THAT(killed.output, HasSubstr("1 of 6 cells failed"));
+  EXPECT_THAT(killed.output, HasSubstr("main 7"));
+  EXPECT_THAT(ReadFile(folder_.File("out/summary.csv")),
+              HasSubstr("vins_mono_class,smoother,short,1,failed,"));
+  EXPECT_THAT(ReadFile(folder_.File("out/tables.md")), HasSubstr("its process ended with signal 9"));
+
+  ASSERT_EQ(Compare("out", "--resume").code, 0);
+  EXPECT_EQ(ComparableFiles(folder_.File("out/cells")), ComparableFiles(folder_.File("clean/cells")));
+  EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("out/summary.csv"))),
+            WithoutTimes(ReadFile(folder_.File("clean/summary.csv"))));
+  EXPECT_THAT(Alidade("compare --status=" + folder_.File("out")).output,
+              HasSubstr("6 of 6 cells are complete, 0 of them failed, 0 run"));
+}
+
+TEST_F(CompareCommand, StagesAndStatusRefuseWhatTheyCannotDo) {
+  for (const auto& [words, message] : std::vector<std::pair<std::string, std::string>>{
+           {"--stage=cels", "did you mean 'cells'"},
+           {"--engine=slurn", "did you mean 'slurm'"},
+           {"--stage=cells --part=3/3", "--part: found \"3/3\", expected K/N"},
+           {"--stage=cells --part=x", "--part: found \"x\""}}) {
+    const CommandResult result = Compare("out", words);
+    EXPECT_EQ(result.code, 2) << words;
+    EXPECT_THAT(result.output, HasSubstr(message));
+  }
+  const CommandResult none = Alidade("compare --status=" + folder_.File("none"));
+  EXPECT_EQ(none.code, 4);
+  EXPECT_THAT(none.output, HasSubstr("no comparison has begun there"));
+  // Tables of a comparison none of whose cells has run: they have all failed.
+  const CommandResult tables = Compare("out", "--stage=tables");
+  EXPECT_EQ(tables.code, 7) << tables.output;
+}
+
+// GIVEN the parts of a comparison run one by one, as the tasks of a cluster do WHEN the tables are collected
+// THEN they are those of one run.
+TEST_F(CompareCommand, PartsMakeTheWhole) {
+  ASSERT_EQ(Compare("whole").code, 0);
+  for (const char* part : {"2/3", "0/3", "1/3", "1/3"}) {
+    ASSERT_EQ(Compare("parts", std::string("--stage=cells --part=") + part).code, 0);
+  }
+  ASSERT_EQ(Compare("parts", "--stage=tables").code, 0);
+  EXPECT_EQ(ComparableFiles(folder_.File("parts/cells")), ComparableFiles(folder_.File("whole/cells")));
+  EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("parts/summary.csv"))),
+            WithoutTimes(ReadFile(folder_.File("whole/summary.csv"))));
+}
+
 // GIVEN a sequence with settings for the estimators WHEN compared THEN they hold there and only there.
 TEST_F(CompareCommand, ASequenceMaySetItsOwnNoise) {
   folder_.Write("plan.yaml",

@@ -48,5 +48,19 @@ TEST(ShortestDouble, ReadsBackToTheSameNumber) {
   EXPECT_EQ(ShortestDouble(20), "20");
 }
 
+TEST(RemoveTemporaryFiles, TakesWhatAKilledProcessLeftAndNothingElse) {
+  const test::TemporaryFolder folder;
+  for (const char* name :
+       {"a/states.csv.tmp12_345", "b.tmp1_2", "a/states.csv", "c.tmp", "d.tmp12_x", "e.tmp1_2.csv"}) {
+    folder.Write(name, "x");
+  }
+  RemoveTemporaryFiles(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder.File("a/states.csv.tmp12_345")));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("b.tmp1_2")));
+  for (const char* name : {"a/states.csv", "c.tmp", "d.tmp12_x", "e.tmp1_2.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.File(name))) << name;
+  }
+}
+
 }  // namespace
 }  // namespace alidade

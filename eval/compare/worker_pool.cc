@@ -1,0 +1,119 @@
+#include "eval/compare/worker_pool.h"
+
+#include <poll.h>
+
+#include <algorithm>
+
+namespace alidade {
+namespace {
+
+constexpr int kPollMs = 200;  // how late a stop may be noticed
+
+std::vector<CellQueue::Input> InputsOf(const CellList& cells) {
+  std::vector<CellQueue::Input> inputs;
+  for (size_t cell = 0; cell < cells.size(); ++cell) {
+    if (cell == 0 || cells.at(cell).input != cells.at(cell - 1).input) {
+      inputs.push_back({cell, cell, cells.at(cell).input->may_track()});
+    }
+    inputs.back().end = cell + 1;
+  }
+  return inputs;
+}
+
+}  // namespace
+
+WorkerPool::WorkerPool(const CompareOptions& options, const CellList& cells,
+                       std::function<void(size_t cell, const std::string& how)> ended)
+    : options_(options), queue_(InputsOf(cells)), ended_(std::move(ended)) {}
+
+Status WorkerPool::Run() {
+  while (!options_.Stopped()) {
+    ALIDADE_RETURN_IF_ERROR(Fill());
+    Feed();
+    if (workers_.empty()) {
+      break;
+    }
+    ALIDADE_RETURN_IF_ERROR(Listen());
+  }
+  for (const Worker& worker : workers_) {
+    worker.process.Interrupt();  // all before the first is waited for
+  }
+  workers_.clear();
+  return Status::Ok();
+}
+
+Status WorkerPool::Fill() {
+  size_t idle = static_cast<size_t>(
+      std::count_if(workers_.begin(), workers_.end(), [](const Worker& worker) { return !worker.cell; }));
+  while (workers_.size() < static_cast<size_t>(options_.jobs) && idle++ < queue_.size()) {
+    Result<WorkerProcess> process = WorkerProcess::Start(options_.worker);
+    ALIDADE_RETURN_IF_ERROR(process.status());
+    workers_.push_back({std::move(*process), false, {}, {}});
+  }
+  return Status::Ok();
+}
+
+void WorkerPool::Feed() {
+  for (auto worker = workers_.begin(); worker != workers_.end();) {
+    if (worker->ready && !worker->cell) {
+      worker->cell = queue_.Next(worker->last);
+      if (worker->cell) {
+        worker->process.Tell(std::to_string(*worker->cell));
+      }
+    }
+    worker =
+        worker->ready && !worker->cell && queue_.size() == 0 ? workers_.erase(worker) : std::next(worker);
+  }
+}
+
+Status WorkerPool::Listen() {
+  std::vector<pollfd> descriptors;
+  for (const Worker& worker : workers_) {
+    descriptors.push_back({worker.process.descriptor(), POLLIN, 0});
+  }
+  if (::poll(descriptors.data(), descriptors.size(), kPollMs) <= 0) {
+    return Status::Ok();
+  }
+  auto worker = workers_.begin();
+  for (const pollfd& descriptor : descriptors) {
+    const auto next = std::next(worker);
+    if (descriptor.revents != 0) {
+      ALIDADE_RETURN_IF_ERROR(worker->process.Read() ? Hear(&*worker) : Bury(worker));
+    }
+    worker = next;
+  }
+  return Status::Ok();
+}
+
+Status WorkerPool::Hear(Worker* worker) {
+  while (const std::optional<std::string> line = worker->process.Line()) {
+    if (*line == "ready") {
+      worker->ready = true;
+    } else if (worker->cell && *line == "done " + std::to_string(*worker->cell)) {
+      queue_.Ended(*worker->cell);
+      ended_(*worker->cell, {});
+      worker->last = worker->cell;
+      worker->cell.reset();
+    } else {
+      return Status::Output("a worker said \"" + *line + "\", expected the end of its cell");
+    }
+  }
+  return Status::Ok();
+}
+
+Status WorkerPool::Bury(std::list<Worker>::iterator worker) {
+  const std::string how = worker->process.Join();
+  const std::optional<size_t> cell = worker->cell;
+  const bool ready = worker->ready;
+  workers_.erase(worker);
+  if (!ready && !options_.Stopped()) {
+    return Status::Output("a worker ended with " + how + " before it took a cell");
+  }
+  if (cell && !options_.Stopped()) {
+    queue_.Ended(*cell);
+    ended_(*cell, "its process ended with " + how);
+  }
+  return Status::Ok();
+}
+
+}  // namespace alidade

@@ -1,0 +1,109 @@
+#include "eval/compare/worker_process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "core/format.h"
+
+namespace alidade {
+
+Result<WorkerProcess> WorkerProcess::Start(const std::vector<std::string>& words) {
+  std::array<int, 2> in{-1, -1}, out{-1, -1};
+  if (::pipe2(in.data(), O_CLOEXEC) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0) {
+    const std::string reason = std::strerror(errno);
+    for (const int descriptor : in) {
+      ::close(descriptor);
+    }
+    return Status::Output("a worker cannot be started: " + reason);
+  }
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, in[0], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, out[1], STDOUT_FILENO);
+  std::vector<std::string> arguments = words;
+  std::vector<char*> pointers;
+  for (std::string& word : arguments) {
+    pointers.push_back(word.data());
+  }
+  pointers.push_back(nullptr);
+  pid_t process = 0;
+  const int error = posix_spawn(&process, words.front().c_str(), &files, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  ::close(in[0]);
+  ::close(out[1]);
+  if (error != 0) {
+    ::close(in[1]);
+    ::close(out[0]);
+    return Status::Output(words.front() + ": a worker cannot be started: " + std::strerror(error));
+  }
+  return WorkerProcess(process, in[1], out[0]);
+}
+
+WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
+    : process_(other.process_), to_(other.to_), from_(other.from_), text_(std::move(other.text_)) {
+  other.process_ = 0;
+  other.to_ = -1;
+  other.from_ = -1;
+}
+
+WorkerProcess::~WorkerProcess() {
+  Interrupt();
+  Join();
+}
+
+void WorkerProcess::Tell(const std::string& line) const {
+  const std::string text = line + "\n";
+  // Shorter than a pipe's buffer: written at once or not at all. SIGPIPE of an ended worker is ignored.
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  const ssize_t written = ::write(to_, text.data(), text.size());
+  std::signal(SIGPIPE, before);
+  static_cast<void>(written);
+}
+
+bool WorkerProcess::Read() {
+  std::array<char, 4096> buffer;
+  const ssize_t count = ::read(from_, buffer.data(), buffer.size());
+  if (count > 0) {
+    text_.append(buffer.data(), static_cast<size_t>(count));
+  }
+  return count > 0 || (count < 0 && errno == EINTR);
+}
+
+std::optional<std::string> WorkerProcess::Line() {
+  const size_t end = text_.find('\n');
+  if (end == std::string::npos) {
+    return std::nullopt;
+  }
+  std::string line = text_.substr(0, end);
+  text_.erase(0, end + 1);
+  return line;
+}
+
+void WorkerProcess::Interrupt() const {
+  if (process_ > 0) {
+    kill(process_, SIGTERM);
+  }
+}
+
+std::string WorkerProcess::Join() {
+  if (process_ <= 0) {
+    return {};
+  }
+  ::close(to_);
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  ::close(from_);
+  process_ = 0;
+  return WIFEXITED(status) ? Format("code %d", WEXITSTATUS(status))
+                           : Format("signal %d (%s)", WTERMSIG(status), strsignal(WTERMSIG(status)));
+}
+
+}  // namespace alidade

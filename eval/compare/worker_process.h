@@ -1,0 +1,48 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+
+namespace alidade {
+
+/// A child process that takes lines on its standard input and answers with lines on its standard output.
+/// Standard error is shared.
+class WorkerProcess {
+ public:
+  /// words: the program and its arguments. Error (kOutput): it cannot be started.
+  static Result<WorkerProcess> Start(const std::vector<std::string>& words);
+  ~WorkerProcess();  ///< asks it to end, and waits
+  WorkerProcess(WorkerProcess&& other) noexcept;
+  WorkerProcess& operator=(WorkerProcess&&) = delete;
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  /// Sends a line. What a process that has ended would be told is lost.
+  void Tell(const std::string& line) const;
+  /// Reads what has come; blocks when nothing has. False: the process closed its output.
+  bool Read();
+  /// The next whole line that was read.
+  std::optional<std::string> Line();
+  /// Of its output, for poll.
+  [[nodiscard]] int descriptor() const { return from_; }
+
+  /// Asks it to end (SIGTERM).
+  void Interrupt() const;
+  /// Closes its input, waits for its end, and says how it ended: "code 3", "signal 9 (Killed)".
+  std::string Join();
+
+ private:
+  WorkerProcess(pid_t process, int to, int from) : process_(process), to_(to), from_(from) {}
+
+  pid_t process_ = 0;  ///< 0: joined
+  int to_ = -1;
+  int from_ = -1;
+  std::string text_;  ///< read, not yet taken
+};
+
+}  // namespace alidade

@@ -1,0 +1,228 @@
+#include "eval/comparison/cell_file.h"
+
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "eval/files/input_file.h"
+#include "eval/files/output_file.h"
+
+namespace alidade {
+namespace {
+
+using Json = nlohmann::json;
+
+// Every field once: the same list writes and reads.
+
+template <typename T, typename Plain>
+concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
+
+template <Is<RpeResult> T>
+void Fields(T& x, auto&& field) {
+  field("distance_m", x.distance_m);
+  field("count", x.count);
+  field("pos_rmse_m", x.pos_rmse_m);
+  field("ori_rmse_deg", x.ori_rmse_deg);
+  field("pos_errors_m", x.pos_errors_m);
+}
+
+template <Is<InnovationSummary> T>
+void Fields(T& x, auto&& field) {
+  field("ratio", x.ratio);
+  field("inside", x.inside);
+  field("band", x.band);
+}
+
+template <Is<SkyTrack> T>
+void Fields(T& x, auto&& field) {
+  field("satellite", x.satellite);
+  field("time_s", x.time_s);
+  field("azimuth_deg", x.azimuth_deg);
+  field("elevation_deg", x.elevation_deg);
+  field("residual_m", x.residual_m);
+  field("used_share", x.used_share);
+  field("rms_m", x.rms_m);
+}
+
+template <Is<CellSeries> T>
+void Fields(T& x, auto&& field) {
+  field("regular", x.regular);
+  field("time_s", x.time_s);
+  field("truth_position", x.truth_position);
+  field("position", x.position);
+  field("error", x.error);
+  field("sigma", x.sigma);
+  field("nees_pose", x.nees_pose);
+  field("backend_ms", x.backend_ms);
+  field("features_used", x.features_used);
+  field("tracks_in", x.tracks_in);
+  field("nis_ratio", x.nis_ratio);
+  field("gnss_nis_ratio", x.gnss_nis_ratio);
+  field("rank", x.rank);
+  field("yaw_leak", x.yaw_leak);
+  field("position_leak", x.position_leak);
+}
+
+template <Is<CellResult> T>
+void Fields(T& x, auto&& field) {
+  field("estimator", x.estimator);
+  field("backend", x.backend);
+  field("sequence", x.sequence);
+  field("seed", x.seed);
+  field("status", x.status);
+  field("message", x.message);
+  field("input_digest", x.input_digest);
+  field("frames", x.frames);
+  field("duration_s", x.duration_s);
+  field("path_m", x.path_m);
+  field("rmse_pos_m", x.rmse_pos_m);
+  field("rmse_ori_deg", x.rmse_ori_deg);
+  field("ate_pos_m", x.ate_pos_m);
+  field("ate_ori_deg", x.ate_ori_deg);
+  field("align", x.align);
+  field("rpe", x.rpe);
+  field("nees_pose", x.nees_pose);
+  field("nees_ori", x.nees_ori);
+  field("nees_pos", x.nees_pos);
+  field("coverage_3sigma", x.coverage_3sigma);
+  field("nees_vel", x.nees_vel);
+  field("nees_gyro_bias", x.nees_gyro_bias);
+  field("nees_accel_bias", x.nees_accel_bias);
+  field("truth_has_covariance", x.truth_has_covariance);
+  field("frontend_ms", x.frontend_ms);
+  field("backend_ms", x.backend_ms);
+  field("backend_ms_p95", x.backend_ms_p95);
+  field("features_per_frame", x.features_per_frame);
+  field("propagate_ms", x.propagate_ms);
+  field("update_ms", x.update_ms);
+  field("innovations", x.innovations);
+  field("gnss_innovations", x.gnss_innovations);
+  field("gated_share", x.gated_share);
+  field("sigma_pos_m", x.sigma_pos_m);
+  field("sigma_ori_deg", x.sigma_ori_deg);
+  field("filtering_sigma_pos_m", x.filtering_sigma_pos_m);
+  field("filtering_sigma_ori_deg", x.filtering_sigma_ori_deg);
+  field("calibration_rotation_deg", x.calibration_rotation_deg);
+  field("calibration_translation_m", x.calibration_translation_m);
+  field("calibration_time_ms", x.calibration_time_ms);
+  field("restarts", x.restarts);
+  field("series", x.series);
+  field("sky", x.sky);
+}
+
+template <Is<FrontendSummary> T>
+void Fields(T& x, auto&& field) {
+  field("sequence", x.sequence);
+  field("seed", x.seed);
+  field("images", x.images);
+  field("tracks", x.tracks);
+  field("features_per_frame", x.features_per_frame);
+  field("median_length", x.median_length);
+  field("mean_length", x.mean_length);
+  field("lost_share", x.lost_share);
+  field("rejected_share", x.rejected_share);
+  field("thinned_share", x.thinned_share);
+  field("mean_ms", x.mean_ms);
+  field("p95_ms", x.p95_ms);
+}
+
+template <Is<CellReport> T>
+void Fields(T& x, auto&& field) {
+  field("result", x.result);
+  field("reused", x.reused);
+  field("frontend", x.frontend);
+  field("remarks", x.remarks);
+}
+
+template <typename T>
+concept Plain = std::is_arithmetic_v<T> || std::is_same_v<T, std::string>;
+template <typename T>
+concept Optional = requires(const T& x) {
+  x.has_value();
+};
+template <typename T>
+concept Pair = requires(const T& x) {
+  x.first;
+};
+template <typename T>
+concept Fixed = requires(const T& x) {
+  x.RowsAtCompileTime;
+};  // a vector of Eigen
+template <typename T>
+concept List = requires(T& x) {
+  x.push_back(x.front());
+}
+&&!Plain<T>;
+
+template <typename T>
+Json ToJson(const T& x) {
+  if constexpr (Plain<T>) {
+    return x;
+  } else if constexpr (Optional<T>) {
+    return x ? ToJson(*x) : Json();
+  } else if constexpr (Pair<T>) {
+    return Json::array({ToJson(x.first), ToJson(x.second)});
+  } else if constexpr (Fixed<T>) {
+    return std::vector<double>(x.data(), x.data() + x.size());
+  } else if constexpr (List<T>) {
+    Json list = Json::array();
+    for (const auto& item : x) {
+      list.push_back(ToJson(static_cast<const typename T::value_type&>(item)));
+    }
+    return list;
+  } else {
+    Json object = Json::object();
+    Fields(x, [&object](const char* name, const auto& value) { object[name] = ToJson(value); });
+    return object;
+  }
+}
+
+/// Throws what nlohmann's access throws when a value is not as expected.
+template <typename T>
+T FromJson(const Json& json) {
+  if constexpr (Plain<T>) {
+    return json.get<T>();
+  } else if constexpr (Optional<T>) {
+    return json.is_null() ? T() : T(FromJson<typename T::value_type>(json));
+  } else if constexpr (Pair<T>) {
+    return {FromJson<typename T::first_type>(json.at(0)), FromJson<typename T::second_type>(json.at(1))};
+  } else if constexpr (Fixed<T>) {
+    T x;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      x[i] = json.at(static_cast<size_t>(i)).template get<double>();
+    }
+    return x;
+  } else if constexpr (List<T>) {
+    T list;
+    for (const Json& item : json) {
+      list.push_back(FromJson<typename T::value_type>(item));
+    }
+    return list;
+  } else {
+    T x;
+    Fields(x, [&json]<typename Value>(const char* name, Value& value) {
+      value = FromJson<Value>(json.at(name));
+    });
+    return x;
+  }
+}
+
+}  // namespace
+
+Status WriteCellFile(const CellReport& report, const std::string& path) {
+  const std::vector<uint8_t> bytes = Json::to_cbor(ToJson(report));
+  return WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Result<CellReport> ReadCellFile(const std::string& path) {
+  const Result<std::string> bytes = ReadWholeFile(path);
+  if (!bytes.ok()) {
+    return bytes.status();
+  }
+  try {
+    return FromJson<CellReport>(Json::from_cbor(*bytes));
+  } catch (const nlohmann::json::exception& error) {
+    return Status::Input(path + ": not the result of a cell: " + error.what());
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/comparison/comparison.h"
+
+namespace alidade {
+
+/// What a cell leaves for the tables, which another process or another machine may write.
+struct CellReport {
+  CellResult result;
+  bool reused = false;                      ///< an earlier run was kept
+  std::optional<FrontendSummary> frontend;  ///< of its input, where images were tracked
+  std::vector<std::string> remarks;         ///< of the reader of its input
+};
+
+/// Writes a report as CBOR: numbers keep every bit. kOutput: cannot be written.
+Status WriteCellFile(const CellReport& report, const std::string& path);
+
+/// Reads it again. Errors (kInput): cannot be read; not such a file, or one of another version of the fields.
+Result<CellReport> ReadCellFile(const std::string& path);
+
+}  // namespace alidade
