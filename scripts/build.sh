@@ -5,7 +5,9 @@ cd "$(dirname "$0")/.."
 
 preset=${1:-release}
 shift || true
-scripts/install_dependencies.sh >&2
+compiler=()
+[[ $preset == dev ]] && compiler=(--with-clang)
+scripts/install_dependencies.sh "${compiler[@]}" >&2
 cmake --preset "$preset" >&2
 targets=()
 [[ $# -gt 0 ]] && targets=(--target "$@")
