@@ -17,7 +17,7 @@ class BagSheets {
   explicit BagSheets(std::string path) : path_(std::move(path)) {}
 
   /// The first text of a topic counts.
-  void Take(const std::string& topic, std::string text) { sheets_.try_emplace(topic, std::move(text)); }
+  void Take(const std::string& topic, const std::string& text) { sheets_.try_emplace(topic, text); }
 
   /// The sheet of "imu0", "cam0", ...; null when there is none.
   [[nodiscard]] const std::string* Text(const std::string& sensor) const;

@@ -4,12 +4,14 @@
 #include "core/format.h"
 #include "eval/bag/dataset_images.h"
 #include "eval/bag/dataset_source.h"
+#include "eval/calibrate/camera_gyro_check.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_check.h"
+#include "eval/frontend_run/image_pipeline.h"
 
 namespace alidade::cli {
 namespace {
@@ -44,6 +46,22 @@ void CheckImages(const Dataset& dataset, Findings* findings) {
   }
 }
 
+/// Tracks of the images, or those of the sequence, against the gyroscope.
+void CheckCameraMotion(const Dataset& dataset, Findings* findings) {
+  constexpr size_t kLeastSamples = 2;
+  constexpr size_t kMostPairs = 200;
+  if (dataset.imu.size() < kLeastSamples || (dataset.tracks.empty() && dataset.images.empty())) {
+    return;
+  }
+  PipelineOptions options;
+  ProgressLine progress("tracks");
+  options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
+  const Result<MeasurementLog> log = MakeLog(dataset, FrontendConfig(), options);
+  if (log.ok()) {  // otherwise CheckImages has told why
+    CheckCameraAgainstGyro(*log, kMostPairs, findings);
+  }
+}
+
 }  // namespace
 
 int RunCheck(const std::vector<std::string>&) {
@@ -54,6 +72,7 @@ int RunCheck(const std::vector<std::string>&) {
   bool faulty = false;
   Findings findings;
   CheckImages(*dataset, &findings);
+  CheckCameraMotion(*dataset, &findings);
   std::vector<DatasetFinding> list = CheckDataset(*dataset);
   for (DatasetFinding& finding : findings.Take()) {
     list.push_back(std::move(finding));

@@ -12,6 +12,7 @@ namespace alidade::cli {
 struct Command {
   std::string name;
   std::string summary;
+  std::string example;                ///< a line that does something useful, after "alidade "
   std::vector<std::string> flags;     ///< names in eval/cli/flags.h that it takes
   std::vector<std::string> required;  ///< of them, those that must be given
   size_t max_arguments = 0;           ///< words that are no flags

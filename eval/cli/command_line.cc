@@ -162,10 +162,14 @@ Result<Parsed> ParseCommandLine(const std::vector<std::string>& words) {
 
 std::string GeneralHelp() {
   std::string text = "Usage: alidade <command> [--flag=value ...]\n\nCommands:\n";
+  size_t widest = 0;
   for (const Command& command : Commands()) {
-    text += "  " + Padded(command.name, 12) + command.summary + "\n";
+    widest = std::max(widest, command.name.size());
   }
-  text += "  " + Padded("help", 12) +
+  for (const Command& command : Commands()) {
+    text += "  " + Padded(command.name, widest + 2) + command.summary + "\n";
+  }
+  text += "  " + Padded("help", widest + 2) +
           "print this text; `alidade <command> --help` lists the flags of a command\n";
   text += "\nExit codes:";
   size_t line_start = text.size();
@@ -179,7 +183,8 @@ std::string GeneralHelp() {
 }
 
 std::string CommandHelp(const Command& command) {
-  std::string text = "alidade " + command.name + ": " + command.summary + "\n\nFlags:\n";
+  std::string text = "alidade " + command.name + ": " + command.summary + "\n\nExample:\n  alidade " +
+                     command.example + "\n\nFlags:\n";
   size_t widest = 0;
   for (const std::string& name : command.flags) {
     widest = std::max(widest, name.size());

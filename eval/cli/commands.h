@@ -12,6 +12,7 @@ int RunRun(const std::vector<std::string>& arguments);
 int RunEvaluate(const std::vector<std::string>& arguments);
 int RunCompare(const std::vector<std::string>& arguments);
 int RunIdentify(const std::vector<std::string>& arguments);
+int RunCalibrate(const std::vector<std::string>& arguments);
 int RunProbe(const std::vector<std::string>& arguments);
 int RunSpp(const std::vector<std::string>& arguments);
 int RunStarts(const std::vector<std::string>& arguments);

@@ -125,10 +125,6 @@ Status Verify(const CatalogueChoice& choice, const std::string& folder) {
                                      dataset.name + " are missing or not as published");
 }
 
-Status Require(const std::string& value, const char* flag) {
-  return value.empty() ? Status::Usage(std::string("data: --") + flag + " is missing") : Status::Ok();
-}
-
 Status RunAction(const std::vector<std::string>& words) {
   const std::string action = words.empty() ? "" : words[0];
   const bool known = action == "list" || action == "fetch" || action == "verify";
@@ -148,10 +144,10 @@ Status RunAction(const std::vector<std::string>& words) {
     return Status::Ok();
   }
   if (action == "fetch") {
-    ALIDADE_RETURN_IF_ERROR(Require(FLAGS_output, "output"));
+    ALIDADE_RETURN_IF_ERROR(RequireFlag("data", "output", FLAGS_output));
     return Fetch(*choice, FLAGS_output);
   }
-  ALIDADE_RETURN_IF_ERROR(Require(FLAGS_data, "data"));
+  ALIDADE_RETURN_IF_ERROR(RequireFlag("data", "data", FLAGS_data));
   return Verify(*choice, FLAGS_data);
 }
 

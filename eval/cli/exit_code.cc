@@ -3,14 +3,16 @@
 namespace alidade::cli {
 
 const std::vector<ExitCode>& ExitCodes() {
-  static const std::vector<ExitCode> codes = {{kExitDone, "done"},
-                                              {kExitUsage, "usage"},
-                                              {kExitConfig, "configuration"},
-                                              {kExitInput, "input data"},
-                                              {kExitDiverged, "an estimator diverged or never initialised"},
-                                              {kExitOutput, "output could not be written"},
-                                              {kExitCellsFailed, "some cells of a comparison failed"},
-                                              {kExitInterrupted, "interrupted"}};
+  static const std::vector<ExitCode> codes = {
+      {kExitDone, "done"},
+      {kExitUsage, "usage"},
+      {kExitConfig, "configuration"},
+      {kExitInput, "input data"},
+      {kExitDiverged, "an estimator diverged or never initialised"},
+      {kExitOutput, "output could not be written"},
+      {kExitCellsFailed, "some cells of a comparison failed"},
+      {kExitImpaired, "a run was lost in between or never used its GNSS"},
+      {kExitInterrupted, "interrupted"}};
   return codes;
 }
 

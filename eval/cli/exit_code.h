@@ -13,6 +13,7 @@ inline constexpr int kExitInput = 4;
 inline constexpr int kExitDiverged = 5;
 inline constexpr int kExitOutput = 6;
 inline constexpr int kExitCellsFailed = 7;
+inline constexpr int kExitImpaired = 8;
 inline constexpr int kExitInterrupted = 130;
 
 struct ExitCode {

@@ -24,9 +24,9 @@ std::vector<std::string> LeadingWords(const std::string& text) {
 }
 
 FlagValue ValueOf(const FlagDescription& flag) {
-  static const std::set<std::string> paths = {"calibration", "catalogue", "clk",    "data", "dataset",
-                                              "estimate",    "export",    "input",  "nav",  "obs",
-                                              "output",      "sp3",       "tracks", "truth"};
+  static const std::set<std::string> paths = {"calibration", "catalogue", "clk",    "data",   "dataset",
+                                              "estimate",    "export",    "input",  "nav",    "obs",
+                                              "output",      "sp3",       "status", "tracks", "truth"};
   if (flag.type == "bool") {
     return FlagValue::kSwitch;
   }

@@ -21,6 +21,9 @@ DEFINE_string(config, "", "configuration: a YAML file, or the name of a shipped 
 DEFINE_string(data, "", "folder that replaces ${data} in a plan, or that data fetch wrote to");
 DEFINE_string(dataset, "", "folder of a sequence in the extended ASL layout, or a ROS 1 bag");
 DEFINE_bool(diff, false, "print the keys in which two configuration files differ");
+DEFINE_string(
+    engine, "local",
+    "local | slurm: what runs the cells: processes of this machine, or jobs of Slurm (docs/plans.md)");
 DEFINE_string(error, "right_invariant",
               "right_invariant | left_invariant | so3xrn: error convention of the Jacobians");
 DEFINE_string(estimate, "", "trajectory file to evaluate");
@@ -57,6 +60,7 @@ DEFINE_string(output, "", "output folder or file");
 DEFINE_int32(overlay, 0,
              "write every N-th image with its tracks drawn on it, as overlay/<stamp>.png; 0: none");
 DEFINE_bool(overwrite, false, "overwrite an existing output");
+DEFINE_string(part, "0/1", "of --stage=tracks and cells: part K of N, as K/N with K from 0");
 DEFINE_string(plan, "", "comparison plan: a YAML file, or the name of a shipped one");
 DEFINE_bool(quiet, false, "print only errors and results");
 DEFINE_bool(render, false, "render images instead of simulating tracks (render.enabled)");
@@ -76,8 +80,13 @@ DEFINE_bool(score, false,
 DEFINE_uint32(seed, 1, "seed of the simulation, and of the start drawn by init.method truth");
 DEFINE_string(set, "", "a.b=value,...: override keys of the configuration file; may be repeated");
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
+DEFINE_string(slurm_options, "", "words for sbatch, such as \"--partition=long --time=60\"");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
+DEFINE_string(stage, "all",
+              "all | worker | tracks | cells | tables: one stage of a comparison, as the processes of an "
+              "engine run it");
 DEFINE_int32(starts, 100, "total number of starts, distributed over the sequences of the plan");
+DEFINE_string(status, "", "output folder of a comparison: tell how far it is");
 DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows are paired [s]");
 DEFINE_string(
     topics, "",

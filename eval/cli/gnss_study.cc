@@ -87,7 +87,6 @@ class Study {
   Status Judge(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed,
                const std::vector<std::pair<GnssStudyRow*, RunResult>>& runs) const {
     CompareInput input(sequence, simulation, seed, FrontendConfig());
-    input.AddUser();
     const Result<CompareInput::Data>& data = input.Acquire({});
     ALIDADE_RETURN_IF_ERROR(data.status());
     const Trajectory& truth = *data->truth;

@@ -5,7 +5,6 @@
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
-#include "eval/config/config_yaml.h"
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_imu.h"
 #include "eval/frontend_run/image_pipeline.h"
@@ -14,16 +13,6 @@
 
 namespace alidade::cli {
 namespace {
-
-Result<EstimatorConfig> IdentificationConfig() {
-  if (!FLAGS_config.empty()) {
-    return LoadEstimatorConfig(FLAGS_config, SplitSettings(FLAGS_set));
-  }
-  EstimatorConfig config;
-  ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set),
-                                        [&config](ConfigVisitor& visitor) { config.Describe(visitor); }));
-  return config;
-}
 
 /// Of a folder the IMU alone: a recording at rest often has no other sensor.
 Result<Dataset> ReadImuFromFlags() {
@@ -75,7 +64,7 @@ int IdentifyMotion(const EstimatorConfig& config) {
 }  // namespace
 
 int RunIdentify(const std::vector<std::string>&) {
-  const Result<EstimatorConfig> config = IdentificationConfig();
+  const Result<EstimatorConfig> config = EstimatorConfigFromFlags();
   if (!config.ok()) {
     return Report(config.status());
   }

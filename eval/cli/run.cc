@@ -1,14 +1,17 @@
 #include <cstdio>
 
 #include "core/format.h"
+#include "eval/calibrate/camera_gyro_check.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/support.h"
 #include "eval/config/config_yaml.h"
+#include "eval/dataset/dataset_check.h"
 #include "eval/dataset/digest.h"
 #include "eval/files/hash.h"
 #include "eval/frontend_run/image_pipeline.h"
+#include "eval/record/failure_diagnosis.h"
 #include "eval/record/recorder.h"
 #include "eval/record/run_options.h"
 #include "eval/record/runner.h"
@@ -43,6 +46,28 @@ Result<MeasurementLog> LogWithProgress(const Dataset& dataset, const FrontendCon
   return MakeLog(dataset, frontend, options);
 }
 
+/// What `check` says of the sequence: warnings go to standard error, errors end the run before it begins.
+Status CheckFirst(const Dataset& dataset, const MeasurementLog& log) {
+  constexpr size_t kMostPairs = 60;
+  Findings findings;
+  if (!log.frames.empty()) {
+    CheckCameraAgainstGyro(log, kMostPairs, &findings);
+  }
+  std::vector<DatasetFinding> list = CheckDataset(dataset);
+  for (DatasetFinding& finding : findings.Take()) {
+    list.push_back(std::move(finding));
+  }
+  std::string errors;
+  for (const DatasetFinding& finding : list) {
+    if (finding.severity == DatasetFinding::Severity::kWarning) {
+      Say("warning: " + finding.text);
+    } else if (finding.severity == DatasetFinding::Severity::kError) {
+      errors += (errors.empty() ? "" : "; ") + finding.text;
+    }
+  }
+  return errors.empty() ? Status::Ok() : Status::Input(dataset.path + ": " + errors);
+}
+
 RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const Dataset& dataset,
                           const std::atomic<bool>* stop) {
   ProgressLine progress(config.name + ": frames");
@@ -56,11 +81,15 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
 }
 
 std::string Summary(const RunResult& result) {
-  const double frames = static_cast<double>(std::max<size_t>(result.records.size(), 1));
-  const std::string times = Format("%.1f s wall, %.1f s CPU, %.2f ms CPU a frame", result.wall_s,
-                                   result.cpu_s, 1e3 * result.cpu_s / frames);
+  const std::string times = Format("%.1f s wall, %.1f s CPU", result.wall_s, result.cpu_s);
+  if (result.records.empty()) {
+    return StatusWord(result) + ": no frame was estimated, " + times;
+  }
+  const double frames = static_cast<double>(result.records.size());
   return StatusWord(result) + ": " + std::to_string(result.records.size()) + " frames, " +
-         std::to_string(result.frames_skipped) + " skipped, start: " + result.init_method + ", " + times;
+         std::to_string(result.frames_skipped) + " skipped, start: " + result.init_method + ", " + times +
+         Format(", %.2f ms CPU a frame", 1e3 * result.cpu_s / frames) +
+         (result.restarts.empty() ? "" : Format(", %zu restarts", result.restarts.size()));
 }
 
 }  // namespace
@@ -86,6 +115,9 @@ int RunRun(const std::vector<std::string>&) {
   if (!log.ok()) {
     return stop->load() ? kExitInterrupted : Report(log.status());
   }
+  if (const Status status = CheckFirst(*dataset, *log); !status.ok()) {
+    return Report(status);
+  }
   const RunIdentity identity{*config,    dataset->name,   *dataset_digest,    DigestOf(*log),
                              FLAGS_seed, log->imu.size(), log->frames.size(), FLAGS_audit};
   Say(DescribeLog(*log, identity.input_digest));
@@ -94,8 +126,22 @@ int RunRun(const std::vector<std::string>&) {
     return Report(status);
   }
   Say(Summary(result));
-  if (config->gnss.enabled && !result.global) {
-    Say("GNSS was not used: " + result.align_report);
+  const bool asked = config->gnss.enabled || config->fix.enabled;
+  const bool given =
+      (config->gnss.enabled && dataset->gnss != nullptr) || (config->fix.enabled && !dataset->fixes.empty());
+  if (asked && !result.global) {
+    Say(std::string(config->gnss.enabled ? "GNSS was" : "position fixes were") +
+        " not used: " + result.align_report);
+  }
+  if (Failed(result)) {
+    RunOptions options;
+    options.stop = stop;
+    if (const std::optional<std::string> cause = DiagnoseAccelerometerSigns(*config, *log, result, options)) {
+      return Report(Status::Input(dataset->path + ": " + *cause));
+    }
+  }
+  if (!result.interrupted && result.status.ok() && ((given && !result.global) || !result.restarts.empty())) {
+    return kExitImpaired;
   }
   return result.interrupted ? kExitInterrupted : Report(result.status);
 }

@@ -36,7 +36,6 @@ Result<std::vector<StartOutcome>> StudySequence(const Plan& plan, const PlanSequ
   } else {
     input = std::make_unique<CompareInput>(sequence, config->frontend);
   }
-  input->AddUser();
   const Result<CompareInput::Data>& data = input->Acquire({});
   if (!data.ok()) {
     return data.status();

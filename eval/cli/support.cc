@@ -9,7 +9,11 @@
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/split_words.h"
+#include "eval/config/config_yaml.h"
 #include "eval/dataset/dataset.h"
+#include "eval/files/folder_lock.h"
+#include "eval/files/output_file.h"
+#include "eval/files/time_left.h"
 
 namespace alidade::cli {
 namespace {
@@ -27,6 +31,16 @@ void OnSignal(int signal) {
 }
 
 }  // namespace
+
+Result<EstimatorConfig> EstimatorConfigFromFlags() {
+  if (!FLAGS_config.empty()) {
+    return LoadEstimatorConfig(FLAGS_config, SplitSettings(FLAGS_set));
+  }
+  EstimatorConfig config;
+  ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set),
+                                        [&config](ConfigVisitor& visitor) { config.Describe(visitor); }));
+  return config;
+}
 
 DatasetSource SourceFromFlags() {
   return {FLAGS_dataset, FLAGS_topics, SplitWords(FLAGS_calibration), FLAGS_camera};
@@ -63,6 +77,10 @@ int Report(const Status& status) {
   return kExitOutput;
 }
 
+Status RequireFlag(const std::string& command, const std::string& flag, const std::string& value) {
+  return value.empty() ? Status::Usage(command + ": --" + flag + " is missing") : Status::Ok();
+}
+
 Status PrepareOutputFolder(const std::string& path, bool allowed) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -82,6 +100,8 @@ Status PrepareOutputFolder(const std::string& path, bool allowed) {
   if (access(path.c_str(), W_OK | X_OK) != 0) {
     return Status::Output(path + ": cannot be written to");
   }
+  ALIDADE_RETURN_IF_ERROR(LockFolder(path));
+  RemoveTemporaryFiles(path);
   return Status::Ok();
 }
 
@@ -108,7 +128,10 @@ void ProgressLine::Update(size_t done, size_t total) {
   }
   shown_ = step;
   open_ = terminal_;
-  std::fprintf(stderr, terminal_ ? "\r%s %zu/%zu" : "%s %zu/%zu\n", label_.c_str(), done, total);
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  const std::string line =
+      label_ + " " + std::to_string(done) + "/" + std::to_string(total) + TimeLeft(elapsed_s, done, total);
+  std::fprintf(stderr, "%s%s%s", terminal_ ? "\r" : "", line.c_str(), terminal_ ? "\033[K" : "\n");
 }
 
 void ExitOnInterrupt() {

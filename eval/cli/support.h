@@ -1,9 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <string>
 
+#include "core/estimator_config.h"
 #include "core/status.h"
 #include "eval/bag/dataset_source.h"
 
@@ -12,15 +14,18 @@ namespace alidade::cli {
 /// Prints "alidade: <message>" on standard error and gives the exit code of the status.
 int Report(const Status& status);
 
-/// Refuses an output folder that exists (even empty is fine) unless `allowed`; kOutput when it cannot be
-/// made.
+/// kUsage when a flag that this use of a command needs was left out.
+Status RequireFlag(const std::string& command, const std::string& flag, const std::string& value);
+
+/// Refuses an output folder that exists (even empty is fine) unless `allowed`; makes it, and this process its
+/// only writer. kOutput: it cannot be made, or another process writes there.
 Status PrepareOutputFolder(const std::string& path, bool allowed);
 
 /// A line for people on standard error, unless --quiet.
 void Say(const std::string& line);
 
-/// "label 120/600": one line that rewrites itself on a terminal, every tenth as a plain line otherwise;
-/// nothing with --quiet.
+/// "label 120/600, about 2 min left": one line that rewrites itself on a terminal, every tenth as a plain
+/// line otherwise; nothing with --quiet.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string label);
@@ -31,10 +36,14 @@ class ProgressLine {
 
  private:
   std::string label_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool terminal_ = false;
   bool open_ = false;
   size_t shown_ = 0;
 };
+
+/// The estimator's configuration of --config, or the defaults, with --set.
+Result<EstimatorConfig> EstimatorConfigFromFlags();
 
 /// The sequence that --dataset, --topics, --calibration and --camera name.
 [[nodiscard]] DatasetSource SourceFromFlags();

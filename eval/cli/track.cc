@@ -7,7 +7,6 @@
 #include "eval/cli/flags.h"
 #include "eval/cli/score.h"
 #include "eval/cli/support.h"
-#include "eval/config/config_yaml.h"
 #include "eval/dataset/dataset_tracks.h"
 #include "eval/dataset/dataset_writer.h"
 #include "eval/dataset/digest.h"
@@ -18,16 +17,6 @@
 
 namespace alidade::cli {
 namespace {
-
-Result<EstimatorConfig> FrontendSettings() {
-  if (!FLAGS_config.empty()) {
-    return LoadEstimatorConfig(FLAGS_config, SplitSettings(FLAGS_set));
-  }
-  EstimatorConfig config;
-  ALIDADE_RETURN_IF_ERROR(ApplySettings(SplitSettings(FLAGS_set),
-                                        [&config](ConfigVisitor& visitor) { config.Describe(visitor); }));
-  return config;
-}
 
 /// Pictures of every FLAGS_overlay-th image with its tracks.
 Status DrawOverlays(const Dataset& dataset, const std::vector<TrackFrame>& frames) {
@@ -102,7 +91,7 @@ int TrackAndWrite(const FrontendConfig& config, Dataset* dataset) {
 }  // namespace
 
 int RunTrack(const std::vector<std::string>&) {
-  const Result<EstimatorConfig> config = FrontendSettings();
+  const Result<EstimatorConfig> config = EstimatorConfigFromFlags();
   if (!config.ok()) {
     return Report(config.status());
   }

@@ -1,11 +1,13 @@
 #include "eval/dataset/dataset_imu.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "core/format.h"
+#include "core/lie.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/imu_intake.h"
 #include "eval/dataset/log_hasher.h"
@@ -104,6 +106,9 @@ void CheckImuUnits(const std::vector<ImuSample>& imu, Findings* findings) {
   if (std::abs(force - 1) < 0.3) {
     findings->Error(
         Format("imu0: mean specific force %.3f: the accelerometer seems to be in g, expected m/s^2", force));
+  } else if (std::abs(force - 1000) < 300) {
+    findings->Error(
+        Format("imu0: mean specific force %.0f: the accelerometer seems to be in mg, expected m/s^2", force));
   } else if (std::abs(force - kStandardGravity) > 2.5) {
     findings->Error(
         Format("imu0: mean specific force %.3f m/s^2, expected about %.2f: unit or gravity removed?", force,
@@ -117,6 +122,25 @@ void CheckImuUnits(const std::vector<ImuSample>& imu, Findings* findings) {
     findings->Error(Format(
         "imu0: angular rate rms %.2f, largest %.2f: the gyroscope seems to be in deg/s, expected rad/s",
         rate_rms, fastest));
+  }
+}
+
+/// An axis that never changes is not connected.
+void CheckImuAxes(const std::vector<ImuSample>& imu, Findings* findings) {
+  constexpr std::array<const char*, 6> kAxes = {"gyroscope x",     "gyroscope y",     "gyroscope z",
+                                                "accelerometer x", "accelerometer y", "accelerometer z"};
+  Vector6d low = Vector6d::Constant(INFINITY), high = Vector6d::Constant(-INFINITY);
+  for (const ImuSample& sample : imu) {
+    Vector6d values;
+    values << sample.gyro, sample.accel;
+    low = low.cwiseMin(values);
+    high = high.cwiseMax(values);
+  }
+  for (int axis = 0; axis < 6; ++axis) {
+    if (low[axis] == high[axis]) {
+      findings->Warning(Format("imu0: %s is %g in all samples: a dead axis?",
+                               kAxes[static_cast<std::size_t>(axis)], low[axis]));
+    }
   }
 }
 
@@ -183,6 +207,7 @@ void CheckImu(const Dataset& dataset, Findings* findings) {
     return;
   }
   CheckImuUnits(dataset.imu, findings);
+  CheckImuAxes(dataset.imu, findings);
   CheckImuValues(dataset.imu, dataset.rig.imu_noise, findings);
 }
 

@@ -33,7 +33,7 @@ class SensorFile {
   Status ReadTransform(const char* key, Pose* transform) const;
 
  private:
-  SensorFile(std::string path, YAML::Node root) : path_(std::move(path)), root_(std::move(root)) {}
+  SensorFile(std::string path, const YAML::Node& root) : path_(std::move(path)), root_(root) {}
 
   std::string path_;
   YAML::Node root_;

@@ -44,6 +44,7 @@ class Reader {
       return Fault(node, "keys and values");
     }
     std::vector<std::string> names;
+    names.reserve(keys.size());
     for (const auto& [name, read] : keys) {
       names.push_back(name);
     }

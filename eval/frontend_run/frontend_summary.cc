@@ -42,6 +42,7 @@ FrontendSummary SummarizeFrontend(const std::vector<TrackFrame>& frames,
     }
   }
   std::vector<double> frames_lived;
+  frames_lived.reserve(lengths.size());
   for (const auto& [id, length] : lengths) {
     frames_lived.push_back(length);
   }

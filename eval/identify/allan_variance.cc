@@ -76,7 +76,8 @@ class DifferencePair {
     for (const auto& [place, weight] : kinks_) {
       breaks.push_back(place);
     }
-    for (double tail = 0.5 * widest; tail <= 16 * widest; tail *= 2) {
+    for (int power = -1; power <= 4; ++power) {
+      const double tail = std::ldexp(widest, power);
       breaks.push_back(std::floor(2 * m_a_ + tail));
       breaks.push_back(std::ceil(-2 * m_b_ - tail));
     }
@@ -99,8 +100,9 @@ class DifferencePair {
     if (to - from <= kShort) {
       Add(from, 0.5, sum);
       Add(to, 0.5, sum);
-      for (double s = from + 1; s < to; ++s) {
-        Add(s, 1, sum);
+      const int steps = static_cast<int>(to - from);
+      for (int step = 1; step < steps; ++step) {
+        Add(from + step, 1, sum);
       }
       return;
     }
@@ -146,8 +148,9 @@ class DifferencePair {
 std::vector<AllanPoint> OverlappingAllanVariance(const std::vector<double>& rates, double period_s) {
   const std::vector<double> phase = PhaseOf(rates, period_s);
   std::vector<AllanPoint> points;
-  for (double exact = 1; exact <= static_cast<double>(rates.size()) / 4; exact *= std::numbers::sqrt2) {
-    const auto m = static_cast<std::size_t>(std::lround(exact));
+  const double largest = static_cast<double>(rates.size()) / 4;
+  for (int half = 0; std::exp2(0.5 * half) <= largest; ++half) {  // in steps of a half power of two
+    const auto m = static_cast<std::size_t>(std::lround(std::exp2(0.5 * half)));
     if (!points.empty() && points.back().cluster == m) {
       continue;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/blas.h"
 #include "core/dense_solvers.h"
 #include "eval/files/parallel_for.h"
 
@@ -55,7 +56,11 @@ VectorXd NewtonStep(MatrixXd information, VectorXd gradient, const std::vector<b
 
 ScaleFit::ScaleFit(const LinearSystem& system, std::vector<NoiseSource> sources, const PerNoise& low,
                    const PerNoise& high, int jobs)
-    : system_(system), sources_(std::move(sources)), low_(low), high_(high), jobs_(jobs) {}
+    : system_(system),
+      sources_(std::move(sources)),
+      low_(low),
+      high_(high),
+      jobs_(BlasIsThreadSafe() ? jobs : 1) {}
 
 PerNoise ScaleFit::Changed(const VectorXd& change) const {
   PerNoise scales = log_scales_;
@@ -70,7 +75,7 @@ Result<std::vector<Fits>> ScaleFit::EvaluateAll(const std::vector<VectorXd>& cha
   const auto evaluate = [&](std::size_t i) {
     Result<Fits> evaluated = EvaluateInnovations(system_, Changed(changes[i]));
     if (evaluated.ok()) {
-      fits[i] = *std::move(evaluated);
+      fits[i] = std::move(*evaluated);
     }
     return evaluated.status();
   };

@@ -19,6 +19,7 @@ Result<PeerFlags> PeerFlags::Parse(const std::map<std::string, std::string>& def
   PeerFlags flags;
   flags.values_ = defaults;
   std::vector<std::string> names;
+  names.reserve(defaults.size());
   for (const auto& [name, value] : defaults) {
     names.push_back(name);
   }

@@ -142,12 +142,14 @@ void HallRenderer::RenderTile(const ViewTile& tile, const std::vector<HallView>&
 unsigned char HallRenderer::Expose(float grey, float noise) const {
   const auto read = static_cast<float>(config_.read_noise_grey);
   const float deviation = std::sqrt(read * read + static_cast<float>(config_.shot_noise_grey) * grey);
-  return static_cast<unsigned char>(std::clamp(grey + deviation * noise, 0.0F, 255.0F) + 0.5F);
+  const float exposed = std::clamp(grey + deviation * noise, 0.0F, 255.0F);
+  return static_cast<unsigned char>(exposed + 0.5F);  // NOLINT(bugprone-incorrect-roundings): not negative
 }
 
 GreyImage HallRenderer::Render(const std::vector<Pose>& T_WC, std::uint64_t frame, double brightness) const {
   CHECK_EQ(T_WC.size(), static_cast<std::size_t>(config_.samples));
   std::vector<HallView> views;
+  views.reserve(T_WC.size());
   for (const Pose& pose : T_WC) {
     views.emplace_back(hall_, pose, field_);
   }

@@ -150,6 +150,8 @@ Texture::Texture(const std::vector<float>& texels, int log2_size) : last_level_(
     const auto size = std::size_t{1} << (log2_size - l);
     std::vector<std::uint8_t> rounded(size * size);
     std::transform(level.begin(), level.end(), rounded.begin(),
+                   // Not negative, so truncation rounds.
+                   // NOLINTNEXTLINE(bugprone-incorrect-roundings)
                    [](float grey) { return static_cast<std::uint8_t>(grey + 0.5F); });
     storage_.push_back(std::move(rounded));
     const auto mask = static_cast<int>(size) - 1;

@@ -20,6 +20,7 @@ Json PackComponents(const Vectors& vectors, int first, double scale, double fine
   Json components = Json::array();
   for (int axis = first; axis < first + 3 && !vectors.empty(); ++axis) {
     std::vector<double> values;
+    values.reserve(vectors.size());
     for (const auto& vector : vectors) {
       values.push_back(vector(axis) * scale);
     }

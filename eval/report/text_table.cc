@@ -26,7 +26,7 @@ std::string FormatValue(double value, int decimals) {
 }
 
 std::string FormatStatistic(const Statistic& statistic, int decimals, const std::string& plus_minus) {
-  const std::string mean = FormatValue(statistic.mean, decimals);
+  std::string mean = FormatValue(statistic.mean, decimals);
   if (std::isnan(statistic.standard_error)) {
     return mean;
   }

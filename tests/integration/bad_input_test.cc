@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 
 #include "tests/integration/command.h"
 #include "tests/support/temporary_folder.h"
@@ -183,6 +184,29 @@ TEST(Help, ListsCommandsAndFlagsWithDefaults) {
     EXPECT_EQ(help.output, Alidade(std::string("help ") + command).output);
   }
   EXPECT_THAT(Alidade("evaluate --help").output, HasSubstr("default 0.01"));
+}
+
+// An example with --help behind it is parsed like any other call.
+TEST(Help, EveryCommandHasAnExampleThatIsUnderstood) {
+  const std::string general = Alidade("help").output;
+  std::istringstream lines(general.substr(general.find("Commands:\n") + 10));
+  int commands = 0;
+  for (std::string line; std::getline(lines, line) && line.starts_with("  ");) {
+    const std::string command = line.substr(2, line.find(' ', 2) - 2);
+    if (command == "help") {
+      continue;
+    }
+    const std::string help = Alidade(command + " --help").output;
+    const size_t start = help.find("Example:\n  alidade ");
+    ASSERT_NE(start, std::string::npos) << command;
+    std::string example = help.substr(start + 19, help.find('\n', start + 19) - start - 19);
+    EXPECT_TRUE(example.starts_with(command)) << example;
+    example = example.substr(0, example.find(" |"));
+    const CommandResult parsed = Alidade(example + " --help");
+    EXPECT_EQ(parsed.code, 0) << example << "\n" << parsed.output;
+    ++commands;
+  }
+  EXPECT_GT(commands, 15);
 }
 
 }  // namespace

@@ -139,5 +139,31 @@ TEST(Run, SettingsMayBeRepeated) {
   EXPECT_EQ(config["init"]["method"], "truth");
 }
 
+// GIVEN a run that is lost and starts again, and one whose GNSS never aligns WHEN they end THEN their exit
+// code and their last lines tell them from a clean one.
+TEST(Run, ThatWasLostOrNeverUsedItsGnssEndsWithItsOwnCode) {
+  TemporaryFolder folder;
+  const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +
+                                     " --seed=961 --set=duration_s=28,path_m=36,fault=imu,fault_start_s=8,"
+                                     "fault_duration_s=1 --quiet --output=" +
+                                     folder.File("faulty"));
+  ASSERT_EQ(made.code, 0) << made.output;
+  const CommandResult lost = Alidade("run --config=" + Source("configs/estimators/alidade_filter.yaml") +
+                                     " --set=init.method=truth --dataset=" + folder.File("faulty") +
+                                     " --output=" + folder.File("lost"));
+  EXPECT_EQ(lost.code, 8) << lost.output;
+  EXPECT_THAT(lost.output, testing::HasSubstr(", 1 restarts"));
+
+  const CommandResult sky =
+      Alidade("simulate --config=" + Source("configs/datasets/gnss_figure8_short.yaml") +
+              " --set=duration_s=4,path_m=5.2 --quiet --output=" + folder.File("sky"));
+  ASSERT_EQ(sky.code, 0) << sky.output;
+  const CommandResult unused = Alidade("run --config=" + Source("configs/estimators/gvio.yaml") +
+                                       " --set=init.method=truth --dataset=" + folder.File("sky") +
+                                       " --output=" + folder.File("unused"));
+  EXPECT_EQ(unused.code, 8) << unused.output;
+  EXPECT_THAT(unused.output, testing::HasSubstr("GNSS was not used: "));
+}
+
 }  // namespace
 }  // namespace alidade::test

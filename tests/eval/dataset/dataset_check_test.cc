@@ -27,7 +27,9 @@ Dataset Healthy() {
   Trajectory truth;
   for (int i = 0; i <= 1000; ++i) {
     const TimeNs stamp = 1'500'000'000'000'000'000 + i * TimeNs{10'000'000};
-    dataset.imu.push_back({stamp, Eigen::Vector3d(1e-4 * i, 0.1, 0), Eigen::Vector3d(0, 0, 9.8)});
+    const double noise = 1e-4 * (i % 7);
+    dataset.imu.push_back(
+        {stamp, Eigen::Vector3d(1e-4 * i, 0.1 + noise, noise), Eigen::Vector3d(noise, noise, 9.8 + noise)});
     TrajectoryPoint point;
     point.stamp_ns = stamp;
     truth.points.push_back(point);
@@ -62,13 +64,24 @@ TEST(DatasetCheck, GivenAHealthySequenceThenItStatesFactsAndComplainsOfNothing) 
 
 TEST(DatasetCheck, GivenWrongUnitsThenTheyAreErrors) {
   Dataset in_g = Healthy();
+  Dataset in_mg = Healthy();
   Dataset in_degrees = Healthy();
   for (size_t i = 0; i < in_g.imu.size(); ++i) {
     in_g.imu[i].accel /= 9.80665;
+    in_mg.imu[i].accel *= 1000 / 9.80665;
     in_degrees.imu[i].gyro *= 180 / 3.14159 * 3;
   }
   EXPECT_THAT(Complaints(in_g, Severity::kError), HasSubstr("in g, expected m/s^2"));
+  EXPECT_THAT(Complaints(in_mg, Severity::kError), HasSubstr("in mg, expected m/s^2"));
   EXPECT_THAT(Complaints(in_degrees, Severity::kError), HasSubstr("in deg/s, expected rad/s"));
+}
+
+TEST(DatasetCheck, GivenAnAxisThatNeverChangesThenItIsNamed) {
+  Dataset dataset = Healthy();
+  for (ImuSample& sample : dataset.imu) {
+    sample.gyro.z() = 0;
+  }
+  EXPECT_EQ(Complaints(dataset, Severity::kWarning), "imu0: gyroscope z is 0 in all samples: a dead axis?\n");
 }
 
 TEST(DatasetCheck, GivenAGapThenItsLengthAndPlaceAreNamed) {
@@ -83,6 +96,7 @@ TEST(DatasetCheck, GivenRepeatedRowsThenTheirShareIsNamed) {
   Dataset dataset = Healthy();
   for (size_t i = 1; i < dataset.imu.size(); i += 2) {
     dataset.imu[i].gyro = dataset.imu[i - 1].gyro;
+    dataset.imu[i].accel = dataset.imu[i - 1].accel;
   }
   EXPECT_THAT(Complaints(dataset, Severity::kWarning), HasSubstr("500 rows (50.0 %) repeat"));
 }
