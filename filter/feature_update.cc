@@ -14,8 +14,7 @@ using Eigen::Index;
 
 namespace {
 
-constexpr size_t kUsualTracks = 256;  // updated in one frame; more make vectors grow
-constexpr double kLeniency = 1.5;     // the two measures of the depth's deviation differ by less
+constexpr double kLeniency = 1.5;  // the two measures of the depth's deviation differ by less
 
 }  // namespace
 

@@ -30,7 +30,6 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       pixel_noise_(config.vision),
       correction_(state_.covariance().capacity()),
       corrected_(state_.covariance().capacity()) {
-  constexpr size_t kUsualTracks = 256;  // updated in one frame; more make vectors grow
   appended_.reserve(kUsualTracks);
   degenerate_.reserve(kUsualTracks);
   left_.reserve(kUsualTracks);

@@ -8,7 +8,6 @@ namespace alidade {
 
 TrackStore::TrackStore(int max_views, bool with_memory, int calibration_size)
     : max_views_(max_views), memory_columns_(with_memory ? 6 * max_views + calibration_size : 0) {
-  constexpr size_t kUsualTracks = 256;
   tracks_.reserve(kUsualTracks);
   merged_.reserve(kUsualTracks);
   spare_.reserve(kUsualTracks);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,9 @@
 #include "filter/track_memory.h"
 
 namespace alidade {
+
+/// Tracks of a frame for which memory is set aside; more make vectors grow.
+inline constexpr std::size_t kUsualTracks = 256;
 
 /// One view of a track that still waits to be used (or is kept as base).
 struct TrackView {
