@@ -20,8 +20,17 @@ Result<CameraModel> WithIntrinsics(const CameraModel& camera, const VectorXd& in
   LensCoefficients coefficients = camera.coefficients();
   coefficients.head(intrinsics.size() - 4) = intrinsics.tail(intrinsics.size() - 4);
   const std::vector<double> used(coefficients.data(), coefficients.data() + CoefficientCount(camera.model()));
-  return CameraModel::Create(camera.model(), intrinsics.head<4>(), used, camera.width_px(),
-                             camera.height_px());
+  Result<CameraModel> moved =
+      CameraModel::Create(camera.model(), intrinsics.head<4>(), used, camera.width_px(), camera.height_px());
+  return moved.ok() ? moved->WithPlane(camera.plane()) : moved;
+}
+
+Eigen::Matrix<double, 2, 8> WithLens(const CameraModel& camera, const Vector2d& distorted,
+                                     const Eigen::Matrix<double, 2, 4>& lens) {
+  Eigen::Matrix<double, 2, 8> jacobian;
+  jacobian << distorted.x(), 0, 1, 0, camera.intrinsics()[0] * lens.row(0),  //
+      0, distorted.y(), 0, 1, camera.intrinsics()[1] * lens.row(1);
+  return jacobian;
 }
 
 }  // namespace
@@ -110,6 +119,9 @@ Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB) 
 
 bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
                         Eigen::Matrix<double, 2, 8>* jacobian) {
+  if (camera.is_spherical()) {
+    return IntrinsicsJacobian(camera, Eigen::Vector3d(ideal.homogeneous()), jacobian);
+  }
   Vector2d distorted;
   if (!camera.Distort(ideal, &distorted)) {
     return false;
@@ -140,11 +152,26 @@ bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
       break;
     }
     case DistortionModel::kMei:  // the layout has no columns for its lens
+    case DistortionModel::kDoubleSphere:
+    case DistortionModel::kEucm:  // spherical
     case DistortionModel::kNone:
       break;
   }
-  *jacobian << distorted.x(), 0, 1, 0, camera.intrinsics()[0] * lens.row(0),  //
-      0, distorted.y(), 0, 1, camera.intrinsics()[1] * lens.row(1);
+  *jacobian = WithLens(camera, distorted, lens);
+  return true;
+}
+
+bool IntrinsicsJacobian(const CameraModel& camera, const Eigen::Vector3d& ray,
+                        Eigen::Matrix<double, 2, 8>* jacobian) {
+  if (!camera.is_spherical()) {
+    return ray.z() > 0 && IntrinsicsJacobian(camera, Vector2d(ray.hnormalized()), jacobian);
+  }
+  Vector2d distorted;
+  Eigen::Matrix<double, 2, 4> lens;
+  if (!camera.DistortRay(ray, &distorted, nullptr, &lens)) {
+    return false;
+  }
+  *jacobian = WithLens(camera, distorted, lens);
   return true;
 }
 
@@ -167,12 +194,11 @@ void CalibrationRows(const CalibrationLayout& layout, const CameraModel& camera,
   if (layout.intrinsics() < 0) {
     return;
   }
-  Eigen::Vector2d distorted;
-  Eigen::Matrix2d of_ideal;
+  Eigen::Matrix2d pixel_from_z;
   Eigen::Matrix<double, 2, 8> of_intrinsics;
-  if (camera.Distort(observation.z, &distorted, &of_ideal) &&
-      IntrinsicsJacobian(camera, observation.z, &of_intrinsics)) {
-    const Eigen::Matrix2d pixel_from_z = camera.intrinsics().head<2>().asDiagonal() * of_ideal;
+  if (PixelJacobian(camera, observation, &pixel_from_z) &&
+      (observation.plane.is_tangent() ? IntrinsicsJacobian(camera, observation.Ray(), &of_intrinsics)
+                                      : IntrinsicsJacobian(camera, observation.z, &of_intrinsics))) {
     rows.middleCols(layout.intrinsics(), layout.intrinsics_size()) =
         observation.sqrt_information * pixel_from_z.inverse() *
         of_intrinsics.leftCols(layout.intrinsics_size());

@@ -71,6 +71,9 @@ bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const Eigen::Vect
 /// model has not are zero. False outside the camera's domain.
 bool IntrinsicsJacobian(const CameraModel& camera, const Eigen::Vector2d& ideal,
                         Eigen::Matrix<double, 2, 8>* jacobian);
+/// The same at a ray of any length, behind the camera too.
+bool IntrinsicsJacobian(const CameraModel& camera, const Eigen::Vector3d& ray,
+                        Eigen::Matrix<double, 2, 8>* jacobian);
 
 /// d zeta_C / d (phi, dp) of the extrinsics at a fixed body pose: T_WC = T_WB T_BC turns with phi as it is,
 /// and moves by R_WB dp.

@@ -55,6 +55,8 @@ double CameraModel::RadialDistortion(double radius, double* derivative) const {
       *derivative = (1 + m2 * (3 * k[1] + 5 * k[2] * m2)) * scale * scale * (1 + k[0] / n);
       return m * (1 + m2 * (k[1] + k[2] * m2));
     }
+    case DistortionModel::kDoubleSphere:
+    case DistortionModel::kEucm:  // RadialOfAngle
     case DistortionModel::kNone:
       break;
   }
@@ -98,6 +100,16 @@ bool CameraModel::Distort(const Vector2d& ideal, Vector2d* distorted, Matrix2d* 
   }
   if (model_ == DistortionModel::kMei) {
     DistortMei(ideal, distorted, jacobian);
+    return true;
+  }
+  if (spherical_) {
+    Eigen::Matrix<double, 2, 3> over_point;
+    if (!DistortRay(ideal.homogeneous(), distorted, jacobian != nullptr ? &over_point : nullptr)) {
+      return false;
+    }
+    if (jacobian != nullptr) {
+      *jacobian = over_point.leftCols<2>();
+    }
     return true;
   }
   const double r = std::sqrt(r2);

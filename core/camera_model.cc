@@ -21,12 +21,55 @@ constexpr double kMinDepthM = 1e-3;
 // tan(89.9 deg): the normalised plane itself ends at 90 degrees off axis.
 constexpr double kMaxRadius = 572.0;
 
+/// Of coefficients in the right number.
+Status CheckRanges(DistortionModel model, const std::vector<double>& coefficients) {
+  const auto fault = [](const std::string& expected, double found) {
+    return Status::Input("distortion_coefficients: " + expected + ", found " + std::to_string(found));
+  };
+  constexpr double kMaxMirror = 10;
+  constexpr double kMaxStretch = 100;
+  switch (model) {
+    case DistortionModel::kFov:
+      if (coefficients[0] <= 1e-6 || coefficients[0] >= std::numbers::pi) {
+        return fault("fov w must lie in (0, pi)", coefficients[0]);
+      }
+      break;
+    case DistortionModel::kMei:
+      if (coefficients[0] < 0 || coefficients[0] > kMaxMirror) {
+        return fault("mei xi must lie in [0, 10]", coefficients[0]);
+      }
+      break;
+    case DistortionModel::kDoubleSphere:
+      if (coefficients[0] <= -1 || coefficients[0] > 1) {
+        return fault("double-sphere xi must lie in (-1, 1]", coefficients[0]);
+      }
+      if (coefficients[1] < 0 || coefficients[1] > 1) {
+        return fault("double-sphere alpha must lie in [0, 1]", coefficients[1]);
+      }
+      break;
+    case DistortionModel::kEucm:
+      if (coefficients[0] < 0 || coefficients[0] > 1) {
+        return fault("eucm alpha must lie in [0, 1]", coefficients[0]);
+      }
+      if (coefficients[1] <= 0 || coefficients[1] > kMaxStretch) {
+        return fault("eucm beta must lie in (0, 100]", coefficients[1]);
+      }
+      break;
+    case DistortionModel::kNone:
+    case DistortionModel::kRadialTangential:
+    case DistortionModel::kEquidistant:
+      break;
+  }
+  return Status::Ok();
+}
+
 }  // namespace
 
 std::optional<DistortionModel> ParseDistortionModel(std::string_view name) {
   for (const DistortionModel model :
        {DistortionModel::kNone, DistortionModel::kRadialTangential, DistortionModel::kEquidistant,
-        DistortionModel::kFov, DistortionModel::kMei}) {
+        DistortionModel::kFov, DistortionModel::kMei, DistortionModel::kDoubleSphere,
+        DistortionModel::kEucm}) {
     if (name == ToString(model)) {
       return model;
     }
@@ -44,6 +87,10 @@ std::string_view ToString(DistortionModel model) {
       return "fov";
     case DistortionModel::kMei:
       return "mei";
+    case DistortionModel::kDoubleSphere:
+      return "double-sphere";
+    case DistortionModel::kEucm:
+      return "eucm";
     case DistortionModel::kNone:
       break;
   }
@@ -59,6 +106,9 @@ int CoefficientCount(DistortionModel model) {
       return 1;
     case DistortionModel::kMei:
       return 5;
+    case DistortionModel::kDoubleSphere:
+    case DistortionModel::kEucm:
+      return 2;
     case DistortionModel::kNone:
       break;
   }
@@ -91,14 +141,8 @@ Result<CameraModel> CameraModel::Create(DistortionModel model, const Vector4d& f
     }
     camera.coefficients_[i] = coefficients[static_cast<size_t>(i)];
   }
-  if (model == DistortionModel::kFov && (coefficients[0] <= 1e-6 || coefficients[0] >= std::numbers::pi)) {
-    return Status::Input("distortion_coefficients: fov w must lie in (0, pi), found " +
-                         std::to_string(coefficients[0]));
-  }
-  constexpr double kMaxMirror = 10;
-  if (model == DistortionModel::kMei && (coefficients[0] < 0 || coefficients[0] > kMaxMirror)) {
-    return Status::Input("distortion_coefficients: mei xi must lie in [0, 10], found " +
-                         std::to_string(coefficients[0]));
+  if (Status status = CheckRanges(model, coefficients); !status.ok()) {
+    return status;
   }
   camera.BoundDomain();
   return camera;
@@ -115,25 +159,55 @@ void CameraModel::BoundDomain() {
       corner = std::max(corner, distorted.norm());
     }
   }
+  if (model_ == DistortionModel::kDoubleSphere || model_ == DistortionModel::kEucm) {
+    BoundSphere(kMarginBeyondCorner * corner, corner);
+    spherical_ = true;
+    max_radius_ = std::tan(std::min(max_angle_, std::atan(kMaxRadius)));
+  } else {
+    BoundPlane(kMarginBeyondCorner * corner, corner);
+    if (model_ == DistortionModel::kEquidistant && field_angle_ > kMaxPlaneAngle) {
+      BoundSphere(kMarginBeyondCorner * corner, corner);
+      spherical_ = true;
+    }
+  }
+  plane_ = spherical_ && field_angle_ > kMaxPlaneAngle ? ObservationPlane::kTangent
+                                                       : ObservationPlane::kNormalized;
+}
+
+void CameraModel::BoundPlane(double farthest, double corner) {
   // March outwards in angle until the radial map stops growing; the tangential terms are too small to move
   // the bound.
   constexpr int kSteps = 2000;
   const double max_angle = std::atan(kMaxRadius);
   max_radius_ = 0;
+  field_angle_ = 0;
   for (int i = 1; i <= kSteps; ++i) {
     const double radius = std::tan(max_angle * i / kSteps);
     double derivative = 0;
     const double distorted = RadialDistortion(radius, &derivative);
-    if (derivative <= 1e-6 / (1 + radius * radius) || distorted > kMarginBeyondCorner * corner) {
+    if (derivative <= 1e-6 / (1 + radius * radius) || distorted > farthest) {
       break;
     }
     max_radius_ = radius;
+    field_angle_ = distorted <= corner ? max_angle * i / kSteps : field_angle_;
   }
   double unused = 0;
   max_distorted_radius_ = RadialDistortion(max_radius_, &unused);
+  max_angle_ = std::atan(max_radius_);
 }
 
 bool CameraModel::Project(const Vector3d& p_C, Vector2d* pixel, Eigen::Matrix<double, 2, 3>* jacobian) const {
+  if (spherical_) {
+    Vector2d distorted;
+    if (!(p_C.squaredNorm() > kMinDepthM * kMinDepthM) || !DistortRay(p_C, &distorted, jacobian)) {
+      return false;
+    }
+    *pixel = intrinsics_.head<2>().cwiseProduct(distorted) + intrinsics_.tail<2>();
+    if (jacobian != nullptr) {
+      *jacobian = intrinsics_.head<2>().asDiagonal() * *jacobian;
+    }
+    return true;
+  }
   if (!(p_C.z() > kMinDepthM)) {
     return false;
   }
@@ -200,6 +274,19 @@ bool CameraModel::Undistort(const Vector2d& distorted, Vector2d* ideal) const {
   return true;
 }
 
+bool CameraModel::Bearing(const Vector2d& pixel, Vector3d* ray) const {
+  if (spherical_) {
+    return pixel.allFinite() &&
+           UndistortToSphere((pixel - intrinsics_.tail<2>()).cwiseQuotient(intrinsics_.head<2>()), ray);
+  }
+  Vector2d ideal;
+  if (!Unproject(pixel, &ideal)) {
+    return false;
+  }
+  *ray = ideal.homogeneous().normalized();
+  return true;
+}
+
 bool CameraModel::Unproject(const Vector2d& pixel, Vector2d* normalized, Matrix2d* pixel_jacobian) const {
   if (!pixel.allFinite()) {
     return false;
@@ -211,6 +298,12 @@ bool CameraModel::Unproject(const Vector2d& pixel, Vector2d* normalized, Matrix2
     if (!(ideal.norm() <= max_radius_)) {
       return false;
     }
+  } else if (spherical_) {
+    Vector3d ray;
+    if (!UndistortToSphere(distorted, &ray) || !(ray.head<2>().norm() <= max_radius_ * ray.z())) {
+      return false;
+    }
+    ideal = ray.head<2>() / ray.z();
   } else if (!Undistort(distorted, &ideal)) {
     return false;
   }

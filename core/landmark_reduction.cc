@@ -12,7 +12,7 @@ bool LinearizeObservation(const Pose& T_WC, const NormalizedObservation& observa
   const PointInCamera seen(T_WC, p_W);
   Eigen::Vector2d predicted;
   PointRows<2> projection;
-  if (!ProjectToPlane(seen.q, kMinPointDepth, &predicted, &projection)) {
+  if (!ProjectToPlane(observation.plane, seen.q, kMinPointDepth, &predicted, &projection)) {
     return false;
   }
   const PointRows<2> whitened = observation.sqrt_information * projection;

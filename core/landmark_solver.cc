@@ -57,10 +57,11 @@ double Evaluate(std::span<const Pose> T_WC, std::span<const NormalizedObservatio
   }
   for (size_t k = 0; k < T_WC.size(); ++k) {
     const Eigen::Matrix2d& whitening = observations[k].sqrt_information;
-    const AnchoredPointInCamera seen(T_WC.front(), T_WC[k], landmark);
+    const AnchoredPointInCamera seen(T_WC.front(), T_WC[k], landmark, observations.front().plane);
     Vector2d predicted;
     PointRows<2> projection;
-    if (!ProjectToPlane(seen.q, kMinScaledDepth, &predicted, system != nullptr ? &projection : nullptr)) {
+    if (!ProjectToPlane(observations[k].plane, seen.q, kMinScaledDepth, &predicted,
+                        system != nullptr ? &projection : nullptr)) {
       return kInfinity;
     }
     const Vector2d residual = whitening * (predicted - observations[k].z);
@@ -126,7 +127,8 @@ bool SolveLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObserva
 bool RefineLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
                     int max_iterations, Vector3d* p_W) {
   const Pose& base = T_WC.front();
-  const Vector3d p_base = PointInCamera(base, *p_W).q;
+  const BearingPlane& plane = observations.front().plane;
+  const Vector3d p_base = plane.InAxes(PointInCamera(base, *p_W).q);
   if (!(p_base.z() > kMinPointDepth)) {
     return false;
   }
@@ -137,7 +139,7 @@ bool RefineLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObserv
   if (!SolveLandmark(T_WC, observations, options, &landmark)) {
     return false;
   }
-  *p_W = base * Vector3d(Vector3d(landmark.x(), landmark.y(), 1) / landmark.z());
+  *p_W = base * Vector3d(plane.Direction(landmark.head<2>()) / landmark.z());
   return true;
 }
 

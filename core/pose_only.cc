@@ -3,26 +3,26 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/turned_ray.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// The part of A and b that view i contributes.
 struct DepthRow {
-  Vector3d z;      // homogeneous observation
+  Vector3d z;      // direction observed
   Vector3d ray;    // R_i^T R_b z_b
   Vector3d shift;  // R_i^T (p_b - p_i)
   Vector3d a;      // [z]x ray
   Vector3d b;      // -[z]x shift
 };
 
-DepthRow MakeRow(const Pose& view, const Vector2d& z, const Pose& base_view, const Vector3d& base_ray_W) {
+DepthRow MakeRow(const Pose& view, const NormalizedObservation& observation, const Pose& base_view, const Vector3d& base_ray_W) {
   DepthRow row;
-  row.z = z.homogeneous();
+  row.z = observation.Ray();
   row.ray = view.rotation.transpose() * base_ray_W;
   row.shift = view.rotation.transpose() * (base_view.translation - view.translation);
   row.a = row.z.cross(row.ray);
@@ -45,7 +45,7 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC,
                                    DepthViews views, const PoseOnlyDepth& depth) {
   const int count = static_cast<int>(T_WC.size());
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d z_b = observations[static_cast<size_t>(base)].z.homogeneous();
+  const Vector3d z_b = observations[static_cast<size_t>(base)].Ray();
   const Vector3d base_ray_W = base_view.rotation * z_b;
   DepthDerivative derivative{Eigen::RowVectorXd::Zero(6 * count), Eigen::RowVectorXd::Zero(2 * count)};
   for (int i = 0; i < count; ++i) {
@@ -53,7 +53,7 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC,
       continue;
     }
     const Pose& view = T_WC[static_cast<size_t>(i)];
-    const DepthRow row = MakeRow(view, observations[static_cast<size_t>(i)].z, base_view, base_ray_W);
+    const DepthRow row = MakeRow(view, observations[static_cast<size_t>(i)], base_view, base_ray_W);
     // dd = [ (b - 2 d A)^T dA + A^T db ] / A^T A, with dA = [z]x dray - [ray]x dz and
     // db = -[z]x dshift + [shift]x dz.
     const Vector3d weight_a = (row.b - 2 * depth.depth * row.a) / depth.normal;
@@ -67,8 +67,11 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC,
     derivative.poses.segment<3>(6 * base + 3) += to_shift * Rt;
     const Eigen::RowVector3d to_z =
         -weight_a.transpose() * Skew(row.ray) + weight_b.transpose() * Skew(row.shift);
-    derivative.observations.segment<2>(2 * i) += to_z.head<2>();
-    derivative.observations.segment<2>(2 * base) += (to_ray * Rt * base_view.rotation).head<2>();
+    derivative.observations.segment<2>(2 * i) +=
+        to_z * observations[static_cast<size_t>(i)].plane.axes().leftCols<2>();
+    derivative.observations.segment<2>(2 * base) +=
+        to_ray * Rt * base_view.rotation *
+        observations[static_cast<size_t>(base)].plane.axes().leftCols<2>();
   }
   return derivative;
 }
@@ -79,13 +82,15 @@ void DifferentiatePoint(std::span<const Pose> T_WC, std::span<const NormalizedOb
                         PoseOnlyJacobians* jacobians) {
   const DepthDerivative derivative = DifferentiateDepth(T_WC, observations, base, views, depth);
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d z_b = observations[static_cast<size_t>(base)].z.homogeneous();
+  const Vector3d z_b = observations[static_cast<size_t>(base)].Ray();
   const Vector3d base_ray_W = base_view.rotation * z_b;
   jacobians->poses = base_ray_W * derivative.poses;
   jacobians->poses.middleCols<3>(6 * base) -= depth.depth * base_view.rotation * Skew(z_b);
   jacobians->poses.middleCols<3>(6 * base + 3) += Matrix3d::Identity();
   jacobians->observations = base_ray_W * derivative.observations;
-  jacobians->observations.middleCols<2>(2 * base) += depth.depth * base_view.rotation.leftCols<2>();
+  jacobians->observations.middleCols<2>(2 * base) +=
+      depth.depth * base_view.rotation *
+      observations[static_cast<size_t>(base)].plane.axes().leftCols<2>();
 }
 
 }  // namespace
@@ -96,12 +101,13 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Normalized
   CHECK_EQ(observations.size(), T_WC.size());
   CHECK(count >= 2 && base >= 0 && base < count);
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d base_ray_W = base_view.rotation * observations[static_cast<size_t>(base)].z.homogeneous();
+  const Vector3d base_ray_W =
+      TurnedRay(base_view.rotation, observations[static_cast<size_t>(base)].Ray());
   double normal = 0;
   double right_side = 0;
   for (int i = 0; i < count; ++i) {
     if (GivesDepth(i, base, count, views)) {
-      const DepthRow row = MakeRow(T_WC[static_cast<size_t>(i)], observations[static_cast<size_t>(i)].z,
+      const DepthRow row = MakeRow(T_WC[static_cast<size_t>(i)], observations[static_cast<size_t>(i)],
                                    base_view, base_ray_W);
       normal += row.a.squaredNorm();
       right_side += row.a.dot(row.b);

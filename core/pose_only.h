@@ -12,9 +12,10 @@ namespace alidade {
 enum class DepthViews { kMulti, kTwo };
 
 /// Depth of a landmark in its base view as a function of poses and observations alone (paper eq. 4-1, 4-2):
-/// A_i = [z_i]x R_i^T R_b z_b, b_i = -[z_i]x R_i^T (p_b - p_i) over the other views i, d = A^T b / A^T A.
+/// A_i = [z_i]x R_i^T R_b z_b, b_i = -[z_i]x R_i^T (p_b - p_i) over the other views i, d = A^T b / A^T A. z_i
+/// is the direction that view i observed (NormalizedObservation::Ray), before the camera or not.
 struct PoseOnlyDepth {
-  double depth = 0;   ///< along the base view's z axis [m]
+  double depth = 0;   ///< along the normal of the base observation's plane [m]: its z axis, or its ray
   double normal = 0;  ///< A^T A: parallax information; sigma / sqrt(A^T A) is the depth's relative deviation
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< p_b + d R_b z_b
 };

@@ -13,7 +13,8 @@ namespace alidade {
 /// many of its standard deviations.
 [[nodiscard]] inline NormalizedObservation Predicted(const NormalizedObservation& measured,
                                                      const Eigen::Vector2d& residual) {
-  return {measured.z + measured.sqrt_information.inverse() * residual, measured.sqrt_information};
+  return {measured.z + measured.sqrt_information.inverse() * residual, measured.sqrt_information,
+          measured.plane};
 }
 
 }  // namespace alidade

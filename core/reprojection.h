@@ -3,10 +3,11 @@
 #include <Eigen/Core>
 #include <type_traits>
 
+#include "core/bearing_plane.h"
 #include "core/navigation_state.h"
 
-// The reprojection of a landmark, the one of this library: where a camera sees it on the ideal normalised
-// plane, and the derivatives of that. Every visual model, solver and factor composes what stands here.
+// The reprojection of a landmark, the one of this library: where a camera sees it on the plane of its
+// observation (core/bearing_plane.h), and the derivatives of that. Every visual model, solver and factor composes what stands here.
 //
 // Derivatives come as a chain. A model forms its rows over q, the landmark in the camera's frame: those of
 // the projection, whitened where it wants them so. Chain() carries the rows to what q depends on. Cameras are
@@ -49,6 +50,20 @@ inline constexpr double kMinScaledDepth = 1e-6;
   return true;
 }
 
+/// The same onto the plane of an observation. The depth is along the plane's normal: on a tangent plane, a
+/// point less than 90 degrees from what was measured is in front.
+[[nodiscard]] inline bool ProjectToPlane(const BearingPlane& plane, const Eigen::Vector3d& q,
+                                         double min_depth, Eigen::Vector2d* projected,
+                                         PointRows<2>* jacobian = nullptr) {
+  if (!ProjectToPlane(plane.InAxes(q), min_depth, projected, jacobian)) {
+    return false;
+  }
+  if (jacobian != nullptr && plane.is_tangent()) {
+    *jacobian = plane.OverCamera<2>(*jacobian);
+  }
+  return true;
+}
+
 /// A point of the world in a camera: q = R^T (p_W - p) [m], T_WC = (R, p).
 struct PointInCamera {
   /// T_WC must outlive it.
@@ -74,24 +89,29 @@ struct PointInCamera {
   Eigen::Vector3d q;
 };
 
-/// A landmark anchored in camera A, l = (x, y, rho): its bearing on A's normalised plane and its inverse
-/// depth there [1/m]. In camera C, scaled by rho:
+/// A landmark anchored in camera A, l = (x, y, rho): its bearing on a plane of A's with axes R_P (core/
+/// bearing_plane.h) and its inverse depth along the plane's normal [1/m]. In camera C, scaled by rho:
 ///
-///     q = R_C^T (R_A (x, y, 1) + rho (p_A - p_C)),
+///     q = R_C^T (R_A R_P (x, y, 1) + rho (p_A - p_C)),
 ///
-/// so that rho = 0, a landmark at infinity, is regular.
+/// so that rho = 0, a landmark at infinity, is regular. R_P is the identity on the plane z = 1.
 struct AnchoredPointInCamera {
-  /// The poses must outlive it.
-  AnchoredPointInCamera(const Pose& T_WA, const Pose& T_WC, const Eigen::Vector3d& l)
-      : anchor(&T_WA), camera(&T_WC), landmark(l), shift_W(T_WA.translation - T_WC.translation) {
+  /// The poses and the plane, which is the anchor's, must outlive it.
+  AnchoredPointInCamera(const Pose& T_WA, const Pose& T_WC, const Eigen::Vector3d& l,
+                        const BearingPlane& of_anchor = kNormalizedPlane)
+      : anchor(&T_WA),
+        camera(&T_WC),
+        plane(&of_anchor),
+        landmark(l),
+        shift_W(T_WA.translation - T_WC.translation) {
     const Eigen::Vector3d ray_W = T_WA.rotation * Ray();
     q = T_WC.rotation.transpose() * (ray_W + l.z() * shift_W);
   }
 
   /// Rows over q (kRows x 3) to rows over the cameras and over (x, y, rho):
   ///
-  ///     dq = -R_C^T R_A [(x, y, 1)]x phi_A + rho R_C^T dp_A,      dq = [q]x phi_C - rho R_C^T dp_C,
-  ///     dq = R_C^T [ R_A e_x  R_A e_y  p_A - p_C ] dl.
+  ///     dq = -R_C^T R_A [R_P (x, y, 1)]x phi_A + rho R_C^T dp_A,   dq = [q]x phi_C - rho R_C^T dp_C,
+  ///     dq = R_C^T [ R_A R_P e_x  R_A R_P e_y  p_A - p_C ] dl.
   ///
   /// A null output is skipped. Seen from its own anchor (A = C) a landmark does not depend on the camera: the
   /// rows over the two cameras then cancel.
@@ -109,16 +129,22 @@ struct AnchoredPointInCamera {
       over_camera->template rightCols<3>() = -landmark.z() * over_world;
     }
     if (over_landmark != nullptr) {
-      over_landmark->template leftCols<2>() = over_world * anchor->rotation.leftCols<2>();
+      if (plane->is_tangent()) {
+        over_landmark->template leftCols<2>() =
+            over_world * anchor->rotation * plane->axes().template leftCols<2>();
+      } else {
+        over_landmark->template leftCols<2>() = over_world * anchor->rotation.leftCols<2>();
+      }
       over_landmark->col(2) = over_world * shift_W;
     }
   }
 
-  /// (x, y, 1)
-  [[nodiscard]] Eigen::Vector3d Ray() const { return {landmark.x(), landmark.y(), 1}; }
+  /// R_P (x, y, 1)
+  [[nodiscard]] Eigen::Vector3d Ray() const { return plane->Direction(landmark.head<2>()); }
 
   const Pose* anchor;
   const Pose* camera;
+  const BearingPlane* plane;  ///< of the anchor
   Eigen::Vector3d landmark;
   Eigen::Vector3d shift_W;  ///< p_A - p_C
   Eigen::Vector3d q;

@@ -7,6 +7,8 @@
 #include "core/dense_solvers.h"
 #include "core/imu_statistics.h"
 #include "core/lie.h"
+#include "core/turned_ray.h"
+#include "core/visual_observation.h"
 
 namespace alidade {
 namespace {
@@ -99,10 +101,9 @@ void RestDetector::FindCommon(const TrackFrame& before, const TrackFrame& now, c
       ++old;
     }
     if (old != before.observations.end() && old->track_id == seen.track_id) {
-      Vector2d ideal;
+      Vector3d ray;
       Vector2d turned;
-      if (camera_.Unproject(old->pixel, &ideal) &&
-          camera_.Project(R_now_before * ideal.homogeneous(), &turned)) {
+      if (PixelRay(camera_, old->pixel, &ray) && camera_.Project(TurnedRay(R_now_before, ray), &turned)) {
         common_.push_back({turned, seen.pixel - turned});
       }
     }

@@ -11,11 +11,19 @@ enum class PixelNoiseModel {
   kAdaptive,  ///< never less, and more where the innovations say so (core/pixel_noise.h)
 };
 
+/// On which plane the observations of a track are (core/bearing_plane.h).
+enum class PlaneChoice {
+  kLens,        ///< what the lens wants: CameraModel::plane
+  kNormalized,  ///< z = 1; what lies beside or behind the camera is not seen
+  kTangent,     ///< of the unit sphere, at each measured ray
+};
+
 /// Noise, gates and kernels of vision; shared by both back ends so that a comparison compares estimators, not
 /// settings.
 struct VisionConfig {
   double pixel_noise_px = 1.0;
   PixelNoiseModel noise = PixelNoiseModel::kGiven;
+  PlaneChoice observation_plane = PlaneChoice::kLens;
   double gate_probability = 0.99;
   double max_gated_share = 0.5;
   double max_relative_depth_deviation = 0.1;

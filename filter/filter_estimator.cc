@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/observation_plane.h"
 #include "core/rest_model.h"
 #include "core/stopwatch.h"
 
@@ -12,12 +13,12 @@ namespace alidade {
 
 FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibration& rig)
     : config_(config),
-      rig_(rig),
+      rig_(OnPlane(rig, config.vision.observation_plane)),
       noise_(config.imu.Scaled(rig.imu_noise)),
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
       state_(config.filter.error, config.filter.first_estimates,
-             InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s}),
+             InitialCalibration(config.calibration, {rig_.camera, rig.T_BC, rig.camera_time_offset_s}),
              {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled}),
       update_(config.filter, config.vision, config.filter.window + 1, state_.layout().size()),
       slam_(config.filter, config.filter.window + 1),
@@ -25,7 +26,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
               state_.layout().size()),
       gnss_(config.gnss, rig.gnss),
       measurements_(config),
-      rest_(config.vision, config.init, rig.camera),
+      rest_(config.vision, config.init, rig_.camera),
       imu_(config.imu.max_gap_s),
       pixel_noise_(config.vision),
       correction_(state_.covariance().capacity()),

@@ -95,7 +95,8 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
                                const NormalizedObservation& observation, double weight,
                                TrackMemory* extended) {
   const Clone& clone = state.clones()[clone_index];
-  const NormalizedObservation weighted{observation.z, weight * observation.sqrt_information};
+  NormalizedObservation weighted = observation;
+  weighted.sqrt_information *= weight;
   LandmarkViewRows view;
   if (!LinearizeView(state, clone, weighted, memory.p_W, memory.p_W, &view)) {
     return false;

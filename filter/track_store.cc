@@ -71,10 +71,7 @@ int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int s
 void TrackStore::Renormalize(const CameraModel& camera, double pixel_noise_px) {
   for (Track& track : tracks_) {
     for (TrackView& view : track.views) {
-      NormalizedObservation observation;
-      if (NormalizeObservation(camera, view.pixel, pixel_noise_px, &observation)) {
-        view.observation = observation;
-      }
+      static_cast<void>(RenormalizeObservation(camera, view.pixel, pixel_noise_px, &view.observation));
     }
   }
 }

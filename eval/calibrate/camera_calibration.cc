@@ -35,6 +35,12 @@ CameraGyroError PriorOf(const CameraModel& camera, bool readout) {
     case DistortionModel::kFov:
       prior[Coordinate::kLens] = 0.05;
       break;
+    case DistortionModel::kDoubleSphere:  // xi, alpha
+      prior.segment<2>(Coordinate::kLens) << 0.1, 0.05;
+      break;
+    case DistortionModel::kEucm:  // alpha, beta
+      prior.segment<2>(Coordinate::kLens) << 0.1, 0.2;
+      break;
     case DistortionModel::kMei:  // its coefficients have no derivatives
       break;
   }

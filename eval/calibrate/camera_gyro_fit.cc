@@ -53,8 +53,39 @@ bool RayOf(const CameraModel& camera, const Vector2d& pixel, Ray* ray) {
   return true;
 }
 
+/// Rows over a plane's coordinates by fu, fv, centre and coefficients, to those over a ray, `to_ray`, by the
+/// coordinates of the fit.
+LensRows RowsOfLens(const CameraModel& camera, const Tangent& to_ray,
+                    const Eigen::Matrix<double, 2, 8>& plane_rows) {
+  LensRows rows = LensRows::Zero();
+  const Eigen::Vector4d& k = camera.intrinsics();
+  const Vector2d by_fu = plane_rows.col(0) * k[0];
+  const Vector2d by_fv = plane_rows.col(1) * k[1];
+  rows.col(0) = to_ray * (by_fu + by_fv);
+  rows.col(1) = to_ray * (by_fu - by_fv) / 2;
+  rows.middleCols<2>(2) = to_ray * plane_rows.middleCols<2>(2);
+  const int coefficients = std::min(CoefficientCount(camera.model()), 4);
+  rows.middleCols(4, coefficients) = to_ray * plane_rows.middleCols(4, coefficients);
+  return rows;
+}
+
+/// IntrinsicsOfRay by the tangent plane, wherever the ray points.
+LensRows IntrinsicsOfSphericalRay(const CameraModel& camera, const Vector3d& direction) {
+  Eigen::Matrix<double, 2, 8> pixel_rows;
+  NormalizedObservation at;
+  at.plane = BearingPlane::TangentAt(direction);
+  Eigen::Matrix2d pixel_from_plane;
+  if (!IntrinsicsJacobian(camera, direction, &pixel_rows) || !PixelJacobian(camera, at, &pixel_from_plane)) {
+    return LensRows::Zero();
+  }
+  return RowsOfLens(camera, at.plane.axes().leftCols<2>(), -pixel_from_plane.inverse() * pixel_rows);
+}
+
 /// d direction / d (focal, ratio, centre, lens) at `direction`: the pixel is kept.
 LensRows IntrinsicsOfRay(const CameraModel& camera, const Vector3d& direction) {
+  if (camera.is_spherical()) {
+    return IntrinsicsOfSphericalRay(camera, direction);
+  }
   LensRows rows = LensRows::Zero();
   const Vector2d z = direction.head<2>() / direction.z();
   Eigen::Matrix<double, 2, 8> pixel_rows;
@@ -69,15 +100,7 @@ LensRows IntrinsicsOfRay(const CameraModel& camera, const Vector3d& direction) {
   const double length = std::hypot(1.0, z.norm());
   to_ray << Eigen::Matrix2d::Identity(), 0, 0;
   to_ray = (to_ray - direction * direction.head<2>().transpose()).eval() / length;
-  const Eigen::Vector4d& k = camera.intrinsics();
-  const Vector2d by_fu = plane_rows.col(0) * k[0];
-  const Vector2d by_fv = plane_rows.col(1) * k[1];
-  rows.col(0) = to_ray * (by_fu + by_fv);
-  rows.col(1) = to_ray * (by_fu - by_fv) / 2;
-  rows.middleCols<2>(2) = to_ray * plane_rows.middleCols<2>(2);
-  const int coefficients = std::min(CoefficientCount(camera.model()), 4);
-  rows.middleCols(4, coefficients) = to_ray * plane_rows.middleCols(4, coefficients);
-  return rows;
+  return RowsOfLens(camera, to_ray, plane_rows);
 }
 
 /// One frame of a pair at the present model.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eval/dataset/basalt_calibration.h"
 #include "eval/files/strict_yaml.h"
 #include "eval/files/suggest.h"
 
@@ -36,6 +37,25 @@ bool IsMap(const Node& node) {
 
 std::string YamlLine(const std::string& key, const std::string& value) {
   return key + ": " + value + "\n";
+}
+
+/// Entries of a list of scalars, as they stand.
+std::vector<std::string> EntriesOf(const Node& list) {
+  std::vector<std::string> entries;
+  if (list.IsDefined() && list.IsSequence()) {
+    for (const Node& entry : list) {
+      entries.push_back(Flow(entry));
+    }
+  }
+  return entries;
+}
+
+std::string ListText(const std::vector<std::string>& entries) {
+  std::string text;
+  for (const std::string& entry : entries) {
+    text += (text.empty() ? "" : ", ") + entry;
+  }
+  return "[" + text + "]";
 }
 
 /// The values of these keys of a map as a list; the first one that is missing is named.
@@ -88,6 +108,10 @@ class Importer {
       ALIDADE_RETURN_IF_ERROR(AddVinsImu(path, root));
       known = true;
     }
+    if (IsMap(root["value0"])) {
+      ALIDADE_RETURN_IF_ERROR(AddBasalt(path, root["value0"]));
+      known = true;
+    }
     if (root["model_type"].IsDefined()) {
       ALIDADE_RETURN_IF_ERROR(AddVinsCamera(path, root));
       known = true;
@@ -122,7 +146,7 @@ class Importer {
  private:
   static Status Unknown(const std::string& path) {
     return Status::Input(
-        path + ": found none of the keys of a calibration, expected one of Kalibr, OpenVINS or VINS");
+        path + ": found none of the keys of a calibration, expected one of Kalibr, OpenVINS, VINS or Basalt");
   }
 
   Status AddChainCamera(const std::string& path, const Node& camera) {
@@ -137,23 +161,48 @@ class Importer {
                              : lens == "radtan" ? "radial-tangential"
                              : lens == "equi"   ? "equidistant"
                                                 : lens;
+    if (model == "ds" || model == "eucm") {
+      if (!(lens == "none" || lens == "''")) {
+        return Status::Input(camera_place_ + ": distortion_model: found '" + lens + "' with '" + model +
+                             "', expected none");
+      }
+      return SetChainCamera(camera, model == "ds" ? "double-sphere" : "eucm", SplitIntrinsics(camera, 2));
+    }
     if (model != "pinhole" && !(omni && lens == "radtan")) {
       return Status::Input(camera_place_ + ": camera_model: found '" + model + "' with '" + lens +
-                           "', expected pinhole, or omni with radtan");
+                           "', expected pinhole, omni with radtan, ds or eucm");
     }
-    std::string intrinsics = Flow(camera["intrinsics"]);
-    std::string coefficients = Flow(camera["distortion_coeffs"]);
-    if (omni) {  // Kalibr: [xi, fu, fv, cu, cv]; xi is a coefficient here
-      const std::size_t comma = intrinsics.find(", ");
-      if (comma == std::string::npos || coefficients.size() < 2) {
-        return Status::Input(camera_place_ + ": intrinsics: found " + intrinsics +
-                             ", expected xi, fu, fv, cu, cv");
+    Result<Intrinsics> intrinsics = SplitIntrinsics(camera, omni ? 1 : 0);
+    if (intrinsics.ok()) {
+      for (const std::string& coefficient : EntriesOf(camera["distortion_coeffs"])) {
+        intrinsics->coefficients.push_back(coefficient);
       }
-      coefficients = intrinsics.substr(0, comma) + ", " + coefficients.substr(1);
-      intrinsics = "[" + intrinsics.substr(comma + 2);
     }
-    camera_text_ = YamlLine("resolution", Flow(camera["resolution"])) + YamlLine("intrinsics", intrinsics) +
-                   YamlLine("distortion_model", name) + YamlLine("distortion_coefficients", coefficients);
+    return SetChainCamera(camera, name, intrinsics);
+  }
+
+  /// The four of the image plane, and coefficients of the lens.
+  struct Intrinsics {
+    std::vector<std::string> plane, coefficients;
+  };
+
+  /// Kalibr puts `count` coefficients of a lens that is no pinhole before fu, fv, cu, cv.
+  [[nodiscard]] Result<Intrinsics> SplitIntrinsics(const Node& camera, std::size_t count) const {
+    const std::vector<std::string> all = EntriesOf(camera["intrinsics"]);
+    if (all.size() != count + 4) {
+      return Status::Input(camera_place_ + ": intrinsics: found " + Flow(camera["intrinsics"]) + ", expected " +
+                           std::to_string(count + 4) + " numbers" +
+                           (count > 0 ? ", the lens' before fu, fv, cu, cv" : ": fu, fv, cu, cv"));
+    }
+    const auto split = all.begin() + static_cast<std::ptrdiff_t>(count);
+    return Intrinsics{{split, all.end()}, {all.begin(), split}};
+  }
+
+  Status SetChainCamera(const Node& camera, const std::string& name, const Result<Intrinsics>& intrinsics) {
+    ALIDADE_RETURN_IF_ERROR(intrinsics.status());
+    camera_text_ = YamlLine("resolution", Flow(camera["resolution"])) +
+                   YamlLine("intrinsics", ListText(intrinsics->plane)) + YamlLine("distortion_model", name) +
+                   YamlLine("distortion_coefficients", ListText(intrinsics->coefficients));
     for (const char* key : {"T_cam_imu", "T_imu_cam"}) {
       if (camera[key].IsDefined()) {
         extrinsics_ += YamlLine(key, Flow(camera[key]));
@@ -161,6 +210,22 @@ class Importer {
     }
     if (camera["timeshift_cam_imu"].IsDefined()) {
       offset_ = YamlLine("time_offset_s", Flow(camera["timeshift_cam_imu"]));
+    }
+    return Status::Ok();
+  }
+
+  Status AddBasalt(const std::string& path, const Node& calibration) {
+    const Result<BasaltTexts> texts = TranslateBasalt(path, calibration, camera_);
+    ALIDADE_RETURN_IF_ERROR(texts.status());
+    if (camera_text_.empty()) {
+      camera_text_ = texts->camera;
+      camera_place_ = path + ": " + camera_;
+      extrinsics_ = texts->extrinsics;
+      offset_ = texts->offset;
+    }
+    if (imu_text_.empty()) {
+      imu_text_ = texts->imu;
+      imu_place_ = path;
     }
     return Status::Ok();
   }

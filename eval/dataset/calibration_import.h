@@ -20,10 +20,12 @@ struct ImportedCalibration {
 /// Reads calibration files, each known by its keys; the first one that says something counts. `camera`
 /// chooses among several: cam0, cam1.
 ///
-///   Kalibr      camchain (T_cam_imu, timeshift_cam_imu), omni-radtan as the model mei; imu.yaml
+///   Kalibr      camchain (T_cam_imu, timeshift_cam_imu), omni-radtan as the model mei, ds as double-sphere,
+///               eucm; imu.yaml
 ///   OpenVINS    estimator_config (names the two others), kalibr_imucam_chain (T_imu_cam), kalibr_imu_chain
 ///   VINS        model_type PINHOLE, MEI or KANNALA_BRANDT; body_T_cam0 or extrinsicRotation and
 ///               extrinsicTranslation; acc_n, gyr_n, acc_w, gyr_w; td; cam0_calib names the camera's file
+///   Basalt      JSON (eval/dataset/basalt_calibration.h)
 ///
 /// Errors (kInput): a file that is none of these, lacks a key or holds a value that sensor.yaml would not
 /// take.

@@ -35,7 +35,7 @@ Status ReadExtrinsics(const SensorFile& file, Pose* T_BC) {
 }
 
 Status ReadDistortionModel(const SensorFile& file, DistortionModel* model) {
-  const std::string known = "one of radial-tangential, equidistant, fov, mei, none";
+  const std::string known = "one of radial-tangential, equidistant, fov, mei, double-sphere, eucm, none";
   if (!file.Has("distortion_model") || !file["distortion_model"].IsScalar()) {
     return file.Fault("distortion_model", known);
   }
@@ -43,7 +43,7 @@ Status ReadDistortionModel(const SensorFile& file, DistortionModel* model) {
   const std::optional<DistortionModel> parsed = ParseDistortionModel(name);
   if (!parsed.has_value()) {
     return file.Fault("distortion_model",
-                      known + Suggestion(name, {"radial-tangential", "equidistant", "fov", "mei", "none"}));
+                      known + Suggestion(name, {"radial-tangential", "equidistant", "fov", "mei", "double-sphere", "eucm", "none"}));
   }
   *model = *parsed;
   return Status::Ok();
@@ -87,6 +87,12 @@ std::string TransformYaml(const Pose& transform) {
     text += ShortestDouble(transform.translation[row]) + ",\n         ";
   }
   return text + "0, 0, 0, 1]\n";
+}
+
+/// Whether other programs call it a lens of a pinhole camera.
+bool IsPinhole(DistortionModel model) {
+  return model != DistortionModel::kMei && model != DistortionModel::kDoubleSphere &&
+         model != DistortionModel::kEucm;
 }
 
 std::string Line(const char* key, double value, const char* comment) {
@@ -178,7 +184,7 @@ std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
   std::string text = "sensor_type: camera\n" + TransformYaml(rig.T_BC) + RateLine(rate_hz);
   text +=
       "resolution: [" + std::to_string(camera.width_px()) + ", " + std::to_string(camera.height_px()) + "]\n";
-  text += camera.model() == DistortionModel::kMei ? "" : "camera_model: pinhole\n";
+  text += IsPinhole(camera.model()) ? "camera_model: pinhole\n" : "";
   text += "intrinsics: [";
   for (int i = 0; i < 4; ++i) {
     text += (i > 0 ? ", " : "") + ShortestDouble(camera.intrinsics()[i]);

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/random.h"
+#include "core/visual_observation.h"
 
 namespace alidade {
 namespace {
@@ -78,17 +79,16 @@ void HallRenderer::AimRays(const CameraModel& camera) {
   rays_.assign(points.size() * pixels, Vector3f::Zero());
   for (int y = 0; y < height_px_; ++y) {
     for (int x = 0; x < width_px_; ++x) {
-      Vector2d middle = Vector2d::Zero();
-      Eigen::Matrix2d jacobian = Eigen::Matrix2d::Identity();
-      if (!camera.Unproject(Vector2d(x, y), &middle, &jacobian)) {
+      NormalizedObservation middle;
+      if (!NormalizeObservation(camera, Vector2d(x, y), 1.0, &middle)) {
         continue;
       }
       // Within half a pixel the lens is linear to 1e-4 px.
-      const Eigen::Matrix2d inverse = jacobian.inverse();
+      const Eigen::Matrix2d inverse = middle.sqrt_information.inverse();
       for (std::size_t k = 0; k < points.size(); ++k) {
-        const Vector2d at = middle + inverse * points[k];
+        const Vector2d at = middle.z + inverse * points[k];
         rays_[k * pixels + static_cast<std::size_t>(y * width_px_ + x)] =
-            at.homogeneous().normalized().cast<float>();
+            middle.plane.Direction(at).normalized().cast<float>();
       }
     }
   }

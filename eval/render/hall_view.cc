@@ -12,7 +12,7 @@ using Eigen::Vector3f;
 /// most the half angle and the angle under which it is seen.
 bool Reaches(const Vector3f& axis, float cosine, float sine, const Vector3f& centre, float distance,
              float radius) {
-  if (distance <= radius) {
+  if (distance <= radius || cosine <= 0) {  // a cone beyond a half space is not worth the case
     return true;
   }
   const float seen_sine = radius / distance;

@@ -70,7 +70,7 @@ void AlignmentProblem::InitializeLandmarks() {
     const bool found = ComputePoseOnlyDepth(cameras, track.observations, 0, DepthViews::kMulti, &depth);
     const double start = found && depth.depth > 0 ? std::min(depth.depth, kMaxStartDepthM) : kStartDepthM;
     Vector3d& landmark = current_.landmarks[t];
-    landmark = cameras.front() * (start * track.observations.front().z.homogeneous());
+    landmark = cameras.front() * (start * track.observations.front().Ray());
     // When it cannot be refined it keeps its start and the kernel judges it.
     static_cast<void>(RefineLandmark(cameras, track.observations, 2 * kLandmarkIterations, &landmark));
   }
@@ -85,8 +85,8 @@ bool AlignmentProblem::TrackResiduals(const Variables& variables, size_t t,
   for (size_t k = 0; k < cameras.size(); ++k) {
     const PointInCamera seen(cameras[k], variables.landmarks[t]);
     Eigen::Vector2d predicted;
-    if (ProjectToPlane(seen.q, kMinDepthM, &predicted)) {
-      const NormalizedObservation& observation = track.observations[k];
+    const NormalizedObservation& observation = track.observations[k];
+    if (ProjectToPlane(observation.plane, seen.q, kMinDepthM, &predicted)) {
       squared->push_back((observation.sqrt_information * (predicted - observation.z)).squaredNorm());
     } else {
       squared->push_back(kBehindSquared);

@@ -104,7 +104,8 @@ std::vector<Preintegration> PreintegrateWindow(const DynamicWindow& window, cons
 }
 
 Eigen::Vector3d BearingOf(const NormalizedObservation& observation) {
-  return observation.z.homogeneous().normalized();
+  return observation.plane.is_tangent() ? observation.Ray().normalized()
+                                        : observation.z.homogeneous().normalized();
 }
 
 double AngularDeviation(const NormalizedObservation& observation) {

@@ -8,6 +8,7 @@
 
 #include "core/format.h"
 #include "core/imu_buffer.h"
+#include "core/observation_plane.h"
 #include "frontend/initialization/dynamic_initializer.h"
 #include "frontend/initialization/dynamic_window.h"
 #include "frontend/initialization/static_initializer.h"
@@ -51,7 +52,9 @@ struct Initializer::Implementation {
   InitializerWindow window;
 
   Implementation(const EstimatorConfig& config_in, const RigCalibration& rig_in)
-      : config(config_in), rig(rig_in), imu(config_in.imu.max_gap_s) {
+      : config(config_in),
+        rig(OnPlane(rig_in, config_in.vision.observation_plane)),
+        imu(config_in.imu.max_gap_s) {
     // The sheet's noise, trusted as far as the configuration says: the same numbers as in the back ends.
     rig.imu_noise = config.imu.Scaled(rig.imu_noise);
   }

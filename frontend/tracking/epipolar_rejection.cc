@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <opencv2/calib3d.hpp>
 
+#include "core/camera_model.h"
 #include "core/lie.h"
+#include "core/turned_ray.h"
 
 namespace alidade {
 namespace {
@@ -64,42 +66,48 @@ struct EpipolarTerm {
   bool at_epipole;  // x_1 lies on the epipole: its line is any line through it
 };
 
-EpipolarTerm Evaluate(const BearingPair& pair, const Motion& motion, double focal_px) {
-  EpipolarTerm term{.g = motion.R_21 * pair.first.homogeneous(),
-                    .x_2 = pair.second.homogeneous(),
+EpipolarTerm Evaluate(const BearingPair& pair, const Motion& motion, const EpipolarOptions& options) {
+  EpipolarTerm term{.g = TurnedRay(motion.R_21, pair.first),
+                    .x_2 = pair.second,
                     .error = 0,
                     .scale = 0,
                     .at_epipole = false};
   const Vector3d line = motion.t.cross(term.g);
-  const double norm = line.head<2>().norm();
+  const double norm = options.on_sphere ? line.norm() : line.head<2>().norm();
   // Within half a pixel of the epipole the line's direction is noise.
-  term.at_epipole = norm * focal_px < 0.5 * std::abs(term.g.z());
+  term.at_epipole = norm * options.focal_px < 0.5 * (options.on_sphere ? 1 : std::abs(term.g.z()));
   term.error = term.x_2.dot(line);
-  term.scale = norm > 0 ? focal_px / norm : 0;
+  term.scale = norm > 0 ? options.focal_px / norm : 0;
   return term;
 }
 
-bool IsInlier(const EpipolarTerm& term, double threshold_px, double focal_px) {
-  if (term.g.z() <= 0) {
+/// Between where a pair was seen and where the rotation alone takes it.
+double DisplacementPx(const EpipolarTerm& term, const EpipolarOptions& options) {
+  const double displacement = options.on_sphere ? (term.x_2 - term.g).norm()
+                                                : (term.x_2.head<2>() - term.g.hnormalized()).norm();
+  return displacement * options.focal_px;
+}
+
+bool IsInlier(const EpipolarTerm& term, const EpipolarOptions& options) {
+  if (!options.on_sphere && term.g.z() <= 0) {
     return false;
   }
   if (term.at_epipole) {
-    return (term.x_2.head<2>() - term.g.hnormalized()).norm() * focal_px <= threshold_px;
+    return DisplacementPx(term, options) <= options.threshold_px;
   }
-  return std::abs(term.error) * term.scale <= threshold_px;
+  return std::abs(term.error) * term.scale <= options.threshold_px;
 }
 
-Consensus Score(const std::vector<BearingPair>& pairs, const Motion& motion, double threshold_px,
-                double focal_px) {
+Consensus Score(const std::vector<BearingPair>& pairs, const Motion& motion, const EpipolarOptions& options) {
   std::vector<bool> inliers(pairs.size());
   for (size_t i = 0; i < pairs.size(); ++i) {
-    inliers[i] = IsInlier(Evaluate(pairs[i], motion, focal_px), threshold_px, focal_px);
+    inliers[i] = IsInlier(Evaluate(pairs[i], motion, options), options);
   }
   return Count(std::move(inliers));
 }
 
 /// Best translation direction over two-pair hypotheses with the rotation held.
-Consensus SampleTranslation(const std::vector<BearingPair>& pairs, double threshold_px, double focal_px,
+Consensus SampleTranslation(const std::vector<BearingPair>& pairs, const EpipolarOptions& options,
                             Motion* motion) {
   Sampler sampler;
   Consensus best;
@@ -109,14 +117,14 @@ Consensus SampleTranslation(const std::vector<BearingPair>& pairs, double thresh
     const size_t a = sampler.Below(pairs.size());
     const size_t b = (a + 1 + sampler.Below(pairs.size() - 1)) % pairs.size();
     const auto normal = [&](size_t i) -> Vector3d {
-      return (candidate.R_21 * pairs[i].first.homogeneous()).cross(pairs[i].second.homogeneous());
+      return TurnedRay(candidate.R_21, pairs[i].first).cross(pairs[i].second);
     };
     const Vector3d direction = normal(a).cross(normal(b));
     // Neither pair moved, or both along one plane: any direction would do, this one decides nothing.
     if (direction.norm() > 0) {
       candidate.t = direction.normalized();
     }
-    Consensus consensus = Score(pairs, candidate, threshold_px, focal_px);
+    Consensus consensus = Score(pairs, candidate, options);
     if (consensus.count > best.count) {
       best = std::move(consensus);
       *motion = candidate;
@@ -148,7 +156,7 @@ void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inli
     Matrix5d hessian = Matrix5d::Zero();
     Vector5d gradient = Vector5d::Zero();
     for (size_t i = 0; i < pairs.size(); ++i) {
-      const EpipolarTerm term = Evaluate(pairs[i], *motion, options.focal_px);
+      const EpipolarTerm term = Evaluate(pairs[i], *motion, options);
       if (!inliers[i] || term.at_epipole) {
         continue;
       }
@@ -187,9 +195,8 @@ Consensus RejectNegativeDepth(const std::vector<BearingPair>& pairs, const Motio
   std::vector<int> signs(pairs.size(), 0);
   int balance = 0;
   for (size_t i = 0; i < pairs.size(); ++i) {
-    const EpipolarTerm term = Evaluate(pairs[i], motion, options.focal_px);
-    const double displacement_px = (term.x_2.head<2>() - term.g.hnormalized()).norm() * options.focal_px;
-    if (consensus.inliers[i] && !term.at_epipole && displacement_px > min_displacement_px) {
+    const EpipolarTerm term = Evaluate(pairs[i], motion, options);
+    if (consensus.inliers[i] && !term.at_epipole && DisplacementPx(term, options) > min_displacement_px) {
       signs[i] = term.g.cross(term.x_2).dot(term.g.cross(motion.t)) > 0 ? 1 : -1;
       balance += signs[i];
     }
@@ -208,7 +215,7 @@ double AdaptedThreshold(const std::vector<BearingPair>& pairs, const std::vector
                         const Motion& motion, const EpipolarOptions& options) {
   std::vector<double> distances_px;
   for (size_t i = 0; i < pairs.size(); ++i) {
-    const EpipolarTerm term = Evaluate(pairs[i], motion, options.focal_px);
+    const EpipolarTerm term = Evaluate(pairs[i], motion, options);
     if (inliers[i] && !term.at_epipole) {
       distances_px.push_back(std::abs(term.error) * term.scale);
     }
@@ -226,36 +233,50 @@ Consensus AgreeWithRotation(const std::vector<BearingPair>& pairs, const Matrix3
                             const EpipolarOptions& options) {
   // 1 mrad: rotation noise and calibration at high frame rates, where the bias alone would promise too much.
   const double rotation_std = std::max(1e-3, kGyroError * options.dt_s);
-  const double loose_px = options.threshold_px + 2 * rotation_std * options.focal_px;
+  EpipolarOptions loose = options;
+  loose.threshold_px += 2 * rotation_std * options.focal_px;
   Motion motion{.R_21 = R_21, .t = Vector3d::UnitZ()};
-  Consensus consensus = SampleTranslation(pairs, loose_px, options.focal_px, &motion);
+  Consensus consensus = SampleTranslation(pairs, loose, &motion);
   Refine(pairs, consensus.inliers, R_21, rotation_std, options, &motion);
   EpipolarOptions adapted = options;
   adapted.threshold_px = AdaptedThreshold(pairs, consensus.inliers, motion, options);
-  consensus = Score(pairs, motion, adapted.threshold_px, options.focal_px);
+  consensus = Score(pairs, motion, adapted);
   Refine(pairs, consensus.inliers, R_21, rotation_std, adapted, &motion);
-  consensus = Score(pairs, motion, adapted.threshold_px, options.focal_px);
+  consensus = Score(pairs, motion, adapted);
   return RejectNegativeDepth(pairs, motion, adapted, std::move(consensus));
+}
+
+cv::Point2f OnPlanePx(const Vector3d& direction, double focal_px) {
+  const double scale = focal_px / direction.z();
+  return {static_cast<float>(direction.x() * scale), static_cast<float>(direction.y() * scale)};
 }
 
 Consensus AgreeWithFundamental(const std::vector<BearingPair>& pairs, const EpipolarOptions& options) {
   std::vector<cv::Point2f> first;
   std::vector<cv::Point2f> second;
-  for (const BearingPair& pair : pairs) {
-    first.emplace_back(static_cast<float>(pair.first.x() * options.focal_px),
-                       static_cast<float>(pair.first.y() * options.focal_px));
-    second.emplace_back(static_cast<float>(pair.second.x() * options.focal_px),
-                        static_cast<float>(pair.second.y() * options.focal_px));
+  std::vector<size_t> indices;
+  const double least_z = options.on_sphere ? std::cos(CameraModel::kMaxPlaneAngle) : 0;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i].first.z() > least_z && pairs[i].second.z() > least_z) {
+      first.push_back(OnPlanePx(pairs[i].first, options.focal_px));
+      second.push_back(OnPlanePx(pairs[i].second, options.focal_px));
+      indices.push_back(i);
+    }
+  }
+  if (indices.size() < static_cast<size_t>(kMinPairs)) {
+    return Count(std::vector<bool>(pairs.size(), true));
   }
   std::vector<unsigned char> mask;
   // This estimator seeds a generator of its own at each call, so cv::theRNG() is neither read nor advanced.
   const cv::Mat fundamental = cv::findFundamentalMat(first, second, cv::FM_RANSAC, options.threshold_px, 0.99,
                                                      kMaxHypotheses * 2, mask);
-  if (fundamental.empty() || mask.size() != pairs.size()) {
-    return Count(std::vector<bool>(pairs.size(), true));
+  std::vector<bool> inliers(pairs.size(), true);
+  if (fundamental.empty() || mask.size() != indices.size()) {
+    return Count(std::move(inliers));
   }
-  std::vector<bool> inliers(pairs.size());
-  std::transform(mask.begin(), mask.end(), inliers.begin(), [](unsigned char in) { return in != 0; });
+  for (size_t k = 0; k < indices.size(); ++k) {
+    inliers[indices[k]] = mask[k] != 0;
+  }
   return Count(std::move(inliers));
 }
 

@@ -6,16 +6,20 @@
 
 namespace alidade {
 
-/// One feature in two images, on the ideal normalised plane.
+/// One feature in two images, as directions in the camera: (x, y, 1) of the ideal normalised plane, or unit
+/// vectors.
 struct BearingPair {
-  Eigen::Vector2d first = Eigen::Vector2d::Zero();
-  Eigen::Vector2d second = Eigen::Vector2d::Zero();
+  Eigen::Vector3d first = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d second = Eigen::Vector3d::UnitZ();
 };
 
 struct EpipolarOptions {
   double threshold_px = 1.0;  ///< distance to the epipolar line; grows with the scatter of the inliers
-  double focal_px = 460.0;    ///< pixels per unit of the normalised plane
+  double focal_px = 460.0;    ///< pixels per unit of the normalised plane, or per radian
   double dt_s = 0.05;         ///< between the images; bounds what an unknown gyroscope bias can do
+  /// The directions are unit vectors, in front of the camera or not: distances are angles to the epipolar
+  /// plane.
+  bool on_sphere = false;
 };
 
 /// Which pairs agree with one rigid motion of the camera: those within threshold_px of their epipolar line
@@ -29,7 +33,8 @@ struct EpipolarOptions {
 /// stays well-posed. Where the inliers scatter more than the threshold expects (rolling shutter, poor
 /// calibration), it grows to three of their robust standard deviations, three times at most. Without R_21, or
 /// when fewer than half the pairs agree with it, a fundamental matrix by RANSAC decides instead (Hartley and
-/// Zisserman 2004, ch. 11). With fewer than kMinPairs pairs none is rejected.
+/// Zisserman 2004, ch. 11); on the sphere it decides about the pairs within 80 degrees of the camera's axis alone. With
+/// fewer than kMinPairs pairs none is rejected.
 [[nodiscard]] std::vector<bool> FindEpipolarInliers(const std::vector<BearingPair>& pairs,
                                                     const std::optional<Eigen::Matrix3d>& R_21,
                                                     const EpipolarOptions& options);

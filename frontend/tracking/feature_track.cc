@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <utility>
 
+#include "core/bearing_plane.h"
+
 namespace alidade {
 
 std::vector<cv::Point2f> Pixels(const std::vector<FeatureTrack>& tracks) {
@@ -33,10 +35,15 @@ Eigen::Matrix2f DeformationBy(const std::optional<Eigen::Matrix3d>& R_C1C0, cons
                               const FeatureTrack& track) {
   Eigen::Vector2d before, after;
   Eigen::Matrix<double, 2, 3> before_from_bearing, after_from_bearing;
-  const Eigen::Vector3d bearing = track.normalized.homogeneous();
-  if (!R_C1C0.has_value() || !camera.Project(bearing, &before, &before_from_bearing) ||
-      !camera.Project(*R_C1C0 * bearing, &after, &after_from_bearing)) {
+  if (!R_C1C0.has_value() || !camera.Project(track.ray, &before, &before_from_bearing) ||
+      !camera.Project(*R_C1C0 * track.ray, &after, &after_from_bearing)) {
     return Eigen::Matrix2f::Identity();
+  }
+  if (camera.plane() == ObservationPlane::kTangent) {
+    const Eigen::Matrix<double, 3, 2> across = BearingPlane::TangentAt(track.ray).axes().leftCols<2>();
+    const Eigen::Matrix2d deformation =
+        after_from_bearing * *R_C1C0 * across * (before_from_bearing * across).inverse();
+    return deformation.cast<float>();
   }
   const Eigen::Matrix2d deformation =
       after_from_bearing * R_C1C0->leftCols<2>() * before_from_bearing.leftCols<2>().inverse();

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "core/stopwatch.h"
+#include "core/turned_ray.h"
+#include "core/visual_observation.h"
 #include "frontend/tracking/corner_grid.h"
 #include "frontend/tracking/epipolar_rejection.h"
 #include "frontend/tracking/feature_track.h"
@@ -123,7 +125,7 @@ std::vector<cv::Point2f> KltTracker::Implementation::Predict(const std::optional
     return predicted;
   }
   for (size_t i = 0; i < tracks.size(); ++i) {
-    const Vector3d bearing = *R_C1C0 * tracks[i].normalized.homogeneous();
+    const Vector3d bearing = TurnedRay(*R_C1C0, tracks[i].ray);
     Vector2d pixel;
     // A track the rotation takes out of the camera's domain is searched where it was, and lost there.
     if (rig.camera.Project(bearing, &pixel)) {
@@ -184,20 +186,22 @@ void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, d
   }
   std::vector<BearingPair> pairs;
   for (size_t i = 0; i < tracks.size(); ++i) {
-    BearingPair pair{.first = tracks[i].normalized, .second = Vector2d::Zero()};
+    BearingPair pair{.first = tracks[i].ray, .second = Vector3d::UnitZ()};
     const Vector2d pixel = ToVector(pixels[i]);
     alive[i] =
-        alive[i] && rig.camera.InImage(pixel, BorderPx(config)) && rig.camera.Unproject(pixel, &pair.second);
+        alive[i] && rig.camera.InImage(pixel, BorderPx(config)) && PixelRay(rig.camera, pixel, &pair.second);
     if (alive[i]) {
       tracks[i].pixel = pixels[i];
-      tracks[i].normalized = pair.second;
+      tracks[i].ray = pair.second;
       ++tracks[i].length;
       pairs.push_back(pair);
     }
   }
   statistics.lost = Keep(alive, &tracks);
-  const EpipolarOptions options{
-      .threshold_px = config.ransac_threshold_px, .focal_px = rig.camera.mean_focal_px(), .dt_s = dt_s};
+  const EpipolarOptions options{.threshold_px = config.ransac_threshold_px,
+                                .focal_px = rig.camera.mean_focal_px(),
+                                .dt_s = dt_s,
+                                .on_sphere = rig.camera.plane() == ObservationPlane::kTangent};
   statistics.rejected = Keep(FindEpipolarInliers(pairs, R_C1C0, options), &tracks);
 }
 
@@ -247,7 +251,7 @@ void KltTracker::Implementation::Detect() {
     track.id = next_id;
     track.pixel = corner;
     if (!rig.camera.InImage(ToVector(corner), BorderPx(config)) ||
-        !rig.camera.Unproject(ToVector(corner), &track.normalized)) {
+        !PixelRay(rig.camera, ToVector(corner), &track.ray)) {
       continue;
     }
     if (config.template_px > 0) {

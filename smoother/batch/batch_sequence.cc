@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/imu_propagation.h"
+#include "core/observation_plane.h"
 #include "smoother/factors/imu_factor.h"
 #include "smoother/factors/measurement_factor.h"
 #include "smoother/tracks/track_landmark.h"
@@ -55,11 +56,11 @@ ObservationKernel GuardKernel(const VisionConfig& vision) {
 
 BatchSequence::BatchSequence(const EstimatorConfig& config, const RigCalibration& rig)
     : config_(config),
-      rig_(rig),
+      rig_(OnPlane(rig, config.vision.observation_plane)),
       kernel_{config.batch.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.batch.gate_probability),
-      rest_(config.vision, config.init, rig.camera),
-      calibration_{{}, {rig.camera, rig.T_BC, 0}} {}
+      rest_(config.vision, config.init, rig_.camera),
+      calibration_{{}, {rig_.camera, rig.T_BC, 0}} {}
 
 bool BatchSequence::Start(const NavEstimate& initial) {
   frames_.clear();
@@ -233,7 +234,7 @@ std::vector<WindowView> BatchSequence::Inliers(const std::vector<FrameGeometry>&
   for (const WindowView& view : track.views) {
     ViewRows rows;
     if (LinearizeView(base, geometry[static_cast<size_t>(view.frame->index)], view.observation, guard,
-                      landmark, &rows) &&
+                      landmark, &rows, track.views.front().observation.plane) &&
         gate_.Accepts(rows.squared_norm, 2)) {
       inliers.push_back(view);
     }

@@ -38,8 +38,8 @@ NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) 
 }  // namespace
 
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
-                                       const WindowCalibration* calibration)
-    : base_(base), view_(view), calibration_(calibration) {}
+                                       const WindowCalibration* calibration, const BearingPlane& plane)
+    : base_(base), view_(view), calibration_(calibration), plane_(plane) {}
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
@@ -53,7 +53,7 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   AnchoredRows rows;
   const bool in_front = LinearizeAnchoredView(base, view, observation, {}, landmark, &rows,
-                                              tangent_jacobians != nullptr, &camera);
+                                              tangent_jacobians != nullptr, &camera, plane_);
   if (!in_front) {
     rows.residual.setConstant(kBehindSigma);
     rows.anchor.setZero();

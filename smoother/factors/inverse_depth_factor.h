@@ -22,8 +22,9 @@ class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;
 
-  /// All must outlive the factor.
-  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration);
+  /// All must outlive the factor. `plane`: of the base's observation.
+  InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration,
+                     const BearingPlane& plane = kNormalizedPlane);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
@@ -39,9 +40,10 @@ class InverseDepthFactor {
   const WindowFrame* base_;
   const WindowView* view_;
   const WindowCalibration* calibration_;
+  BearingPlane plane_;
 };
 
-/// The base observation of an inverse-depth landmark: W ((x, y) - z). Block landmark and, where the
+/// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Block landmark and, where the
 /// intrinsics are estimated, the camera's calibration; 2 rows.
 class BaseBearingFactor {
  public:

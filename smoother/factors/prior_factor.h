@@ -30,7 +30,8 @@ struct LinearPrior {
   struct Landmark {
     std::int64_t track_id = 0;
     const WindowFrame* anchor = nullptr;
-    Eigen::Vector3d origin;  ///< (x, y, rho) in the anchor's camera
+    Eigen::Vector3d origin;  ///< (x, y, rho) in the anchor's camera, on this plane of it:
+    BearingPlane plane;
   };
   ErrorConvention convention = ErrorConvention::kRightInvariant;
   std::vector<Anchor> anchors;

@@ -156,7 +156,8 @@ bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool wi
       AnchoredRows rows;
       if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)],
                                  geometry[static_cast<size_t>(view.frame->index)], view.observation, kernel_,
-                                 landmarks.segment<3>(row), &rows, with_frames, &scene.calibration)) {
+                                 landmarks.segment<3>(row), &rows, with_frames, &scene.calibration,
+                                 tracks_[i]->plane())) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);

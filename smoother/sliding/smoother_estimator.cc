@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/imu_propagation.h"
+#include "core/observation_plane.h"
 #include "core/stopwatch.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother.h"
@@ -35,17 +36,17 @@ std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const Rig
 
 SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCalibration& rig)
     : config_(config),
-      rig_(rig),
+      rig_(OnPlane(rig, config.vision.observation_plane)),
       noise_(config.imu.Scaled(rig.imu_noise)),
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
       imu_(config.imu.max_gap_s),
       pixel_noise_(config.vision),
-      rest_(config.vision, config.init, rig.camera),
+      rest_(config.vision, config.init, rig_.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
-      given_(InitialCalibration(config.calibration, {rig.camera, rig.T_BC, rig.camera_time_offset_s})),
+      given_(InitialCalibration(config.calibration, {rig_.camera, rig.T_BC, rig.camera_time_offset_s})),
       calibration_{given_.layout, given_.mean} {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {

@@ -19,13 +19,16 @@ constexpr size_t kMinFeatureViews = 3;
 
 bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, const WindowFrame& from,
               WindowTrack* track) {
+  const FrameGeometry& before = geometry[static_cast<size_t>(from.index)];
+  const FrameGeometry& after = geometry[static_cast<size_t>(newest.index)];
+  const AnchorPlanes planes{track->plane(), PlaneInAnchor(before, track->plane(), after, track->landmark)};
   AnchorChange change;
-  if (!ChangeAnchor(geometry[static_cast<size_t>(from.index)], geometry[static_cast<size_t>(newest.index)],
-                    track->landmark, &change)) {
+  if (!ChangeAnchor(before, after, track->landmark, &change, nullptr, planes)) {
     return false;
   }
   track->landmark = change.to;
   track->anchor = &newest;
+  track->anchor_plane = planes.to;
   return true;
 }
 

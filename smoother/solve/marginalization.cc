@@ -150,10 +150,10 @@ void PriorRows::AddLandmark(size_t landmark, Index rows, VectorXd* residual) {
   const int to = track->anchor->index;
   AnchorChange back;
   CHECK(ChangeAnchor(geometry_[static_cast<size_t>(to)], geometry_[static_cast<size_t>(from)],
-                     track->landmark, &back));
+                     track->landmark, &back, nullptr, {track->plane(), known.plane}));
   AnchorChange change;
   CHECK(ChangeAnchor(geometry_[static_cast<size_t>(from)], geometry_[static_cast<size_t>(to)], back.to,
-                     &change, &calibration_.layout));
+                     &change, &calibration_.layout, {known.plane, track->plane()}));
   own.noalias() = columns * change.landmark;
   stack_.Columns(Pose(from), 0, rows).noalias() += columns * (change.from_frame * stack_.PoseChart(from));
   stack_.Columns(Pose(to), 0, rows).noalias() += columns * (change.to_frame * stack_.PoseChart(to));
@@ -166,7 +166,8 @@ void PriorRows::AddView(const WindowTrack& track, const WindowView& view, int la
   const int anchor = track.anchor->index;
   const int seen = view.frame->index;
   if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], geometry_[static_cast<size_t>(seen)],
-                             view.observation, slam_.kernel, track.landmark, &rows, true, &calibration_)) {
+                             view.observation, slam_.kernel, track.landmark, &rows, true, &calibration_,
+                             track.plane())) {
     return;
   }
   const Index first = stack_.NewRows(2);
@@ -205,7 +206,7 @@ void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next
     next->anchors.push_back({&frame, frame.first ? frame.first->Point(now) : now, frame.imu_bias()});
   }
   for (const WindowTrack* track : slam.after) {
-    next->landmarks.push_back({track->id, track->anchor, track->landmark});
+    next->landmarks.push_back({track->id, track->anchor, track->landmark, track->plane()});
   }
   const ColumnMap columns = next->columns();
   for (size_t i = 0; i < next->anchors.size(); ++i) {

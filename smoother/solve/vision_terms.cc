@@ -94,7 +94,8 @@ Status ViewTerm::Linearize(LinearTerm* linear) const {
   const FrameGeometry& base = context_->geometry[static_cast<size_t>(track_->views.front().frame->index)];
   const FrameGeometry& frame = context_->geometry[static_cast<size_t>(view.frame->index)];
   ViewRows rows;
-  if (!LinearizeView(base, frame, view.observation, context_->kernel, track_->landmark, &rows)) {
+  if (!LinearizeView(base, frame, view.observation, context_->kernel, track_->landmark, &rows,
+                     track_->plane())) {
     return Status::Diverged("smoother: track " + std::to_string(track_->id) + " lies behind the camera at " +
                             FormatSeconds(view.frame->stamp_ns) + " s");
   }
@@ -117,8 +118,8 @@ void ViewTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
   if (view_ == 0) {
     cost_ = std::make_unique<LiftedCost<BaseBearingFactor>>(BaseBearingFactor(&base, calibration));
   } else {
-    cost_ =
-        std::make_unique<LiftedCost<InverseDepthFactor>>(InverseDepthFactor(base.frame, &view, calibration));
+    cost_ = std::make_unique<LiftedCost<InverseDepthFactor>>(
+        InverseDepthFactor(base.frame, &view, calibration, track_->plane()));
     parameters.insert(parameters.begin(), {blocks->Nav(base.frame->index), blocks->Nav(view.frame->index)});
   }
   if (parameters.size() < cost_->parameter_block_sizes().size()) {
@@ -142,7 +143,7 @@ Status DepthPriorTerm::Linearize(LinearTerm* linear) const {
   const FrameGeometry& base = context_->geometry[static_cast<size_t>(track_->views.front().frame->index)];
   const double* landmark = track_->landmark.data();
   const Eigen::Matrix<double, 1, 6> camera =
-      track_->depth_prior.sqrt_information * InverseDepthRow(base, track_->landmark);
+      track_->depth_prior.sqrt_information * InverseDepthRow(base, track_->landmark, track_->plane());
   linear->ResizeRows(parts(), rows());
   cost_.factor().Evaluate(&landmark, linear->residual.data(), nullptr);
   linear->jacobian.leftCols<kPoseColumns>() = camera * base.camera_from_body;

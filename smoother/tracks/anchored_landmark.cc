@@ -11,8 +11,8 @@ namespace alidade {
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
                            const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames,
-                           const WindowCalibration* calibration) {
-  const InverseDepthModel model{observation.z};
+                           const WindowCalibration* calibration, const BearingPlane& plane) {
+  const InverseDepthModel model{observation.z, observation.plane, plane};
   const Eigen::Matrix2d& whitening = observation.sqrt_information;
   InverseDepthModel::PoseJacobian over_anchor;
   InverseDepthModel::PoseJacobian over_view;
@@ -56,7 +56,7 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
   for (const WindowView& view : track.views) {
     if (!LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
                                geometry[static_cast<size_t>(view.frame->index)], view.observation, {},
-                               track.landmark, &rows, false)) {
+                               track.landmark, &rows, false, nullptr, track.plane())) {
       return std::numeric_limits<double>::infinity();
     }
     chi2 += rows.squared_norm;
@@ -65,22 +65,25 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
 }
 
 bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
-                  AnchorChange* change, const CalibrationLayout* layout) {
-  const Eigen::Vector3d q_to = AnchoredPointInCamera(from.T_WC, to.T_WC, l_from).q;
+                  AnchorChange* change, const CalibrationLayout* layout, const AnchorPlanes& planes) {
+  const Eigen::Vector3d q_to =
+      planes.to.InAxes(AnchoredPointInCamera(from.T_WC, to.T_WC, l_from, planes.from).q);
   Eigen::Vector2d bearing;
   if (!ProjectToPlane(q_to, kMinScaledDepth, &bearing)) {
     return false;
   }
   change->to << bearing, l_from.z() / q_to.z();
-  // Back: l_from = (pi(q), rho_to / q_z).
-  const AnchoredPointInCamera back(to.Linearized(), from.Linearized(), change->to);
+  // Back: l_from = (pi(q), rho_to / q_z), q in the axes of the plane.
+  const AnchoredPointInCamera back(to.Linearized(), from.Linearized(), change->to, planes.to);
+  const double depth = planes.from.InAxes(back.q).z();
   Eigen::Matrix3d over_q = Eigen::Matrix3d::Zero();
-  over_q.topRows<2>() = ProjectionJacobian(l_from.head<2>(), back.q.z());
-  over_q(2, 2) = -l_from.z() / back.q.z();
+  over_q.topRows<2>() = ProjectionJacobian(l_from.head<2>(), depth);
+  over_q(2, 2) = -l_from.z() / depth;
+  over_q = planes.from.OverCamera<3>(over_q);
   PoseRows<3> over_from;
   PoseRows<3> over_to;
   back.Chain(over_q, &over_to, &over_from, &change->landmark);
-  change->landmark(2, 2) += 1 / back.q.z();
+  change->landmark(2, 2) += 1 / depth;
   change->from_frame.noalias() = over_from * from.camera_from_body;
   change->to_frame.noalias() = over_to * to.camera_from_body;
   if (layout != nullptr) {
@@ -88,6 +91,14 @@ bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eige
         over_to * CalibrationChain(*layout, to) + over_from * CalibrationChain(*layout, from);
   }
   return true;
+}
+
+BearingPlane PlaneInAnchor(const FrameGeometry& from, const BearingPlane& from_plane, const FrameGeometry& to,
+                           const Eigen::Vector3d& l_from) {
+  if (!from_plane.is_tangent()) {
+    return from_plane;
+  }
+  return BearingPlane::TangentAt(AnchoredPointInCamera(from.T_WC, to.T_WC, l_from, from_plane).q);
 }
 
 }  // namespace alidade

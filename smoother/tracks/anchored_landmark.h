@@ -19,11 +19,13 @@ struct AnchoredRows {
 };
 /// False behind the view. `with_frames` false leaves out the derivatives over bodies and calibration, and
 /// takes the landmark's at the present cameras: those it is solved for with.
-/// `calibration`: of a camera that is calibrated online.
+/// `calibration`: of a camera that is calibrated online. `plane`: of the anchor, that of the landmark's
+/// coordinates.
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
                            const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames = true,
-                           const WindowCalibration* calibration = nullptr);
+                           const WindowCalibration* calibration = nullptr,
+                           const BearingPlane& plane = kNormalizedPlane);
 
 /// Sum of whitened squared residuals (no kernel) of a track at its landmark, SLAM feature or not; infinite
 /// when behind a view.
@@ -38,8 +40,16 @@ struct AnchorChange {
   Eigen::Matrix<double, 3, 6> to_frame;    ///< d l_from / d (phi, dp) of the new anchor's body
   Eigen::Matrix3Xd calibration;            ///< d l_from / d calibration, where a layout is given
 };
-/// False when the landmark lies behind the new anchor's camera.
+/// Planes of the coordinates l_from and l_to.
+struct AnchorPlanes {
+  BearingPlane from, to;
+};
+/// False when the landmark lies behind the new anchor's camera, or its plane.
 bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
-                  AnchorChange* change, const CalibrationLayout* layout = nullptr);
+                  AnchorChange* change, const CalibrationLayout* layout = nullptr,
+                  const AnchorPlanes& planes = {});
+/// The plane that a landmark of `from` gets in the camera `to`: tangent at its ray there if it was before.
+[[nodiscard]] BearingPlane PlaneInAnchor(const FrameGeometry& from, const BearingPlane& from_plane,
+                                         const FrameGeometry& to, const Eigen::Vector3d& l_from);
 
 }  // namespace alidade

@@ -19,10 +19,10 @@ const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const Win
   return geometry[static_cast<size_t>(view.frame->index)];
 }
 /// The depth prior on rho, the inverse depth in the base view.
-void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Vector3d& landmark,
-                   const CalibrationLayout* layout, TrackWorkspace* workspace) {
+void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const BearingPlane& base_plane,
+                   const Vector3d& landmark, const CalibrationLayout* layout, TrackWorkspace* workspace) {
   const double rho = landmark.z();
-  const Eigen::Matrix<double, 1, 6> camera = InverseDepthRow(base, landmark);
+  const Eigen::Matrix<double, 1, 6> camera = InverseDepthRow(base, landmark, base_plane);
   const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
   const double residual = prior.sqrt_information * (rho - prior.mean);
   workspace->prior_residual = residual;
@@ -52,7 +52,8 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   workspace->chi2 = 0;
   for (size_t k = 0; k < views.size(); ++k) {
     ViewRows& rows = workspace->rows[k];
-    if (!LinearizeView(base, Geometry(geometry, views[k]), views[k].observation, kernel, landmark, &rows)) {
+    if (!LinearizeView(base, Geometry(geometry, views[k]), views[k].observation, kernel, landmark, &rows,
+                       views.front().observation.plane)) {
       return false;
     }
     workspace->robust_cost += kernel.Rho(rows.squared_norm);
@@ -107,28 +108,35 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
 }  // namespace
 
 /// d rho = drho - rho dz_b, z_b the depth of (x, y, 1) in the base view.
-Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base, const Vector3d& landmark) {
+Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base, const Vector3d& landmark,
+                                            const BearingPlane& base_plane) {
   const double rho = landmark.z();
-  const Vector3d ray = landmark.head<2>().homogeneous();
   Eigen::Matrix<double, 1, 6> camera;
+  if (base_plane.is_tangent()) {
+    const Vector3d normal = base_plane.axes().col(2);
+    camera << -rho * normal.transpose() * Skew(base_plane.Direction(landmark.head<2>())),
+        rho * rho * (base.Linearized().rotation * normal).transpose();
+    return camera;
+  }
+  const Vector3d ray = landmark.head<2>().homogeneous();
   camera << -rho * Skew(ray).row(2), rho * rho * base.Linearized().rotation.col(2).transpose();
   return camera;
 }
 
 bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
                    const NormalizedObservation& observation, const ObservationKernel& kernel,
-                   const Vector3d& landmark, ViewRows* rows) {
+                   const Vector3d& landmark, ViewRows* rows, const BearingPlane& base_plane) {
   const Eigen::Matrix2d& whitening = observation.sqrt_information;
   Vector2d predicted;
   PointRows<2> projection;
-  AnchoredPointInCamera seen(base.T_WC, frame.T_WC, landmark);
-  if (!ProjectToPlane(seen.q, kMinScaledDepth, &predicted, &projection)) {
+  AnchoredPointInCamera seen(base.T_WC, frame.T_WC, landmark, base_plane);
+  if (!ProjectToPlane(observation.plane, seen.q, kMinScaledDepth, &predicted, &projection)) {
     return false;
   }
   rows->residual = whitening * (predicted - observation.z);
   if (base.T_WC_first || frame.T_WC_first) {
-    seen = AnchoredPointInCamera(base.Linearized(), frame.Linearized(), landmark);
-    if (!ProjectToPlane(seen.q, kMinScaledDepth, &predicted, &projection)) {
+    seen = AnchoredPointInCamera(base.Linearized(), frame.Linearized(), landmark, base_plane);
+    if (!ProjectToPlane(observation.plane, seen.q, kMinScaledDepth, &predicted, &projection)) {
       return false;
     }
   }
@@ -155,7 +163,7 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   workspace->prior_hessian.setZero();
   workspace->prior_gradient.setZero();
   if (prior.sqrt_information > 0) {
-    AddDepthPrior(prior, Geometry(geometry, views.front()), landmark,
+    AddDepthPrior(prior, Geometry(geometry, views.front()), views.front().observation.plane, landmark,
                   system->calibration == nullptr ? nullptr : &system->calibration->layout, workspace);
   }
   // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
@@ -216,7 +224,7 @@ std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowVie
   }
   const FrameGeometry& base = Geometry(geometry, views.front());
   error.row.segment<6>(6 * views.front().frame->index) +=
-      InverseDepthRow(base, landmark) * base.camera_from_body;
+      InverseDepthRow(base, landmark, views.front().observation.plane) * base.camera_from_body;
   return error;
 }
 

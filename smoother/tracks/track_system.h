@@ -42,15 +42,17 @@ struct ViewRows {
 /// Linearises one view, its Jacobians at first estimates where the frames have such. The landmark's three
 /// coordinates (x, y, rho) are taken in the base camera's frame as it is NOW, `base`, which then stands
 /// still: a point of the world. So every row, the base's too, concerns one pose, and rho = 0 is regular.
-/// False behind the view.
+/// `base_plane`: of the base's observation. False behind the view.
 bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
                    const NormalizedObservation& observation, const ObservationKernel& kernel,
-                   const Eigen::Vector3d& landmark, ViewRows* rows);
+                   const Eigen::Vector3d& landmark, ViewRows* rows,
+                   const BearingPlane& base_plane = kNormalizedPlane);
 
 /// d rho / d (phi, dp) of the base camera, rho being the inverse depth in the base view of a landmark that is
 /// a point of the world, as LinearizeView has it.
-[[nodiscard]] Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base,
-                                                          const Eigen::Vector3d& landmark);
+[[nodiscard]] Eigen::Matrix<double, 1, 6> InverseDepthRow(
+    const FrameGeometry& base, const Eigen::Vector3d& landmark,
+    const BearingPlane& base_plane = kNormalizedPlane);
 
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {

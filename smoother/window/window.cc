@@ -5,6 +5,8 @@
 
 #include "core/calibration.h"
 #include "core/check.h"
+#include "core/reprojection.h"
+#include "core/turned_ray.h"
 #include "smoother/manifold/nav_state_manifold.h"
 
 namespace alidade {
@@ -12,6 +14,7 @@ namespace alidade {
 // The correction's error is of second order in these: 1e-6 rad and 1e-5 m/s after a second.
 constexpr double kMaxGyroBiasShift = 1e-3;
 constexpr double kMaxAccelBiasShift = 2e-2;
+constexpr double kMinRotatedDepth = 1e-3;  // of a ray turned into another frame
 
 NavState WindowFrame::nav_state() const {
   return UnpackNavState(nav.data());
@@ -64,10 +67,8 @@ int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
 
 WindowView Renormalized(const CameraModel& camera, const WindowView& view) {
   WindowView seen = view;
-  NormalizedObservation observation;
-  if (NormalizeObservation(camera, view.pixel, 1 / view.root_weight_per_px, &observation)) {
-    seen.observation = observation;
-  }
+  static_cast<void>(
+      RenormalizeObservation(camera, view.pixel, 1 / view.root_weight_per_px, &seen.observation));
   return seen;
 }
 
@@ -149,9 +150,10 @@ FrameParallax ComputeParallax(const Window& window, const WindowFrame& first, co
     if (in_first == nullptr || in_second == nullptr) {
       continue;
     }
-    const Eigen::Vector3d rotated = R_first_second * in_second->observation.z.homogeneous();
-    if (rotated.z() > 1e-3) {
-      sum += (rotated.hnormalized() - in_first->observation.z).norm();
+    const Eigen::Vector3d rotated = TurnedRay(R_first_second, in_second->observation.Ray());
+    Eigen::Vector2d compensated;
+    if (ProjectToPlane(in_first->observation.plane, rotated, kMinRotatedDepth, &compensated)) {
+      sum += (compensated - in_first->observation.z).norm();
       ++parallax.common;
     }
   }

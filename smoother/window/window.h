@@ -67,16 +67,22 @@ struct WindowView {
 struct WindowTrack {
   std::int64_t id = 0;
   std::vector<WindowView> views;  ///< in time order
-  /// (x, y, rho): bearing on the normalised plane of the base, or of the anchor, and inverse depth [1/m]; set
-  /// when has_landmark.
+  /// (x, y, rho): bearing on plane() of the base, or of the anchor, and inverse depth [1/m]; set when
+  /// has_landmark.
   Eigen::Vector3d landmark = Eigen::Vector3d::Zero();
   const WindowFrame* anchor = nullptr;  ///< of a SLAM feature
+  BearingPlane anchor_plane;            ///< likewise
   bool has_landmark = false;            ///< its depth is known from parallax
   DepthPrior depth_prior;               ///< stands in for parallax while has_landmark is false
   bool alive = false;                   ///< seen in the newest frame
 
   /// Degrees of freedom of its residuals: a SLAM feature's landmark is mostly the prior's.
   [[nodiscard]] int dof() const { return 2 * static_cast<int>(views.size()) - (anchor != nullptr ? 0 : 3); }
+  /// Of the landmark's coordinates: that of the base's observation, or of the anchor. Precondition: a view or
+  /// an anchor.
+  [[nodiscard]] const BearingPlane& plane() const {
+    return anchor != nullptr ? anchor_plane : views.front().observation.plane;
+  }
   /// Multiplies the information of all observations so far.
   void ScaleInformation(double factor);
   /// Forgets all observations; the next one starts the track anew.
@@ -126,12 +132,13 @@ class Window {
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
 
-/// Views with the rays that their pixels have in `camera`. One outside its domain stays as it is.
+/// Views with the rays that their pixels have in `camera`, on the planes they had. One outside its domain stays
+/// as it is.
 [[nodiscard]] WindowView Renormalized(const CameraModel& camera, const WindowView& view);
 [[nodiscard]] std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views);
 
-/// Mean rotation-compensated motion of the tracks common to two frames, on the normalised plane, and their
-/// number.
+/// Mean rotation-compensated motion of the tracks common to two frames, on the planes of the first frame's
+/// observations, and their number.
 struct FrameParallax {
   double mean = 0;
   int common = 0;

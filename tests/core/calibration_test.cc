@@ -36,6 +36,12 @@ CameraModel MakeCamera(DistortionModel model) {
     case DistortionModel::kMei:
       coefficients = {0.9, -0.03, 0.01, 1e-4, -2e-4};
       break;
+    case DistortionModel::kDoubleSphere:
+      coefficients = {-0.2, 0.55};
+      break;
+    case DistortionModel::kEucm:
+      coefficients = {0.6, 1.1};
+      break;
     case DistortionModel::kNone:
       break;
   }
@@ -47,7 +53,8 @@ CameraModel MakeCamera(DistortionModel model) {
 
 constexpr DistortionModel kLenses[] = {DistortionModel::kNone, DistortionModel::kRadialTangential,
                                        DistortionModel::kEquidistant, DistortionModel::kFov,
-                                       DistortionModel::kMei};
+                                       DistortionModel::kMei, DistortionModel::kDoubleSphere,
+                                       DistortionModel::kEucm};
 
 CalibrationConfig Everything() {
   CalibrationConfig config;

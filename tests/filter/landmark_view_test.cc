@@ -20,8 +20,8 @@ using test::RandomStates;
 const Pose kExtrinsics{so3::Exp({0.1, -0.2, 0.05}), {0.1, 0.02, -0.05}};
 const Vector3d kPoint(1.5, -0.8, 9);
 
-FilterState OneClone(ErrorConvention convention, RandomStates* random) {
-  FilterState state(convention, false, kExtrinsics, {2, 1});
+FilterState OneClone(ErrorConvention convention, RandomStates* random, const Pose& T_BC = kExtrinsics) {
+  FilterState state(convention, false, T_BC, {2, 1});
   NavEstimate initial;
   initial.nav = {so3::Exp(random->Vector(0.2)), random->Vector(1), random->Vector(1)};
   initial.covariance.diagonal().setConstant(1e-4);
@@ -42,14 +42,27 @@ Vector3d Truth(const LandmarkError& error, const Vector3d& theta, const Vector3d
   return error.anchored() ? Vector3d(so3::Exp(theta) * kPoint + f) : Vector3d(kPoint + f);
 }
 
-// The rows over the error of the view's clone, of the anchor's attitude and of the landmark.
+/// Of kPoint, wherever it lies, with an error of about a degree.
+NormalizedObservation TangentObservation(const Pose& T_WC, RandomStates* random) {
+  NormalizedObservation observation = SomeObservation(random);
+  observation.z.setZero();
+  const Vector3d direction = (T_WC.Inverse() * kPoint).normalized() + random->Vector(0.02);
+  observation.plane = BearingPlane::TangentAt(direction);
+  return observation;
+}
+
+// The rows over the error of the view's clone, of the anchor's attitude and of the landmark: ahead of the
+// camera on the plane z = 1, and anywhere around it on tangent planes.
 TEST(LandmarkViewTest, RowsAreNumericInEveryConvention) {
   RandomStates random(81);
   for (const ErrorConvention convention : test::kAllConventions) {
-    for (int trial = 0; trial < 20; ++trial) {
-      const FilterState state = OneClone(convention, &random);
+    for (int trial = 0; trial < 40; ++trial) {
+      const bool around = trial >= 20;
+      const Pose T_BC = around ? random.RandomPose(0.2) : kExtrinsics;
+      const FilterState state = OneClone(convention, &random, T_BC);
       const Clone& clone = state.clones().front();
-      const NormalizedObservation observation = SomeObservation(&random);
+      const NormalizedObservation observation =
+          around ? TangentObservation(clone.T_WC, &random) : SomeObservation(&random);
       const LandmarkError error = state.landmark_error();
       LandmarkViewRows rows;
       ASSERT_TRUE(LinearizeView(state, clone, observation, kPoint, kPoint, &rows));
@@ -60,7 +73,7 @@ TEST(LandmarkViewTest, RowsAreNumericInEveryConvention) {
         analytic.middleCols<3>(6) = LandmarkError::OverAnchor(rows.landmark, kPoint);
       }
       const auto residual = [&](const VectorXd& xi) -> VectorXd {
-        const Pose T_WC = Retract(convention, clone.T_WB, Vector6d(xi.head<6>())) * kExtrinsics;
+        const Pose T_WC = Retract(convention, clone.T_WB, Vector6d(xi.head<6>())) * T_BC;
         ObservationRows moved;
         EXPECT_TRUE(
             LinearizeObservation(T_WC, observation, Truth(error, xi.segment<3>(6), xi.tail<3>()), &moved));

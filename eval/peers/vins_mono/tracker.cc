@@ -22,6 +22,8 @@ camodocal::CameraPtr MakeCamera(const CameraModel& camera) {
       return camodocal::CameraPtr(new camodocal::CataCamera("camera", width, height, k[0], k[1], k[2], k[3],
                                                             k[4], f[0], f[1], f[2], f[3]));
     case DistortionModel::kFov:
+    case DistortionModel::kDoubleSphere:
+    case DistortionModel::kEucm:
       break;
   }
   return {};

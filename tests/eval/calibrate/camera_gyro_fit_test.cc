@@ -83,6 +83,45 @@ TEST(CameraGyroFitTest, ExactDataGiveTheTruth) {
   EXPECT_LT(error.segment<2>(Coordinate::kCentre).norm(), 0.3);
 }
 
+TEST(CameraGyroFitTest, ExactDataOfWideLensesGiveTheTruth) {
+  const Result<CameraModel> lenses[] = {
+      CameraModel::Create(DistortionModel::kDoubleSphere, {180, 181, 322, 243}, {-0.18, 0.59}, 640, 480),
+      CameraModel::Create(DistortionModel::kEucm, {220, 221, 322, 243}, {0.62, 1.08}, 640, 480),
+      CameraModel::Create(DistortionModel::kEquidistant, {220, 221, 322, 243}, {0.003, 0.0007, -0.002, 0.0002},
+                          640, 480)};
+  for (const Result<CameraModel>& lens : lenses) {
+    ASSERT_TRUE(lens.ok()) << lens.message();
+    SCOPED_TRACE(ToString(lens->model()));
+    ASSERT_EQ(lens->plane(), ObservationPlane::kTangent);
+    ShakenCamera recording{PhoneModel()};
+    recording.model.camera = *lens;
+    recording.pixel_noise_px = 0;
+    recording.gyro_noise_radps = 0;
+    const MeasurementLog log = recording.Record();
+    CameraGyroModel start = recording.model;
+    CameraGyroError shift = CameraGyroError::Zero();
+    shift.segment<3>(Coordinate::kRotation) << 0.02, -0.01, 0.02;
+    shift[Coordinate::kFocal] = 0.03;
+    shift.segment<2>(Coordinate::kCentre) << 4, -3;
+    shift[Coordinate::kLens] = 0.02;
+    ASSERT_TRUE(Retract(shift, &start));
+    CameraGyroFitOptions options;
+    options.prior = 1e3 * EverythingFree();
+    const Result<CameraGyroFit> fit = FitCameraToGyro(FramePairsOf(log, 1000), log.imu, start, options);
+    ASSERT_TRUE(fit.ok()) << fit.message();
+    const CameraGyroError error = CameraGyroOffset(recording.model, fit->model);
+    EXPECT_LT(error.segment<3>(Coordinate::kRotation).norm(), 1e-3);
+    EXPECT_LT(error.segment<2>(Coordinate::kCentre).norm(), 0.5);
+    // Coefficients trade with the focal length: where rays go is what counts.
+    for (const double angle : {0.3, 0.8, 1.2, 1.7}) {
+      Eigen::Vector2d found, wanted;
+      const Eigen::Vector3d ray(std::sin(angle), 0, std::cos(angle));
+      ASSERT_TRUE(fit->model.camera.Project(ray, &found) && lens->Project(ray, &wanted));
+      EXPECT_LT((found - wanted).norm(), 1) << angle;
+    }
+  }
+}
+
 /// Normalised squared errors over seeds; each coordinate counts alone, as it is reported.
 TEST(CameraGyroFitTest, DeviationsHoldOverSeeds) {
   constexpr unsigned kSeeds = 12;

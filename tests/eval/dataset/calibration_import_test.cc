@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -88,6 +90,93 @@ TEST_F(CalibrationImport, KalibrOmniIsMei) {
   EXPECT_EQ(found->camera->camera.coefficients()[4], 1.5e-3);
 }
 
+TEST_F(CalibrationImport, KalibrDoubleSphereAndEucm) {
+  const Result<ImportedCalibration> ds =
+      Import(Chain("T_cam_imu",
+                   "  camera_model: ds\n  distortion_model: none\n  distortion_coeffs: []\n"
+                   "  intrinsics: [-0.18, 0.59, 211.0, 212.0, 379.0, 218.0]\n"));
+  ASSERT_TRUE(ds.ok()) << ds.message();
+  EXPECT_EQ(ds->camera->camera.model(), DistortionModel::kDoubleSphere);
+  EXPECT_EQ(ds->camera->camera.intrinsics(), Eigen::Vector4d(211, 212, 379, 218));
+  EXPECT_EQ(ds->camera->camera.coefficients().head<2>(), Eigen::Vector2d(-0.18, 0.59));
+  EXPECT_LT((ds->camera->T_BC * Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 1e-12);
+  const Result<ImportedCalibration> eucm =
+      Import(Chain("T_cam_imu", "  camera_model: eucm\n  intrinsics: [0.6, 1.1, 281.0, 282.0, 379.0, 218.0]\n"));
+  ASSERT_TRUE(eucm.ok()) << eucm.message();
+  EXPECT_EQ(eucm->camera->camera.model(), DistortionModel::kEucm);
+  EXPECT_EQ(eucm->camera->camera.coefficients().head<2>(), Eigen::Vector2d(0.6, 1.1));
+}
+
+std::string Basalt(const std::string& lens, const std::string& pose = "") {
+  const std::string half = "0.7071067811865476";
+  return "{\n  \"value0\": {\n    \"T_imu_cam\": [" +
+         (pose.empty() ? "{\"px\": 0.1, \"py\": 0.2, \"pz\": 0.3, \"qx\": 0.0, \"qy\": 0.0, \"qz\": " + half +
+                             ", \"qw\": " + half + "}"
+                       : pose) +
+         "],\n    \"intrinsics\": [" + lens +
+         "],\n    \"resolution\": [[512, 510]],\n    \"calib_accel_bias\": [0.0, 0.0, 0.0],\n"
+         "    \"imu_update_rate\": 200.0,\n    \"accel_noise_std\": [0.016, 0.016, 0.016],\n"
+         "    \"gyro_noise_std\": [0.0002, 0.0002, 0.00035],\n    \"accel_bias_std\": [0.001, 0.001, 0.001],\n"
+         "    \"gyro_bias_std\": [0.0001, 0.0001, 0.0001],\n    \"cam_time_offset_ns\": -2000000,\n"
+         "    \"vignette\": []\n  }\n}\n";
+}
+
+std::string BasaltLens(const std::string& type, const std::string& coefficients) {
+  return "{\"camera_type\": \"" + type +
+         "\", \"intrinsics\": {\"fx\": 158.2, \"fy\": 158.3, \"cx\": 254.9, \"cy\": 256.8" + coefficients + "}}";
+}
+
+TEST_F(CalibrationImport, BasaltLensesAndImu) {
+  const struct {
+    const char* type;
+    const char* coefficients;
+    DistortionModel model;
+    Eigen::Vector4d expected;
+  } cases[] = {
+      {"ds", ", \"xi\": -0.17, \"alpha\": 0.59", DistortionModel::kDoubleSphere, {-0.17, 0.59, 0, 0}},
+      {"eucm", ", \"alpha\": 0.6, \"beta\": 1.1", DistortionModel::kEucm, {0.6, 1.1, 0, 0}},
+      {"kb4",
+       ", \"k1\": 0.003, \"k2\": 0.0007, \"k3\": -0.002, \"k4\": 0.0002",
+       DistortionModel::kEquidistant,
+       {0.003, 0.0007, -0.002, 0.0002}},
+      {"pinhole", "", DistortionModel::kNone, {0, 0, 0, 0}}};
+  for (const auto& c : cases) {
+    const Result<ImportedCalibration> found = Import(Basalt(BasaltLens(c.type, c.coefficients)));
+    ASSERT_TRUE(found.ok()) << found.message();
+    const CameraSensor& camera = *found->camera;
+    EXPECT_EQ(camera.camera.model(), c.model);
+    EXPECT_EQ(camera.camera.intrinsics(), Eigen::Vector4d(158.2, 158.3, 254.9, 256.8));
+    EXPECT_EQ(camera.camera.coefficients().head<4>(), c.expected);
+    EXPECT_EQ(camera.camera.width_px(), 512);
+    EXPECT_EQ(camera.camera.height_px(), 510);
+    EXPECT_EQ(camera.time_offset_s, -0.002);
+    // A quarter turn about z from the camera to the IMU.
+    EXPECT_LT((camera.T_BC * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0.1, 1.2, 0.3)).norm(), 1e-12);
+    EXPECT_FALSE(found->imu_is_per_sample);
+    EXPECT_EQ(found->imu->noise.accel_noise_density_mps2_sqrthz, 0.016);
+    EXPECT_EQ(found->imu->noise.accel_random_walk_mps3_sqrthz, 0.001);
+    EXPECT_NEAR(found->imu->noise.gyro_noise_density_radps_sqrthz, std::sqrt((2 * 0.04 + 0.1225) / 3) * 1e-3,
+                1e-12);
+    EXPECT_EQ(found->imu->rate_hz, 200);
+  }
+}
+
+TEST_F(CalibrationImport, BasaltFaultsAreNamed) {
+  const auto message = [this](const std::string& text) { return std::string(Import(text).message()); };
+  EXPECT_THAT(message(Basalt(BasaltLens("ucm", ", \"alpha\": 0.6"))),
+              testing::AllOf(HasSubstr("value0.intrinsics[0].camera_type"), HasSubstr("found 'ucm'")));
+  EXPECT_THAT(message(Basalt(BasaltLens("ds", ", \"xi\": -0.17"))),
+              HasSubstr("value0.intrinsics[0].intrinsics.alpha"));
+  EXPECT_THAT(message(Basalt(BasaltLens("ds", ", \"xi\": -0.17, \"alpha\": 1.5"))),
+              testing::AllOf(HasSubstr("calibration.yaml"), HasSubstr("alpha must lie in [0, 1]")));
+  EXPECT_THAT(message(Basalt(BasaltLens("pinhole", ""),
+                             "{\"px\": 0, \"py\": 0, \"pz\": 0, \"qx\": 0, \"qy\": 0, \"qz\": 0, \"qw\": 2}")),
+              HasSubstr("unit length"));
+  EXPECT_THAT(message(Basalt("")), HasSubstr("value0.intrinsics[0].camera_type"));
+  const std::string path = folder_.Write("calibration.json", Basalt(BasaltLens("pinhole", "")));
+  EXPECT_THAT(ImportCalibration({path}, "cam1").message(), HasSubstr("the lens of cam1"));
+}
+
 TEST_F(CalibrationImport, VinsModels) {
   const struct {
     const char* text;
@@ -130,6 +219,18 @@ TEST_F(CalibrationImport, NamesWhatIsWrong) {
   std::string chain = Chain("T_cam_imu");
   chain.replace(chain.find("T_cam_imu"), 9, "T_cam_xxx");
   EXPECT_THAT(Import(chain).message(), HasSubstr("no extrinsics"));
+  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: ds\n  distortion_model: radtan\n"
+                                        "  intrinsics: [0.1, 0.5, 200.0, 200.0, 379.0, 218.0]\n"))
+                  .message(),
+              HasSubstr("distortion_model: found 'radtan' with 'ds'"));
+  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: eucm\n  intrinsics: [0.5, 200.0, 200.0, 379.0, 218.0]\n"))
+                  .message(),
+              HasSubstr("expected 6 numbers"));
+  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: eucm\n"
+                                        "  intrinsics: [0.5, -1.0, 200.0, 200.0, 379.0, 218.0]\n"))
+                  .message(),
+              testing::AllOf(HasSubstr("calibration.yaml"), HasSubstr("beta must lie in (0, 100]")));
+  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: ucm\n")).message(), HasSubstr("ds or eucm"));
   chain = Chain("T_cam_imu");
   chain.replace(chain.find("- [1.0, 0.0"), 11, "- [2.0, 0.0");
   EXPECT_THAT(Import(chain).message(), HasSubstr("rigid"));

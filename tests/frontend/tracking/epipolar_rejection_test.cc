@@ -16,6 +16,10 @@ using Eigen::Vector3d;
 
 constexpr double kFocalPx = 460;
 
+Vector3d OnPlane(const Vector3d& p) {
+  return p.hnormalized().homogeneous();
+}
+
 struct Scene {
   std::vector<BearingPair> pairs;
   std::vector<bool> outlier;
@@ -31,13 +35,38 @@ Scene MakeScene(const Matrix3d& R_21, const Vector3d& t, unsigned seed, bool wit
   for (int i = 0; i < 120; ++i) {
     const double depth = 5 + 3 * unit(random);
     const Vector3d p_1(0.7 * depth * unit(random), 0.5 * depth * unit(random), depth);
-    BearingPair pair{.first = p_1.hnormalized(), .second = (R_21 * p_1 + t).hnormalized()};
-    pair.first += Vector2d(noise(random), noise(random));
-    pair.second += Vector2d(noise(random), noise(random));
+    BearingPair pair{.first = OnPlane(p_1), .second = OnPlane(R_21 * p_1 + t)};
+    pair.first.head<2>() += Vector2d(noise(random), noise(random));
+    pair.second.head<2>() += Vector2d(noise(random), noise(random));
     scene.outlier.push_back(with_outliers && i % 4 == 3);
     if (scene.outlier.back()) {
       const double direction = M_PI * unit(random);
-      pair.second += 15 / kFocalPx * Vector2d(std::cos(direction), std::sin(direction));
+      pair.second.head<2>() += 15 / kFocalPx * Vector2d(std::cos(direction), std::sin(direction));
+    }
+    scene.pairs.push_back(pair);
+  }
+  return scene;
+}
+
+/// The same all around the camera up to 110 degrees off its axis, as unit directions.
+Scene MakeWideScene(const Matrix3d& R_21, const Vector3d& t, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::normal_distribution<double> noise(0, 0.2 / kFocalPx);
+  Scene scene;
+  for (int i = 0; i < 120; ++i) {
+    const double angle = 0.95 * (1 + unit(random)) + 0.02;
+    const double azimuth = M_PI * unit(random);
+    const Vector3d p_1 = (5 + 3 * unit(random)) * Vector3d(std::sin(angle) * std::cos(azimuth),
+                                                           std::sin(angle) * std::sin(azimuth), std::cos(angle));
+    const auto noisy = [&](const Vector3d& p) -> Vector3d {
+      return (p.normalized() + Vector3d(noise(random), noise(random), noise(random))).normalized();
+    };
+    BearingPair pair{.first = noisy(p_1), .second = noisy(R_21 * p_1 + t)};
+    scene.outlier.push_back(i % 4 == 3);
+    if (scene.outlier.back()) {
+      const Vector3d aside = pair.second.cross(Vector3d(unit(random), unit(random), unit(random)));
+      pair.second = (pair.second + 15 / kFocalPx * aside.normalized()).normalized();
     }
     scene.pairs.push_back(pair);
   }
@@ -77,6 +106,25 @@ TEST(EpipolarRejection, FindsOutliersWithABiasedGyroscope) {
     // An outlier along its own epipolar line, the right way, cannot be told from a near point.
     EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
   }
+}
+
+TEST(EpipolarRejection, OnTheSphereItFindsOutliersBesideAndBehindTheCamera) {
+  EpipolarOptions options = kOptions;
+  options.on_sphere = true;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Matrix3d R_21 = so3::Exp({0.03, -0.05, 0.02});
+    const Vector3d t = seed % 2 == 0 ? Vector3d(0.15, 0.02, 0.05) : Vector3d(0.02, 0.01, -0.2);
+    const Scene scene = MakeWideScene(R_21, t, seed);
+    const Matrix3d R_measured = so3::Exp({0.002, -0.003, 0.002}) * R_21;
+    const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, R_measured, options));
+    EXPECT_GE(verdict.good_kept, verdict.good * 95 / 100) << "seed " << seed;
+    EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
+  }
+  // Without a rotation the fundamental matrix tells what lies ahead alone.
+  const Scene scene = MakeWideScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 3);
+  const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, std::nullopt, options));
+  EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
+  EXPECT_LT(verdict.bad_kept, verdict.bad);
 }
 
 /// The same scene with `noise_px` more noise on the second image, and `outlier_px` on every tenth across the
@@ -128,7 +176,7 @@ TEST(EpipolarRejection, RejectsMotionAgainstTheOthersAlongTheEpipolarLine) {
   const Vector3d t(0.3, 0, 0);
   Scene scene = MakeScene(Matrix3d::Identity(), t, 6, false);
   for (size_t i = 0; i < scene.pairs.size(); i += 6) {
-    scene.pairs[i].second = scene.pairs[i].first - Vector2d(12 / kFocalPx, 0);  // depth -3.8 m
+    scene.pairs[i].second = scene.pairs[i].first - Vector3d(12 / kFocalPx, 0, 0);  // depth -3.8 m
     scene.outlier[i] = true;
   }
   const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
@@ -146,7 +194,7 @@ TEST(EpipolarRejection, JudgesNothingOnTooFewPairs) {
 }
 
 TEST(EpipolarRejection, IdenticalPairsAreHarmless) {
-  const std::vector<BearingPair> pairs(20, {.first = {0.1, 0.2}, .second = {0.1, 0.2}});
+  const std::vector<BearingPair> pairs(20, {.first = {0.1, 0.2, 1}, .second = {0.1, 0.2, 1}});
   for (const bool inlier : FindEpipolarInliers(pairs, Matrix3d::Identity(), kOptions)) {
     EXPECT_TRUE(inlier);
   }

@@ -154,11 +154,12 @@ TEST(ImuFactorTest, ASingleImuStepStillHasAnInvertibleCovariance) {
 }
 
 TEST(InverseDepthFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    WindowFixture fixture(seed, 3, 4, 1.0);
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    WindowFixture fixture(seed, 3, 4, 1.0,
+                          seed <= 20 ? test::FixtureView::kAhead : test::FixtureView::kBehind);
     const WindowTrack& track = *fixture.tracks().front();
-    const LiftedCost<InverseDepthFactor> cost(
-        InverseDepthFactor(track.views.front().frame, &track.views.back(), &fixture.calibration));
+    const LiftedCost<InverseDepthFactor> cost(InverseDepthFactor(
+        track.views.front().frame, &track.views.back(), &fixture.calibration, track.plane()));
     const Point point = {Nav(track.views.front().frame->nav_state()),
                          Nav(track.views.back().frame->nav_state()), track.landmark};
     ExpectJacobianInAllConventions(cost, point, 1e-7);

@@ -16,8 +16,9 @@ namespace alidade::test {
 /// A window of which the oldest frame leaves: tracks that were based there become SLAM features, anchored in
 /// the frames `anchors` gives in turn (indices before the frame left). With or without a calibration.
 struct SlamFixture : WindowFixture {
-  SlamFixture(unsigned seed, ErrorConvention error, bool calibrated, const std::vector<int>& anchors)
-      : WindowFixture(seed, 5, 12, 1.0), convention(error) {
+  SlamFixture(unsigned seed, ErrorConvention error, bool calibrated, const std::vector<int>& anchors,
+              FixtureView seen = FixtureView::kAhead)
+      : WindowFixture(seed, 5, 12, 1.0, seen), convention(error) {
     EXPECT_TRUE(MakeInitialPrior(error, window.frame(0), 1e-3 * Matrix15d::Identity(), &first));
     if (calibrated) {
       const CalibrationEstimate estimate = CalibrateWindow(this);
@@ -67,11 +68,13 @@ struct SlamFixture : WindowFixture {
       return T_WB * camera.T_BC;
     };
     const Eigen::Vector3d l = track.landmark + delta.segment<3>(12);
-    const Eigen::Vector3d p_W = camera_pose(*track.anchor, delta.head<6>()) *
-                                Eigen::Vector3d(l.x() / l.z(), l.y() / l.z(), 1 / l.z());
+    const Eigen::Vector3d on_plane(l.x() / l.z(), l.y() / l.z(), 1 / l.z());
+    const Eigen::Vector3d p_W =
+        camera_pose(*track.anchor, delta.head<6>()) * Eigen::Vector3d(track.plane().axes() * on_plane);
     const Eigen::Vector3d p_C = camera_pose(*view.frame, delta.segment<6>(6)).Inverse() * p_W;
     if (!calibrated()) {
-      return view.observation.sqrt_information * (p_C.hnormalized() - view.observation.z);
+      const Eigen::Vector3d in_axes = view.observation.plane.axes().transpose() * p_C;
+      return view.observation.sqrt_information * (in_axes.hnormalized() - view.observation.z);
     }
     Eigen::Vector2d pixel;
     EXPECT_TRUE(Moved(delta.tail(calibration.size())).camera.Project(p_C, &pixel));
@@ -79,11 +82,14 @@ struct SlamFixture : WindowFixture {
   }
   void Anchor(const WindowFrame* from, const WindowFrame* to, WindowTrack* track) const {
     const std::vector<FrameGeometry> geometry = Geometry();
+    const FrameGeometry& before = geometry[static_cast<size_t>(from->index)];
+    const FrameGeometry& after = geometry[static_cast<size_t>(to->index)];
+    const AnchorPlanes planes{track->plane(), PlaneInAnchor(before, track->plane(), after, track->landmark)};
     AnchorChange moved;
-    ASSERT_TRUE(ChangeAnchor(geometry[static_cast<size_t>(from->index)],
-                             geometry[static_cast<size_t>(to->index)], track->landmark, &moved));
+    ASSERT_TRUE(ChangeAnchor(before, after, track->landmark, &moved, nullptr, planes));
     track->landmark = moved.to;
     track->anchor = to;
+    track->anchor_plane = planes.to;
   }
   LinearPrior Leave() {
     LinearPrior prior = Marginalize(window, first, NoVision(), {gravity_W}, change);

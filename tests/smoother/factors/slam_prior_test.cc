@@ -34,12 +34,12 @@ void ExpectPrior(const LinearPrior& prior, const DenseWindow& dense) {
   EXPECT_LE((own - expected).norm(), 1e-5 * expected.norm());
 }
 
-/// In every convention; with and without a calibration.
-class SlamPriorTest : public testing::TestWithParam<std::tuple<ErrorConvention, bool>> {
+/// In every convention; with and without a calibration; ahead of the camera and behind it.
+class SlamPriorTest : public testing::TestWithParam<std::tuple<ErrorConvention, bool, test::FixtureView>> {
  protected:
   [[nodiscard]] static ErrorConvention convention() { return std::get<0>(GetParam()); }
   [[nodiscard]] static SlamFixture Fixture(unsigned seed, const std::vector<int>& anchors) {
-    return SlamFixture(seed, convention(), std::get<1>(GetParam()), anchors);
+    return SlamFixture(seed, convention(), std::get<1>(GetParam()), anchors, std::get<2>(GetParam()));
   }
 };
 
@@ -53,7 +53,8 @@ TEST_P(SlamPriorTest, RowsOfAnAnchoredViewAgainstDifferences) {
       AnchoredRows rows;
       ASSERT_TRUE(LinearizeAnchoredView(geometry[static_cast<size_t>(track->anchor->index)],
                                         geometry[static_cast<size_t>(view.frame->index)], view.observation,
-                                        {}, track->landmark, &rows, true, &fixture.calibration));
+                                        {}, track->landmark, &rows, true, &fixture.calibration,
+                                        track->plane()));
       MatrixXd analytic(2, size);
       analytic << rows.anchor * ChartJacobian(convention(), track->anchor->nav_state().T_WB()),
           rows.view * ChartJacobian(convention(), view.frame->nav_state().T_WB()), rows.landmark,
@@ -76,14 +77,17 @@ TEST_P(SlamPriorTest, ChangeOfAnchorAgainstDifferences) {
       return fixture.MovedGeometry(frame, pose, delta.tail(fixture.calibration.size()));
     };
     const VectorXd none = VectorXd::Zero(size);
+    const FrameGeometry from_now = geometry(from, none.head<6>(), none);
+    const FrameGeometry to_now = geometry(to, none.head<6>(), none);
+    const AnchorPlanes planes{track.plane(), PlaneInAnchor(from_now, track.plane(), to_now, track.landmark)};
     AnchorChange change;
-    ASSERT_TRUE(ChangeAnchor(geometry(from, none.head<6>(), none), geometry(to, none.head<6>(), none),
-                             track.landmark, &change, &fixture.calibration.layout));
+    ASSERT_TRUE(
+        ChangeAnchor(from_now, to_now, track.landmark, &change, &fixture.calibration.layout, planes));
     const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
       AnchorChange back;
       EXPECT_TRUE(ChangeAnchor(geometry(to, delta.segment<6>(6), delta),
                                geometry(from, delta.head<6>(), delta), change.to + delta.segment<3>(12),
-                               &back));
+                               &back, nullptr, {planes.to, planes.from}));
       return back.to;
     };
     EXPECT_LT((old_coordinates(none) - track.landmark).norm(), 1e-12);
@@ -152,12 +156,14 @@ TEST_P(SlamPriorTest, AnchorsThatLeaveAndLostFeaturesGiveTheSchurComplement) {
       }
       const WindowFrame& from = *track.anchor;
       const WindowFrame& to = fixture.window.newest();
+      const BearingPlane old_plane = track.plane();
       fixture.Anchor(&from, &to, &track);
       const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
         AnchorChange back;
         EXPECT_TRUE(ChangeAnchor(fixture.MovedGeometry(to, delta.segment<6>(6), delta.tail(cameras)),
                                  fixture.MovedGeometry(from, delta.head<6>(), delta.tail(cameras)),
-                                 track.landmark + delta.segment<3>(12), &back));
+                                 track.landmark + delta.segment<3>(12), &back, nullptr,
+                                 {track.plane(), old_plane}));
         return back.to;
       };
       const MatrixXd jacobian = NumericJacobian(old_coordinates, static_cast<int>(15 + cameras));
@@ -225,8 +231,9 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
     const int base = track.anchor != nullptr ? track.anchor->index : track.views.front().frame->index;
     for (WindowView& view : track.views) {
       const AnchoredPointInCamera seen(geometry[static_cast<size_t>(base)].T_WC,
-                                       geometry[static_cast<size_t>(view.frame->index)].T_WC, track.landmark);
-      view.observation.z = seen.q.hnormalized();
+                                       geometry[static_cast<size_t>(view.frame->index)].T_WC, track.landmark,
+                                       track.plane());
+      view.observation.z = view.observation.plane.InAxes(seen.q).hnormalized();
       if (fixture.calibrated()) {
         ASSERT_TRUE(fixture.calibration.mean.camera.Project(seen.q, &view.pixel));
       }
@@ -242,7 +249,8 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
       AnchorChange back;
       if (track->anchor != nullptr) {
         EXPECT_TRUE(ChangeAnchor(geometry[static_cast<size_t>(track->anchor->index)], geometry[0],
-                                 track->landmark, &back));
+                                 track->landmark, &back, nullptr,
+                                 {track->plane(), track->views.front().observation.plane}));
         landmark = back.to;
       }
       if (all || track->anchor == nullptr) {
@@ -295,10 +303,13 @@ TEST(SlamPriorGaugeTest, NothingIsLearntOfYawAndPosition) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Conventions, SlamPriorTest,
-                         testing::Combine(testing::ValuesIn(kAllConventions), testing::Bool()),
+                         testing::Combine(testing::ValuesIn(kAllConventions), testing::Bool(),
+                                          testing::Values(test::FixtureView::kAhead,
+                                                          test::FixtureView::kBehind)),
                          [](const auto& item) {
                            return std::string(ToString(std::get<0>(item.param))) +
-                                  (std::get<1>(item.param) ? "_calibrated" : "");
+                                  (std::get<1>(item.param) ? "_calibrated" : "") +
+                                  (std::get<2>(item.param) == test::FixtureView::kBehind ? "_behind" : "");
                          });
 
 }  // namespace

@@ -71,9 +71,10 @@ void Calibrate(bool exact, WindowFixture* fixture) {
 }
 
 TEST(VisionTermTest, PoseOnlyTracksAreThoseOfCeresAndNumeric) {
+  for (const FixtureView seen : {FixtureView::kAhead, FixtureView::kBehind}) {
   for (const bool calibrated : {false, true}) {
     for (const bool exact : {false, true}) {
-      WindowFixture fixture(5, 4, 12, exact ? 0 : 1);
+      WindowFixture fixture(5, 4, 12, exact ? 0 : 1, seen);
       if (calibrated) {
         Calibrate(exact, &fixture);
       }
@@ -85,6 +86,7 @@ TEST(VisionTermTest, PoseOnlyTracksAreThoseOfCeresAndNumeric) {
       ExpectInformationOfCeresAndNumeric(&term, fixture.window.frames(), fixture.calibration, exact);
       EXPECT_EQ(term.used().size(), fixture.tracks().size());
     }
+  }
   }
 }
 
@@ -99,8 +101,8 @@ void MakeViewsExact(SlamFixture* fixture) {
       if (track.anchor != nullptr) {
         const AnchoredPointInCamera seen(geometry[static_cast<size_t>(track.anchor->index)].T_WC,
                                          geometry[static_cast<size_t>(view.frame->index)].T_WC,
-                                         track.landmark);
-        view.observation.z = seen.q.hnormalized();
+                                         track.landmark, track.plane());
+        view.observation.z = view.observation.plane.InAxes(seen.q).hnormalized();
         ASSERT_TRUE(!fixture->calibrated() || fixture->calibration.mean.camera.Project(seen.q, &view.pixel));
       }
     }
@@ -109,10 +111,12 @@ void MakeViewsExact(SlamFixture* fixture) {
 
 TEST(VisionTermTest, APriorWithLandmarksIsThatOfCeresAndNumeric) {
   for (const ErrorConvention made_in : kAllConventions) {
+    for (const FixtureView seen : {FixtureView::kAhead, FixtureView::kBehind}) {
     for (const bool calibrated : {false, true}) {
       for (const bool exact : {false, true}) {
-        SCOPED_TRACE(std::string(ToString(made_in)) + (calibrated ? ", calibrated" : ""));
-        SlamFixture fixture(6, made_in, calibrated, {2, 4});
+        SCOPED_TRACE(std::string(ToString(made_in)) + (calibrated ? ", calibrated" : "") +
+                     (seen == FixtureView::kBehind ? ", behind" : ""));
+        SlamFixture fixture(6, made_in, calibrated, {2, 4}, seen);
         LinearPrior prior = fixture.Leave();
         if (exact) {
           MakeViewsExact(&fixture);
@@ -122,6 +126,7 @@ TEST(VisionTermTest, APriorWithLandmarksIsThatOfCeresAndNumeric) {
         ASSERT_GT(term.slam().tracks().size(), 3u);
         ExpectInformationOfCeresAndNumeric(&term, fixture.window.frames(), fixture.calibration, exact);
       }
+    }
     }
   }
 }
@@ -158,8 +163,8 @@ MatrixXd Reduced(const MatrixXd& hessian, const VectorXd& gradient) {
 // The landmark's coordinates move with the base frame in Ceres and stand still in the rows: once it is
 // eliminated both say the same of poses and calibration. In Ceres every row is numeric.
 TEST(VisionTermTest, ViewsAndDepthPriorsAreThoseOfCeresAndNumeric) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    WindowFixture fixture(seed, 4, 8, 1.0);
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    WindowFixture fixture(seed, 4, 8, 1.0, seed <= 6 ? FixtureView::kAhead : FixtureView::kBehind);
     if (seed % 2 == 0) {
       Calibrate(false, &fixture);
     }

@@ -8,11 +8,14 @@
 
 namespace alidade::test {
 
-/// A pinhole camera for the fixture, all of whose calibration is estimated: views keep their pixels, and the
-/// frames were placed by other time offsets than the present one.
+/// A pinhole camera for the fixture, or double-sphere where it sees behind itself, all of whose calibration is
+/// estimated: views keep their pixels, and the frames were placed by other time offsets than the present
+/// one.
 inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
   const Result<CameraModel> camera =
-      CameraModel::Create(DistortionModel::kNone, {458, 457, 367, 248}, {}, 752, 480);
+      fixture->seen_view == FixtureView::kAhead
+          ? CameraModel::Create(DistortionModel::kNone, {458, 457, 367, 248}, {}, 752, 480)
+          : CameraModel::Create(DistortionModel::kDoubleSphere, {100, 99, 367, 348}, {0.2, 0.5}, 752, 720);
   EXPECT_TRUE(camera.ok());
   CalibrationConfig config;
   config.extrinsics = config.time_offset = config.intrinsics = true;
@@ -23,7 +26,7 @@ inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
   }
   for (auto& [id, track] : fixture->window.tracks()) {
     for (WindowView& view : track.views) {
-      EXPECT_TRUE(camera->Project(view.observation.z.homogeneous(), &view.pixel));
+      EXPECT_TRUE(camera->Project(view.observation.Ray(), &view.pixel));
       EXPECT_TRUE(NormalizeObservation(*camera, view.pixel, 1.0, &view.observation));
     }
   }

@@ -25,8 +25,9 @@ constexpr int kBlock = CalibrationLayout::kMaxSize;
 
 /// A window seen by a camera whose calibration is estimated.
 struct CalibratedWindow : WindowFixture {
-  explicit CalibratedWindow(unsigned seed, double noise_sigma = 1.0, int frames = 4, int landmarks = 12)
-      : WindowFixture(seed, frames, landmarks, noise_sigma) {
+  explicit CalibratedWindow(unsigned seed, double noise_sigma = 1.0, int frames = 4, int landmarks = 12,
+                            test::FixtureView seen = test::FixtureView::kAhead)
+      : WindowFixture(seed, frames, landmarks, noise_sigma, seen) {
     estimate = test::CalibrateWindow(this);
     calibration = {estimate.layout, estimate.mean};
   }
@@ -180,12 +181,13 @@ TEST(WindowCalibrationTest, MarginalizationKeepsWhatIsKnown) {
 
 // The rows of explicit inverse depths over all of their blocks, well away from the calibration block's zero.
 TEST(WindowCalibrationTest, InverseDepthRowsAgainstDifferences) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    CalibratedWindow fixture(seed);
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    CalibratedWindow fixture(seed, 1.0, 4, 12,
+                             seed <= 20 ? test::FixtureView::kAhead : test::FixtureView::kBehind);
     const WindowTrack& track = *fixture.tracks().front();
     const WindowView& view = track.views.back();
     const WindowFrame* base = track.views.front().frame;
-    const InverseDepthFactor factor(base, &view, &fixture.calibration);
+    const InverseDepthFactor factor(base, &view, &fixture.calibration, track.plane());
     const BaseBearingFactor bearing(&track.views.front(), &fixture.calibration);
     VectorXd at = VectorXd::Zero(kBlock);
     for (int i = 0; i < fixture.calibration.size(); ++i) {

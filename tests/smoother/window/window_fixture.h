@@ -14,11 +14,16 @@
 
 namespace alidade::test {
 
+/// What the cameras of a fixture see: ahead of them, on the plane z = 1, or beside and behind them, on the
+/// tangent planes of a lens of 250 degrees.
+enum class FixtureView { kAhead, kBehind };
+
 /// A window of frames on a random smooth motion, with consistent IMU data and tracks of landmarks ahead of
-/// the cameras.
+/// the cameras, or behind them.
 struct WindowFixture {
-  explicit WindowFixture(unsigned seed, int frames = 5, int landmarks = 12, double noise_sigma = 0.0)
-      : random(seed) {
+  explicit WindowFixture(unsigned seed, int frames = 5, int landmarks = 12, double noise_sigma = 0.0,
+                         FixtureView seen = FixtureView::kAhead)
+      : random(seed), seen_view(seen) {
     T_BC = {random.Rotation(), random.Vector(0.2)};
     calibration.mean.T_BC = T_BC;
     const ImuBias bias = random.Bias();
@@ -60,6 +65,7 @@ struct WindowFixture {
   }
 
   RandomStates random;
+  FixtureView seen_view;
   Window window;
   Pose T_BC;
   WindowCalibration calibration;  ///< nothing of it is estimated
@@ -68,6 +74,10 @@ struct WindowFixture {
   double sigma = 1.0 / 460;
 
  private:
+  /// The camera's z axis to the middle of what it sees, 100 degrees off axis.
+  [[nodiscard]] Eigen::Matrix3d TurnToView() const {
+    return seen_view == FixtureView::kBehind ? so3::Exp(Eigen::Vector3d(1.6, 0.6, 0)) : Eigen::Matrix3d::Identity();
+  }
   void AddTracks(int landmarks, double noise_sigma) {
     const std::vector<FrameGeometry> geometry = MakeGeometry(window, T_BC);
     for (int id = 0; id < landmarks; ++id) {
@@ -75,21 +85,26 @@ struct WindowFixture {
       track.id = id;
       const Pose& base = geometry[static_cast<size_t>(id % 2)].T_WC;
       const double depth = random.Uniform(4, 8);
-      const Eigen::Vector3d p_W =
-          base * (depth * Eigen::Vector3d(random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3), 1));
+      const Eigen::Vector3d ray_ahead(random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3), 1);
+      const Eigen::Vector3d p_W = base * (depth * (TurnToView() * ray_ahead));
       for (int i = id % 2; i < window.size(); ++i) {
         const Eigen::Vector3d p_C = geometry[static_cast<size_t>(i)].T_WC.Inverse() * p_W;
-        if (p_C.z() < 0.5) {
+        if ((TurnToView().transpose() * p_C).z() < 0.5) {
           continue;
         }
         const Eigen::Vector3d error = noise_sigma * sigma * random.Vector(1.7);
-        NormalizedObservation observation{p_C.hnormalized() + error.head<2>(),
-                                          Eigen::Matrix2d::Identity() / sigma};
+        NormalizedObservation observation{Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity() / sigma};
+        if (seen_view == FixtureView::kBehind) {
+          observation.plane = BearingPlane::TangentAt(p_C.normalized() + error);
+        } else {
+          observation.z = p_C.hnormalized() + error.head<2>();
+        }
         observation.sqrt_information(0, 1) = 0.1 / sigma;
         track.views.push_back({&window.frame(i), observation});
       }
       const Eigen::Vector3d p_base =
-          geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC.Inverse() * p_W;
+          track.views.front().observation.plane.InAxes(
+              geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC.Inverse() * p_W);
       track.landmark << p_base.hnormalized(), 1 / p_base.z();
       track.has_landmark = true;
       if (track.views.size() >= 2) {
