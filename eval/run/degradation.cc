@@ -67,4 +67,12 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics)
   return {};
 }
 
+std::string Degradation::CheckCalibration(const CalibrationDoubt& doubt) {
+  if (doubt.sigmas < kMaxDoubtSigmas || doubt.pose_sigmas < kMaxPoseSigmas) {
+    return {};
+  }
+  return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",
+                doubt.parameter, doubt.error, doubt.unit, doubt.sigmas, doubt.pose_sigmas);
+}
+
 }  // namespace alidade

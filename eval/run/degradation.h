@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/calibration_watch.h"
 #include "core/estimator/estimator.h"
 #include "core/track_frame.h"
 
@@ -24,6 +25,10 @@ class Degradation {
   /// raise it: the gates refuse them.
   static constexpr double kMaxInnovations = 1.05;
   static constexpr double kInnovationsS = 10;
+  /// A parameter of the camera that is as given exceeds the first by chance never; a large one that hardly
+  /// moves the pose does no harm (core/calibration_watch.h).
+  static constexpr double kMaxDoubtSigmas = 5;
+  static constexpr double kMaxPoseSigmas = 2;
 
   /// Every sample that is delivered, in order.
   void OnImu(TimeNs stamp_ns);
@@ -34,6 +39,8 @@ class Degradation {
   /// Why the estimate after a frame at `imu_ns` is degraded; empty: it is not. Every frame, in order, after
   /// IsFrozen of it.
   [[nodiscard]] std::string Check(TimeNs imu_ns, const FrameStatistics& statistics);
+  /// Why the given calibration does not hold; empty: it does, or the estimate is not affected.
+  [[nodiscard]] static std::string CheckCalibration(const CalibrationDoubt& doubt);
   /// After a start.
   void Reset() {
     sighted_ns_ = INT64_MIN;
