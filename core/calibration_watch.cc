@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 
 #include "core/numbers.h"
 
@@ -33,8 +35,7 @@ Parameter ParameterOf(const CalibrationLayout& layout, int coordinate) {
 CalibrationDoubt FindCalibrationDoubt(const CalibrationEstimate& watched, const Matrix15d& covariance) {
   const Eigen::VectorXd prior = WatchedDeviations(watched.layout);
   CalibrationDoubt doubt;
-  int worst = -1;
-  double shift = 0;
+  std::map<std::string_view, Vector6d> moved;  // by name: what the coordinates of a parameter do to the pose
   for (int i = 0; i < watched.layout.size(); ++i) {
     const double precision = 1 / (watched.deviations[i] * watched.deviations[i]);
     const double information = precision - 1 / (prior[i] * prior[i]);
@@ -43,18 +44,19 @@ CalibrationDoubt FindCalibrationDoubt(const CalibrationEstimate& watched, const 
       continue;
     }
     const double score = watched.error[i] * precision;
+    const double error = score / information;
     const double sigmas = std::abs(score) / std::sqrt(information);
+    const Parameter parameter = ParameterOf(watched.layout, i);
+    moved.try_emplace(parameter.name, Vector6d::Zero()).first->second +=
+        error * precision * watched.state_covariance.col(i).head<6>();
     if (sigmas > doubt.sigmas) {
-      const Parameter parameter = ParameterOf(watched.layout, i);
-      shift = score / information * precision;
-      doubt = {parameter.name, parameter.unit, sigmas, -parameter.scale * score / information, 0};
-      worst = i;
+      doubt = {parameter.name, parameter.unit, sigmas, -parameter.scale * error, 0};
     }
   }
-  if (worst >= 0) {
-    const Vector6d moved = shift * watched.state_covariance.col(worst).head<6>();
+  if (doubt.sigmas > 0) {
+    const Vector6d& shift = moved.at(doubt.parameter);
     const Eigen::LDLT<Matrix6d> factor(covariance.topLeftCorner<6, 6>());
-    doubt.pose_sigmas = std::sqrt(std::max(0.0, moved.dot(factor.solve(moved))));
+    doubt.pose_sigmas = std::sqrt(std::max(0.0, shift.dot(factor.solve(shift))));
   }
   return doubt;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 
 #include "core/calibration.h"
 #include "core/navigation_state.h"
@@ -30,7 +29,8 @@ struct CalibrationDoubt {
   const char* unit = "";       ///< of `error`
   double sigmas = 0;           ///< |z|
   double error = 0;            ///< theta^, given - true, in `unit`: deg, m, ms or px
-  /// Length of T theta^ of (phi, dp) in deviations of the estimate: root of its Mahalanobis square.
+  /// Length of T theta^ of (phi, dp) in deviations of the estimate: root of its Mahalanobis square. Axes of a
+  /// parameter are added up.
   double pose_sigmas = 0;
 };
 

@@ -183,11 +183,12 @@ void EstimatorLoop::AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch
 }
 
 void EstimatorLoop::ReportDegraded(TimeNs imu_ns) {
-  std::string reason = degradation_.Check(imu_ns, estimator_.last_statistics());
-  if (const std::optional<CalibrationEstimate> camera = estimator_.LatestCalibration();
-      reason.empty() && camera && camera->watched) {
-    reason = degradation_.CheckCalibration(FindCalibrationDoubt(*camera, estimator_.Latest().covariance));
+  const std::optional<CalibrationEstimate> camera = estimator_.LatestCalibration();
+  std::optional<CalibrationDoubt> doubt;
+  if (camera && camera->watched) {
+    doubt = FindCalibrationDoubt(*camera, estimator_.Latest().covariance);
   }
+  std::string reason = degradation_.Check(imu_ns, estimator_.last_statistics(), doubt ? &*doubt : nullptr);
   if (!reason.empty()) {
     events_.emplace_back(DegradedEvent{state_ns_, std::move(reason)});
   }

@@ -47,8 +47,8 @@ RunResult RunOn(const SimulatorConfig& simulation, const EstimatorConfig& config
 
 class CalibrationWatchRunTest : public testing::TestWithParam<Backend> {};
 
-// GIVEN a camera as its sheet says, WHEN it is watched, THEN nothing is degraded, nothing of the calibration is
-// written, and the estimate is what it is without.
+// GIVEN a camera as its sheet says, WHEN it is watched, THEN nothing is degraded, nothing of the calibration
+// is written, and the estimate is what it is without.
 TEST_P(CalibrationWatchRunTest, LeavesARunAloneWhoseCameraIsAsGiven) {
   const RunResult plain = RunOn(Walk(), Estimating(GetParam(), false));
   const RunResult watched = RunOn(Walk(), Estimating(GetParam(), true));
@@ -85,8 +85,9 @@ TEST_P(CalibrationWatchRunTest, NamesWhatIsWrong) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBackEnds, CalibrationWatchRunTest,
-                         testing::Values(Backend::kFilter, Backend::kSmoother),
-                         [](const auto& info) { return info.param == Backend::kFilter ? "filter" : "smoother"; });
+                         testing::Values(Backend::kFilter, Backend::kSmoother), [](const auto& param) {
+                           return param.param == Backend::kFilter ? "filter" : "smoother";
+                         });
 
 }  // namespace
 }  // namespace alidade
