@@ -41,17 +41,42 @@ CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const Came
     size_ += wanted ? size : 0;
   };
   // Mei's mirror parameter and its focal lengths are all but the same direction: the sheet's lens stays.
-  const bool lens = config.distortion_std > 0 && camera.model() != DistortionModel::kMei;
+  const bool watched = config.watched();
+  const bool lens = config.distortion_std > 0 && camera.model() != DistortionModel::kMei && !watched;
   intrinsics_size_ = 4 + (lens ? CoefficientCount(camera.model()) : 0);
-  take(config.extrinsics, 6, &extrinsics_);
-  take(config.time_offset, 1, &time_offset_);
-  take(config.intrinsics, intrinsics_size_, &intrinsics_);
+  take(config.extrinsics || watched, 6, &extrinsics_);
+  take(config.time_offset || watched, 1, &time_offset_);
+  take(config.intrinsics || watched, intrinsics_size_, &intrinsics_);
+}
+
+VectorXd WatchedDeviations(const CalibrationLayout& layout) {
+  // Their squares are 1e-6 of what a minute of motion leaves, and 1e-3 of what a day does.
+  constexpr double kRotationRad = 1e-7;
+  constexpr double kTranslationM = 1e-6;
+  constexpr double kTimeS = 1e-7;
+  constexpr double kPixels = 5e-5;
+  VectorXd deviations = VectorXd::Constant(layout.size(), kPixels);
+  if (layout.extrinsics() >= 0) {
+    deviations.segment<3>(layout.extrinsics()).setConstant(kRotationRad);
+    deviations.segment<3>(layout.extrinsics() + 3).setConstant(kTranslationM);
+  }
+  if (layout.time_offset() >= 0) {
+    deviations[layout.time_offset()] = kTimeS;
+  }
+  return deviations;
 }
 
 CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const CameraCalibration& given) {
   CalibrationEstimate estimate{CalibrationLayout(config, given.camera), given, {}};
   const CalibrationLayout& layout = estimate.layout;
   estimate.deviations.resize(layout.size());
+  if (config.watched()) {
+    estimate.deviations = WatchedDeviations(layout);
+    estimate.watched = true;
+    estimate.error.setZero(layout.size());
+    estimate.state_covariance.setZero(15, layout.size());
+    return estimate;
+  }
   if (layout.extrinsics() >= 0) {
     estimate.deviations.segment<3>(layout.extrinsics()).setConstant(config.rotation_std_rad);
     estimate.deviations.segment<3>(layout.extrinsics() + 3).setConstant(config.translation_std_m);

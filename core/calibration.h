@@ -49,7 +49,17 @@ struct CalibrationEstimate {
   CalibrationLayout layout;
   CameraCalibration mean;
   Eigen::VectorXd deviations;  ///< standard deviations of the layout's coordinates
+  /// `mean` is held as it was given, and its error is taken for all but zero (core/calibration_watch.h).
+  bool watched = false;
+  Eigen::VectorXd error = {};  ///< of a watched one: its expected error given the data
+  /// Of a watched one, 15 x layout.size(): covariance of the state's error (canonical chart, as in
+  /// NavEstimate) with its error.
+  Eigen::MatrixXd state_covariance = {};
 };
+
+/// Prior deviations of a watched calibration: far below what any data tell, so that nothing moves, and large
+/// enough that the difference of inverse squares before and after the data keeps its digits.
+[[nodiscard]] Eigen::VectorXd WatchedDeviations(const CalibrationLayout& layout);
 
 /// The given calibration with the configured trust in it.
 [[nodiscard]] CalibrationEstimate InitialCalibration(const CalibrationConfig& config,

@@ -10,6 +10,10 @@ void CalibrationConfig::Describe(ConfigVisitor& visitor) {
                   &time_offset);
   visitor.Boolean({"intrinsics", "-", "estimate focal lengths, principal point and lens coefficients"},
                   &intrinsics);
+  visitor.Boolean({"watch", "-",
+                   "test the given camera while none of it is estimated: extrinsics, time offset, focal "
+                   "lengths and principal point; what does not hold makes the status degraded"},
+                  &watch);
   visitor.Real({"rotation_std_rad", "rad",
                 "prior standard deviation of the given rotation of T_BC, each axis; 2 degrees"},
                &rotation_std_rad, 1e-6, 0.5);

@@ -10,6 +10,7 @@ struct CalibrationConfig {
   bool extrinsics = false;
   bool time_offset = false;
   bool intrinsics = false;
+  bool watch = false;
   double rotation_std_rad = 0.035;
   double translation_std_m = 0.03;
   double time_offset_std_s = 0.01;
@@ -18,6 +19,8 @@ struct CalibrationConfig {
   double distortion_std = 0.02;
 
   [[nodiscard]] bool any() const { return extrinsics || time_offset || intrinsics; }
+  /// Whether the given calibration is tested (core/calibration_watch.h): only one that is not estimated.
+  [[nodiscard]] bool watched() const { return watch && !any(); }
   void Describe(ConfigVisitor& visitor);
 };
 

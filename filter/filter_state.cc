@@ -16,6 +16,7 @@ FilterState::FilterState(ErrorConvention convention, bool first_estimates, Calib
       first_estimates_(first_estimates),
       given_(std::move(calibration)),
       calibration_(given_.mean),
+      calibration_error_(given_.error),
       covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks +
                       (limits.clock ? kClockSize : 0) + given_.layout.size(),
                   3 * limits.landmarks + (limits.clock ? kClockSize : 0)) {
@@ -34,6 +35,7 @@ Status FilterState::Reset(const NavEstimate& initial) {
   if (layout().size() > 0) {
     covariance_.AddTrailing(given_.deviations);
     calibration_ = given_.mean;
+    calibration_error_ = given_.error;
     calibration_is_sound_ = true;
   }
   nav_ = initial.nav;
@@ -175,7 +177,9 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
   bias_.gyro += correction.segment<3>(core + 9);
   bias_.accel += correction.segment<3>(core + 12);
-  if (layout().size() > 0) {
+  if (given_.watched) {
+    calibration_error_ += correction.segment(CalibrationOffset(), layout().size());
+  } else if (layout().size() > 0) {
     calibration_is_sound_ =
         Retract(layout(), correction.segment(CalibrationOffset(), layout().size()), &calibration_) &&
         calibration_is_sound_;
@@ -221,9 +225,15 @@ NavEstimate FilterState::Estimate() const {
 }
 
 CalibrationEstimate FilterState::EstimatedCalibration() const {
-  CalibrationEstimate estimate{layout(), calibration_, {}};
-  const auto rows = covariance_.factor().middleRows(CalibrationOffset(), layout().size());
+  CalibrationEstimate estimate{layout(), calibration_, {}, given_.watched, calibration_error_};
+  const int size = layout().size();
+  // The triangle's last rows are zero before their last columns.
+  const auto rows = covariance_.factor().bottomRightCorner(size, size);
   estimate.deviations = rows.rowwise().norm();
+  if (given_.watched) {
+    const auto core = covariance_.factor().block(CoreOffset(), CalibrationOffset(), 15, size);
+    estimate.state_covariance = ImuChartJacobian(convention_, nav_) * (core * rows.transpose());
+  }
   return estimate;
 }
 

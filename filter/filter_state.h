@@ -156,6 +156,7 @@ class FilterState {
   bool first_estimates_;
   CalibrationEstimate given_;
   CameraCalibration calibration_;
+  Eigen::VectorXd calibration_error_;  ///< of a watched one, which stays as given
   bool calibration_is_sound_ = true;
   TimeNs stamp_ns_ = 0;
   NavState nav_;

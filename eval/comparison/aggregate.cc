@@ -196,7 +196,10 @@ std::vector<Figure> ListFigures(const Comparison& comparison) {
       {"backend_ms_p95", "back end p95", "ms", Ideal::kLow, 0, 2, OfTrajectory(&CellResult::backend_ms_p95)},
       {"features_per_frame", "features", "1/frame", Ideal::kNone, 0, 1,
        OfTrajectory(&CellResult::features_per_frame)},
-      {"gated_share", "gated", "", Ideal::kNone, 0, 3, OfTrajectory(&CellResult::gated_share)}};
+      {"gated_share", "gated", "", Ideal::kNone, 0, 3, OfTrajectory(&CellResult::gated_share)},
+      {"silent_s", "silent failure", "s", Ideal::kLow, 0, 1, OfTrajectory(&CellResult::silent_s)},
+      {"alarm_inside_share", "alarms inside 3\u03c3", "", Ideal::kLow, 0, 3,
+       OfTrajectory(&CellResult::alarm_inside_share)}};
   figures.insert(figures.end(), rest.begin(), rest.end());
   const auto known = [&comparison](std::optional<double> CellResult::*member) {
     return std::any_of(comparison.cells.begin(), comparison.cells.end(),

@@ -97,6 +97,8 @@ void Fields(T& x, auto&& field) {
   field("innovations", x.innovations);
   field("gnss_innovations", x.gnss_innovations);
   field("gated_share", x.gated_share);
+  field("silent_s", x.silent_s);
+  field("alarm_inside_share", x.alarm_inside_share);
   field("sigma_pos_m", x.sigma_pos_m);
   field("sigma_ori_deg", x.sigma_ori_deg);
   field("filtering_sigma_pos_m", x.filtering_sigma_pos_m);

@@ -14,6 +14,7 @@
 #include "eval/comparison/sky_tracks.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/nees.h"
+#include "eval/metrics/silent_failure.h"
 
 namespace alidade {
 namespace {
@@ -97,6 +98,11 @@ struct Innovations {
 constexpr Innovations kVision = {&FrameStatistics::nis, &FrameStatistics::nis_dof};
 constexpr Innovations kGnss = {&FrameStatistics::gnss_nis, &FrameStatistics::gnss_nis_dof};
 
+/// Stamp of a pair in the run itself.
+TimeNs RunStamp(const Evaluation& evaluation, const StatePair& pair) {
+  return pair.estimate.stamp_ns - SecondsToNs(evaluation.options.association.time_offset_s);
+}
+
 /// What the frames of the pairs did to the estimator, and what an audit recorded.
 void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
   const bool audited = std::any_of(run.records.begin(), run.records.end(),
@@ -106,7 +112,7 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
     by_stamp[record.estimate.stamp_ns] = &record;
   }
   for (const StatePair& pair : evaluation.pairs) {
-    const auto record = by_stamp.find(pair.estimate.stamp_ns);
+    const auto record = by_stamp.find(RunStamp(evaluation, pair));
     const bool found = record != by_stamp.end();
     series->backend_ms.push_back(found ? record->second->backend_ms : kNan);
     series->features_used.push_back(found ? record->second->statistics.features_used : kNan);
@@ -121,6 +127,25 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
   }
 }
 
+/// Whether the run told its errors.
+void FillSilentFailure(const Evaluation& evaluation, const RunResult& run, CellResult* cell) {
+  if (!evaluation.nees) {
+    return;
+  }
+  std::unordered_map<TimeNs, bool> alarmed;
+  for (const RunRecord& record : run.records) {
+    alarmed[record.estimate.stamp_ns] = IsAlarm(record.status);
+  }
+  std::vector<ReportedError> instants;
+  for (size_t i = 0; i < evaluation.pairs.size(); ++i) {
+    const TimeNs stamp_ns = RunStamp(evaluation, evaluation.pairs[i]);
+    instants.push_back({stamp_ns, evaluation.nees->pose[i], alarmed[stamp_ns]});
+  }
+  const SilentFailure failure = ComputeSilentFailure(instants);
+  cell->silent_s = failure.silent_s;
+  cell->alarm_inside_share = Known(failure.alarm_inside_share);
+}
+
 /// The newest GNSS innovations of each pair: GNSS is slower than the camera, and what is thinned would miss
 /// them.
 void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
@@ -128,7 +153,7 @@ void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, Cel
   TimeNs newest_ns = 0;
   auto record = run.records.begin();
   for (const StatePair& pair : evaluation.pairs) {
-    const TimeNs stamp_ns = pair.estimate.stamp_ns;
+    const TimeNs stamp_ns = RunStamp(evaluation, pair);
     for (; record != run.records.end() && record->estimate.stamp_ns <= stamp_ns; ++record) {
       if (record->statistics.gnss_nis_dof > 0) {
         newest = kGnss.Ratio(record->statistics);
@@ -210,6 +235,7 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
   if (run != nullptr) {
     FillRunSeries(*evaluation, *run, &series);
     FillGnssInnovations(*evaluation, *run, &series);
+    FillSilentFailure(*evaluation, *run, cell);
   }
   cell->series = TakeRows(series, PickRows(series, kMaxSeriesPoints));
 }

@@ -80,6 +80,9 @@ struct CellResult {
   /// Share of tracks rejected by the chi-square gate; unknown when no track reached it. On data without
   /// outliers these are false rejections.
   std::optional<double> gated_share;
+  /// Of a run with status and covariance (eval/metrics/silent_failure.h): seconds with an error beyond 5 of
+  /// its own sigma that nothing told, and share of the frames with an alarm although the error was within 3.
+  std::optional<double> silent_s, alarm_inside_share;
   /// Root mean square of the deviations that the run's own covariance predicts: square root of the mean trace
   /// of the covariance of phi and of dp.
   std::optional<double> sigma_pos_m, sigma_ori_deg;

@@ -36,8 +36,10 @@ RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
   }
   if (options.audit && config.backend == Backend::kFilter) {
     ObservabilityAudit audit;
-    const std::unique_ptr<Estimator> filter = MakeFilter(config, log.rig, &audit);
-    RunResult result = RunEstimator(config, log, options, filter.get());
+    EstimatorConfig unwatched = config;
+    unwatched.calibration.watch = false;
+    const std::unique_ptr<Estimator> filter = MakeFilter(unwatched, log.rig, &audit);
+    RunResult result = RunEstimator(unwatched, log, options, filter.get());
     AttachAudit(audit.records(), &result);
     return result;
   }

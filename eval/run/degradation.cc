@@ -43,7 +43,8 @@ std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameSt
   return dof_ > 0 && nis_ > bound * dof_ ? std::optional(nis_ / dof_) : std::nullopt;
 }
 
-std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics) {
+std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
+                               const CalibrationDoubt* doubt) {
   const std::optional<double> innovations = LargeInnovations(imu_ns, statistics);
   if (statistics.tracks_in > 0 || sighted_ns_ == INT64_MIN) {
     sighted_ns_ = imu_ns;
@@ -58,11 +59,17 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics)
   if (silent_until_ns_ != INT64_MIN && SecondsBetween(silent_until_ns_, imu_ns) < kSettlingS) {
     return Format("the IMU was silent for %.2f s", silence_s_);
   }
+  const bool doubted = doubt != nullptr && doubt->sigmas >= kMaxDoubtSigmas;
+  if (doubted && doubt->pose_sigmas >= kMaxPoseSigmas) {
+    return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",
+                  doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas);
+  }
   if (innovations) {
-    return Format(
-        "innovations are %.2f times as large as predicted: noise, extrinsics, lens or time offset "
-        "are not as given",
-        std::sqrt(*innovations));
+    const std::string cause =
+        doubted            ? Format("%s is not as given (%.1f sigma)", doubt->parameter, doubt->sigmas)
+        : doubt != nullptr ? "the camera fits, so the noise of pixels or IMU is larger than given"
+                           : "noise, extrinsics, lens or time offset are not as given";
+    return Format("innovations are %.2f times as large as predicted: ", std::sqrt(*innovations)) + cause;
   }
   return {};
 }

@@ -3,14 +3,15 @@
 #include <optional>
 #include <string>
 
+#include "core/calibration_watch.h"
 #include "core/estimator/estimator.h"
 #include "core/track_frame.h"
 
 namespace alidade {
 
 /// Tells when an estimate goes on without what it needs, though nothing contradicts it: frames without
-/// tracks, images that do not change, an IMU that was silent; or with a model that does not hold: innovations
-/// larger than predicted for long.
+/// tracks, images that do not change, an IMU that was silent; or with a model that does not hold: a camera
+/// that is not as given, innovations larger than predicted for long.
 class Degradation {
  public:
   /// Without tracks for this long the estimate is dead reckoning.
@@ -24,6 +25,10 @@ class Degradation {
   /// raise it: the gates refuse them.
   static constexpr double kMaxInnovations = 1.05;
   static constexpr double kInnovationsS = 10;
+  /// No parameter that is as given exceeds the first by chance; one that is not, but hardly moves the pose,
+  /// does no harm (core/calibration_watch.h).
+  static constexpr double kMaxDoubtSigmas = 5;
+  static constexpr double kMaxPoseSigmas = 2;
 
   /// Every sample that is delivered, in order.
   void OnImu(TimeNs stamp_ns);
@@ -33,7 +38,9 @@ class Degradation {
   bool IsFrozen(const TrackFrame& frame);
   /// Why the estimate after a frame at `imu_ns` is degraded; empty: it is not. Every frame, in order, after
   /// IsFrozen of it.
-  [[nodiscard]] std::string Check(TimeNs imu_ns, const FrameStatistics& statistics);
+  /// `doubt`: of a watched calibration, else null.
+  [[nodiscard]] std::string Check(TimeNs imu_ns, const FrameStatistics& statistics,
+                                  const CalibrationDoubt* doubt = nullptr);
   /// After a start.
   void Reset() {
     sighted_ns_ = INT64_MIN;

@@ -183,7 +183,12 @@ void EstimatorLoop::AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch
 }
 
 void EstimatorLoop::ReportDegraded(TimeNs imu_ns) {
-  std::string reason = degradation_.Check(imu_ns, estimator_.last_statistics());
+  const std::optional<CalibrationEstimate> camera = estimator_.LatestCalibration();
+  std::optional<CalibrationDoubt> doubt;
+  if (camera && camera->watched) {
+    doubt = FindCalibrationDoubt(*camera, estimator_.Latest().covariance);
+  }
+  std::string reason = degradation_.Check(imu_ns, estimator_.last_statistics(), doubt ? &*doubt : nullptr);
   if (!reason.empty()) {
     events_.emplace_back(DegradedEvent{state_ns_, std::move(reason)});
   }
@@ -243,6 +248,9 @@ void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double fronten
   event.statistics = is_frame ? estimator_.last_statistics() : BetweenFrames(estimator_.last_statistics());
   event.clock = estimator_.LatestClock();
   event.calibration = estimator_.LatestCalibration();
+  if (event.calibration && event.calibration->watched) {
+    event.calibration.reset();  // it is as given
+  }
   event.frontend_ms = frontend_ms;
   event.backend_ms = stopwatch.ElapsedMs();
   const bool suspect = event.statistics.suspect;

@@ -47,12 +47,15 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
       given_(InitialCalibration(config.calibration, {rig_.camera, rig.T_BC, rig.camera_time_offset_s})),
-      calibration_{given_.layout, given_.mean} {}
+      calibration_{given_.layout, given_.mean},
+      fixed_{{}, given_.mean} {}
 
 Status SmootherEstimator::Initialize(const NavEstimate& initial) {
   calibration_.mean = given_.mean;
   ALIDADE_RETURN_IF_ERROR(Begin(initial));
   calibration_deviations_ = given_.deviations;
+  calibration_error_ = given_.error;
+  calibration_state_covariance_ = given_.state_covariance;
   AddCalibrationPrior(given_, &prior_);
   return Status::Ok();
 }
@@ -84,8 +87,9 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
 }
 
 std::optional<CalibrationEstimate> SmootherEstimator::LatestCalibration() const {
-  return calibration_.size() > 0 ? std::optional(CalibrationEstimate{calibration_.layout, calibration_.mean,
-                                                                     calibration_deviations_})
+  return calibration_.size() > 0 ? std::optional(CalibrationEstimate{
+                                       calibration_.layout, calibration_.mean, calibration_deviations_,
+                                       given_.watched, calibration_error_, calibration_state_covariance_})
                                  : std::nullopt;
 }
 
@@ -199,15 +203,16 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   }
 }
 
-SlamPriorTerm* SmootherEstimator::SetPriorTerm(WindowTerms* terms) const {
+SlamPriorTerm* SmootherEstimator::SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
+                                               WindowTerms* terms) const {
   if (terms->empty()) {
     terms->emplace_back();
   }
-  if (prior_.landmarks.empty()) {
-    terms->front() = MakePriorTerm(prior_, calibration_);
+  if (prior.landmarks.empty()) {
+    terms->front() = MakePriorTerm(prior, calibration);
     return nullptr;
   }
-  auto slam = std::make_unique<SlamPriorTerm>(prior_, window_, calibration_, kernel_);
+  auto slam = std::make_unique<SlamPriorTerm>(prior, window_, calibration, kernel_);
   SlamPriorTerm* const made = slam.get();
   terms->front() = std::move(slam);
   return made;
@@ -218,28 +223,34 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
   window_.UpdateRates();
+  // A watched calibration is none of the solver's unknowns, only of what is known afterwards.
+  const bool watched = given_.watched;
+  WindowCalibration& solved = watched ? fixed_ : calibration_;
+  const LinearPrior conditional = watched ? WithoutCalibration(prior_) : LinearPrior();
   WindowTerms terms;
-  SlamPriorTerm* slam = SetPriorTerm(&terms);
+  SlamPriorTerm* slam = SetPriorTerm(watched ? conditional : prior_, solved, &terms);
   if (const Status status = AddSensorTerms(Sensors(), window_.frames(), window_.size(), &terms);
       !status.ok()) {
     return Lost(status.message());
   }
   const size_t without_vision = terms.size();
   if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
-    AddTrackTerms(window_.frames(), *tracks, calibration_, kernel_, &terms);
+    AddTrackTerms(window_.frames(), *tracks, solved, kernel_, &terms);
   } else if (!tracks->empty()) {
     terms.push_back(std::make_unique<PoseOnlyTerm>(
-        window_, std::vector<const WindowTrack*>(tracks->begin(), tracks->end()), calibration_, kernel_));
+        window_, std::vector<const WindowTrack*>(tracks->begin(), tracks->end()), solved, kernel_));
   }
-  const Result<WindowSolveReport> report =
-      SolveWindow(config_.smoother, terms, *tracks, &window_, &calibration_);
+  const Result<WindowSolveReport> report = SolveWindow(config_.smoother, terms, *tracks, &window_, &solved);
   if (!report.ok()) {
     return Lost(report.message());
   }
   terms.resize(without_vision);
   statistics_.iterations = report->iterations;
-  if (calibration_.layout.intrinsics() >= 0) {
+  if (solved.layout.intrinsics() >= 0) {
     window_.Renormalize(camera().camera);
+  }
+  if (watched) {
+    slam = SetPriorTerm(prior_, calibration_, &terms);
   }
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
@@ -248,7 +259,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   std::vector<WindowTrack*> gated = *tracks;
   gated.insert(gated.end(), features.begin(), features.end());
   if (GateTracks(Geometry(), gated) && slam != nullptr) {
-    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(&terms)));
+    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, &terms)));
   }
   if (gnss_.aligned()) {
     gnss_.Gate(&window_, &statistics_);
@@ -287,12 +298,16 @@ Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {
     latest_clock_.mean = newest.clock_state();
   }
   NewestEstimate known;
-  if (!NewestCovariance(window_.frames(), terms, &known)) {
+  if (!NewestCovariance(window_.frames(), terms, &known, given_.watched)) {
     return Lost("smoother: information at " + FormatSeconds(newest.stamp_ns) + " s is not positive definite");
   }
   latest_.covariance = known.covariance;
   latest_clock_.covariance = known.clock_covariance;
   calibration_deviations_ = known.calibration_deviations;
+  if (given_.watched) {
+    calibration_error_ = std::move(known.calibration_error);
+    calibration_state_covariance_ = std::move(known.calibration_state_covariance);
+  }
   window_information_ = std::move(known.window);
   return Status::Ok();
 }

@@ -85,7 +85,8 @@ class SmootherEstimator final : public Estimator {
                                                       size_t free);
   [[nodiscard]] SensorContext Sensors() const { return {gravity_W_, gnss_.context()}; }
   /// The prior, first of a window's terms. Returns it where it has landmarks, else null.
-  SlamPriorTerm* SetPriorTerm(WindowTerms* terms) const;
+  SlamPriorTerm* SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
+                              WindowTerms* terms) const;
   /// Landmarks of the prior at the states just solved for.
   Status TakeLandmarks(const SlamPriorTerm& slam);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
@@ -118,7 +119,10 @@ class SmootherEstimator final : public Estimator {
   LinearPrior prior_;
   CalibrationEstimate given_;  ///< the calibration a run starts with
   WindowCalibration calibration_;
+  WindowCalibration fixed_;  ///< a watched one as the solver sees it: nothing to estimate
   Eigen::VectorXd calibration_deviations_;
+  Eigen::VectorXd calibration_error_;             ///< of a watched one
+  Eigen::MatrixXd calibration_state_covariance_;  ///< likewise
   NavEstimate latest_;
   ClockState latest_clock_;
   WindowInformation window_information_;  ///< at the last solve

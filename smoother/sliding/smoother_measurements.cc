@@ -21,7 +21,12 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
     gnss_.Align(alignment, &window_.newest(), &prior_);
     latest_clock_ = FreshClock(config_.gnss, window_.newest().clock_state());
   }
-  AddCalibrationPrior({calibration_.layout, calibration_.mean, calibration_deviations_}, &prior_);
+  if (given_.watched) {
+    AddCalibrationPrior(given_,
+                        &prior_);  // what the window knew of its error together with the state is lost
+  } else {
+    AddCalibrationPrior({calibration_.layout, calibration_.mean, calibration_deviations_}, &prior_);
+  }
   return Status::Ok();
 }
 

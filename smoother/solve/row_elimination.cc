@@ -9,8 +9,9 @@
 
 namespace alidade {
 
-RowElimination::RowElimination(ColumnMap columns) : columns_(std::move(columns)) {
-  rows_.resize(2 * columns_.size(), columns_.size());
+RowElimination::RowElimination(ColumnMap columns, bool with_residual)
+    : columns_(std::move(columns)), with_residual_(with_residual) {
+  rows_.resize(2 * columns_.size(), columns_.size() + (with_residual ? 1 : 0));
   factor_.setZero(columns_.size(), columns_.size());
 }
 
@@ -28,6 +29,9 @@ void RowElimination::Add(LinearTerm* term) {
     const ColumnMap::Range at = columns_.Find(part.of);
     CHECK_GE(at.size, part.width) << "a term concerns coordinates without columns";
     rows.middleCols(at.first, part.width) = term->jacobian.middleCols(part.first, part.width);
+  }
+  if (with_residual_) {
+    rows.rightCols<1>() = term->residual;
   }
   for (Index i = first; i < count_; ++i) {
     Index lead = 0;
@@ -53,7 +57,7 @@ std::vector<RowElimination::Index> RowElimination::TouchedColumns(const std::vec
   const Index later = columns_.size() - end;
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(later);  // of magnitudes: zero where no row touches
   for (const Index row : active) {
-    sum += rows_.row(row).tail(later).cwiseAbs();
+    sum += rows_.row(row).segment(end, later).cwiseAbs();
   }
   std::vector<Index> columns;
   for (Index column = eliminated_; column < columns_.size(); ++column) {
@@ -66,7 +70,11 @@ std::vector<RowElimination::Index> RowElimination::TouchedColumns(const std::vec
 
 bool RowElimination::EliminateUpTo(Index end) {
   const std::vector<Index> active = ActiveRows(end);
-  const std::vector<Index> touched = TouchedColumns(active, end);
+  const std::vector<Index> reached = TouchedColumns(active, end);
+  std::vector<Index> touched = reached;
+  if (with_residual_) {
+    touched.push_back(columns_.size());
+  }
   const auto height = static_cast<Index>(active.size());
   const auto width = static_cast<Index>(touched.size());
   const Index group = end - eliminated_;
@@ -79,7 +87,11 @@ bool RowElimination::EliminateUpTo(Index end) {
   if (!root_.allFinite() || (root_.diagonal().array() == 0).any()) {
     return false;
   }
-  factor_(Eigen::seqN(eliminated_, group), touched) = front.topRows(group).triangularView<Eigen::Upper>();
+  factor_(Eigen::seqN(eliminated_, group), reached) =
+      front.topLeftCorner(group, static_cast<Index>(reached.size())).triangularView<Eigen::Upper>();
+  if (with_residual_) {
+    residual_ = front.col(width - 1).head(group);
+  }
   for (Index i = 0; i < height; ++i) {
     const auto row = static_cast<size_t>(i);
     // The first rows of the triangle are about the group; those below it are zero.

@@ -15,7 +15,8 @@ class RowElimination {
  public:
   using Index = Eigen::Index;
 
-  explicit RowElimination(ColumnMap columns);
+  /// `with_residual`: of the rows too, for residual().
+  explicit RowElimination(ColumnMap columns, bool with_residual = false);
 
   [[nodiscard]] const ColumnMap& columns() const { return columns_; }
   /// Adds the rows of a term; normal equations are replaced by a square root first (LinearTerm::MakeRows).
@@ -26,6 +27,8 @@ class RowElimination {
   /// R of the group eliminated last, upper triangular: once no column is left, R^T R is the information about
   /// that group.
   [[nodiscard]] const Eigen::MatrixXd& root() const { return root_; }
+  /// r of the same rows: once no column is left, the group's minimum is -R^-1 r. Only with the residual.
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   /// R of all columns eliminated so far, upper triangular: once no column is left, R^T R is the information
   /// about all of them.
   [[nodiscard]] const Eigen::MatrixXd& factor() const { return factor_; }
@@ -39,11 +42,13 @@ class RowElimination {
   [[nodiscard]] std::vector<Index> TouchedColumns(const std::vector<Index>& active, Index end) const;
 
   ColumnMap columns_;
-  RowMajorMatrix rows_;
+  bool with_residual_;
+  RowMajorMatrix rows_;  ///< with the residual, that is the last column
   Index count_ = 0;
   std::vector<Index> lead_;  ///< of each row: no column before this one is touched
   Index eliminated_ = 0;
   Eigen::MatrixXd root_;
+  Eigen::VectorXd residual_;
   Eigen::MatrixXd factor_;
 };
 

@@ -39,7 +39,8 @@ double WindowInformation::Deviation(const Eigen::RowVectorXd& row) const {
   return whitened.norm();
 }
 
-bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest) {
+bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest,
+                      bool calibration_error) {
   // In time order, so that a step touches few columns. The last group is what is asked for: calibration,
   // clock and state of the newest frame.
   ColumnMap columns;
@@ -52,7 +53,7 @@ bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, Newe
   columns.AddCalibration(CalibrationSize(terms));
   AddOwn(*frames.back(), &columns);
   ends.push_back(columns.size());
-  RowElimination elimination(columns);
+  RowElimination elimination(columns, calibration_error);
   LinearTerm linear;
   for (const std::unique_ptr<WindowTerm>& term : terms) {
     if (!term->Linearize(&linear).ok()) {
@@ -68,17 +69,24 @@ bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, Newe
   const Index size = columns.size() - last;
   const MatrixXd inverse =
       elimination.root().triangularView<Eigen::Upper>().solve(MatrixXd::Identity(size, size));
-  const auto covariance = [&](const ColumnMap::Range& of) -> MatrixXd {
-    const auto rows = inverse.middleRows(of.first - last, of.size);
-    return rows * rows.transpose();
+  const auto root = [&](const ColumnMap::Range& of) -> MatrixXd {
+    return inverse.middleRows(of.first - last, of.size);
   };
-  newest->covariance = covariance(columns.Frame(frames.back()->index));
+  const auto covariance = [&](const ColumnMap::Range& of) -> MatrixXd {
+    return root(of) * root(of).transpose();
+  };
+  const ColumnMap::Range state = columns.Frame(frames.back()->index);
+  newest->covariance = covariance(state);
   const ColumnMap::Range clock = columns.Clock(frames.back()->index);
   if (clock.size > 0) {
     newest->clock_covariance = covariance(clock);
   }
   newest->window = {columns, elimination.factor()};
   newest->calibration_deviations = inverse.topRows(columns.Calibration().size).rowwise().norm();
+  if (calibration_error) {
+    newest->calibration_error = -root(columns.Calibration()) * elimination.residual();
+    newest->calibration_state_covariance = root(state) * root(columns.Calibration()).transpose();
+  }
   return newest->covariance.allFinite();
 }
 

@@ -22,11 +22,16 @@ struct NewestEstimate {
   Matrix6d clock_covariance;               ///< of the clock, in an aligned window
   Eigen::VectorXd calibration_deviations;  ///< of what of the calibration is estimated
   WindowInformation window;                ///< with the newest frame
+  // Where asked for (CalibrationEstimate).
+  Eigen::VectorXd calibration_error;
+  Eigen::MatrixXd calibration_state_covariance;
 };
 
 /// The same from the whitened rows of `terms` over the frames at their present states, of which QR eliminates
-/// the older frames; landmarks must be eliminated within the terms. False when the rows do not determine the
-/// unknowns, or a term is undefined there.
-bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest);
+/// the older frames; landmarks must be eliminated within the terms. With `calibration_error` also the
+/// expected error of a watched calibration. False when the rows do not determine the unknowns, or a term is
+/// undefined there.
+bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest,
+                      bool calibration_error = false);
 
 }  // namespace alidade

@@ -143,7 +143,7 @@ TEST(Tables, GivenAComparisonThenSummaryHasARowACellWithTheColumnsOthersRelyOn) 
       "estimator,backend,sequence,seed,status,input_digest,frames,duration_s,path_m,rmse_pos_m,rmse_ori_deg,"
       "ate_pos_m,ate_ori_deg,align,rpe_5m_pos_m,rpe_5m_ori_deg,rpe_10m_pos_m,rpe_10m_ori_deg,rpe_25m_pos_m,"
       "rpe_25m_ori_deg,nees_pose,nees_ori,nees_pos,coverage_3sigma,frontend_ms,backend_ms,backend_ms_p95,"
-      "features_per_frame,gated_share,message");
+      "features_per_frame,gated_share,silent_s,alarm_inside_share,message");
   EXPECT_THAT(lines[1], ::testing::StartsWith("po_invio_multi,filter,figure8,1,ok,5f1c1"));
   EXPECT_THAT(lines[12], ::testing::StartsWith("vins_mono_class,smoother,V1_01_easy,2,failed,"));
   EXPECT_THAT(lines[12], ::testing::EndsWith(

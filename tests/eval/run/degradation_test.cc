@@ -101,6 +101,32 @@ TEST(DegradationTest, InnovationsThatAreLargerThanPredictedForLongAreTold) {
   EXPECT_GT(SecondsTold(2.0, 4), 45);
 }
 
+TEST(DegradationTest, ACameraThatIsNotAsGivenIsToldOnceItMovesThePose) {
+  const auto check = [](double sigmas, double pose_sigmas) {
+    const CalibrationDoubt doubt{"the focal length of the camera", "px", sigmas, -2.3, pose_sigmas};
+    return Degradation().Check(SecondsToNs(1), Saw(20), &doubt);
+  };
+  EXPECT_EQ(check(4.9, 30), "") << "chance";
+  EXPECT_EQ(check(30, 1.9), "") << "harmless";
+  EXPECT_THAT(check(5.1, 2.1), HasSubstr("the focal length of the camera is not as given: off by -2.3 px"));
+}
+
+TEST(DegradationTest, LargeInnovationsNameTheLikelyCause) {
+  const auto check = [](const CalibrationDoubt* doubt) {
+    Degradation degradation;
+    std::string reason;
+    for (int k = 0; k < 100; ++k) {
+      reason = degradation.Check(SecondsToNs(0.1 * k), Weighed(400, 200), doubt);
+    }
+    return reason;
+  };
+  const CalibrationDoubt doubt{"the time offset of the camera", "ms", 8, 5, 0.1};
+  const CalibrationDoubt none;
+  EXPECT_THAT(check(nullptr), HasSubstr("noise, extrinsics, lens or time offset are not as given"));
+  EXPECT_THAT(check(&doubt), HasSubstr("the time offset of the camera is not as given (8.0 sigma)"));
+  EXPECT_THAT(check(&none), HasSubstr("the noise of pixels or IMU is larger than given"));
+}
+
 TEST(DegradationTest, OneFrameOfLargeInnovationsIsForgotten) {
   Degradation degradation;
   int told = 0;
