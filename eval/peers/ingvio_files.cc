@@ -42,16 +42,17 @@ std::string MatrixText(const char* key, const Matrix& matrix) {
 Result<std::string> LensText(const CameraModel& camera) {
   const Eigen::Vector4d& f = camera.intrinsics();
   const LensCoefficients& k = camera.coefficients();
-  const auto distortion = [&] {
-    return Map("distortion_parameters", {{"k1", k[0]}, {"k2", k[1]}, {"p1", k[2]}, {"p2", k[3]}});
+  const auto distortion = [&](int first) {
+    return Map("distortion_parameters",
+               {{"k1", k[first]}, {"k2", k[first + 1]}, {"p1", k[first + 2]}, {"p2", k[first + 3]}});
   };
   switch (camera.model()) {
     case DistortionModel::kNone:
     case DistortionModel::kRadialTangential:
-      return "model_type: PINHOLE\n" + distortion() +
+      return "model_type: PINHOLE\n" + distortion(0) +
              Map("projection_parameters", {{"fx", f[0]}, {"fy", f[1]}, {"cx", f[2]}, {"cy", f[3]}});
     case DistortionModel::kMei:
-      return "model_type: MEI\n" + Map("mirror_parameters", {{"xi", k[4]}}) + distortion() +
+      return "model_type: MEI\n" + Map("mirror_parameters", {{"xi", k[0]}}) + distortion(1) +
              Map("projection_parameters", {{"gamma1", f[0]}, {"gamma2", f[1]}, {"u0", f[2]}, {"v0", f[3]}});
     default:
       return Status::Input("InGVIO has no lens model " + std::string(ToString(camera.model())));

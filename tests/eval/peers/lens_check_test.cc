@@ -9,7 +9,7 @@ namespace {
 TEST(CheckLens, AcceptsTheSameLensAndRefusesAnother) {
   const CameraModel camera =
       CameraModel::Create(DistortionModel::kRadialTangential, Eigen::Vector4d(460, 460, 376, 240),
-                          (LensCoefficients() << -0.28, 0.07, 0, 0, 0).finished(), 752, 480)
+                          {-0.28, 0.07, 0, 0}, 752, 480)
           .value();
   const auto ray = [&](const Eigen::Vector2d& pixel, double scale) {
     Eigen::Vector2d plane = Eigen::Vector2d::Zero();
