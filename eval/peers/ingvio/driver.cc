@@ -16,6 +16,7 @@ const std::map<std::string, std::string>& Defaults() {
       {"output", "required"},     // a folder
       {"input", "auto"},          // tracks | images | auto: tracks where there are some
       {"gnss", "yes"},            // no: without
+      {"lens", "right"},          // own: also one that it undistorts wrongly
       {"noise_scale", "1"},       // of the sheet's white noise; own: its published noise
       {"pixel_noise_px", "own"},  // standard deviation; own: 0.18 on the normalised plane
       {"gravity", "9.81"},        // [m/s^2]
@@ -66,8 +67,10 @@ Status Execute(const std::vector<std::string>& arguments) {
   ALIDADE_RETURN_IF_ERROR(ReadSettings(*flags, sequence->dataset.rig, &settings));
   const Result<PeerGnss> gnss = settings.gnss ? ReadPeerGnss(sequence->dataset) : PeerGnss{};
   ALIDADE_RETURN_IF_ERROR(gnss.status());
+  bool checks_lens = true;
+  ALIDADE_RETURN_IF_ERROR(flags->OneOf("lens", "right", "own", &checks_lens));
   const Result<std::unique_ptr<System>> system =
-      System::Create(*sequence, *gnss, settings, flags->Text("output"));
+      System::Create(*sequence, *gnss, settings, flags->Text("output"), checks_lens);
   ALIDADE_RETURN_IF_ERROR(system.status());
   const Result<PeerRun> run = (*system)->Run();
   ALIDADE_RETURN_IF_ERROR(run.status());

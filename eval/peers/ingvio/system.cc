@@ -74,7 +74,8 @@ System::System(const PeerSequence& sequence, const PeerGnss& gnss, bool uses_gns
 System::~System() = default;
 
 Result<std::unique_ptr<System>> System::Create(const PeerSequence& sequence, const PeerGnss& gnss,
-                                               IngvioSettings settings, const std::string& folder) {
+                                               IngvioSettings settings, const std::string& folder,
+                                               bool checks_lens) {
   std::unique_ptr<System> system(new System(sequence, gnss, settings.gnss));
   if (!gnss.epochs.empty()) {
     const PeerGnss::Epoch& first = gnss.epochs.front();
@@ -87,7 +88,9 @@ Result<std::unique_ptr<System>> System::Create(const PeerSequence& sequence, con
   ALIDADE_RETURN_IF_ERROR(camera.status());
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(camera_file, *camera));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(file, IngvioFile(settings, camera_file)));
-  ALIDADE_RETURN_IF_ERROR(CheckIngvioLens(sequence.dataset.rig.camera, camera_file));
+  if (const Status lens = CheckIngvioLens(sequence.dataset.rig.camera, camera_file); !lens.ok() && checks_lens) {
+    return Status(lens.code(), lens.message() + "; --lens=own takes it as it is");
+  }
   ros::NodeHandle node;
   ros::Parameters()["config_file"] = file;
   system->filter_ = std::make_unique<Filter>(node);

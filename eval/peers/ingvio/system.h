@@ -24,9 +24,11 @@ class Tracker;
 class System {
  public:
   /// Writes its files ingvio.yaml and camera.yaml into `folder` and starts it with them. kInput: a lens model that it
-  /// has not or undistorts differently; kOutput.
+  /// has not, or a lens that it undistorts differently, if that is checked: one step of an expansion is right for weak
+  /// distortion alone; kOutput.
   static Result<std::unique_ptr<System>> Create(const PeerSequence& sequence, const PeerGnss& gnss,
-                                                IngvioSettings settings, const std::string& folder);
+                                                IngvioSettings settings, const std::string& folder,
+                                                bool checks_lens);
   ~System();
 
   /// Feeds everything. A row is written for each image that the filter gets once it is initialised, in ENU at the

@@ -23,14 +23,20 @@ Dataset Simulated() {
   return Simulate(config, 1).value();
 }
 
+Result<Dataset> Read(const std::string& path) {
+  DatasetSource source;
+  source.path = path;
+  return ReadDataset(source);
+}
+
 /// Everything that the systems weigh by, in order.
 std::vector<double> Numbers(const PeerGnss& gnss) {
   std::vector<double> numbers;
   for (const auto& message : gnss.ephemerides) {
-    numbers.insert(numbers.end(), {double(message->sat), message->toe.tow, message->ura, message->A, message->n_dot});
+    numbers.insert(numbers.end(), {static_cast<double>(message->sat), message->toe.tow, message->ura, message->A, message->n_dot});
   }
   for (const auto& message : gnss.glonass) {
-    numbers.insert(numbers.end(), {double(message->sat), message->toe.tow, message->ura, message->delta_tau_n});
+    numbers.insert(numbers.end(), {static_cast<double>(message->sat), message->toe.tow, message->ura, message->delta_tau_n});
   }
   for (const auto& message : gnss.ionosphere) {
     numbers.insert(numbers.end(), message->data.begin(), message->data.end());
@@ -38,7 +44,7 @@ std::vector<double> Numbers(const PeerGnss& gnss) {
   for (const PeerGnss::Epoch& epoch : gnss.epochs) {
     numbers.push_back(static_cast<double>(epoch.stamp_ns));
     for (const gnss_comm::GnssObsMsg& m : epoch.message->meas) {
-      numbers.insert(numbers.end(), {double(m.sat), m.psr.at(0), m.psr_std.at(0), m.dopp.at(0), m.dopp_std.at(0)});
+      numbers.insert(numbers.end(), {static_cast<double>(m.sat), m.psr.at(0), m.psr_std.at(0), m.dopp.at(0), m.dopp_std.at(0)});
     }
   }
   return numbers;
@@ -48,10 +54,10 @@ std::vector<double> Numbers(const PeerGnss& gnss) {
 TEST(ReadPeerGnss, AFolderAndItsBagGiveTheSameMessages) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(WriteDataset(Simulated(), folder.File("sequence")).ok());
-  const Result<Dataset> from_folder = ReadDataset({folder.File("sequence")});
+  const Result<Dataset> from_folder = Read(folder.File("sequence"));
   ASSERT_TRUE(from_folder.ok()) << from_folder.message();
   ASSERT_TRUE(WriteBag(*from_folder, {}, folder.File("sequence.bag")).ok());
-  const Result<Dataset> from_bag = ReadDataset({folder.File("sequence.bag")});
+  const Result<Dataset> from_bag = Read(folder.File("sequence.bag"));
   ASSERT_TRUE(from_bag.ok()) << from_bag.message();
   const Result<PeerGnss> of_folder = ReadPeerGnss(*from_folder), of_bag = ReadPeerGnss(*from_bag);
   ASSERT_TRUE(of_folder.ok()) << of_folder.message();
