@@ -44,7 +44,8 @@ std::string TenHertz(double shift_s) {
 }
 
 TEST(GvinsPairing, TakesTheFramesThatAreNearerToTheEpochs) {
-  EXPECT_EQ(TenHertz(0.01), "4:1 6:2 8:3 ") << "those 0.01 s after an epoch";
+  EXPECT_EQ(TenHertz(0.01), "2:0 4:1 6:2 8:3 ") << "those 0.01 s after an epoch";
+  EXPECT_EQ(TenHertz(-0.04), "3:0 5:1 7:2 9:3 ") << "the other half";
 }
 
 TEST(GvinsPairing, WhileNoEpochWaitsNoFrameGoesOn) {
