@@ -11,8 +11,8 @@
 
 namespace alidade {
 
-// Messages of gnss_comm from the bytes that a bag holds of them, field by field, for the message code of systems that read
-// them. kInput: torn.
+// Messages of gnss_comm from the bytes that a bag holds of them, field by field, for the message code of
+// systems that read them. kInput: torn.
 
 Result<std::shared_ptr<gnss_comm::GnssMeasMsg>> ReadMeasMsg(std::string_view bytes);
 Result<std::shared_ptr<gnss_comm::GnssEphemMsg>> ReadEphemMsg(std::string_view bytes);

@@ -7,9 +7,10 @@
 
 namespace alidade {
 
-/// Which frames the solver of GVINS gets, and with which GNSS epoch: every second frame, those that are nearer to
-/// the epochs (decided once, by two frames after the first epoch), each with an epoch within 0.05 s. While no epoch
-/// waits, no frame goes on. Without GNSS: every second frame, at once. Times [s] in one clock.
+/// Which frames the solver of GVINS gets, and with which GNSS epoch: every second frame, those that are
+/// nearer to the epochs (decided once, by two frames after the first epoch), each with an epoch within 0.05
+/// s. While no epoch waits, no frame goes on. Without GNSS: every second frame, at once. Times [s] in one
+/// clock.
 class GvinsPairing {
  public:
   struct Pair {

@@ -7,7 +7,8 @@
 
 namespace alidade {
 
-/// What InGVIO is set to; the defaults are its published ones for its own sensor (configuration `sportsfield`).
+/// What InGVIO is set to; the defaults are its published ones for its own sensor (configuration
+/// `sportsfield`).
 struct IngvioSettings {
   // Densities [rad/s/sqrt(Hz), m/s^2/sqrt(Hz), rad/s^2/sqrt(Hz), m/s^3/sqrt(Hz)].
   double gyro_noise = 0.004, accel_noise = 0.08;
@@ -22,13 +23,13 @@ struct IngvioSettings {
   double elevation_deg = 20;
   int min_tracked_epochs = 20;
   int align_epochs = 45;
-  bool estimate_yaw = false;          ///< of the local world, once aligned
-  double local_less_gpst_s = 0;       ///< its clock less gnss_comm's seconds
+  bool estimate_yaw = false;     ///< of the local world, once aligned
+  double local_less_gpst_s = 0;  ///< its clock less gnss_comm's seconds
   double extrinsic_rotation_std = 0.018, extrinsic_position_std_m = 0.002;
 };
 
-/// InGVIO's camera file: lens and extrinsics of the sheet, its tracker's settings. kInput: a lens model that it has
-/// not.
+/// InGVIO's camera file: lens and extrinsics of the sheet, its tracker's settings. kInput: a lens model that
+/// it has not.
 Result<std::string> IngvioCameraFile(const RigCalibration& rig, const IngvioSettings& settings);
 
 /// InGVIO's file, which names the camera's.

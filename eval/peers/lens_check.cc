@@ -10,7 +10,8 @@ Status CheckLens(const CameraModel& camera,
   constexpr double kToleratedPx = 0.5;
   for (int i = 0; i <= kSteps; ++i) {
     for (int j = 0; j <= kSteps; ++j) {
-      const Eigen::Vector2d pixel(i * (camera.width_px() - 1.0) / kSteps, j * (camera.height_px() - 1.0) / kSteps);
+      const Eigen::Vector2d pixel(i * (camera.width_px() - 1.0) / kSteps,
+                                  j * (camera.height_px() - 1.0) / kSteps);
       Eigen::Vector2d plane;
       if (!camera.Unproject(pixel, &plane)) {
         continue;
@@ -18,8 +19,8 @@ Status CheckLens(const CameraModel& camera,
       const Eigen::Vector2d other = ray(pixel).hnormalized();
       const double difference_px = camera.intrinsics()[0] * (other - plane).norm();
       if (!(difference_px < kToleratedPx)) {
-        return Status::Input(Format("the other system undistorts pixel (%.0f, %.0f) differently, by %.2f px", pixel.x(),
-                                    pixel.y(), difference_px));
+        return Status::Input(Format("the other system undistorts pixel (%.0f, %.0f) differently, by %.2f px",
+                                    pixel.x(), pixel.y(), difference_px));
       }
     }
   }

@@ -33,6 +33,7 @@ struct PeerSink {
 /// epoch (`epochs_ns`: IMU time, rising), an epoch before a frame that is not earlier: one thread and one
 /// order, whatever the machine's speed. Frames and epochs at or before the first sample and after the last
 /// one are left out. Errors: those of `frame`, which end it.
-Status FeedPeer(const PeerSequence& sequence, const PeerSink& sink, const std::vector<TimeNs>& epochs_ns = {});
+Status FeedPeer(const PeerSequence& sequence, const PeerSink& sink,
+                const std::vector<TimeNs>& epochs_ns = {});
 
 }  // namespace alidade

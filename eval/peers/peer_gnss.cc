@@ -26,7 +26,8 @@ class Collector {
       return Keep(ReadEphemMsg(bytes), LeastAccuracy, &gnss_.ephemerides);
     }
     if (type == "gnss_comm/GnssGloEphemMsg") {
-      return Keep(ReadGloEphemMsg(bytes), [](std::uint32_t) { return 0.0; }, &gnss_.glonass);
+      return Keep(
+          ReadGloEphemMsg(bytes), [](std::uint32_t) { return 0.0; }, &gnss_.glonass);
     }
     if (type == "gnss_comm/StampedFloat64Array" && gps_ionosphere) {
       const auto message = ReadFloat64ArrayMsg(bytes);
@@ -55,7 +56,8 @@ class Collector {
     constexpr double kFirstBandLowHz = 1.55e9, kFirstBandHighHz = 1.61e9;
     for (std::size_t i = 0; i < m.freqs.size(); ++i) {
       const bool first = m.freqs[i] > kFirstBandLowHz && m.freqs[i] < kFirstBandHighHz;
-      const bool weighable = i < m.psr_std.size() && m.psr_std[i] > 0 && i < m.dopp_std.size() && m.dopp_std[i] > 0;
+      const bool weighable =
+          i < m.psr_std.size() && m.psr_std[i] > 0 && i < m.dopp_std.size() && m.dopp_std[i] > 0;
       if (first && !weighable) {
         return false;
       }
@@ -126,8 +128,7 @@ Status TakeFolder(const GnssLog& log, TimeNs first_ns, Collector* collector) {
         take("gnss_comm/StampedFloat64Array", EncodeIonosphere(first_ns, *navigation.gps_ionosphere)));
   }
   for (const ObservationEpoch& epoch : log.epochs) {
-    ALIDADE_RETURN_IF_ERROR(
-        take("gnss_comm/GnssMeasMsg", EncodeMeasurements(epoch, log.glonass_channels)));
+    ALIDADE_RETURN_IF_ERROR(take("gnss_comm/GnssMeasMsg", EncodeMeasurements(epoch, log.glonass_channels)));
   }
   return Status::Ok();
 }

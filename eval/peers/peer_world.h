@@ -11,8 +11,8 @@
 
 namespace alidade {
 
-/// Brings the rows of a system with GNSS from its own gravity-aligned world W into ENU N at the sequence's anchor. Rows
-/// before the alignment are brought there with it, as those of our estimators are.
+/// Brings the rows of a system with GNSS from its own gravity-aligned world W into ENU N at the sequence's
+/// anchor. Rows before the alignment are brought there with it, as those of our estimators are.
 class PeerWorld {
  public:
   /// Without an anchor rows stay as they are.
@@ -29,7 +29,7 @@ class PeerWorld {
 
  private:
   std::optional<EnuFrame> enu_;
-  std::size_t begin_ = 0;   ///< of the rows of the present world that are not aligned yet
+  std::size_t begin_ = 0;  ///< of the rows of the present world that are not aligned yet
   std::optional<TimeNs> aligned_ns_;
   std::vector<TrajectoryPoint> points_;
 };

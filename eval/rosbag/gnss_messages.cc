@@ -67,8 +67,9 @@ double OrZero(const std::optional<double>& value) {
   return value.value_or(0);
 }
 
-/// What a receiver says of its own measurement; 0 where there is none. Without a report: the deviation that the
-/// estimators assume by default, by C/N0. The elevation is left to the reader of the message, as receivers do.
+/// What a receiver says of its own measurement; 0 where there is none. Without a report: the deviation that
+/// the estimators assume by default, by C/N0. The elevation is left to the reader of the message, as
+/// receivers do.
 double DeviationOf(const std::optional<double>& measured, const std::optional<double>& reported,
                    double zenith_std, const std::optional<double>& cn0_dbhz) {
   constexpr double kZenith = std::numbers::pi / 2;
@@ -78,8 +79,8 @@ double DeviationOf(const std::optional<double>& measured, const std::optional<do
 }
 
 double PseudorangeDeviationM(const SignalObservation& signal) {
-  return DeviationOf(signal.pseudorange_m, signal.pseudorange_std_m, GnssCorrectionOptions().pseudorange_std_m,
-                     signal.cn0_dbhz);
+  return DeviationOf(signal.pseudorange_m, signal.pseudorange_std_m,
+                     GnssCorrectionOptions().pseudorange_std_m, signal.cn0_dbhz);
 }
 
 double DopplerDeviationHz(const SignalObservation& signal, double frequency_hz) {

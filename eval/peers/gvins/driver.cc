@@ -13,18 +13,18 @@ namespace {
 const std::map<std::string, std::string>& Defaults() {
   // "own": what GVINS publishes for its own sensor.
   static const std::map<std::string, std::string> kDefaults = {
-      {"dataset", "required"},     // a folder or a bag
-      {"output", "required"},      // a folder
-      {"input", "auto"},           // tracks | images | auto: tracks where there are some
-      {"gnss", "yes"},             // no: without
-      {"noise_scale", "1"},        // of the sheet's white noise; own: its published noise
-      {"gravity", "9.81"},         // [m/s^2]
-      {"rate", "own"},             // images a second that its tracker hands over, at most [Hz]
-      {"features", "own"},         // of its front end
-      {"iterations", "own"},       // of its solver
-      {"elevation", "own"},        // of satellites, once aligned, at least [deg]
-      {"tracked_epochs", "own"},   // of a satellite, before it is used
-      {"calibrate", "no"},         // yes: extrinsics and time offset, online
+      {"dataset", "required"},    // a folder or a bag
+      {"output", "required"},     // a folder
+      {"input", "auto"},          // tracks | images | auto: tracks where there are some
+      {"gnss", "yes"},            // no: without
+      {"noise_scale", "1"},       // of the sheet's white noise; own: its published noise
+      {"gravity", "9.81"},        // [m/s^2]
+      {"rate", "own"},            // images a second that its tracker hands over, at most [Hz]
+      {"features", "own"},        // of its front end
+      {"iterations", "own"},      // of its solver
+      {"elevation", "own"},       // of satellites, once aligned, at least [deg]
+      {"tracked_epochs", "own"},  // of a satellite, before it is used
+      {"calibrate", "no"},        // yes: extrinsics and time offset, online
   };
   return kDefaults;
 }

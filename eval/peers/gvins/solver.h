@@ -21,8 +21,8 @@ struct GnssSettings {
   double drift_step_mps = 0.1;  ///< deviation between frames of the receiver's clock drift
 };
 
-/// GVINS' solver: one object a process, since its settings are globals and it relies on its memory being zero before
-/// its constructor runs.
+/// GVINS' solver: one object a process, since its settings are globals and it relies on its memory being zero
+/// before its constructor runs.
 class Solver {
  public:
   /// Also delivers ephemerides and ionosphere of `gnss`, which is used if its settings say so.

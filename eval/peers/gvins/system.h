@@ -32,8 +32,9 @@ class System {
   System(const PeerSequence& sequence, const PeerGnss& gnss, const SystemSettings& settings,
          std::unique_ptr<vins::Tracker> tracker);
 
-  /// Feeds everything. A row is written for each image that the solver gets once it is initialised, in ENU at the
-  /// sequence's anchor once aligned. Times: of all images since the row before. Errors: those of the images.
+  /// Feeds everything. A row is written for each image that the solver gets once it is initialised, in ENU at
+  /// the sequence's anchor once aligned. Times: of all images since the row before. Errors: those of the
+  /// images.
   Result<PeerRun> Run();
 
   /// How often it was initialised: it starts anew when it finds itself lost.

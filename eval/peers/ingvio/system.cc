@@ -88,7 +88,8 @@ Result<std::unique_ptr<System>> System::Create(const PeerSequence& sequence, con
   ALIDADE_RETURN_IF_ERROR(camera.status());
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(camera_file, *camera));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(file, IngvioFile(settings, camera_file)));
-  if (const Status lens = CheckIngvioLens(sequence.dataset.rig.camera, camera_file); !lens.ok() && checks_lens) {
+  if (const Status lens = CheckIngvioLens(sequence.dataset.rig.camera, camera_file);
+      !lens.ok() && checks_lens) {
     return Status(lens.code(), lens.message() + "; --lens=own takes it as it is");
   }
   ros::NodeHandle node;

@@ -18,21 +18,21 @@ namespace alidade::ingvio {
 class Filter;
 class Tracker;
 
-/// InGVIO, tracker and filter, fed with a sequence by the messages that its nodes take. Its clock is that of the
-/// sequence less the first IMU stamp: its doubles of seconds would resolve Unix time to 0.24 us. One object a
-/// process.
+/// InGVIO, tracker and filter, fed with a sequence by the messages that its nodes take. Its clock is that of
+/// the sequence less the first IMU stamp: its doubles of seconds would resolve Unix time to 0.24 us. One
+/// object a process.
 class System {
  public:
-  /// Writes its files ingvio.yaml and camera.yaml into `folder` and starts it with them. kInput: a lens model that it
-  /// has not, or a lens that it undistorts differently, if that is checked: one step of an expansion is right for weak
-  /// distortion alone; kOutput.
+  /// Writes its files ingvio.yaml and camera.yaml into `folder` and starts it with them. kInput: a lens model
+  /// that it has not, or a lens that it undistorts differently, if that is checked: one step of an expansion
+  /// is right for weak distortion alone; kOutput.
   static Result<std::unique_ptr<System>> Create(const PeerSequence& sequence, const PeerGnss& gnss,
                                                 IngvioSettings settings, const std::string& folder,
                                                 bool checks_lens);
   ~System();
 
-  /// Feeds everything. A row is written for each image that the filter gets once it is initialised, in ENU at the
-  /// sequence's anchor once aligned. Errors: those of the images.
+  /// Feeds everything. A row is written for each image that the filter gets once it is initialised, in ENU at
+  /// the sequence's anchor once aligned. Errors: those of the images.
   Result<PeerRun> Run();
 
   [[nodiscard]] std::optional<TimeNs> aligned_ns() const { return world_.aligned_ns(); }

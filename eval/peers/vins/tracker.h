@@ -17,8 +17,8 @@ struct TrackerSettings {
   bool equalize = true;
 };
 
-/// The tracker of VINS-Mono, or that of GVINS: this is compiled with either. Its settings are globals: one object a
-/// process.
+/// The tracker of VINS-Mono, or that of GVINS: this is compiled with either. Its settings are globals: one
+/// object a process.
 class __attribute__((visibility("default"))) Tracker {
  public:
   /// kInput: a lens model that it has not.

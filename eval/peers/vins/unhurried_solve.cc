@@ -1,7 +1,7 @@
 #include <ceres/solver.h>
 
-// Ends every solve of VINS-Mono or GVINS by iterations alone (linked with --wrap): they limit wall time in their
-// initialisation too, and results would depend on the machine.
+// Ends every solve of VINS-Mono or GVINS by iterations alone (linked with --wrap): they limit wall time in
+// their initialisation too, and results would depend on the machine.
 extern "C" void __real__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE(
     const ceres::Solver::Options&, ceres::Problem*, ceres::Solver::Summary*);
 extern "C" void __wrap__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE(

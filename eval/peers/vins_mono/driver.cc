@@ -52,7 +52,8 @@ Status Execute(const std::vector<std::string>& arguments) {
   ALIDADE_RETURN_IF_ERROR(flags->Whole("features", 1, 1000, &tracker_settings.max_features));
   std::unique_ptr<vins::Tracker> tracker;
   if (!sequence->from_tracks) {
-    Result<std::unique_ptr<vins::Tracker>> made = vins::Tracker::Create(sequence->dataset.rig.camera, tracker_settings);
+    Result<std::unique_ptr<vins::Tracker>> made =
+        vins::Tracker::Create(sequence->dataset.rig.camera, tracker_settings);
     ALIDADE_RETURN_IF_ERROR(made.status());
     tracker = std::move(*made);
     ALIDADE_RETURN_IF_ERROR(CheckLens(sequence->dataset.rig.camera,

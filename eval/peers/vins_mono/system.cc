@@ -48,9 +48,10 @@ Status System::FeedFrame(size_t frame) {
     return Status::Ok();
   }
   const double before = ProcessCpuSeconds();
-  imu_.DeliverUntil(time_s + solver_.time_offset_s(), [this](double step_s, const ImuDelivery::Sample& sample) {
-    solver_.AddImu(step_s, sample.gyro, sample.accel);
-  });
+  imu_.DeliverUntil(time_s + solver_.time_offset_s(),
+                    [this](double step_s, const ImuDelivery::Sample& sample) {
+                      solver_.AddImu(step_s, sample.gyro, sample.accel);
+                    });
   solver_.AddImage(*features, time_s);
   times_.backend_ms += 1e3 * (ProcessCpuSeconds() - before);
   Record(frame);
@@ -71,7 +72,9 @@ void System::Record(size_t frame) {
 
 Result<PeerRun> System::Run() {
   PeerSink sink;
-  sink.imu = [this](const ImuSample& sample) { imu_.Add({TimeOf(sample.stamp_ns), sample.gyro, sample.accel}); };
+  sink.imu = [this](const ImuSample& sample) {
+    imu_.Add({TimeOf(sample.stamp_ns), sample.gyro, sample.accel});
+  };
   sink.time_offset_s = [this] { return solver_.time_offset_s(); };
   sink.frame = [this](size_t frame) { return FeedFrame(frame); };
   ALIDADE_RETURN_IF_ERROR(FeedPeer(sequence_, sink));

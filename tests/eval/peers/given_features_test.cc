@@ -9,7 +9,8 @@ TEST(GivenFeatures, TakesTracksSeenBeforeWithTheirVelocity) {
   const CameraModel camera =
       CameraModel::Create(DistortionModel::kNone, Eigen::Vector4d(400, 400, 320, 240), {}, 640, 480).value();
   GivenFeatures given;
-  EXPECT_TRUE(given.Take(camera, {0, {{7, Eigen::Vector2d(320, 240)}, {8, Eigen::Vector2d(1, 2)}}}, 1).empty());
+  EXPECT_TRUE(
+      given.Take(camera, {0, {{7, Eigen::Vector2d(320, 240)}, {8, Eigen::Vector2d(1, 2)}}}, 1).empty());
   const auto features =
       given.Take(camera, {1, {{7, Eigen::Vector2d(360, 240)}, {9, Eigen::Vector2d(3, 4)}}}, 1.5);
   ASSERT_EQ(features.size(), 1u) << "9 is new, 8 is gone";

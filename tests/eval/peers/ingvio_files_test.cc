@@ -31,8 +31,7 @@ TEST(IngvioCameraFile, HoldsLensAndExtrinsicsOfTheSheet) {
     const RigCalibration rig = Rig(model);
     const Result<std::string> text = IngvioCameraFile(rig, {});
     ASSERT_TRUE(text.ok()) << text.message();
-    const Result<ImportedCalibration> read =
-        ImportCalibration({folder.Write("camera.yaml", *text)}, "cam0");
+    const Result<ImportedCalibration> read = ImportCalibration({folder.Write("camera.yaml", *text)}, "cam0");
     ASSERT_TRUE(read.ok() && read->camera) << read.message();
     EXPECT_EQ(read->camera->camera.model(), model);
     EXPECT_EQ(read->camera->camera.intrinsics(), rig.camera.intrinsics());

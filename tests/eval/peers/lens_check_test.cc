@@ -17,10 +17,12 @@ TEST(CheckLens, AcceptsTheSameLensAndRefusesAnother) {
     return Eigen::Vector3d(2 * scale * plane.homogeneous());
   };
   EXPECT_TRUE(CheckLens(camera, [&](const Eigen::Vector2d& pixel) { return ray(pixel, 1); }).ok());
-  EXPECT_THAT(CheckLens(camera, [&](const Eigen::Vector2d& pixel) {
-                return Eigen::Vector3d((pixel - camera.intrinsics().tail<2>()).x() / 460,
-                                       (pixel - camera.intrinsics().tail<2>()).y() / 460, 1);
-              }).message(),
+  EXPECT_THAT(CheckLens(camera,
+                        [&](const Eigen::Vector2d& pixel) {
+                          return Eigen::Vector3d((pixel - camera.intrinsics().tail<2>()).x() / 460,
+                                                 (pixel - camera.intrinsics().tail<2>()).y() / 460, 1);
+                        })
+                  .message(),
               testing::HasSubstr("differently"));
 }
 

@@ -69,7 +69,9 @@ TEST(FeedPeer, AnEpochComesBeforeAFrameThatIsNotEarlier) {
   sink.epoch = [&](size_t epoch) { events.push_back("e" + std::to_string(epoch)); };
   constexpr TimeNs kMs = 1'000'000;
   // 5 and 10 are not covered by the IMU, nor is 60.
-  ASSERT_TRUE(FeedPeer(MakeSequence({25, 40, 43}), sink, {5 * kMs, 10 * kMs, 25 * kMs, 42 * kMs, 55 * kMs, 60 * kMs}).ok());
+  ASSERT_TRUE(
+      FeedPeer(MakeSequence({25, 40, 43}), sink, {5 * kMs, 10 * kMs, 25 * kMs, 42 * kMs, 55 * kMs, 60 * kMs})
+          .ok());
   EXPECT_THAT(events, ElementsAre("e2", "f0", "f1", "e3", "f2", "e4"));
 }
 

@@ -33,10 +33,12 @@ Result<Dataset> Read(const std::string& path) {
 std::vector<double> Numbers(const PeerGnss& gnss) {
   std::vector<double> numbers;
   for (const auto& message : gnss.ephemerides) {
-    numbers.insert(numbers.end(), {static_cast<double>(message->sat), message->toe.tow, message->ura, message->A, message->n_dot});
+    numbers.insert(numbers.end(), {static_cast<double>(message->sat), message->toe.tow, message->ura,
+                                   message->A, message->n_dot});
   }
   for (const auto& message : gnss.glonass) {
-    numbers.insert(numbers.end(), {static_cast<double>(message->sat), message->toe.tow, message->ura, message->delta_tau_n});
+    numbers.insert(numbers.end(),
+                   {static_cast<double>(message->sat), message->toe.tow, message->ura, message->delta_tau_n});
   }
   for (const auto& message : gnss.ionosphere) {
     numbers.insert(numbers.end(), message->data.begin(), message->data.end());
@@ -44,7 +46,8 @@ std::vector<double> Numbers(const PeerGnss& gnss) {
   for (const PeerGnss::Epoch& epoch : gnss.epochs) {
     numbers.push_back(static_cast<double>(epoch.stamp_ns));
     for (const gnss_comm::GnssObsMsg& m : epoch.message->meas) {
-      numbers.insert(numbers.end(), {static_cast<double>(m.sat), m.psr.at(0), m.psr_std.at(0), m.dopp.at(0), m.dopp_std.at(0)});
+      numbers.insert(numbers.end(), {static_cast<double>(m.sat), m.psr.at(0), m.psr_std.at(0), m.dopp.at(0),
+                                     m.dopp_std.at(0)});
     }
   }
   return numbers;

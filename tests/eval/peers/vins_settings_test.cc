@@ -7,7 +7,8 @@
 namespace alidade {
 namespace {
 
-// Midpoint integration over one interval: (n_0 + n_1) / 2 dt has the variance of a walk of the density, sigma^2 dt.
+// Midpoint integration over one interval: (n_0 + n_1) / 2 dt has the variance of a walk of the density,
+// sigma^2 dt.
 TEST(SetVinsNoise, GivesTheIntegralTheVarianceOfTheDensity) {
   ImuNoise noise;
   noise.gyro_noise_density_radps_sqrthz = 1e-3;

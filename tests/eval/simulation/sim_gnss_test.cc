@@ -57,7 +57,8 @@ TEST(SimGnssTest, WHEN_ephemerides_are_written_THEN_their_accuracy_can_be_weighe
   int seen = 0;
   for (const auto& [satellite, list] : dataset.gnss->catalog->navigation().kepler) {
     for (const KeplerEphemeris& ephemeris : list) {
-      EXPECT_GT(ephemeris.accuracy_m, satellite.system == GnssSystem::kGalileo ? 2 : 1) << ToString(satellite);
+      EXPECT_GT(ephemeris.accuracy_m, satellite.system == GnssSystem::kGalileo ? 2 : 1)
+          << ToString(satellite);
       EXPECT_LT(ephemeris.accuracy_m, 5) << ToString(satellite);
       ++seen;
     }

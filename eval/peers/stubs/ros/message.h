@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#define STUB_POINTERS(Message)                 \
+#define STUB_POINTERS(Message)                   \
   using Message##Ptr = std::shared_ptr<Message>; \
   using Message##ConstPtr = std::shared_ptr<const Message>
-#define STUB_POINTERS_WITHIN(Message)     \
+#define STUB_POINTERS_WITHIN(Message)   \
   using Ptr = std::shared_ptr<Message>; \
   using ConstPtr = std::shared_ptr<const Message>

@@ -19,7 +19,9 @@ class Topics {
     static Topics topics;
     return topics;
   }
-  void Subscribe(const std::string& topic, Callback callback) { callbacks_[Last(topic)] = std::move(callback); }
+  void Subscribe(const std::string& topic, Callback callback) {
+    callbacks_[Last(topic)] = std::move(callback);
+  }
   void Publish(const std::string& topic, std::shared_ptr<const void> message) {
     if (callbacks_.count(Last(topic)) != 0) {
       waiting_.emplace_back(Last(topic), std::move(message));
@@ -77,15 +79,16 @@ struct NodeHandle {
     return found != Parameters().end();
   }
   template <typename Message, typename Node>
-  Subscriber subscribe(const std::string& topic, int, void (Node::*callback)(const std::shared_ptr<const Message>&),
-                       Node* node) {
+  Subscriber subscribe(const std::string& topic, int,
+                       void (Node::*callback)(const std::shared_ptr<const Message>&), Node* node) {
     Topics::Instance().Subscribe(topic, [node, callback](const std::shared_ptr<const void>& message) {
       (node->*callback)(std::static_pointer_cast<const Message>(message));
     });
     return {};
   }
   template <typename Message, typename Node>
-  Subscriber subscribe(const std::string& topic, int, void (Node::*callback)(std::shared_ptr<const Message>), Node* node) {
+  Subscriber subscribe(const std::string& topic, int, void (Node::*callback)(std::shared_ptr<const Message>),
+                       Node* node) {
     Topics::Instance().Subscribe(topic, [node, callback](const std::shared_ptr<const void>& message) {
       (node->*callback)(std::static_pointer_cast<const Message>(message));
     });
