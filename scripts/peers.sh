@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
-# Builds the driver of another system, against a checkout of it. Usage: scripts/peers.sh NAME [--source=DIR] [--build=DIR]
+# Builds the driver of another system, against a checkout of it. Usage: scripts/peers.sh NAME [--source=DIR] [--gnss_comm=DIR] [--build=DIR]
 #   open_vins    https://github.com/rpng/open_vins                    GPL-3
 #   vins_mono    https://github.com/HKUST-Aerial-Robotics/VINS-Mono   GPL-3
-# Without --source the system is cloned into BUILD/peers/NAME.source. Its code is no part of Alidade and its licence is its own: a driver
-# that is linked with it may be passed on under that licence alone. The driver becomes BUILD/peers/alidade_NAME (--build: default build).
-# Exit codes: 2 usage; 3 the checkout is not the commit that the driver was written for; 1 anything else.
+#   gvins        https://github.com/HKUST-Aerial-Robotics/GVINS       GPL-3, with https://github.com/HKUST-Aerial-Robotics/gnss_comm, GPL-3
+#   ingvio       https://github.com/ChangwuLiu/InGVIO                 GPL-3
+# Without --source the system is cloned into BUILD/peers/NAME.source, without --gnss_comm that into BUILD/peers/gnss_comm.source. Their code
+# is no part of Alidade and their licences are their own: a driver that is linked with one may be passed on under that licence alone. The
+# driver becomes BUILD/peers/alidade_NAME (--build: default build).
+# Exit codes: 2 usage; 3 a checkout is not the commit that the driver was written for; 1 anything else.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,7s/^# //p' "$0" >&2
+  sed -n '2,10s/^# //p' "$0" >&2
   exit 2
 }
 
@@ -17,6 +20,7 @@ usage() {
 name=$1
 shift
 # The commit that the driver was written and measured with.
+needs_gnss_comm=no
 case "$name" in
   open_vins)
     url=https://github.com/rpng/open_vins commit=69488123ed9362dd44b6f28e7f4680abbff1442b
@@ -26,42 +30,65 @@ case "$name" in
     url=https://github.com/HKUST-Aerial-Robotics/VINS-Mono commit=90dabb5ec79946ae42fd2e1e91d4e69aabe1e25d
     packages=(libopencv-highgui-dev)
     ;;
+  gvins)
+    url=https://github.com/HKUST-Aerial-Robotics/GVINS commit=d2cf40b49c6eb0e6ad3caa4f613713983be3fd74
+    packages=(libopencv-highgui-dev)
+    needs_gnss_comm=yes
+    ;;
+  ingvio)
+    url=https://github.com/ChangwuLiu/InGVIO commit=8e167132f376598a66cf610e59fc027a10ace674
+    packages=(libopencv-highgui-dev libsuitesparse-dev)
+    ;;
   *) usage ;;
 esac
 
-source_folder="" build=$root/build
+source_folder="" gnss_comm_folder="" build=$root/build
 for argument in "$@"; do
   case "$argument" in
     --source=*) source_folder=${argument#*=} ;;
+    --gnss_comm=*) gnss_comm_folder=${argument#*=} ;;
     --build=*) build=${argument#*=} ;;
     *) usage ;;
   esac
 done
+[[ $needs_gnss_comm == yes || -z $gnss_comm_folder ]] || usage
 
-if [[ -z $source_folder ]]; then
-  source_folder=$build/peers/$name.source
-  if [[ ! -e $source_folder/.git ]]; then
-    echo "cloning $url"
-    git clone --quiet "$url" "$source_folder"
-    git -C "$source_folder" checkout --quiet "$commit"
+# checkout NAME URL COMMIT FOLDER: prints the folder of a checkout at that commit, cloned where FOLDER is empty.
+checkout() {
+  local name=$1 url=$2 commit=$3 folder=$4 top found
+  if [[ -z $folder ]]; then
+    folder=$build/peers/$name.source
+    if [[ ! -e $folder/.git ]]; then
+      echo "cloning $url" >&2
+      git clone --quiet "$url" "$folder"
+      git -C "$folder" checkout --quiet "$commit"
+    fi
   fi
-fi
-source_folder=$(cd "$source_folder" && pwd)
+  folder=$(cd "$folder" && pwd)
+  # A folder inside another repository would answer with that one's commit.
+  top=$(git -C "$folder" rev-parse --show-toplevel 2>/dev/null || true)
+  if [[ $top != "$folder" ]]; then
+    echo "$folder: is no git checkout; expected $url at $commit" >&2
+    exit 3
+  fi
+  found=$(git -C "$folder" rev-parse HEAD)
+  if [[ $found != "$commit" ]]; then
+    echo "$folder: is at commit $found; the driver was written for $commit of $name:" \
+      "git -C $folder checkout $commit" >&2
+    exit 3
+  fi
+  if ! git -C "$folder" diff --quiet HEAD -- '*.cpp' '*.cc' '*.h' '*.hpp'; then
+    echo "note: $folder has changed sources; results are not those of $commit" >&2
+  fi
+  echo "$folder"
+}
 
-# A folder inside another repository would answer with that one's commit.
-top=$(git -C "$source_folder" rev-parse --show-toplevel 2>/dev/null || true)
-if [[ $top != "$source_folder" ]]; then
-  echo "$source_folder: is no git checkout; expected $url at $commit" >&2
-  exit 3
-fi
-found=$(git -C "$source_folder" rev-parse HEAD)
-if [[ $found != "$commit" ]]; then
-  echo "$source_folder: is at commit $found; the driver of $name was written for $commit:" \
-    "git -C $source_folder checkout $commit" >&2
-  exit 3
-fi
-if ! git -C "$source_folder" diff --quiet HEAD -- '*.cpp' '*.cc' '*.h' '*.hpp'; then
-  echo "note: $source_folder has changed sources; results are not those of $commit" >&2
+source_folder=$(checkout "$name" "$url" "$commit" "$source_folder")
+options=("-DALIDADE_${name^^}=$source_folder")
+if [[ $needs_gnss_comm == yes ]]; then
+  gnss_comm_folder=$(checkout gnss_comm https://github.com/HKUST-Aerial-Robotics/gnss_comm \
+    a2035fec1cc427bba184d25ff1fde8dcf23c9ce1 "$gnss_comm_folder")
+  options+=("-DALIDADE_GNSS_COMM=$gnss_comm_folder")
 fi
 
 for package in "${packages[@]}"; do
@@ -72,6 +99,6 @@ for package in "${packages[@]}"; do
   fi
 done
 
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DALIDADE_${name^^}=$source_folder"
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${options[@]}"
 cmake --build "$build" --target "alidade_$name"
 echo "built $build/peers/alidade_$name"

@@ -30,18 +30,29 @@ Result<PeerSequence> ReadPeerSequence(const std::string& path, const std::string
   return sequence;
 }
 
-Status FeedPeer(const PeerSequence& sequence, const PeerSink& sink) {
+Status FeedPeer(const PeerSequence& sequence, const PeerSink& sink, const std::vector<TimeNs>& epochs_ns) {
   const std::vector<TimeNs>& frames = sequence.frames_ns;
-  size_t next = 0;
-  const auto imu_time = [&](size_t frame) { return frames[frame] + SecondsToNs(sink.time_offset_s()); };
+  size_t frame = 0, epoch = 0;
+  const auto frame_time = [&] { return frames[frame] + SecondsToNs(sink.time_offset_s()); };
+  const TimeNs first_ns = sequence.dataset.imu.empty() ? 0 : sequence.dataset.imu.front().stamp_ns;
+  while (frame < frames.size() && frame_time() <= first_ns) {
+    ++frame;
+  }
+  while (epoch < epochs_ns.size() && epochs_ns[epoch] <= first_ns) {
+    ++epoch;
+  }
   for (const ImuSample& sample : sequence.dataset.imu) {
-    const bool first = &sample == &sequence.dataset.imu.front();
-    while (first && next < frames.size() && imu_time(next) <= sample.stamp_ns) {
-      ++next;
-    }
     sink.imu(sample);
-    while (next < frames.size() && imu_time(next) < sample.stamp_ns) {
-      ALIDADE_RETURN_IF_ERROR(sink.frame(next++));
+    for (;;) {
+      const bool has_frame = frame < frames.size() && frame_time() < sample.stamp_ns;
+      const bool has_epoch = epoch < epochs_ns.size() && epochs_ns[epoch] < sample.stamp_ns;
+      if (has_epoch && (!has_frame || epochs_ns[epoch] <= frame_time())) {
+        sink.epoch(epoch++);
+      } else if (has_frame) {
+        ALIDADE_RETURN_IF_ERROR(sink.frame(frame++));
+      } else {
+        break;
+      }
     }
   }
   return Status::Ok();

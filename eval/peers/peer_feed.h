@@ -26,11 +26,14 @@ struct PeerSink {
   /// Camera's clock to IMU time, t_imu = t_camera + offset [s], as the other system knows it at present.
   std::function<double()> time_offset_s;
   std::function<Status(size_t frame)> frame;
+  std::function<void(size_t epoch)> epoch = {};  ///< index into the stamps given beside it
 };
 
-/// Delivers all IMU samples and, right after the first sample that is later than it, each frame: one thread
-/// and one order, whatever the machine's speed. Frames at or before the first sample and after the last one
-/// are left out. Errors: those of `frame`, which end it.
-Status FeedPeer(const PeerSequence& sequence, const PeerSink& sink);
+/// Delivers all IMU samples and, right after the first sample that is later than it, each frame and each GNSS
+/// epoch (`epochs_ns`: IMU time, rising), an epoch before a frame that is not earlier: one thread and one
+/// order, whatever the machine's speed. Frames and epochs at or before the first sample and after the last
+/// one are left out. Errors: those of `frame`, which end it.
+Status FeedPeer(const PeerSequence& sequence, const PeerSink& sink,
+                const std::vector<TimeNs>& epochs_ns = {});
 
 }  // namespace alidade

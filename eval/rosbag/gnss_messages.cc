@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/format.h"
+#include "core/gnss_config.h"
 #include "eval/rosbag/gnss_message_time.h"
+#include "gnss/base/constants.h"
+#include "gnss/model/satellite_measurement.h"
 
 namespace alidade {
 namespace {
@@ -61,6 +65,27 @@ std::optional<SignalCode> SignalOf(GnssSystem system, std::uint8_t code, double 
 
 double OrZero(const std::optional<double>& value) {
   return value.value_or(0);
+}
+
+/// What a receiver says of its own measurement; 0 where there is none. Without a report: the deviation that
+/// the estimators assume by default, by C/N0. The elevation is left to the reader of the message, as
+/// receivers do.
+double DeviationOf(const std::optional<double>& measured, const std::optional<double>& reported,
+                   double zenith_std, const std::optional<double>& cn0_dbhz) {
+  constexpr double kZenith = std::numbers::pi / 2;
+  return measured ? std::sqrt(ObservationVariance(reported.value_or(zenith_std), kZenith, OrZero(cn0_dbhz),
+                                                  reported))
+                  : 0;
+}
+
+double PseudorangeDeviationM(const SignalObservation& signal) {
+  return DeviationOf(signal.pseudorange_m, signal.pseudorange_std_m,
+                     GnssCorrectionOptions().pseudorange_std_m, signal.cn0_dbhz);
+}
+
+double DopplerDeviationHz(const SignalObservation& signal, double frequency_hz) {
+  const double zenith_hz = GnssCorrectionOptions().range_rate_std_mps * frequency_hz / kSpeedOfLight;
+  return DeviationOf(signal.doppler_hz, signal.doppler_std_hz, zenith_hz, signal.cn0_dbhz);
 }
 
 /// A value that says something: finite, not zero, within the bounds.
@@ -171,7 +196,7 @@ std::string EncodeMeasurements(const ObservationEpoch& epoch, const std::map<int
     }
     ++satellites;
     const auto channel = glonass_channels.find(observed.satellite.number);
-    std::vector<double> frequency, cn0, pseudorange, phase, doppler;
+    std::vector<double> frequency, cn0, pseudorange, pseudorange_std, phase, doppler, doppler_std;
     std::vector<std::uint8_t> loss_of_lock, code, status;
     for (const SignalObservation& signal : observed.signals) {
       frequency.push_back(OrZero(CarrierFrequencyHz(
@@ -181,6 +206,8 @@ std::string EncodeMeasurements(const ObservationEpoch& epoch, const std::map<int
       loss_of_lock.push_back(signal.loss_of_lock);
       code.push_back(CodeNumber(signal.signal));
       pseudorange.push_back(OrZero(signal.pseudorange_m));
+      pseudorange_std.push_back(PseudorangeDeviationM(signal));
+      doppler_std.push_back(DopplerDeviationHz(signal, frequency.back()));
       phase.push_back(OrZero(signal.phase_cycles));
       doppler.push_back(OrZero(signal.doppler_hz));
       status.push_back(static_cast<std::uint8_t>((signal.pseudorange_m ? kPseudorangeValid : 0) |
@@ -194,11 +221,11 @@ std::string EncodeMeasurements(const ObservationEpoch& epoch, const std::map<int
     body.Array(loss_of_lock);
     body.Array(code);
     body.Array(pseudorange);
-    body.Array(unknown);
+    body.Array(pseudorange_std);
     body.Array(phase);
     body.Array(unknown);
     body.Array(doppler);
-    body.Array(unknown);
+    body.Array(doppler_std);
     body.Array(status);
   }
   ByteWriter out;

@@ -19,8 +19,10 @@ namespace alidade {
 [[nodiscard]] std::optional<std::uint32_t> GnssCommNumber(SatelliteId satellite);
 [[nodiscard]] std::optional<SatelliteId> SatelliteOfGnssCommNumber(std::uint32_t number);
 
-/// GnssMeasMsg: one epoch. Satellites without a number and standard deviations are left out. Frequencies are
-/// those of the signals, 0 where a GLONASS channel is unknown.
+/// GnssMeasMsg: one epoch. Satellites without a number are left out. Frequencies are those of the signals, 0
+/// where a GLONASS channel is unknown. Deviations of pseudorange [m] and Doppler [Hz] are those that the
+/// receiver reported, else what ObservationVariance gives at the zenith for the estimators' default noise and
+/// the C/N0; of the phase 0, unknown.
 [[nodiscard]] std::string EncodeMeasurements(const ObservationEpoch& epoch,
                                              const std::map<int, int>& glonass_channels);
 /// Deviations that the receiver reports are dropped, because RINEX has no field for them. `glonass_channels`

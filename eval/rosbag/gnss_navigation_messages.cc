@@ -7,6 +7,7 @@
 #include "eval/rosbag/gnss_message_time.h"
 #include "eval/rosbag/gnss_messages.h"
 #include "eval/rosbag/ros_header.h"
+#include "gnss/formats/glonass_accuracy.h"
 #include "gnss/formats/navigation_message.h"
 
 namespace alidade {
@@ -139,7 +140,7 @@ std::optional<std::string> EncodeEphemeris(const GlonassEphemeris& e) {
   out.Write(static_cast<std::uint32_t>(moscow_ns % kDayNs / kQuarterHourNs));
   out.Write(static_cast<std::uint32_t>(e.health));
   out.Write(std::uint32_t{0});
-  out.Write(0.0);
+  out.Write(kGlonassAccuracyM);
   for (const Eigen::Vector3d* vector : {&e.position_m, &e.velocity_mps, &e.acceleration_mps2}) {
     for (int i = 0; i < 3; ++i) {
       out.Write((*vector)[i]);

@@ -71,7 +71,8 @@ KeplerEphemeris MakeMessage(const Walker& walker, int k, TimeNs toe_ns) {
   e.cus = 5e-6;
   e.af1 = 1e-12 * (k % 9 - 4);
   e.af0 = 2e-5 * (k % 11 - 5) + e.af1 * e.toe_of_week_s;
-  e.accuracy_m = 2;
+  // What healthy satellites broadcast most of the time: URA index 0 and SISA index 107.
+  e.accuracy_m = walker.system == GnssSystem::kGalileo ? 3.12 : 2;
   e.issue = static_cast<int>(of_week_ns / kHourNs) % 240;
   e.group_delay_s = {1e-9 * (k % 13 - 6), walker.system == GnssSystem::kGps ? 0 : 1.2e-9 * (k % 13 - 6)};
   return e;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "gnss/base/constants.h"
+#include "gnss/formats/glonass_accuracy.h"
 #include "gnss/orbits/broadcast_orbit.h"
 #include "gnss/orbits/precise_orbit.h"
 
@@ -181,7 +182,6 @@ SatelliteFix SatelliteCatalog::Select(SatelliteId satellite, SignalCode signal, 
   }
   const bool healthy = fix.kepler != nullptr ? Healthy(*fix.kepler, signal) : fix.glonass->health == 0;
   fix.fault = healthy ? SatelliteFault::kNone : SatelliteFault::kUnhealthy;
-  constexpr double kGlonassAccuracyM = 4;
   fix.accuracy_m = fix.kepler != nullptr ? fix.kepler->accuracy_m : kGlonassAccuracyM;
   return fix;
 }

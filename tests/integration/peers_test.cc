@@ -32,10 +32,22 @@ TEST(PeersScript, AFolderWithoutACommitIsRefused) {
   EXPECT_THAT(result.output, HasSubstr("is no git checkout"));
 }
 
+TEST(PeersScript, GvinsWantsACheckoutOfItsOwnAndOneOfGnssComm) {
+  const TemporaryFolder folder;
+  const std::string git = "git -C " + folder.path() + " -c user.name=a -c user.email=a ";
+  ASSERT_EQ(Shell(git + "init -q && " + git + "commit -q --allow-empty -m a").code, 0);
+  const CommandResult other = Peers("gvins --source=" + folder.path() + " --build=" + folder.File("build"));
+  EXPECT_EQ(other.code, 3);
+  EXPECT_THAT(other.output, HasSubstr("was written for d2cf40b49c6eb0e6ad3caa4f613713983be3fd74 of gvins"));
+  EXPECT_EQ(Peers("ingvio --gnss_comm=" + folder.path()).code, 2) << "it holds a copy of its own";
+}
+
 TEST(PeersScript, HelpNamesTheLicence) {
   const CommandResult result = Peers("no_such_system");
   EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.output, HasSubstr("open_vins"));
+  for (const char* name : {"open_vins", "vins_mono", "gvins", "gnss_comm", "ingvio"}) {
+    EXPECT_THAT(result.output, HasSubstr(name));
+  }
   EXPECT_THAT(result.output, HasSubstr("GPL-3"));
 }
 

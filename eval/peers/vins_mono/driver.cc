@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "eval/peers/lens_check.h"
 #include "eval/peers/peer_flags.h"
 #include "eval/peers/vins_mono/system.h"
 
@@ -25,11 +26,11 @@ const std::map<std::string, std::string>& Defaults() {
   return kDefaults;
 }
 
-Status ReadSolverSettings(const PeerFlags& flags, const Dataset& dataset, SolverSettings* settings) {
+Status ReadSolverSettings(const PeerFlags& flags, const Dataset& dataset, VinsSettings* settings) {
   double scale = 0;
   ALIDADE_RETURN_IF_ERROR(flags.Real("noise_scale", 0.1, 1000, &scale));
   if (scale > 0) {
-    SetNoise(dataset.rig.imu_noise, scale, dataset.imu_rate_hz, settings);
+    SetVinsNoise(dataset.rig.imu_noise, scale, dataset.imu_rate_hz, settings);
   }
   ALIDADE_RETURN_IF_ERROR(flags.Real("gravity", 9, 10, &settings->gravity_mps2));
   ALIDADE_RETURN_IF_ERROR(flags.Whole("iterations", 1, 1000, &settings->max_iterations));
@@ -43,17 +44,20 @@ Status Execute(const std::vector<std::string>& arguments) {
   ALIDADE_RETURN_IF_ERROR(flags.status());
   const Result<PeerSequence> sequence = ReadPeerSequence(flags->Text("dataset"), flags->Text("input"));
   ALIDADE_RETURN_IF_ERROR(sequence.status());
-  SolverSettings settings;
+  VinsSettings settings;
   ALIDADE_RETURN_IF_ERROR(ReadSolverSettings(*flags, sequence->dataset, &settings));
   double rate_hz = 10;
   ALIDADE_RETURN_IF_ERROR(flags->Real("rate", 1, 1000, &rate_hz));
-  TrackerSettings tracker_settings;
+  vins::TrackerSettings tracker_settings;
   ALIDADE_RETURN_IF_ERROR(flags->Whole("features", 1, 1000, &tracker_settings.max_features));
-  std::unique_ptr<Tracker> tracker;
+  std::unique_ptr<vins::Tracker> tracker;
   if (!sequence->from_tracks) {
-    Result<std::unique_ptr<Tracker>> made = Tracker::Create(sequence->dataset.rig.camera, tracker_settings);
+    Result<std::unique_ptr<vins::Tracker>> made =
+        vins::Tracker::Create(sequence->dataset.rig.camera, tracker_settings);
     ALIDADE_RETURN_IF_ERROR(made.status());
     tracker = std::move(*made);
+    ALIDADE_RETURN_IF_ERROR(CheckLens(sequence->dataset.rig.camera,
+                                      [&](const Eigen::Vector2d& pixel) { return tracker->Ray(pixel); }));
   }
   System system(*sequence, settings, rate_hz, std::move(tracker));
   const Result<PeerRun> run = system.Run();

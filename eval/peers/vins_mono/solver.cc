@@ -1,21 +1,6 @@
 #include "eval/peers/vins_mono/solver.h"
 
-#include <ceres/solver.h>
 #include <estimator.h>
-
-#include <cmath>
-
-// Ends every solve of VINS-Mono by iterations alone (linked with --wrap): it limits wall time in its
-// initialisation too, and results would depend on the machine.
-extern "C" void __real__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE(
-    const ceres::Solver::Options&, ceres::Problem*, ceres::Solver::Summary*);
-extern "C" void __wrap__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE(
-    const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary) {
-  constexpr double kNoLimitS = 1e6;
-  ceres::Solver::Options unhurried = options;
-  unhurried.max_solver_time_in_seconds = kNoLimitS;
-  __real__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE(unhurried, problem, summary);
-}
 
 namespace alidade::vins_mono {
 namespace {
@@ -24,14 +9,7 @@ Estimator estimator;
 
 }  // namespace
 
-void SetNoise(const ImuNoise& noise, double scale, double rate_hz, SolverSettings* settings) {
-  settings->accel_noise = scale * noise.accel_noise_density_mps2_sqrthz * std::sqrt(2 * rate_hz);
-  settings->gyro_noise = scale * noise.gyro_noise_density_radps_sqrthz * std::sqrt(2 * rate_hz);
-  settings->accel_walk = noise.accel_random_walk_mps3_sqrthz * std::sqrt(rate_hz);
-  settings->gyro_walk = noise.gyro_random_walk_radps2_sqrthz * std::sqrt(rate_hz);
-}
-
-Solver::Solver(const RigCalibration& rig, const SolverSettings& settings) {
+Solver::Solver(const RigCalibration& rig, const VinsSettings& settings) {
   constexpr double kUnknownDepth = 5, kBiasThreshold = 0.1;
   INIT_DEPTH = kUnknownDepth;
   BIAS_ACC_THRESHOLD = BIAS_GYR_THRESHOLD = kBiasThreshold;
@@ -60,9 +38,9 @@ void Solver::AddImu(double step_s, const Eigen::Vector3d& gyro, const Eigen::Vec
   estimator.processIMU(step_s, accel, gyro);
 }
 
-void Solver::AddImage(const std::vector<Feature>& features, double time_s) {
+void Solver::AddImage(const std::vector<VinsFeature>& features, double time_s) {
   std::map<int, std::vector<std::pair<int, Eigen::Matrix<double, 7, 1>>>> image;
-  for (const Feature& feature : features) {
+  for (const VinsFeature& feature : features) {
     Eigen::Matrix<double, 7, 1> row;
     row << feature.plane, 1, feature.pixel, feature.velocity;
     image[feature.id].emplace_back(0, row);

@@ -10,8 +10,8 @@ constexpr int kDroppedAtStart = 2;
 
 }  // namespace
 
-System::System(const PeerSequence& sequence, const SolverSettings& settings, double rate_hz,
-               std::unique_ptr<Tracker> tracker)
+System::System(const PeerSequence& sequence, const VinsSettings& settings, double rate_hz,
+               std::unique_ptr<vins::Tracker> tracker)
     : sequence_(sequence),
       solver_(sequence.dataset.rig, settings),
       tracker_(std::move(tracker)),
@@ -23,57 +23,17 @@ double System::TimeOf(TimeNs stamp_ns) const {
   return SecondsBetween(sequence_.dataset.imu.front().stamp_ns, stamp_ns);
 }
 
-std::vector<Feature> System::GivenFeatures(const TrackFrame& frame, double time_s) {
-  std::vector<Feature> features;
-  std::map<std::int64_t, Seen> seen;
-  for (const TrackObservation& track : frame.observations) {
-    Feature feature;
-    feature.id = static_cast<int>(track.track_id);
-    feature.pixel = track.pixel;
-    if (!sequence_.dataset.rig.camera.Unproject(track.pixel, &feature.plane)) {
-      continue;
-    }
-    if (const auto before = seen_.find(track.track_id); before != seen_.end()) {
-      feature.velocity = (feature.plane - before->second.plane) / (time_s - before->second.time_s);
-      features.push_back(feature);
-    }
-    seen[track.track_id] = {time_s, feature.plane};
-  }
-  seen_ = std::move(seen);
-  return features;
-}
-
-Result<std::vector<Feature>> System::FeaturesOf(size_t frame, double time_s, bool hand_over) {
+Result<std::vector<VinsFeature>> System::FeaturesOf(size_t frame, double time_s, bool hand_over) {
   if (tracker_ == nullptr) {
-    return GivenFeatures(sequence_.dataset.tracks[frame], time_s);
+    return given_.Take(sequence_.dataset.rig.camera, sequence_.dataset.tracks[frame], time_s);
   }
   const Result<GreyImage> image =
       images_.ReadFor(sequence_.dataset.rig.camera, sequence_.dataset.images[frame]);
   ALIDADE_RETURN_IF_ERROR(image.status());
   const double before = ProcessCpuSeconds();
-  std::vector<Feature> features = tracker_->Track(*image, time_s, hand_over);
+  std::vector<VinsFeature> features = tracker_->Track(*image, time_s, hand_over);
   times_.frontend_ms += 1e3 * (ProcessCpuSeconds() - before);
   return features;
-}
-
-void System::DeliverImu(double until_s) {
-  const auto deliver = [this](double time_s, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel) {
-    solver_.AddImu(imu_time_s_ < 0 ? 0 : time_s - imu_time_s_, gyro, accel);
-    imu_time_s_ = time_s;
-    last_.gyro = gyro;
-    last_.accel = accel;
-  };
-  size_t used = 0;
-  for (; used < waiting_.size() && TimeOf(waiting_[used].stamp_ns) <= until_s; ++used) {
-    deliver(TimeOf(waiting_[used].stamp_ns), waiting_[used].gyro, waiting_[used].accel);
-  }
-  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(used));
-  if (!waiting_.empty() && imu_time_s_ >= 0 && imu_time_s_ < until_s) {
-    const ImuSample& next = waiting_.front();
-    const double share = (until_s - imu_time_s_) / (TimeOf(next.stamp_ns) - imu_time_s_);
-    deliver(until_s, (1 - share) * last_.gyro + share * next.gyro,
-            (1 - share) * last_.accel + share * next.accel);
-  }
 }
 
 Status System::FeedFrame(size_t frame) {
@@ -82,13 +42,16 @@ Status System::FeedFrame(size_t frame) {
   if (!taken) {
     return Status::Ok();
   }
-  const Result<std::vector<Feature>> features = FeaturesOf(frame, time_s, *taken);
+  const Result<std::vector<VinsFeature>> features = FeaturesOf(frame, time_s, *taken);
   ALIDADE_RETURN_IF_ERROR(features.status());
   if (!*taken || handed_over_++ < kDroppedAtStart) {
     return Status::Ok();
   }
   const double before = ProcessCpuSeconds();
-  DeliverImu(time_s + solver_.time_offset_s());
+  imu_.DeliverUntil(time_s + solver_.time_offset_s(),
+                    [this](double step_s, const ImuDelivery::Sample& sample) {
+                      solver_.AddImu(step_s, sample.gyro, sample.accel);
+                    });
   solver_.AddImage(*features, time_s);
   times_.backend_ms += 1e3 * (ProcessCpuSeconds() - before);
   Record(frame);
@@ -109,7 +72,9 @@ void System::Record(size_t frame) {
 
 Result<PeerRun> System::Run() {
   PeerSink sink;
-  sink.imu = [this](const ImuSample& sample) { waiting_.push_back(sample); };
+  sink.imu = [this](const ImuSample& sample) {
+    imu_.Add({TimeOf(sample.stamp_ns), sample.gyro, sample.accel});
+  };
   sink.time_offset_s = [this] { return solver_.time_offset_s(); };
   sink.frame = [this](size_t frame) { return FeedFrame(frame); };
   ALIDADE_RETURN_IF_ERROR(FeedPeer(sequence_, sink));

@@ -1,14 +1,16 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <vector>
 
 #include "core/status.h"
 #include "eval/bag/dataset_images.h"
+#include "eval/peers/given_features.h"
+#include "eval/peers/imu_delivery.h"
 #include "eval/peers/peer_feed.h"
 #include "eval/peers/peer_run.h"
 #include "eval/peers/publish_rate.h"
+#include "eval/peers/vins/tracker.h"
 #include "eval/peers/vins_mono/solver.h"
 
 namespace alidade::vins_mono {
@@ -18,8 +20,8 @@ namespace alidade::vins_mono {
 class System {
  public:
   /// `tracker` null: the sequence's tracks are given to the solver.
-  System(const PeerSequence& sequence, const SolverSettings& settings, double rate_hz,
-         std::unique_ptr<Tracker> tracker);
+  System(const PeerSequence& sequence, const VinsSettings& settings, double rate_hz,
+         std::unique_ptr<vins::Tracker> tracker);
 
   /// Feeds everything. A row is written for each image that the solver gets once it is initialised. Times: of
   /// all images since the row before. Errors: those of the images.
@@ -31,26 +33,16 @@ class System {
  private:
   [[nodiscard]] double TimeOf(TimeNs stamp_ns) const;
   Status FeedFrame(size_t frame);
-  Result<std::vector<Feature>> FeaturesOf(size_t frame, double time_s, bool hand_over);
-  std::vector<Feature> GivenFeatures(const TrackFrame& frame, double time_s);
-  void DeliverImu(double until_s);
+  Result<std::vector<VinsFeature>> FeaturesOf(size_t frame, double time_s, bool hand_over);
   void Record(size_t frame);
-
-  /// A given track where it was last seen.
-  struct Seen {
-    double time_s;
-    Eigen::Vector2d plane;
-  };
 
   const PeerSequence& sequence_;
   Solver solver_;
-  std::unique_ptr<Tracker> tracker_;
+  std::unique_ptr<vins::Tracker> tracker_;
   PublishRate rate_;
   DatasetImages images_;
-  std::vector<ImuSample> waiting_;  ///< for the next image
-  double imu_time_s_ = -1;          ///< delivered so far; negative: nothing
-  ImuSample last_;                  ///< delivered last
-  std::map<std::int64_t, Seen> seen_;
+  ImuDelivery imu_;
+  GivenFeatures given_;
   int handed_over_ = 0;
   int starts_ = 0;
   bool was_running_ = false;

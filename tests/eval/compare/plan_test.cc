@@ -237,7 +237,7 @@ TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
 // The shipped plans of published data read without any of it, and say what they would need.
 TEST(PublishedPlans, SayWhatDataTheyNeed) {
   const test::TemporaryFolder folder;
-  for (const char* name : {"euroc", "tumvi", "gvins"}) {
+  for (const char* name : {"euroc", "tumvi", "gvins", "arena_gnss"}) {
     const std::string path = std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/" + name + ".yaml";
     EXPECT_EQ(ReadPlan(path, "").code(), StatusCode::kConfig) << name;
     const Result<Plan> none = ReadPlan(path, folder.path());

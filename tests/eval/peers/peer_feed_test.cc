@@ -57,6 +57,24 @@ TEST(FeedPeer, TheOffsetBringsFramesIntoImuTime) {
               ElementsAre("i10", "i20", "f0", "i30", "i40", "f1", "i50", "i60"));
 }
 
+TEST(FeedPeer, AnEpochComesBeforeAFrameThatIsNotEarlier) {
+  std::vector<std::string> events;
+  PeerSink sink;
+  sink.imu = [](const ImuSample&) {};
+  sink.time_offset_s = [] { return 0.0; };
+  sink.frame = [&](size_t frame) {
+    events.push_back("f" + std::to_string(frame));
+    return Status::Ok();
+  };
+  sink.epoch = [&](size_t epoch) { events.push_back("e" + std::to_string(epoch)); };
+  constexpr TimeNs kMs = 1'000'000;
+  // 5 and 10 are not covered by the IMU, nor is 60.
+  ASSERT_TRUE(
+      FeedPeer(MakeSequence({25, 40, 43}), sink, {5 * kMs, 10 * kMs, 25 * kMs, 42 * kMs, 55 * kMs, 60 * kMs})
+          .ok());
+  EXPECT_THAT(events, ElementsAre("e2", "f0", "f1", "e3", "f2", "e4"));
+}
+
 TEST(FeedPeer, AFaultEndsIt) {
   const PeerSequence sequence = MakeSequence({25, 40});
   int frames = 0;

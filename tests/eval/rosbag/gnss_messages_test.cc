@@ -121,6 +121,46 @@ TEST(GnssMeasurements, ComeBackEqual) {
   }
 }
 
+/// Deviations of pseudorange and Doppler in a message of one satellite and signal.
+std::pair<double, double> DeviationsIn(const SignalObservation& signal) {
+  ObservationEpoch epoch;
+  epoch.stamp_ns = kStamp;
+  epoch.satellites = {{{GnssSystem::kGps, 2}, {signal}}};
+  const std::string bytes = EncodeMeasurements(epoch, {});
+  ByteReader in(bytes);
+  // Count, time and satellite; then frequency, C/N0, LLI, code and pseudorange.
+  static_cast<void>(in.Take(4 + 12 + 4));
+  static_cast<void>(in.Array<double>());
+  static_cast<void>(in.Array<double>());
+  static_cast<void>(in.Array<std::uint8_t>());
+  static_cast<void>(in.Array<std::uint8_t>());
+  static_cast<void>(in.Array<double>());
+  const double pseudorange = in.Array<double>().at(0);
+  for (int i = 0; i < 3; ++i) {
+    static_cast<void>(in.Array<double>());
+  }
+  return {pseudorange, in.Array<double>().at(0)};
+}
+
+// Readers of these messages weigh by them: GVINS aborts on zero, InGVIO never aligns.
+TEST(GnssMeasurements, HoldDeviationsByStrengthOrAsReported) {
+  const double wavelength = 299792458.0 / 1575.42e6;
+  SignalObservation signal{{'1', 'C'}, 2.2e7, {}, 970.9, 45.0, 0, {}, {}};
+  EXPECT_NEAR(DeviationsIn(signal).first, 0.7, 1e-12) << "the estimators' default at 45 dB-Hz";
+  EXPECT_NEAR(DeviationsIn(signal).second, 0.05 / wavelength, 1e-12);
+  signal.cn0_dbhz = 35;
+  EXPECT_NEAR(DeviationsIn(signal).first, 0.7 * std::sqrt(10.0), 1e-12) << "ten times the variance";
+  EXPECT_NEAR(DeviationsIn(signal).second, 0.05 / wavelength * std::sqrt(10.0), 1e-12);
+  signal.cn0_dbhz.reset();
+  EXPECT_NEAR(DeviationsIn(signal).first, 0.7, 1e-12);
+  signal.pseudorange_std_m = 0.32;
+  signal.doppler_std_hz = 0.128;
+  EXPECT_NEAR(DeviationsIn(signal).first, 0.32, 1e-12);
+  EXPECT_NEAR(DeviationsIn(signal).second, 0.128, 1e-12);
+  signal.doppler_hz.reset();
+  EXPECT_EQ(DeviationsIn(signal).second, 0) << "not measured";
+}
+
 // u-blox' driver names B1I by its old code 47; other drivers leave the code out.
 TEST(GnssMeasurements, SignalsAreToldByCodeOrFrequency) {
   for (const auto& [code, frequency] : {std::pair<int, double>(47, 1561.098e6), {40, 0}, {0, 1561.098e6}}) {
@@ -176,6 +216,20 @@ TEST(GnssEphemerides, ComeBackEqual) {
   EXPECT_EQ(back->acceleration_mps2, e.acceleration_mps2);
   EXPECT_EQ(back->channel, e.channel);
   EXPECT_EQ(back->l2_delay_s, e.l2_delay_s);
+}
+
+TEST(GnssEphemerides, HoldTheAccuracyInMetres) {
+  const KeplerEphemeris e = Ephemeris({GnssSystem::kGps, 9});
+  const std::string kepler = *EncodeEphemeris(e);
+  ByteReader in(kepler);
+  // Satellite, three times, time of week, week, issues, health, code.
+  static_cast<void>(in.Take(4 + 3 * 12 + 8 + 5 * 4));
+  EXPECT_EQ(in.Read<double>(), 2.8);
+  const std::string glonass = *EncodeEphemeris(Glonass());
+  ByteReader of_glonass(glonass);
+  // Satellite, two times, channel, issue, health, age.
+  static_cast<void>(of_glonass.Take(4 + 2 * 12 + 4 * 4));
+  EXPECT_EQ(of_glonass.Read<double>(), 4);
 }
 
 TEST(GnssEphemerides, NonsenseIsRefused) {

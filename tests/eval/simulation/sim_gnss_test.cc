@@ -51,6 +51,21 @@ TEST(SimGnssTest, WHEN_written_and_read_THEN_the_log_is_the_same) {
   EXPECT_NE(DigestOf(without), DigestOf(LogOf(dataset)));
 }
 
+// gnss_comm's readers weigh by URA - 1 (GPS, BeiDou) and SISA - 2 (Galileo): they need more than that.
+TEST(SimGnssTest, WHEN_ephemerides_are_written_THEN_their_accuracy_can_be_weighed) {
+  const Dataset dataset = Simulated(Config());
+  int seen = 0;
+  for (const auto& [satellite, list] : dataset.gnss->catalog->navigation().kepler) {
+    for (const KeplerEphemeris& ephemeris : list) {
+      EXPECT_GT(ephemeris.accuracy_m, satellite.system == GnssSystem::kGalileo ? 2 : 1)
+          << ToString(satellite);
+      EXPECT_LT(ephemeris.accuracy_m, 5) << ToString(satellite);
+      ++seen;
+    }
+  }
+  EXPECT_GE(seen, 3 * 24);
+}
+
 // GIVEN no noise, THEN the single-point solution stands where the antenna is, and moves as it does.
 TEST(SimGnssTest, GIVEN_no_noise_THEN_single_points_are_the_truth) {
   SimulatorConfig config = Config();

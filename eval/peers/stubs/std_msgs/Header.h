@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ros/ros.h"
+#include "../ros/time.h"
 
 namespace std_msgs {
 

@@ -1,9 +1,9 @@
-#include "eval/peers/vins_mono/tracker.h"
+#include "eval/peers/vins/tracker.h"
 
 #include <camodocal/camera_models/EquidistantCamera.h>
 #include <feature_tracker.h>
 
-namespace alidade::vins_mono {
+namespace alidade::vins {
 namespace {
 
 camodocal::CameraPtr MakeCamera(const CameraModel& camera) {
@@ -37,7 +37,7 @@ class OwnTracker : public Tracker {
  public:
   explicit OwnTracker(camodocal::CameraPtr camera) { tracker_.m_camera = std::move(camera); }
 
-  std::vector<Feature> Track(const GreyImage& image, double time_s, bool hand_over) override {
+  std::vector<VinsFeature> Track(const GreyImage& image, double time_s, bool hand_over) override {
     PUB_THIS_FRAME = hand_over;
     // It keeps references to images.
     const cv::Mat pixels(image.height_px, image.width_px, CV_8UC1,
@@ -45,7 +45,7 @@ class OwnTracker : public Tracker {
     tracker_.readImage(pixels.clone(), time_s);
     for (unsigned int i = 0; tracker_.updateID(i); ++i) {
     }
-    std::vector<Feature> features;
+    std::vector<VinsFeature> features;
     for (size_t i = 0; hand_over && i < tracker_.ids.size(); ++i) {
       if (tracker_.track_cnt[i] > 1) {
         features.push_back({tracker_.ids[i], VectorOf(tracker_.cur_un_pts[i]), VectorOf(tracker_.cur_pts[i]),
@@ -53,6 +53,12 @@ class OwnTracker : public Tracker {
       }
     }
     return features;
+  }
+
+  [[nodiscard]] Eigen::Vector3d Ray(const Eigen::Vector2d& pixel) const override {
+    Eigen::Vector3d ray;
+    tracker_.m_camera->liftProjective(pixel, ray);
+    return ray;
   }
 
  private:
@@ -64,7 +70,7 @@ class OwnTracker : public Tracker {
 Result<std::unique_ptr<Tracker>> Tracker::Create(const CameraModel& camera, const TrackerSettings& settings) {
   camodocal::CameraPtr made = MakeCamera(camera);
   if (!made) {
-    return Status::Input("VINS-Mono has no lens model fov");
+    return Status::Input("the tracker of VINS-Mono and GVINS has no lens model fov");
   }
   cv::setNumThreads(1);
   MAX_CNT = settings.max_features;
@@ -78,4 +84,4 @@ Result<std::unique_ptr<Tracker>> Tracker::Create(const CameraModel& camera, cons
   return std::unique_ptr<Tracker>(new OwnTracker(std::move(made)));
 }
 
-}  // namespace alidade::vins_mono
+}  // namespace alidade::vins

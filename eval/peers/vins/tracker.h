@@ -1,22 +1,14 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <vector>
 
 #include "core/camera_model.h"
 #include "core/status.h"
+#include "eval/peers/vins_feature.h"
 #include "frontend/tracking/image_reader.h"
 
-namespace alidade::vins_mono {
-
-/// A feature in an image, as the solver takes it.
-struct Feature {
-  int id = 0;
-  Eigen::Vector2d plane = Eigen::Vector2d::Zero();     ///< undistorted, normalised plane
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();     ///< raw [px]
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of `plane` [1/s]
-};
+namespace alidade::vins {
 
 struct TrackerSettings {
   int max_features = 150;
@@ -25,7 +17,8 @@ struct TrackerSettings {
   bool equalize = true;
 };
 
-/// VINS-Mono's tracker. Its settings are globals: one object a process.
+/// The tracker of VINS-Mono, or that of GVINS: this is compiled with either. Its settings are globals: one
+/// object a process.
 class __attribute__((visibility("default"))) Tracker {
  public:
   /// kInput: a lens model that it has not.
@@ -34,7 +27,10 @@ class __attribute__((visibility("default"))) Tracker {
 
   /// Tracks into an image of time `time_s`. Only of an image that is handed over are outliers rejected and
   /// gaps filled; returned are then the features seen in more than one image, else none.
-  virtual std::vector<Feature> Track(const GreyImage& image, double time_s, bool hand_over) = 0;
+  virtual std::vector<VinsFeature> Track(const GreyImage& image, double time_s, bool hand_over) = 0;
+
+  /// Undistorts a pixel.
+  [[nodiscard]] virtual Eigen::Vector3d Ray(const Eigen::Vector2d& pixel) const = 0;
 };
 
-}  // namespace alidade::vins_mono
+}  // namespace alidade::vins

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "eval/peers/peer_feed.h"
+#include "eval/peers/peer_run.h"
+
+namespace alidade {
+
+/// What a driver tells of a run: when, after the first frame, the first pose came and the alignment with
+/// GNSS, and the share of the sequence's time, first to last frame, that rows at most half a second apart
+/// cover.
+std::string SummaryText(const PeerSequence& sequence, const PeerRun& run,
+                        const std::optional<TimeNs>& aligned_ns);
+
+}  // namespace alidade

@@ -1,0 +1,2 @@
+// In place of ROS: included by the peers, used by what is not built of them.
+#pragma once
