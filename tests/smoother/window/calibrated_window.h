@@ -8,8 +8,8 @@
 
 namespace alidade::test {
 
-/// A pinhole camera for the fixture, or double-sphere where it sees behind itself, all of whose calibration is
-/// estimated: views keep their pixels, and the frames were placed by other time offsets than the present
+/// A pinhole camera for the fixture, or double-sphere where it sees behind itself, all of whose calibration
+/// is estimated: views keep their pixels, and the frames were placed by other time offsets than the present
 /// one.
 inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
   const Result<CameraModel> camera =
