@@ -100,8 +100,8 @@ void FilterState::AddClone(int serial, const Eigen::Vector3d& gyro_radps) {
   clones_.push_back(clone);
   if (layout().time_offset() >= 0) {
     const Vector6d rates = BodyRates(gyro_radps - bias_.gyro, nav_.v_WB);
-    covariance_.AddToRows(CloneOffset(clones_.size() - 1),
-                          InverseChartJacobian(convention_, clone.T_WB) * rates,
+    const Vector6d gain = InverseChartJacobian(convention_, clone.T_WB) * rates;
+    covariance_.AddToRows(CloneOffset(clones_.size() - 1), gain,
                           CalibrationOffset() + layout().time_offset());
   }
 }

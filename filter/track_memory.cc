@@ -51,7 +51,7 @@ double TrackMemoryKeeper::StateDepthDeviation(const FilterState& state, const Ve
         clone_rows.middleCols<6>(6 * static_cast<Index>(k)).transpose() * along;
   }
   if (calibration_ > 0) {
-    row.segment(state.CalibrationOffset(), calibration_) -=
+    row.segment(state.CalibrationOffset(), calibration_).noalias() -=
         clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_).transpose() * along;
   }
   const auto newest = static_cast<size_t>(clones.back());
@@ -139,8 +139,8 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
              correction.segment<6>(state.CloneOffset(i));
   }
   if (calibration_ > 0) {
-    shift -= memory->clone_rows.rightCols(calibration_) *
-             correction.segment(state.CalibrationOffset(), calibration_);
+    shift.noalias() -= memory->clone_rows.rightCols(calibration_) *
+                       correction.segment(state.CalibrationOffset(), calibration_);
   }
   const Vector3d move = SolveRegular(memory->landmark_rows, shift);
   if (error_.anchored()) {

@@ -16,7 +16,7 @@ struct ReportedError {
 
 /// Does a run say so when its covariance does not hold? The pose error is beyond n sigma when its NEES
 /// exceeds the chi-square quantile (6 degrees of freedom) of the share that a Gaussian has within n
-/// sigma: 38.9 for n = 5, 20.1 for n = 3.
+/// sigma: 39.5 for n = 5, 20.1 for n = 3.
 struct SilentFailure {
   /// Instants beyond kFailureSigmas without an alarm, where they last longer than kLongestSilenceS: first to
   /// last of each such span, in all [s].

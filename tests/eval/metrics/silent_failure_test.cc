@@ -22,8 +22,8 @@ bool Never(int) {
 }
 
 TEST(SilentFailure, BeginsWhereAGaussianIsBeyondFiveSigma) {
-  // Chi-square with 6 degrees of freedom: P(> 38.912) = 5.733e-7 = P(|N(0, 1)| > 5), by series expansion.
-  for (const auto& [nees, silent_s] : {std::pair(38.8, 0.0), std::pair(39.0, 9.9)}) {
+  // Chi-square with 6 degrees of freedom: P(> 39.491) = 5.733e-7 = P(|N(0, 1)| > 5).
+  for (const auto& [nees, silent_s] : {std::pair(39.4, 0.0), std::pair(39.6, 9.9)}) {
     const double value = nees;
     EXPECT_NEAR(ComputeSilentFailure(Instants(
                                          100, [&](int) { return value; }, Never))

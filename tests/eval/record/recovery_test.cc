@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "eval/metrics/nees.h"
 #include "eval/record/recorder.h"
 #include "eval/record/recorder_reader.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
 #include "eval/trajectory/trajectory_interpolation.h"
+#include "eval/trajectory/trajectory_point.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -46,6 +48,19 @@ double SpeedError(const RunRecord& record, const Dataset& dataset) {
   return std::abs(truth->nav.v_WB.norm() - record.estimate.nav.v_WB.norm());
 }
 
+/// Mean pose NEES of the records from a stamp on.
+double MeanNees(const RunResult& result, TimeNs from_ns, const Dataset& dataset) {
+  std::vector<StatePair> pairs;
+  for (const RunRecord& record : result.records) {
+    const Result<TrajectoryPoint> truth = InterpolateTruth(*dataset.truth, record.estimate.stamp_ns);
+    if (record.estimate.stamp_ns >= from_ns && truth.ok()) {
+      pairs.push_back({*truth, PointOf(record.estimate)});
+    }
+  }
+  EXPECT_GT(pairs.size(), 20U);
+  return ComputeNees(pairs).mean_pose;
+}
+
 class RecoveryRunTest : public testing::TestWithParam<Backend> {};
 
 // GIVEN a camera that sees nothing and an IMU that tells noise for two seconds, WHEN both come back, THEN the
@@ -64,6 +79,8 @@ TEST_P(RecoveryRunTest, StartsAgainAfterCameraAndImuFailed) {
   EXPECT_FALSE(restart.reason.empty());
   EXPECT_GT(result.records.back().estimate.stamp_ns, dataset->tracks.back().stamp_ns - SecondsToNs(0.2));
   EXPECT_LT(SpeedError(result.records.back(), *dataset), 0.2);
+  // Tens of metres off, and its covariance says so: chi-square with 6 degrees of freedom, 1e-4 beyond 27.9.
+  EXPECT_LT(MeanNees(result, restart.restarted_ns, *dataset), 27.9);
   int lost = 0;
   int restarted = 0;
   for (const RunRecord& record : result.records) {
