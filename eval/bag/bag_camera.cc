@@ -107,6 +107,7 @@ Status BagCamera::Assemble(BagContext* bag) {
   dataset.rig.camera = sensor->camera;
   dataset.rig.T_BC = sensor->T_BC;
   dataset.rig.camera_time_offset_s = sensor->time_offset_s;
+  dataset.rig.line_delay_s = sensor->line_delay_s;
   dataset.camera_rate_hz = sensor->rate_hz.value_or(0);
   const std::vector<TrackFrame>& tracks = dataset.tracks;
   const std::vector<ImageEntry>& images = dataset.images;

@@ -87,6 +87,7 @@ int CalibrationToSheets(const ImportedCalibration& calibration) {
   rig.camera = calibration.camera->camera;
   rig.T_BC = calibration.camera->T_BC;
   rig.camera_time_offset_s = calibration.camera->time_offset_s;
+  rig.line_delay_s = calibration.camera->line_delay_s;
   return Report(WriteFileAtomically(FLAGS_output + "/cam0/sensor.yaml",
                                     CameraSensorYaml(rig, calibration.camera->rate_hz.value_or(0))));
 }

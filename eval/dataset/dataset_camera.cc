@@ -168,6 +168,7 @@ Status ReadFirstCamera(const fs::path& folder, Dataset* dataset) {
   dataset->rig.camera = sensor->camera;
   dataset->rig.T_BC = sensor->T_BC;
   dataset->rig.camera_time_offset_s = sensor->time_offset_s;
+  dataset->rig.line_delay_s = sensor->line_delay_s;
   ALIDADE_RETURN_IF_ERROR(ReadSources(folder, dataset));
   dataset->camera_rate_hz = sensor->rate_hz.value_or(MeasuredCameraRate(*dataset));
   return Status::Ok();
@@ -247,6 +248,7 @@ std::string ExtraCameraYaml(const Dataset& dataset, size_t k) {
   rig.camera = extra.camera;
   rig.T_BC = extra.T_BC;
   rig.camera_time_offset_s = extra.camera_time_offset_s;
+  rig.line_delay_s = 0;
   return CameraSensorYaml(rig, dataset.camera_rate_hz);
 }
 

@@ -15,6 +15,9 @@ void AddRig(const RigCalibration& rig, LogHasher* hasher) {
   hasher->Add(rig.imu_noise.gyro_random_walk_radps2_sqrthz);
   hasher->Add(rig.imu_noise.accel_random_walk_mps3_sqrthz);
   hasher->Add(rig.camera_time_offset_s);
+  if (rig.line_delay_s != 0) {
+    hasher->Add(rig.line_delay_s);
+  }
 }
 
 }  // namespace

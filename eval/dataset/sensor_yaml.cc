@@ -110,6 +110,17 @@ Status ReadDensity(const SensorFile& file, const char* key, double* density) {
   return *density > 0 ? Status::Ok() : file.Fault(key, "a noise density greater than 0");
 }
 
+/// Of either sign: a sensor that is mounted upside down reads its rows from below.
+Status ReadLineDelay(const SensorFile& file, int height_px, double* line_delay_s) {
+  constexpr double kMostReadoutS = 0.2;
+  ALIDADE_RETURN_IF_ERROR(file.ReadReal("line_delay_s", -kMostReadoutS, line_delay_s));
+  if (std::abs(*line_delay_s) * height_px > kMostReadoutS) {
+    return file.Fault("line_delay_s", "the time from one row to the next [s]: " + std::to_string(height_px) +
+                                          " rows within " + ShortestDouble(kMostReadoutS) + " s");
+  }
+  return Status::Ok();
+}
+
 Result<ImuSensor> MakeImuSensor(const Result<YAML::Node>& root, const std::string& path) {
   const Result<SensorFile> file = SensorFile::Make(root, path, "imu");
   if (!file.ok()) {
@@ -149,6 +160,9 @@ Result<CameraSensor> MakeCameraSensor(const Result<YAML::Node>& root, const std:
     if (sensor.time_offset_s > 10) {
       return file->Fault("time_offset_s", "a number within +-10 s");
     }
+  }
+  if (file->Has("line_delay_s")) {
+    ALIDADE_RETURN_IF_ERROR(ReadLineDelay(*file, sensor.camera.height_px(), &sensor.line_delay_s));
   }
   return sensor;
 }
@@ -197,6 +211,10 @@ std::string CameraSensorYaml(const RigCalibration& rig, double rate_hz) {
   text += "]\n";
   if (rig.camera_time_offset_s != 0) {
     text += Line("time_offset_s", rig.camera_time_offset_s, "  # t_imu = t_camera + offset");
+  }
+  if (rig.line_delay_s != 0) {
+    text += Line("line_delay_s", rig.line_delay_s,
+                 "  # a row later, so much later; the stamp is of the middle row");
   }
   return text;
 }

@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 
-#include "core/check.h"
 #include "core/lie.h"
 
 namespace alidade {
@@ -34,9 +34,10 @@ ErrorSpread SpreadOf(std::vector<double> errors_px) {
 
 /// Where a track began.
 struct Beginning {
-  std::size_t frame = 0;
+  ExposureTime time;
   std::optional<Vector2d> normalized;  ///< empty: outside the domain of the lens model
-  std::optional<Vector3d> p_W;         ///< the surface point seen there
+  std::optional<Pose> T_WC;
+  std::optional<SurfacePoint> point;  ///< that is seen there
 };
 
 struct Life {
@@ -85,10 +86,11 @@ class Scorer {
       const auto [place, began] = lives_.try_emplace(observation.track_id);
       Life& life = place->second;
       if (began) {
-        life.beginning = Begin(index, observation.pixel);
+        life.beginning = Begin({index, observation.pixel.y()}, observation.pixel);
       } else {
-        Compare(index, life.beginning, observation.pixel);
+        Compare({index, observation.pixel.y()}, life.beginning, observation.pixel);
       }
+      moving_ += life.beginning.point.has_value() && life.beginning.point->moving >= 0 ? 1 : 0;
       life.last_frame = index;
       ++life.observations;
       covered[Cell(observation.pixel)] = true;
@@ -100,8 +102,8 @@ class Scorer {
   [[nodiscard]] TrackScore Summarize(const std::vector<TrackFrame>& frames) const;
 
  private:
-  [[nodiscard]] std::optional<Pose> PoseOf(std::size_t frame) const {
-    return truth_.T_WC.empty() ? std::nullopt : truth_.T_WC[frame];
+  [[nodiscard]] std::optional<Pose> PoseAt(const ExposureTime& time) const {
+    return truth_.T_WC ? truth_.T_WC(time) : std::nullopt;
   }
 
   [[nodiscard]] std::size_t Cell(const Vector2d& pixel) const {
@@ -113,39 +115,60 @@ class Scorer {
                                     index(pixel.x(), camera_.width_px(), TrackScore::kColumns));
   }
 
-  [[nodiscard]] Beginning Begin(std::size_t index, const Vector2d& pixel) const {
-    Beginning beginning{.frame = index, .normalized = std::nullopt, .p_W = std::nullopt};
+  [[nodiscard]] Beginning Begin(const ExposureTime& time, const Vector2d& pixel) const {
+    Beginning beginning{
+        .time = time, .normalized = std::nullopt, .T_WC = std::nullopt, .point = std::nullopt};
     Vector2d normalized;
     if (!camera_.Unproject(pixel, &normalized)) {
       return beginning;
     }
     beginning.normalized = normalized;
-    const std::optional<Pose> T_WC = PoseOf(index);
-    if (T_WC.has_value() && truth_.distance) {
-      const Vector3d direction_W = T_WC->rotation * normalized.homogeneous().normalized();
-      beginning.p_W = T_WC->translation + truth_.distance(T_WC->translation, direction_W) * direction_W;
+    beginning.T_WC = PoseAt(time);
+    if (beginning.T_WC.has_value() && truth_.surface) {
+      const Vector3d direction_W = beginning.T_WC->rotation * normalized.homogeneous().normalized();
+      beginning.point = truth_.surface(time, beginning.T_WC->translation, direction_W);
     }
     return beginning;
   }
 
-  void Compare(std::size_t index, const Beginning& beginning, const Vector2d& pixel) {
-    const int age = static_cast<int>(index - beginning.frame);
-    ++observations_[age];
-    const std::optional<Pose> T_WC = PoseOf(index);
-    if (!T_WC.has_value()) {
-      return;
+  /// Where a frame shows the point; `time` holds about the row, and then the row itself. False: nowhere.
+  bool Expect(const Beginning& beginning, ExposureTime time, Vector2d* pixel) const {
+    // The row decides when, which decides the row: each round leaves the share of the line delay in the time
+    // that the image takes to move by a row, a few per cent.
+    constexpr int kRounds = 6;
+    constexpr double kSettledPx = 1e-4;
+    for (int round = 0; round < kRounds; ++round) {
+      const std::optional<Pose> T_WC = PoseAt(time);
+      if (!T_WC.has_value()) {
+        return false;
+      }
+      const Vector3d p_W =
+          truth_.moved ? truth_.moved(*beginning.point, beginning.time, time) : beginning.point->p_W;
+      if (!camera_.Project(T_WC->Inverse() * p_W, pixel)) {
+        return false;
+      }
+      const double change_px = std::abs(pixel->y() - time.row);
+      time.row = pixel->y();
+      if (change_px < kSettledPx) {
+        break;
+      }
     }
+    return true;
+  }
+
+  void Compare(const ExposureTime& time, const Beginning& beginning, const Vector2d& pixel) {
+    const int age = static_cast<int>(time.frame - beginning.time.frame);
+    ++observations_[age];
     Vector2d expected;
-    if (beginning.p_W.has_value() && camera_.Project(T_WC->Inverse() * *beginning.p_W, &expected)) {
+    if (beginning.point.has_value() && Expect(beginning, time, &expected)) {
       corner_.Add(age, (pixel - expected).norm());
     }
-    const std::optional<Pose> T_WC_first = PoseOf(beginning.frame);
+    const std::optional<Pose> T_WC = PoseAt(time);
     Vector2d normalized;
-    if (!T_WC_first.has_value() || !beginning.normalized.has_value() ||
-        !camera_.Unproject(pixel, &normalized)) {
+    if (!T_WC.has_value() || !beginning.T_WC.has_value() || !camera_.Unproject(pixel, &normalized)) {
       return;
     }
-    const Pose T_21 = T_WC->Inverse() * *T_WC_first;
+    const Pose T_21 = T_WC->Inverse() * *beginning.T_WC;
     if (T_21.translation.norm() >= TrackScore::kMinBaselineM) {
       epipolar_.Add(age, camera_.mean_focal_px() * SampsonDistance(*beginning.normalized, normalized, T_21));
     }
@@ -156,6 +179,7 @@ class Scorer {
   std::map<std::int64_t, Life> lives_;
   std::map<int, std::size_t> observations_;  ///< by age
   double coverage_ = 0;
+  std::size_t moving_ = 0;  ///< observations of what moves
   ErrorBook epipolar_, corner_;
 };
 
@@ -177,8 +201,9 @@ TrackScore Scorer::Summarize(const std::vector<TrackFrame>& frames) const {
   score.median_life = SortedAt(&lived, 0.5);
   score.loss_share = at_risk > 0 ? static_cast<double>(score.tracks - score.censored) / at_risk : nothing;
   score.coverage = frames.empty() ? nothing : coverage_ / score.frames;
-  score.has_poses = !truth_.T_WC.empty();
-  score.has_surface = score.has_poses && truth_.distance;
+  score.has_poses = static_cast<bool>(truth_.T_WC);
+  score.has_surface = score.has_poses && truth_.surface;
+  score.moving_share = total > 0 ? static_cast<double>(moving_) / total : nothing;
   score.epipolar = epipolar_.All();
   score.corner = corner_.All();
   for (const int age : kAges) {
@@ -193,7 +218,6 @@ TrackScore Scorer::Summarize(const std::vector<TrackFrame>& frames) const {
 
 TrackScore ScoreTracks(const std::vector<TrackFrame>& frames, const CameraModel& camera,
                        const TrackTruth& truth, const std::vector<double>& cpu_ms) {
-  CHECK(truth.T_WC.empty() || truth.T_WC.size() == frames.size());
   Scorer scorer(camera, truth);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     scorer.AddFrame(i, frames[i]);

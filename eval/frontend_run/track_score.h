@@ -39,8 +39,11 @@ struct AgeScore {
 /// see errors along the epipolar line. Pairs with less than kMinBaselineM between the cameras do not count:
 /// the direction between them is noise of the truth.
 /// corner: distance of an observation from the pixel of the surface point that the first observation of its
-/// track shows; zero at age 0.
-/// Neglected: the line delay of a rolling shutter.
+/// track shows; zero at age 0. A point of something that moves moves along.
+/// moving: share of the observations of tracks that began on something that moves; to an estimator they are
+/// outliers.
+/// A rolling shutter exposes each row at its own time: poses and points are those of the observation's row,
+/// or, for the pixel that is expected, of the row in which it is expected.
 struct TrackScore {
   static constexpr int kColumns = 8;
   static constexpr int kRows = 6;
@@ -54,23 +57,42 @@ struct TrackScore {
   double median_life = 0;
   double loss_share = 0;
   double coverage = 0;
-  double cpu_ms = 0;           ///< of the tracker a frame, median; NaN: not measured
-  bool has_poses = false;      ///< epipolar is meaningful
-  bool has_surface = false;    ///< corner is meaningful
+  double cpu_ms = 0;         ///< of the tracker a frame, median; NaN: not measured
+  bool has_poses = false;    ///< epipolar is meaningful
+  bool has_surface = false;  ///< corner and moving_share are meaningful
+  double moving_share = 0;
   ErrorSpread epipolar;        ///< at every age above zero
   ErrorSpread corner;          ///< likewise
   std::vector<AgeScore> ages;  ///< 1, 2, 5, 10, 20, 30, 50, 100
 };
 
-/// What tracks are judged against.
-struct TrackTruth {
-  /// Pose of the camera in each frame, empty where the truth does not tell; no poses: no truth.
-  std::vector<std::optional<Pose>> T_WC;
-  /// Distance [m] from a point along a unit vector to the first surface; empty: unknown.
-  std::function<double(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W)> distance;
+/// A point of a surface.
+struct SurfacePoint {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< when it was seen
+  int moving = -1;  ///< which of the things that move it is a point of; -1: of none
 };
 
-/// frames: in order, each sorted by track id. cpu_ms: one a frame, or none. T_WC: one a frame, or none.
+/// When a pixel was exposed.
+struct ExposureTime {
+  std::size_t frame = 0;
+  double row = 0;  ///< y of the pixel
+};
+
+/// What tracks are judged against.
+struct TrackTruth {
+  /// Pose of the camera; empty where the truth does not tell. No function: no truth.
+  std::function<std::optional<Pose>(const ExposureTime& time)> T_WC;
+  /// What the ray from a point along a unit vector meets. No function: unknown.
+  std::function<SurfacePoint(const ExposureTime& time, const Eigen::Vector3d& p_W,
+                             const Eigen::Vector3d& direction_W)>
+      surface;
+  /// Where a point that was seen at one time is at another. No function: nothing moves.
+  std::function<Eigen::Vector3d(const SurfacePoint& point, const ExposureTime& seen,
+                                const ExposureTime& time)>
+      moved;
+};
+
+/// frames: in order, each sorted by track id. cpu_ms: one a frame, or none.
 [[nodiscard]] TrackScore ScoreTracks(const std::vector<TrackFrame>& frames, const CameraModel& camera,
                                      const TrackTruth& truth, const std::vector<double>& cpu_ms);
 

@@ -39,6 +39,7 @@ std::string ScoreJson(const TrackScore& score) {
                {"cpu_ms", NumberJson(score.cpu_ms)},
                {"epipolar", score.has_poses ? SpreadJson(score.epipolar) : Json(nullptr)},
                {"corner", score.has_surface ? SpreadJson(score.corner) : Json(nullptr)},
+               {"moving_share", score.has_surface ? NumberJson(score.moving_share) : Json(nullptr)},
                {"ages", Json::array()}};
   for (const AgeScore& age : score.ages) {
     Json row = {{"age", age.age}, {"observations", age.observations}};
@@ -71,7 +72,9 @@ std::string DescribeScore(const TrackScore& score) {
   text += std::isfinite(score.cpu_ms) ? Format(", %.2f ms of CPU a frame\n", score.cpu_ms) : "\n";
   if (score.has_poses) {
     text += "median / 95 %:" + SpreadText("epipolar", score.epipolar) +
-            (score.has_surface ? SpreadText("corner", score.corner) : "") + "\n";
+            (score.has_surface ? SpreadText("corner", score.corner) : "") +
+            (score.moving_share > 0 ? Format("; %.1f %% on what moves", 100 * score.moving_share) : "") +
+            "\n";
     for (const AgeScore& age : score.ages) {
       text += Format("  age %3d: %6zu observations", age.age, age.observations) +
               SpreadText("epipolar", age.epipolar) +

@@ -22,10 +22,8 @@ bool Reaches(const Vector3f& axis, float cosine, float sine, const Vector3f& cen
 
 }  // namespace
 
-ViewTile ViewTile::Around(int x, int y, const std::vector<Vector3f>& rays) {
+ViewTile ViewTile::Around(const std::vector<Vector3f>& rays) {
   ViewTile tile;
-  tile.x = x;
-  tile.y = y;
   Vector3f sum = Vector3f::Zero();
   for (const Vector3f& ray : rays) {
     sum += ray;
@@ -45,28 +43,50 @@ ViewTile ViewTile::Around(int x, int y, const std::vector<Vector3f>& rays) {
   return tile;
 }
 
-HallView::HallView(const Hall& hall, const Pose& T_WC, const ViewTile& field)
+HallView::HallView(const Hall& hall, const Pose& T_WC, const ViewTile& field, double time_s)
+    : HallView(hall, T_WC.rotation.cast<float>(), (T_WC.translation - hall.origin_W).cast<float>(), field,
+               time_s) {}
+
+HallView HallView::InFloor(const Hall& hall, const Pose& T_WC, const ViewTile& field, double time_s) {
+  Eigen::Matrix3f rotation = T_WC.rotation.cast<float>();
+  rotation.row(2) *= -1;
+  Vector3f origin = (T_WC.translation - hall.origin_W).cast<float>();
+  origin.z() = 2 * hall.room.low.z() - origin.z();
+  return {hall, rotation, origin, field, time_s};
+}
+
+HallView::HallView(const Hall& hall, const Eigen::Matrix3f& rotation, const Vector3f& origin,
+                   const ViewTile& field, double time_s)
     : hall_(hall),
-      R_WC_(T_WC.rotation.cast<float>()),
-      origin_((T_WC.translation - hall.origin_W).cast<float>()),
+      R_WC_(rotation),
+      origin_(origin),
       room_low_(hall.room.low - origin_),
       room_high_(hall.room.high - origin_) {
   const Vector3f axis_W = R_WC_ * field.axis;
   for (const HallBox& box : hall.boxes) {
-    Box seen;
-    seen.low = box.low - origin_;
-    seen.high = box.high - origin_;
-    seen.centre = 0.5F * (seen.low + seen.high);
-    seen.distance = seen.centre.norm();
-    seen.radius = 0.5F * (box.high - box.low).norm();
-    seen.box = &box;
-    if (Reaches(axis_W, field.cosine, field.sine, seen.centre, seen.distance, seen.radius)) {
-      boxes_.push_back(seen);
-    }
+    AddBox(box, Vector3f::Zero(), axis_W, field);
+  }
+  for (const MovingBox& moving : hall.moving) {
+    AddBox(moving.box, moving.Shift(time_s).cast<float>(), axis_W, field);
   }
   for (const HallColumn& column : hall.columns) {
     const Eigen::Vector2f axis = column.centre - origin_.head<2>();
     columns_.push_back({axis.x(), axis.y(), axis.squaredNorm() - column.radius * column.radius, &column});
+  }
+}
+
+void HallView::AddBox(const HallBox& box, const Vector3f& shift, const Vector3f& axis_W,
+                      const ViewTile& field) {
+  Box seen;
+  seen.low = box.low + shift - origin_;
+  seen.high = box.high + shift - origin_;
+  seen.shift = shift;
+  seen.centre = 0.5F * (seen.low + seen.high);
+  seen.distance = seen.centre.norm();
+  seen.radius = 0.5F * (box.high - box.low).norm();
+  seen.box = &box;
+  if (Reaches(axis_W, field.cosine, field.sine, seen.centre, seen.distance, seen.radius)) {
+    boxes_.push_back(seen);
   }
 }
 
@@ -84,10 +104,12 @@ void HallView::ListCandidates(const ViewTile& tile, std::vector<Candidate>* cand
   });
 }
 
-HallHit HallView::OnFace(const HallBox& box, int axis, bool high, float distance,
+HallHit HallView::OnFace(const HallBox& box, const Vector3f& shift, int axis, bool high, float distance,
                          const Vector3f& direction) const {
-  const Vector3f place = origin_ + distance * direction;
   HallHit hit;
+  hit.place = origin_ + distance * direction;
+  hit.direction = direction;
+  const Vector3f place = hit.place - shift;
   hit.surface = &box.faces[static_cast<std::size_t>(2 * axis + (high ? 1 : 0))];
   hit.distance = distance;
   hit.cosine = std::abs(direction[axis]);
@@ -105,6 +127,7 @@ HallHit HallView::Cast(const Vector3f& ray_C, const std::vector<Candidate>& cand
   axis = walls[axis] < walls.z() ? axis : 2;
   float best = walls[axis];
   const HallBox* met = &hall_.room;
+  Vector3f shift = Vector3f::Zero();
   for (const Candidate& candidate : candidates) {
     if (candidate.nearest > best) {
       break;
@@ -119,6 +142,7 @@ HallHit HallView::Cast(const Vector3f& ray_C, const std::vector<Candidate>& cand
     if (enter < leave && enter > 0 && enter < best) {
       best = enter;
       met = box.box;
+      shift = box.shift;
       axis = enters.x() == enter ? 0 : (enters.y() == enter ? 1 : 2);
     }
   }
@@ -138,7 +162,7 @@ HallHit HallView::Cast(const Vector3f& ray_C, const std::vector<Candidate>& cand
   if (column_met == nullptr) {
     // The room is left through its far face, a box entered through its near one.
     const bool high = (direction[axis] > 0) == (met == &hall_.room);
-    return OnFace(*met, axis, high, best, direction);
+    return OnFace(*met, shift, axis, high, best, direction);
   }
   const Eigen::Vector2f normal =
       (origin_.head<2>() + best * direction.head<2>() - column_met->centre) / column_met->radius;
@@ -147,7 +171,9 @@ HallHit HallView::Cast(const Vector3f& ray_C, const std::vector<Candidate>& cand
   hit.distance = best;
   hit.cosine = std::abs(normal.dot(direction.head<2>()));
   hit.x_m = column_met->radius * std::atan2(normal.y(), normal.x());
-  hit.y_m = origin_.z() + best * direction.z();
+  hit.place = origin_ + best * direction;
+  hit.direction = direction;
+  hit.y_m = hit.place.z();
   return hit;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "core/random.h"
@@ -39,7 +40,8 @@ class Builder {
   [[nodiscard]] double ObjectCount() const {
     const RenderConfig& render = config_.render;
     return FloorArea() * (render.box_density_per_m2 + render.column_density_per_m2) +
-           (FloorArea() + WallArea()) * render.panel_density_per_m2;
+           (FloorArea() + WallArea()) * render.panel_density_per_m2 +
+           FloorArea() * render.moving_density_per_m2;
   }
 
   Hall Build() {
@@ -161,7 +163,13 @@ std::pair<double, double> Cross(const HallBox& box, const Vector3d& p, const Vec
 
 }  // namespace
 
-double Hall::Distance(const Vector3d& p_W, const Vector3d& direction_W) const {
+Vector3d MovingBox::Shift(double time_s) const {
+  const double turn =
+      2 * std::numbers::pi * time_s / static_cast<double>(period_s) + static_cast<double>(phase);
+  return travel.cast<double>() * std::sin(turn);
+}
+
+HallRay Hall::Trace(const Vector3d& p_W, const Vector3d& direction_W, double time_s) const {
   const Vector3d p = p_W - origin_W;
   double nearest = Cross(room, p, direction_W).second;
   for (const HallBox& box : boxes) {
@@ -180,7 +188,14 @@ double Hall::Distance(const Vector3d& p_W, const Vector3d& direction_W) const {
       nearest = std::min(nearest, (along - std::sqrt(discriminant)) / d.squaredNorm());
     }
   }
-  return nearest;
+  HallRay ray{.distance = nearest, .moving = -1};
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const auto [enter, leave] = Cross(moving[i].box, p - moving[i].Shift(time_s), direction_W);
+    if (enter > 0 && enter < leave && enter < ray.distance) {
+      ray = {.distance = enter, .moving = static_cast<int>(i)};
+    }
+  }
+  return ray;
 }
 
 Result<Hall> MakeHall(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,
@@ -193,10 +208,11 @@ Result<Hall> MakeHall(const SimulatorConfig& config, const ContinuousTrajectory&
   }
   Builder builder(config, SamplePath(trajectory, 0.1 * config.landmark_min_distance_m), seed);
   if (builder.ObjectCount() > kMaxObjects) {
-    return Status::Config("render.box_density_per_m2, panel_density_per_m2, column_density_per_m2: found " +
-                          std::to_string(builder.ObjectCount()) +
-                          " boxes and columns in a hall of this size, " + "expected at most " +
-                          std::to_string(kMaxObjects));
+    return Status::Config(
+        "render.box_density_per_m2, panel_density_per_m2, column_density_per_m2, moving_density_per_m2: "
+        "found " +
+        std::to_string(builder.ObjectCount()) + " boxes and columns in a hall of this size, " +
+        "expected at most " + std::to_string(kMaxObjects));
   }
   return builder.Build();
 }

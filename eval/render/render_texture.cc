@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kSmallestShape = 3;     // texels, half-extent
 constexpr float kLargestShape = 0.07F;  // of the texture's side
+constexpr int kLog2Motif = 5;
 
 /// A canvas without edges: what leaves at one side comes in at the other.
 class Canvas {
@@ -67,6 +68,16 @@ class Canvas {
     float share = 0.5F;
     for (int knot = 64; knot >= 2; knot /= 2, share *= 0.75F) {
       AddNoise(std::min(knot, size_), share * amplitude);
+    }
+  }
+
+  /// Covers the canvas with copies of its first square of 2^log2_side texels.
+  void Repeat(int log2_side) {
+    const int mask = (1 << log2_side) - 1;
+    for (int y = 0; y < size_; ++y) {
+      for (int x = 0; x < size_; ++x) {
+        At(x, y) = At(x & mask, y & mask);
+      }
     }
   }
 
@@ -191,6 +202,15 @@ Texture MakeTexture(TextureKind kind, int log2_size, std::uint64_t seed) {
       canvas.Fill(120);
       canvas.Leaves(1.5F);
       canvas.Roughen(20);
+      break;
+    case TextureKind::kMotif:
+      canvas.Fill(120);
+      canvas.Leaves(1.5F);
+      canvas.Repeat(std::min(log2_size, kLog2Motif));
+      break;
+    case TextureKind::kPaint:
+      canvas.Fill(150);
+      canvas.Roughen(3);
       break;
   }
   return canvas.Finish();

@@ -61,8 +61,10 @@ enum class TextureKind {
   kTiles,   ///< a floor: tiles, stains
   kPanels,  ///< a ceiling: large panels, vents
   kLeaves,  ///< opaque shapes of all sizes upon each other
+  kMotif,   ///< one motif of 32 x 32 texels again and again
+  kPaint,   ///< plain paint, uneven by less than the noise of a sensor
 };
-inline constexpr int kTextureKinds = 4;
+inline constexpr int kTextureKinds = 6;
 
 /// A procedural texture; the same for the same seed.
 ///

@@ -11,9 +11,11 @@
 #include "eval/dataset/dataset_truth.h"
 #include "eval/dataset/digest.h"
 #include "eval/dataset/png_image.h"
+#include "eval/files/csv_text.h"
 #include "eval/files/output_file.h"
 #include "eval/files/parallel_for.h"
 #include "eval/render/hall_file.h"
+#include "eval/render/hall_variety.h"
 
 namespace alidade {
 namespace {
@@ -22,12 +24,25 @@ Status Stopped(const PipelineOptions& options) {
   return options.stop != nullptr && options.stop->load() ? Status::Diverged("interrupted") : Status::Ok();
 }
 
+std::string ExposureCsv(const RenderedSequence& sequence) {
+  std::string text = "#timestamp [ns],exposure_s [s],gain [-]\n";
+  for (std::size_t i = 0; i < sequence.stamps().size(); ++i) {
+    const Exposure& exposure = sequence.exposures()[i];
+    text +=
+        JoinCsv({std::to_string(sequence.stamps()[i]), CsvNumber(exposure.time_s), CsvNumber(exposure.gain)});
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<RenderedSequence> RenderedSequence::Create(const SimulatorConfig& config, const Simulation& simulation,
                                                   unsigned seed) {
   Result<Hall> hall = MakeHall(config, *simulation.motion, seed);
   ALIDADE_RETURN_IF_ERROR(hall.status());
+  ThrowMovingBoxes(config, *simulation.motion, seed, &*hall);
+  VaryTextures(config.render, seed, &*hall);
+  hall->epoch_ns = simulation.motion_start_ns - SecondsToNs(simulation.dataset.rig.camera_time_offset_s);
   return RenderedSequence(config, simulation, std::move(*hall), seed);
 }
 
@@ -38,7 +53,7 @@ RenderedSequence::RenderedSequence(const SimulatorConfig& config, const Simulati
       motion_start_ns_(simulation.motion_start_ns),
       rig_(simulation.dataset.rig),
       stamps_(simulation.dataset.camera_stamps),
-      renderer_(rig_.camera, config_, std::move(hall), seed) {
+      renderer_(rig_.camera, config_, rig_.line_delay_s, std::move(hall), seed) {
   SimulatorConfig keys = config;
   fingerprint_ = ConfigToYaml([&keys](ConfigVisitor& visitor) { keys.Describe(visitor); }, false) +
                  "seed: " + std::to_string(seed) + "\n" + DigestOf({rig_, simulation.dataset.imu, {}}) + "\n";
@@ -50,6 +65,13 @@ RenderedSequence::RenderedSequence(const SimulatorConfig& config, const Simulati
       fingerprint_ += "," + ShortestDouble(value);
     }
     fingerprint_ += "\n";
+  }
+  if (config_.auto_exposure) {
+    std::vector<double> scene_grey;
+    for (std::size_t i = 0; i < stamps_.size(); ++i) {
+      scene_grey.push_back(renderer_.Meter(ShotOf(i)));
+    }
+    exposures_ = ControlExposure(config_, scene_grey);
   }
 }
 
@@ -63,26 +85,44 @@ double RenderedSequence::MiddleOfExposure(std::size_t index) const {
 
 Trajectory RenderedSequence::CameraPoses() const {
   Trajectory poses;
+  const double readout_s = std::abs(rig_.line_delay_s) * rig_.camera.height_px();
+  const int half = readout_s > 0 ? kPosesOfRows / 2 : 0;
   for (std::size_t i = 0; i < stamps_.size(); ++i) {
-    const Pose T_WC = CameraPose(MiddleOfExposure(i));
-    TrajectoryPoint point;
-    point.stamp_ns = stamps_[i];
-    point.nav.R_WB = T_WC.rotation;
-    point.nav.p_WB = T_WC.translation;
-    poses.points.push_back(point);
+    for (int k = -half; k <= half; ++k) {
+      const TimeNs after_ns = half > 0 ? SecondsToNs(0.5 * readout_s * k / half) : 0;
+      const Pose T_WC = CameraPose(MiddleOfExposure(i) + SecondsBetween(0, after_ns));
+      TrajectoryPoint point;
+      point.stamp_ns = stamps_[i] + after_ns;
+      point.nav.R_WB = T_WC.rotation;
+      point.nav.p_WB = T_WC.translation;
+      poses.points.push_back(point);
+    }
   }
   return poses;
 }
 
-GreyImage RenderedSequence::Frame(std::size_t index) const {
-  const double time_s = MiddleOfExposure(index);
-  std::vector<Pose> T_WC;
-  for (int k = 0; k < config_.samples; ++k) {
-    const double share = (k + 0.5) / config_.samples - 0.5;
-    T_WC.push_back(CameraPose(time_s + share * config_.exposure_s));
-  }
+double RenderedSequence::LightAt(double time_s) const {
   const double phase = 2 * std::numbers::pi * time_s / config_.brightness_period_s;
-  return renderer_.Render(T_WC, index, 1 + config_.brightness_swing * std::sin(phase));
+  return (1 + config_.brightness_swing * std::sin(phase)) * renderer_.light().StepAt(time_s);
+}
+
+Shot RenderedSequence::ShotOf(std::size_t index) const {
+  Shot shot;
+  shot.T_WC = [this](double time_s) { return CameraPose(time_s); };
+  shot.middle_s = MiddleOfExposure(index);
+  shot.exposure = {.time_s = config_.exposure_s, .gain = config_.gain};
+  shot.light = LightAt(shot.middle_s);
+  shot.frame = index;
+  return shot;
+}
+
+GreyImage RenderedSequence::Frame(std::size_t index) const {
+  Shot shot = ShotOf(index);
+  if (!exposures_.empty()) {
+    shot.exposure = exposures_[index];
+    shot.light *= shot.exposure.time_s / config_.exposure_s;
+  }
+  return renderer_.Render(shot);
 }
 
 Status WriteRenderedImages(const RenderedSequence& sequence, const std::string& path,
@@ -104,6 +144,9 @@ Status WriteRenderedImages(const RenderedSequence& sequence, const std::string& 
   ALIDADE_RETURN_IF_ERROR(ParallelFor(stamps.size(), options.jobs, draw));
   ALIDADE_RETURN_IF_ERROR(WriteHall(sequence.hall(), HallPath(path)));
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(CameraPosesPath(path), TruthCsv(sequence.CameraPoses())));
+  if (!sequence.exposures().empty()) {
+    ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(camera + "/exposure.csv", ExposureCsv(sequence)));
+  }
   std::string list = "#timestamp [ns],filename\n";
   for (const TimeNs stamp : stamps) {
     list += std::to_string(stamp) + "," + std::to_string(stamp) + ".png\n";

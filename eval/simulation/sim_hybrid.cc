@@ -11,6 +11,7 @@
 #include "eval/simulation/recorded_motion.h"
 #include "eval/simulation/sim_camera.h"
 #include "eval/simulation/sim_gnss.h"
+#include "eval/simulation/sim_rig.h"
 
 namespace alidade {
 namespace {
@@ -106,6 +107,7 @@ Result<Simulation> SimulateHybrid(const SimulatorConfig& config, unsigned seed) 
   Dataset& dataset = simulation.dataset;
   dataset.name = config.name;
   dataset.rig = real->rig;
+  dataset.rig.line_delay_s = SimLineDelay(config, real->rig.line_delay_s);
   dataset.imu_rate_hz = real->imu_rate_hz;
   dataset.camera_rate_hz = real->camera_rate_hz;
   dataset.imu = real->imu;

@@ -15,14 +15,26 @@ Result<RigCalibration> RigOfDataset(const SimulatorConfig& config) {
   rig.T_BC = sensor->T_BC;
   rig.imu_noise = config.imu_noise;
   rig.camera_time_offset_s = sensor->time_offset_s;
+  rig.line_delay_s = sensor->line_delay_s;
   return rig;
 }
 
 }  // namespace
 
+double SimLineDelay(const SimulatorConfig& config, double recorded_s) {
+  if (!config.render.enabled) {
+    return 0;
+  }
+  return config.render.line_delay_s != 0 ? config.render.line_delay_s : recorded_s;
+}
+
 Result<RigCalibration> MakeSimRig(const SimulatorConfig& config) {
   if (config.camera_view == SimCameraView::kDataset) {
-    return RigOfDataset(config);
+    Result<RigCalibration> rig = RigOfDataset(config);
+    if (rig.ok()) {
+      rig->line_delay_s = SimLineDelay(config, rig->line_delay_s);
+    }
+    return rig;
   }
   std::vector<double> coefficients;
   for (int i = 0; i < CoefficientCount(config.distortion); ++i) {
@@ -46,6 +58,7 @@ Result<RigCalibration> MakeSimRig(const SimulatorConfig& config) {
   rig.T_BC.translation = config.camera_lever_arm_m;
   rig.imu_noise = config.imu_noise;
   rig.camera_time_offset_s = config.camera_time_offset_s;
+  rig.line_delay_s = SimLineDelay(config, 0);
   return rig;
 }
 

@@ -13,6 +13,10 @@ namespace alidade {
 /// folder without calibration (kInput).
 Result<RigCalibration> MakeSimRig(const SimulatorConfig& config);
 
+/// Line delay of the simulated camera: render.line_delay_s, or that of the recording's camera where the key
+/// is zero. Simulated tracks are of images that are exposed at once: zero unless images are rendered.
+[[nodiscard]] double SimLineDelay(const SimulatorConfig& config, double recorded_s);
+
 /// The other camera_count - 1 cameras, without frames: each of the same model as the first, displaced and
 /// turned against the one before it: T_BCk = T_BC(k-1) * (Exp(camera_turn_rad e_y), camera_spacing_m).
 [[nodiscard]] std::vector<ExtraCamera> MakeExtraCameras(const SimulatorConfig& config,

@@ -83,6 +83,7 @@ Status SimulatorConfig::Validate() const {
                                  camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
   ALIDADE_RETURN_IF_ERROR(
       Expect(!render.enabled || camera_count == 1, "camera_count", camera_count, "1 with render.enabled"));
+  ALIDADE_RETURN_IF_ERROR(render.Validate());
   for (int i = CoefficientCount(distortion); i < 4; ++i) {
     ALIDADE_RETURN_IF_ERROR(
         Expect(distortion_coefficients[i] == 0, "distortion coefficient", distortion_coefficients[i],

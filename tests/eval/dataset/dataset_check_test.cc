@@ -62,6 +62,12 @@ TEST(DatasetCheck, GivenAHealthySequenceThenItStatesFactsAndComplainsOfNothing) 
   EXPECT_THAT(facts, HasSubstr("truth: covers 100.0 %"));
 }
 
+TEST(DatasetCheck, GivenARollingShutterThenTheReadoutTimeIsWarnedOf) {
+  Dataset rolling = Healthy();
+  rolling.rig.line_delay_s = -3e-5;
+  EXPECT_THAT(Complaints(rolling, Severity::kWarning), HasSubstr("exposed over 14.4 ms"));
+}
+
 TEST(DatasetCheck, GivenWrongUnitsThenTheyAreErrors) {
   Dataset in_g = Healthy();
   Dataset in_mg = Healthy();

@@ -28,6 +28,7 @@ Dataset SmallDataset() {
   dataset.rig.T_BC.translation = Eigen::Vector3d(-0.0216401454975, -0.064676986768, 1.0 / 3.0);
   dataset.rig.imu_noise.gyro_noise_density_radps_sqrthz = 1.6968e-4;
   dataset.rig.camera_time_offset_s = -0.0123456789;
+  dataset.rig.line_delay_s = 2.9737e-5;
   const TimeNs start = 1403715273262142976;
   Trajectory truth;
   truth.has_velocity = truth.has_bias = true;
@@ -67,6 +68,7 @@ TEST(Dataset, WhenWrittenAndReadThenMeasurementsAreEqualToTheLastBit) {
   EXPECT_EQ(read->imu_rate_hz, 200);
   EXPECT_EQ(read->camera_rate_hz, 20);
   EXPECT_EQ(read->rig.T_BC.rotation, written.rig.T_BC.rotation);
+  EXPECT_EQ(read->rig.line_delay_s, 2.9737e-5);
   ASSERT_EQ(read->tracks.size(), 5u);
   EXPECT_TRUE(read->tracks[2].observations.empty()) << "a frame that saw nothing survives";
   ASSERT_TRUE(read->truth.has_value());
@@ -88,7 +90,7 @@ TEST(Dataset, WhenOneBitOfTheLogChangesThenItsDigestChanges) {
   const MeasurementLog log = LogOf(SmallDataset());
   const std::string digest = DigestOf(log);
   EXPECT_EQ(digest.size(), 64u);
-  std::vector<MeasurementLog> changed(7, log);
+  std::vector<MeasurementLog> changed(8, log);
   changed[0].imu[3].gyro[1] = std::nextafter(changed[0].imu[3].gyro[1], 1e9);
   changed[1].imu.back().stamp_ns += 1;
   changed[2].frames[1].observations[2].track_id += 1;
@@ -96,6 +98,7 @@ TEST(Dataset, WhenOneBitOfTheLogChangesThenItsDigestChanges) {
   changed[4].rig.camera_time_offset_s = 0;
   changed[5].rig.imu_noise.accel_random_walk_mps3_sqrthz *= 2;
   changed[6].frames.pop_back();
+  changed[7].rig.line_delay_s = 0;
   for (size_t i = 0; i < changed.size(); ++i) {
     EXPECT_NE(DigestOf(changed[i]), digest) << "change " << i;
   }

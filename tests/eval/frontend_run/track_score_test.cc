@@ -43,13 +43,11 @@ std::vector<TrackFrame> WallTracks(std::size_t count, const Vector2d& drift) {
   return frames;
 }
 
-TrackTruth WallTruth(std::size_t count) {
+TrackTruth WallTruth() {
   TrackTruth truth;
-  for (std::size_t k = 0; k < count; ++k) {
-    truth.T_WC.emplace_back(PoseAt(k));
-  }
-  truth.distance = [](const Vector3d& p_W, const Vector3d& direction_W) {
-    return (kWallM - p_W.z()) / direction_W.z();
+  truth.T_WC = [](const ExposureTime& time) { return std::optional(PoseAt(time.frame)); };
+  truth.surface = [](const ExposureTime&, const Vector3d& p_W, const Vector3d& direction_W) {
+    return SurfacePoint{p_W + (kWallM - p_W.z()) / direction_W.z() * direction_W, -1};
   };
   return truth;
 }
@@ -78,7 +76,7 @@ TEST(TrackScore, GIVEN_tracks_that_end_and_one_with_a_gap_THEN_lives_and_losses_
 }
 
 TEST(TrackScore, GIVEN_exact_tracks_THEN_no_error_is_found) {
-  const TrackScore score = ScoreTracks(WallTracks(12, Vector2d::Zero()), Camera(), WallTruth(12), {});
+  const TrackScore score = ScoreTracks(WallTracks(12, Vector2d::Zero()), Camera(), WallTruth(), {});
   ASSERT_TRUE(score.has_poses && score.has_surface);
   EXPECT_EQ(score.corner.count, 12U * 11);
   EXPECT_LT(score.corner.p95_px, 1e-6);
@@ -89,7 +87,7 @@ TEST(TrackScore, GIVEN_exact_tracks_THEN_no_error_is_found) {
 
 TEST(TrackScore, GIVEN_a_drift_THEN_errors_grow_with_age_as_it_does) {
   const Vector2d drift(0.03, -0.04);
-  const TrackScore score = ScoreTracks(WallTracks(12, drift), Camera(), WallTruth(12), {});
+  const TrackScore score = ScoreTracks(WallTracks(12, drift), Camera(), WallTruth(), {});
   EXPECT_NEAR(AtAge(score, 1).corner.median_px, 0.05, 1e-6);
   EXPECT_NEAR(AtAge(score, 10).corner.median_px, 0.5, 1e-6);
   // Sampson's distance is shared by both images and lacks what lies along the line.
@@ -97,18 +95,65 @@ TEST(TrackScore, GIVEN_a_drift_THEN_errors_grow_with_age_as_it_does) {
   EXPECT_LT(AtAge(score, 10).epipolar.median_px, 0.5);
 }
 
-TEST(TrackScore, GIVEN_a_camera_that_only_turns_THEN_there_is_no_epipolar_error) {
-  TrackTruth truth = WallTruth(3);
-  for (std::optional<Pose>& T_WC : truth.T_WC) {
-    T_WC->translation.setZero();
+TEST(TrackScore, GIVEN_a_rolling_shutter_THEN_each_row_is_judged_at_its_own_time) {
+  // A row is exposed 0.4 / 480 of a frame after the one above it.
+  constexpr double kDelay = 0.4 / 480;
+  const auto pose_at = [](const ExposureTime& time) {
+    const double k = static_cast<double>(time.frame) + kDelay * (time.row - 240);
+    return Pose{so3::Exp(Vector3d(0.002, -0.003, 0.004) * k), Vector3d(0.05, 0.01, 0) * k};
+  };
+  std::vector<TrackFrame> frames = WallTracks(12, Vector2d::Zero());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    for (TrackObservation& observation : frames[k].observations) {
+      const int id = static_cast<int>(observation.track_id);
+      const Vector3d p_W(-1.2 + 0.8 * (id % 4), -0.8 + 0.8 * (id / 4), kWallM);
+      for (int round = 0; round < 30; ++round) {
+        const Pose T_WC = pose_at({k, observation.pixel.y()});
+        ASSERT_TRUE(Camera().Project(T_WC.Inverse() * p_W, &observation.pixel));
+      }
+    }
   }
+  EXPECT_GT(ScoreTracks(frames, Camera(), WallTruth(), {}).corner.p95_px, 0.3) << "as if all at once";
+  TrackTruth truth = WallTruth();
+  truth.T_WC = [&](const ExposureTime& time) { return std::optional(pose_at(time)); };
+  const TrackScore score = ScoreTracks(frames, Camera(), truth, {});
+  EXPECT_EQ(score.corner.count, 12U * 11);
+  EXPECT_LT(score.corner.p95_px, 1e-3);
+  EXPECT_LT(score.epipolar.p95_px, 1e-6);
+}
+
+TEST(TrackScore, GIVEN_a_wall_that_moves_THEN_its_points_move_along_and_are_counted) {
+  TrackTruth truth = WallTruth();
+  const Vector3d step(0.01, 0, 0);
+  truth.surface = [&](const ExposureTime& time, const Vector3d& p_W, const Vector3d& direction_W) {
+    SurfacePoint point = WallTruth().surface(time, p_W, direction_W);
+    point.moving = point.p_W.x() < 0 ? 3 : -1;
+    return point;
+  };
+  truth.moved = [&](const SurfacePoint& point, const ExposureTime& seen,
+                    const ExposureTime& time) -> Vector3d {
+    const double k = static_cast<double>(time.frame) - static_cast<double>(seen.frame);
+    return point.moving == 3 ? point.p_W + k * step : point.p_W;
+  };
+  const TrackScore score = ScoreTracks(WallTracks(12, Vector2d::Zero()), Camera(), truth, {});
+  EXPECT_DOUBLE_EQ(score.moving_share, 0.5) << "six of twelve points are left of the middle";
+  EXPECT_NEAR(AtAge(score, 1).corner.p95_px, 1, 0.2) << "400 px / 4 m * 0.01 m; they stay where they were";
+  EXPECT_NEAR(AtAge(score, 1).corner.median_px, 0, 1e-6);
+}
+
+TEST(TrackScore, GIVEN_a_camera_that_only_turns_THEN_there_is_no_epipolar_error) {
+  TrackTruth truth = WallTruth();
+  truth.T_WC = [](const ExposureTime& time) {
+    return std::optional(Pose{PoseAt(time.frame).rotation, Vector3d::Zero()});
+  };
   EXPECT_EQ(ScoreTracks(WallTracks(3, Vector2d::Zero()), Camera(), truth, {}).epipolar.count, 0U);
 }
 
 TEST(TrackScore, GIVEN_frames_without_truth_THEN_only_the_others_are_judged) {
-  TrackTruth truth = WallTruth(6);
-  truth.T_WC[0].reset();
-  truth.T_WC[5].reset();
+  TrackTruth truth = WallTruth();
+  truth.T_WC = [](const ExposureTime& time) {
+    return time.frame == 0 || time.frame == 5 ? std::nullopt : std::optional(PoseAt(time.frame));
+  };
   std::vector<TrackFrame> frames = WallTracks(6, Vector2d::Zero());
   EXPECT_EQ(ScoreTracks(frames, Camera(), truth, {}).corner.count, 0U) << "every track began without truth";
   for (TrackObservation& observation : frames[0].observations) {
@@ -128,7 +173,7 @@ TEST(TrackScore, GIVEN_no_frame_THEN_the_texts_say_nothing_instead_of_zero) {
 }
 
 TEST(TrackScore, GIVEN_a_score_THEN_json_and_csv_hold_its_figures) {
-  const TrackScore score = ScoreTracks(WallTracks(12, {0.03, -0.04}), Camera(), WallTruth(12), {1.5});
+  const TrackScore score = ScoreTracks(WallTracks(12, {0.03, -0.04}), Camera(), WallTruth(), {1.5});
   const nlohmann::json json = nlohmann::json::parse(ScoreJson(score));
   EXPECT_DOUBLE_EQ(json["mean_life_frames"], 12);
   EXPECT_DOUBLE_EQ(json["cpu_ms"], 1.5);

@@ -127,8 +127,8 @@ TEST(RenderedSequence, RaysMeetWhatTheHallSays) {
       rays.push_back(place.homogeneous().normalized().cast<float>());
     }
   }
-  const ViewTile field = ViewTile::Around(0, 0, rays);
-  const HallView view(hall, T_WC, field);
+  const ViewTile field = ViewTile::Around(rays);
+  const HallView view(hall, T_WC, field, 0);
   std::vector<HallView::Candidate> candidates;
   view.ListCandidates(field, &candidates);
   std::size_t off = 0, on_room = 0;
