@@ -48,7 +48,8 @@ class BearingPlane {
   }
   /// Rows over a vector in the plane's axes to rows over the vector in the camera's frame: times R^T.
   template <int kRows>
-  [[nodiscard]] Eigen::Matrix<double, kRows, 3> OverCamera(const Eigen::Matrix<double, kRows, 3>& rows) const {
+  [[nodiscard]] Eigen::Matrix<double, kRows, 3> OverCamera(
+      const Eigen::Matrix<double, kRows, 3>& rows) const {
     return tangent_ ? Eigen::Matrix<double, kRows, 3>(rows * axes_.transpose()) : rows;
   }
 

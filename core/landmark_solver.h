@@ -33,7 +33,8 @@ struct LandmarkOptions {
 };
 
 /// Sum over the views of rho(|W (pi - z)|^2), plus the squared residual of the depth prior, of the landmark
-/// (x, y, rho) anchored in the base view (AnchoredPointInCamera), on its observation's plane. Infinite when it lies behind a view.
+/// (x, y, rho) anchored in the base view (AnchoredPointInCamera), on its observation's plane. Infinite when
+/// it lies behind a view.
 [[nodiscard]] double LandmarkCost(std::span<const Pose> T_WC,
                                   std::span<const NormalizedObservation> observations,
                                   const LandmarkOptions& options, const Eigen::Vector3d& landmark);

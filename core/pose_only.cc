@@ -20,7 +20,8 @@ struct DepthRow {
   Vector3d b;      // -[z]x shift
 };
 
-DepthRow MakeRow(const Pose& view, const NormalizedObservation& observation, const Pose& base_view, const Vector3d& base_ray_W) {
+DepthRow MakeRow(const Pose& view, const NormalizedObservation& observation, const Pose& base_view,
+                 const Vector3d& base_ray_W) {
   DepthRow row;
   row.z = observation.Ray();
   row.ray = view.rotation.transpose() * base_ray_W;
@@ -70,8 +71,7 @@ DepthDerivative DifferentiateDepth(std::span<const Pose> T_WC,
     derivative.observations.segment<2>(2 * i) +=
         to_z * observations[static_cast<size_t>(i)].plane.axes().leftCols<2>();
     derivative.observations.segment<2>(2 * base) +=
-        to_ray * Rt * base_view.rotation *
-        observations[static_cast<size_t>(base)].plane.axes().leftCols<2>();
+        to_ray * Rt * base_view.rotation * observations[static_cast<size_t>(base)].plane.axes().leftCols<2>();
   }
   return derivative;
 }
@@ -89,8 +89,7 @@ void DifferentiatePoint(std::span<const Pose> T_WC, std::span<const NormalizedOb
   jacobians->poses.middleCols<3>(6 * base + 3) += Matrix3d::Identity();
   jacobians->observations = base_ray_W * derivative.observations;
   jacobians->observations.middleCols<2>(2 * base) +=
-      depth.depth * base_view.rotation *
-      observations[static_cast<size_t>(base)].plane.axes().leftCols<2>();
+      depth.depth * base_view.rotation * observations[static_cast<size_t>(base)].plane.axes().leftCols<2>();
 }
 
 }  // namespace
@@ -101,14 +100,13 @@ bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const Normalized
   CHECK_EQ(observations.size(), T_WC.size());
   CHECK(count >= 2 && base >= 0 && base < count);
   const Pose& base_view = T_WC[static_cast<size_t>(base)];
-  const Vector3d base_ray_W =
-      TurnedRay(base_view.rotation, observations[static_cast<size_t>(base)].Ray());
+  const Vector3d base_ray_W = TurnedRay(base_view.rotation, observations[static_cast<size_t>(base)].Ray());
   double normal = 0;
   double right_side = 0;
   for (int i = 0; i < count; ++i) {
     if (GivesDepth(i, base, count, views)) {
-      const DepthRow row = MakeRow(T_WC[static_cast<size_t>(i)], observations[static_cast<size_t>(i)],
-                                   base_view, base_ray_W);
+      const DepthRow row =
+          MakeRow(T_WC[static_cast<size_t>(i)], observations[static_cast<size_t>(i)], base_view, base_ray_W);
       normal += row.a.squaredNorm();
       right_side += row.a.dot(row.b);
     }

@@ -7,7 +7,8 @@
 #include "core/navigation_state.h"
 
 // The reprojection of a landmark, the one of this library: where a camera sees it on the plane of its
-// observation (core/bearing_plane.h), and the derivatives of that. Every visual model, solver and factor composes what stands here.
+// observation (core/bearing_plane.h), and the derivatives of that. Every visual model, solver and factor
+// composes what stands here.
 //
 // Derivatives come as a chain. A model forms its rows over q, the landmark in the camera's frame: those of
 // the projection, whitened where it wants them so. Chain() carries the rows to what q depends on. Cameras are

@@ -9,14 +9,15 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
                        "noise of the tracks: pixel_noise_px as given, or `adaptive`, which raises it slowly "
                        "while the innovations are larger than predicted"},
                       &noise, {{"given", PixelNoiseModel::kGiven}, {"adaptive", PixelNoiseModel::kAdaptive}});
-  visitor.Enumeration({"observation_plane", "-",
-                       "plane of the visual residual: the normalised plane z = 1, the tangent plane of the unit "
-                       "sphere at each measured ray, or by `lens`: tangent where a spherical lens sees beyond 80 "
-                       "degrees off axis"},
-                      &observation_plane,
-                      {{"lens", PlaneChoice::kLens},
-                       {"normalized", PlaneChoice::kNormalized},
-                       {"tangent", PlaneChoice::kTangent}});
+  visitor.Enumeration(
+      {"observation_plane", "-",
+       "plane of the visual residual: the normalised plane z = 1, the tangent plane of the unit "
+       "sphere at each measured ray, or by `lens`: tangent where a spherical lens sees beyond 80 "
+       "degrees off axis"},
+      &observation_plane,
+      {{"lens", PlaneChoice::kLens},
+       {"normalized", PlaneChoice::kNormalized},
+       {"tangent", PlaneChoice::kTangent}});
   visitor.Real({"gate_probability", "-",
                 "chi-square gate: a track is used if its NIS is below this quantile; 1 disables the gate"},
                &gate_probability, 0.5, 1.0);

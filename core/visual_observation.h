@@ -27,8 +27,8 @@ struct NormalizedObservation {
 bool NormalizeObservation(const CameraModel& camera, const Eigen::Vector2d& pixel, double pixel_noise_px,
                           NormalizedObservation* observation);
 
-/// The observation of a pixel anew, with other intrinsics, on the plane that it has: coordinates of a landmark
-/// on that plane stay true. False, with the observation untouched, outside the camera's domain.
+/// The observation of a pixel anew, with other intrinsics, on the plane that it has: coordinates of a
+/// landmark on that plane stay true. False, with the observation untouched, outside the camera's domain.
 bool RenormalizeObservation(const CameraModel& camera, const Eigen::Vector2d& pixel, double pixel_noise_px,
                             NormalizedObservation* observation);
 

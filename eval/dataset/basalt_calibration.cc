@@ -93,8 +93,8 @@ class BasaltReader {
       if (!size || !size->IsSequence() || size->size() != 2) {
         return Fault("resolution[" + std::to_string(index_) + "]", "width and height [px]");
       }
-      *text = Line("resolution", "[" + (*size)[0].as<std::string>("''") + ", " +
-                                     (*size)[1].as<std::string>("''") + "]") +
+      *text = Line("resolution",
+                   "[" + (*size)[0].as<std::string>("''") + ", " + (*size)[1].as<std::string>("''") + "]") +
               Line("intrinsics", plane) + Line("distortion_model", lens.model) +
               Line("distortion_coefficients", coefficients);
       return Status::Ok();

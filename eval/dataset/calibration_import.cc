@@ -190,8 +190,8 @@ class Importer {
   [[nodiscard]] Result<Intrinsics> SplitIntrinsics(const Node& camera, std::size_t count) const {
     const std::vector<std::string> all = EntriesOf(camera["intrinsics"]);
     if (all.size() != count + 4) {
-      return Status::Input(camera_place_ + ": intrinsics: found " + Flow(camera["intrinsics"]) + ", expected " +
-                           std::to_string(count + 4) + " numbers" +
+      return Status::Input(camera_place_ + ": intrinsics: found " + Flow(camera["intrinsics"]) +
+                           ", expected " + std::to_string(count + 4) + " numbers" +
                            (count > 0 ? ", the lens' before fu, fv, cu, cv" : ": fu, fv, cu, cv"));
     }
     const auto split = all.begin() + static_cast<std::ptrdiff_t>(count);

@@ -42,8 +42,8 @@ Status ReadDistortionModel(const SensorFile& file, DistortionModel* model) {
   const std::string name = file["distortion_model"].Scalar();
   const std::optional<DistortionModel> parsed = ParseDistortionModel(name);
   if (!parsed.has_value()) {
-    return file.Fault("distortion_model",
-                      known + Suggestion(name, {"radial-tangential", "equidistant", "fov", "mei", "double-sphere", "eucm", "none"}));
+    return file.Fault("distortion_model", known + Suggestion(name, {"radial-tangential", "equidistant", "fov",
+                                                                    "mei", "double-sphere", "eucm", "none"}));
   }
   *model = *parsed;
   return Status::Ok();

@@ -65,10 +65,11 @@ void DescribeCamera(SimulatorConfig* config, ConfigVisitor& visitor) {
                        {"eucm", DistortionModel::kEucm}});
   constexpr const char* kNames[] = {"distortion_1", "distortion_2", "distortion_3", "distortion_4"};
   for (int i = 0; i < 4; ++i) {
-    visitor.Real({kNames[i], "-",
-                  "coefficient in the lens model's order (k1 k2 p1 p2 | k1 k2 k3 k4 | w | xi alpha | alpha beta); "
-                  "others must be 0"},
-                 &config->distortion_coefficients[i], -10, 10);
+    visitor.Real(
+        {kNames[i], "-",
+         "coefficient in the lens model's order (k1 k2 p1 p2 | k1 k2 k3 k4 | w | xi alpha | alpha beta); "
+         "others must be 0"},
+        &config->distortion_coefficients[i], -10, 10);
   }
 }
 

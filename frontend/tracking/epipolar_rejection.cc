@@ -83,8 +83,8 @@ EpipolarTerm Evaluate(const BearingPair& pair, const Motion& motion, const Epipo
 
 /// Between where a pair was seen and where the rotation alone takes it.
 double DisplacementPx(const EpipolarTerm& term, const EpipolarOptions& options) {
-  const double displacement = options.on_sphere ? (term.x_2 - term.g).norm()
-                                                : (term.x_2.head<2>() - term.g.hnormalized()).norm();
+  const double displacement =
+      options.on_sphere ? (term.x_2 - term.g).norm() : (term.x_2.head<2>() - term.g.hnormalized()).norm();
   return displacement * options.focal_px;
 }
 

@@ -33,8 +33,8 @@ struct EpipolarOptions {
 /// stays well-posed. Where the inliers scatter more than the threshold expects (rolling shutter, poor
 /// calibration), it grows to three of their robust standard deviations, three times at most. Without R_21, or
 /// when fewer than half the pairs agree with it, a fundamental matrix by RANSAC decides instead (Hartley and
-/// Zisserman 2004, ch. 11); on the sphere it decides about the pairs within 80 degrees of the camera's axis alone. With
-/// fewer than kMinPairs pairs none is rejected.
+/// Zisserman 2004, ch. 11); on the sphere it decides about the pairs within 80 degrees of the camera's axis
+/// alone. With fewer than kMinPairs pairs none is rejected.
 [[nodiscard]] std::vector<bool> FindEpipolarInliers(const std::vector<BearingPair>& pairs,
                                                     const std::optional<Eigen::Matrix3d>& R_21,
                                                     const EpipolarOptions& options);

@@ -15,10 +15,10 @@ namespace alidade {
 /// A corner that is followed from image to image.
 struct FeatureTrack {
   std::int64_t id = 0;
-  cv::Point2f pixel;                                ///< in the last image
-  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();   ///< the same as a direction (PixelRay)
-  int length = 1;                                   ///< images it was seen in
-  PatchTemplate patch;                              ///< what it looked like when it began
+  cv::Point2f pixel;                                     ///< in the last image
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();        ///< the same as a direction (PixelRay)
+  int length = 1;                                        ///< images it was seen in
+  PatchTemplate patch;                                   ///< what it looked like when it began
   Eigen::Matrix2f affine = Eigen::Matrix2f::Identity();  ///< how that lies in the last image
 };
 

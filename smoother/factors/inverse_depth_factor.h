@@ -43,8 +43,8 @@ class InverseDepthFactor {
   BearingPlane plane_;
 };
 
-/// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Block landmark and, where the
-/// intrinsics are estimated, the camera's calibration; 2 rows.
+/// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Block landmark and,
+/// where the intrinsics are estimated, the camera's calibration; 2 rows.
 class BaseBearingFactor {
  public:
   static constexpr int kRows = 2;

@@ -50,9 +50,9 @@ bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
 
 /// d rho / d (phi, dp) of the base camera, rho being the inverse depth in the base view of a landmark that is
 /// a point of the world, as LinearizeView has it.
-[[nodiscard]] Eigen::Matrix<double, 1, 6> InverseDepthRow(
-    const FrameGeometry& base, const Eigen::Vector3d& landmark,
-    const BearingPlane& base_plane = kNormalizedPlane);
+[[nodiscard]] Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base,
+                                                          const Eigen::Vector3d& landmark,
+                                                          const BearingPlane& base_plane = kNormalizedPlane);
 
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {

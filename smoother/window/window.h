@@ -132,8 +132,8 @@ class Window {
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
 
-/// Views with the rays that their pixels have in `camera`, on the planes they had. One outside its domain stays
-/// as it is.
+/// Views with the rays that their pixels have in `camera`, on the planes they had. One outside its domain
+/// stays as it is.
 [[nodiscard]] WindowView Renormalized(const CameraModel& camera, const WindowView& view);
 [[nodiscard]] std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views);
 

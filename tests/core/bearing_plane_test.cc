@@ -158,7 +158,8 @@ TEST(BearingPlaneTest, RowsOfAnAnchoredLandmarkAreNumericInEveryConvention) {
         Vector2d moved;
         EXPECT_TRUE(model.Evaluate(Retract(convention, scene.T_WC[0], Vector6d(xi.head<6>())),
                                    Retract(convention, scene.T_WC[1], Vector6d(xi.segment<6>(6))),
-                                   scene.landmark + Vector3d(xi.tail<3>()), &moved, nullptr, nullptr, nullptr));
+                                   scene.landmark + Vector3d(xi.tail<3>()), &moved, nullptr, nullptr,
+                                   nullptr));
         return moved;
       };
       EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(moved_residual, 15, 1e-5), kTolerance),
@@ -190,8 +191,7 @@ TEST(BearingPlaneTest, PoseOnlyDepthAroundTheCamerasIsExactAndItsJacobiansNumeri
         Surround moved = scene;
         for (size_t i = 0; i < 4; ++i) {
           const auto at = static_cast<Eigen::Index>(i);
-          moved.T_WC[i] =
-              Retract(ErrorConvention::kSo3xRn, scene.T_WC[i], Vector6d(xi.segment<6>(6 * at)));
+          moved.T_WC[i] = Retract(ErrorConvention::kSo3xRn, scene.T_WC[i], Vector6d(xi.segment<6>(6 * at)));
           moved.observations[i].z += xi.segment<2>(24 + 2 * at);
         }
         PoseOnlyDepth there;

@@ -51,9 +51,9 @@ CameraModel MakeCamera(DistortionModel model) {
   return *camera;
 }
 
-constexpr DistortionModel kLenses[] = {DistortionModel::kNone, DistortionModel::kRadialTangential,
+constexpr DistortionModel kLenses[] = {DistortionModel::kNone,        DistortionModel::kRadialTangential,
                                        DistortionModel::kEquidistant, DistortionModel::kFov,
-                                       DistortionModel::kMei, DistortionModel::kDoubleSphere,
+                                       DistortionModel::kMei,         DistortionModel::kDoubleSphere,
                                        DistortionModel::kEucm};
 
 CalibrationConfig Everything() {

@@ -24,8 +24,8 @@ struct CameraCase {
   int width, height;
 };
 
-// Calibrations of real cameras: EuRoC cam0, TUM-VI cam0, Lenovo Tango fisheye, left camera of the GVINS dataset,
-// TUM-VI cam0 as double-sphere. The others are made up.
+// Calibrations of real cameras: EuRoC cam0, TUM-VI cam0, Lenovo Tango fisheye, left camera of the GVINS
+// dataset, TUM-VI cam0 as double-sphere. The others are made up.
 const CameraCase kCameras[] = {
     {"none", DistortionModel::kNone, {460, 460, 376, 240}, {}, 752, 480},
     {"radial_tangential",
@@ -48,7 +48,12 @@ const CameraCase kCameras[] = {
       0.0015137487236065916},
      752,
      480},
-    {"double_sphere", DistortionModel::kDoubleSphere, {158.28, 158.27, 254.96, 256.88}, {-0.172, 0.593}, 512, 512},
+    {"double_sphere",
+     DistortionModel::kDoubleSphere,
+     {158.28, 158.27, 254.96, 256.88},
+     {-0.172, 0.593},
+     512,
+     512},
     {"double_sphere_narrow", DistortionModel::kDoubleSphere, {600, 605, 330, 235}, {0.1, 0.4}, 640, 480},
     {"eucm", DistortionModel::kEucm, {190.5, 190.6, 254.9, 256.8}, {0.62, 1.08}, 512, 512},
 };

@@ -33,8 +33,8 @@ CameraModel Lens(DistortionModel model, double focal_px, const std::vector<doubl
   return *camera;
 }
 
-/// Lenses of more than 180 degrees. The first: parameters in the range that Usenko et al. 2018 found for a lens of
-/// 195 degrees.
+/// Lenses of more than 180 degrees. The first: parameters in the range that Usenko et al. 2018 found for a
+/// lens of 195 degrees.
 std::vector<CameraModel> WideLenses() {
   return {Lens(DistortionModel::kDoubleSphere, 250, {-0.18, 0.59}),
           Lens(DistortionModel::kDoubleSphere, 230, {0.1, 0.42}),
@@ -153,10 +153,10 @@ TEST(DoubleSphereTest, FormulaAndDomainAreThePublishedOnes) {
     EXPECT_GT(camera.max_angle_rad(), std::acos(-w2) - 2 * kStep) << xi << " " << alpha;
     // The published bound is on the safe side: the second sphere's rays turn back at Z + xi = -w1 d2.
     const double turns_back = -xi * (1 - w1 * w1) - w1 * std::sqrt(1 - xi * xi * (1 - w1 * w1));
-    EXPECT_NEAR(camera.max_angle_rad(), std::acos(std::max(-1.0, turns_back)), 2 * kStep) << xi << " " << alpha;
+    EXPECT_NEAR(camera.max_angle_rad(), std::acos(std::max(-1.0, turns_back)), 2 * kStep)
+        << xi << " " << alpha;
     for (int trial = 0; trial < 20; ++trial) {
-      const Vector3d p =
-          3 * RayAt(random.Uniform(0, camera.max_angle_rad()), random.Uniform(-kPi, kPi));
+      const Vector3d p = 3 * RayAt(random.Uniform(0, camera.max_angle_rad()), random.Uniform(-kPi, kPi));
       const double d1 = p.norm();
       const double d2 = std::sqrt(p.x() * p.x() + p.y() * p.y() + std::pow(xi * d1 + p.z(), 2));
       const double denominator = alpha * d2 + (1 - alpha) * (xi * d1 + p.z());
@@ -178,8 +178,7 @@ TEST(EucmTest, FormulaAndDomainAreThePublishedOnes) {
     const double limit = std::atan2(std::sqrt((1 / (w * w) - 1) / beta), -1.0);
     EXPECT_NEAR(camera.max_angle_rad(), limit, 2 * kStep) << alpha << " " << beta;
     for (int trial = 0; trial < 20; ++trial) {
-      const Vector3d p =
-          3 * RayAt(random.Uniform(0, camera.max_angle_rad()), random.Uniform(-kPi, kPi));
+      const Vector3d p = 3 * RayAt(random.Uniform(0, camera.max_angle_rad()), random.Uniform(-kPi, kPi));
       const double d = std::sqrt(beta * p.head<2>().squaredNorm() + p.z() * p.z());
       Vector2d pixel;
       ASSERT_TRUE(camera.Project(p, &pixel));

@@ -87,8 +87,8 @@ TEST(CameraGyroFitTest, ExactDataOfWideLensesGiveTheTruth) {
   const Result<CameraModel> lenses[] = {
       CameraModel::Create(DistortionModel::kDoubleSphere, {180, 181, 322, 243}, {-0.18, 0.59}, 640, 480),
       CameraModel::Create(DistortionModel::kEucm, {220, 221, 322, 243}, {0.62, 1.08}, 640, 480),
-      CameraModel::Create(DistortionModel::kEquidistant, {220, 221, 322, 243}, {0.003, 0.0007, -0.002, 0.0002},
-                          640, 480)};
+      CameraModel::Create(DistortionModel::kEquidistant, {220, 221, 322, 243},
+                          {0.003, 0.0007, -0.002, 0.0002}, 640, 480)};
   for (const Result<CameraModel>& lens : lenses) {
     ASSERT_TRUE(lens.ok()) << lens.message();
     SCOPED_TRACE(ToString(lens->model()));

@@ -100,8 +100,8 @@ TEST_F(CalibrationImport, KalibrDoubleSphereAndEucm) {
   EXPECT_EQ(ds->camera->camera.intrinsics(), Eigen::Vector4d(211, 212, 379, 218));
   EXPECT_EQ(ds->camera->camera.coefficients().head<2>(), Eigen::Vector2d(-0.18, 0.59));
   EXPECT_LT((ds->camera->T_BC * Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 1e-12);
-  const Result<ImportedCalibration> eucm =
-      Import(Chain("T_cam_imu", "  camera_model: eucm\n  intrinsics: [0.6, 1.1, 281.0, 282.0, 379.0, 218.0]\n"));
+  const Result<ImportedCalibration> eucm = Import(
+      Chain("T_cam_imu", "  camera_model: eucm\n  intrinsics: [0.6, 1.1, 281.0, 282.0, 379.0, 218.0]\n"));
   ASSERT_TRUE(eucm.ok()) << eucm.message();
   EXPECT_EQ(eucm->camera->camera.model(), DistortionModel::kEucm);
   EXPECT_EQ(eucm->camera->camera.coefficients().head<2>(), Eigen::Vector2d(0.6, 1.1));
@@ -116,14 +116,16 @@ std::string Basalt(const std::string& lens, const std::string& pose = "") {
          "],\n    \"intrinsics\": [" + lens +
          "],\n    \"resolution\": [[512, 510]],\n    \"calib_accel_bias\": [0.0, 0.0, 0.0],\n"
          "    \"imu_update_rate\": 200.0,\n    \"accel_noise_std\": [0.016, 0.016, 0.016],\n"
-         "    \"gyro_noise_std\": [0.0002, 0.0002, 0.00035],\n    \"accel_bias_std\": [0.001, 0.001, 0.001],\n"
+         "    \"gyro_noise_std\": [0.0002, 0.0002, 0.00035],\n    \"accel_bias_std\": [0.001, 0.001, "
+         "0.001],\n"
          "    \"gyro_bias_std\": [0.0001, 0.0001, 0.0001],\n    \"cam_time_offset_ns\": -2000000,\n"
          "    \"vignette\": []\n  }\n}\n";
 }
 
 std::string BasaltLens(const std::string& type, const std::string& coefficients) {
   return "{\"camera_type\": \"" + type +
-         "\", \"intrinsics\": {\"fx\": 158.2, \"fy\": 158.3, \"cx\": 254.9, \"cy\": 256.8" + coefficients + "}}";
+         "\", \"intrinsics\": {\"fx\": 158.2, \"fy\": 158.3, \"cx\": 254.9, \"cy\": 256.8" + coefficients +
+         "}}";
 }
 
 TEST_F(CalibrationImport, BasaltLensesAndImu) {
@@ -169,9 +171,10 @@ TEST_F(CalibrationImport, BasaltFaultsAreNamed) {
               HasSubstr("value0.intrinsics[0].intrinsics.alpha"));
   EXPECT_THAT(message(Basalt(BasaltLens("ds", ", \"xi\": -0.17, \"alpha\": 1.5"))),
               testing::AllOf(HasSubstr("calibration.yaml"), HasSubstr("alpha must lie in [0, 1]")));
-  EXPECT_THAT(message(Basalt(BasaltLens("pinhole", ""),
-                             "{\"px\": 0, \"py\": 0, \"pz\": 0, \"qx\": 0, \"qy\": 0, \"qz\": 0, \"qw\": 2}")),
-              HasSubstr("unit length"));
+  EXPECT_THAT(
+      message(Basalt(BasaltLens("pinhole", ""),
+                     "{\"px\": 0, \"py\": 0, \"pz\": 0, \"qx\": 0, \"qy\": 0, \"qz\": 0, \"qw\": 2}")),
+      HasSubstr("unit length"));
   EXPECT_THAT(message(Basalt("")), HasSubstr("value0.intrinsics[0].camera_type"));
   const std::string path = folder_.Write("calibration.json", Basalt(BasaltLens("pinhole", "")));
   EXPECT_THAT(ImportCalibration({path}, "cam1").message(), HasSubstr("the lens of cam1"));
@@ -219,15 +222,18 @@ TEST_F(CalibrationImport, NamesWhatIsWrong) {
   std::string chain = Chain("T_cam_imu");
   chain.replace(chain.find("T_cam_imu"), 9, "T_cam_xxx");
   EXPECT_THAT(Import(chain).message(), HasSubstr("no extrinsics"));
-  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: ds\n  distortion_model: radtan\n"
-                                        "  intrinsics: [0.1, 0.5, 200.0, 200.0, 379.0, 218.0]\n"))
+  EXPECT_THAT(Import(Chain("T_cam_imu",
+                           "  camera_model: ds\n  distortion_model: radtan\n"
+                           "  intrinsics: [0.1, 0.5, 200.0, 200.0, 379.0, 218.0]\n"))
                   .message(),
               HasSubstr("distortion_model: found 'radtan' with 'ds'"));
-  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: eucm\n  intrinsics: [0.5, 200.0, 200.0, 379.0, 218.0]\n"))
-                  .message(),
-              HasSubstr("expected 6 numbers"));
-  EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: eucm\n"
-                                        "  intrinsics: [0.5, -1.0, 200.0, 200.0, 379.0, 218.0]\n"))
+  EXPECT_THAT(
+      Import(Chain("T_cam_imu", "  camera_model: eucm\n  intrinsics: [0.5, 200.0, 200.0, 379.0, 218.0]\n"))
+          .message(),
+      HasSubstr("expected 6 numbers"));
+  EXPECT_THAT(Import(Chain("T_cam_imu",
+                           "  camera_model: eucm\n"
+                           "  intrinsics: [0.5, -1.0, 200.0, 200.0, 379.0, 218.0]\n"))
                   .message(),
               testing::AllOf(HasSubstr("calibration.yaml"), HasSubstr("beta must lie in (0, 100]")));
   EXPECT_THAT(Import(Chain("T_cam_imu", "  camera_model: ucm\n")).message(), HasSubstr("ds or eucm"));

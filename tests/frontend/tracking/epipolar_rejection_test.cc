@@ -57,8 +57,9 @@ Scene MakeWideScene(const Matrix3d& R_21, const Vector3d& t, unsigned seed) {
   for (int i = 0; i < 120; ++i) {
     const double angle = 0.95 * (1 + unit(random)) + 0.02;
     const double azimuth = M_PI * unit(random);
-    const Vector3d p_1 = (5 + 3 * unit(random)) * Vector3d(std::sin(angle) * std::cos(azimuth),
-                                                           std::sin(angle) * std::sin(azimuth), std::cos(angle));
+    const Vector3d p_1 =
+        (5 + 3 * unit(random)) *
+        Vector3d(std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle));
     const auto noisy = [&](const Vector3d& p) -> Vector3d {
       return (p.normalized() + Vector3d(noise(random), noise(random), noise(random))).normalized();
     };

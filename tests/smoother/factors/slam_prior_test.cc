@@ -81,8 +81,7 @@ TEST_P(SlamPriorTest, ChangeOfAnchorAgainstDifferences) {
     const FrameGeometry to_now = geometry(to, none.head<6>(), none);
     const AnchorPlanes planes{track.plane(), PlaneInAnchor(from_now, track.plane(), to_now, track.landmark)};
     AnchorChange change;
-    ASSERT_TRUE(
-        ChangeAnchor(from_now, to_now, track.landmark, &change, &fixture.calibration.layout, planes));
+    ASSERT_TRUE(ChangeAnchor(from_now, to_now, track.landmark, &change, &fixture.calibration.layout, planes));
     const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
       AnchorChange back;
       EXPECT_TRUE(ChangeAnchor(geometry(to, delta.segment<6>(6), delta),

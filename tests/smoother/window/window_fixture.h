@@ -76,7 +76,8 @@ struct WindowFixture {
  private:
   /// The camera's z axis to the middle of what it sees, 100 degrees off axis.
   [[nodiscard]] Eigen::Matrix3d TurnToView() const {
-    return seen_view == FixtureView::kBehind ? so3::Exp(Eigen::Vector3d(1.6, 0.6, 0)) : Eigen::Matrix3d::Identity();
+    return seen_view == FixtureView::kBehind ? so3::Exp(Eigen::Vector3d(1.6, 0.6, 0))
+                                             : Eigen::Matrix3d::Identity();
   }
   void AddTracks(int landmarks, double noise_sigma) {
     const std::vector<FrameGeometry> geometry = MakeGeometry(window, T_BC);
@@ -102,9 +103,8 @@ struct WindowFixture {
         observation.sqrt_information(0, 1) = 0.1 / sigma;
         track.views.push_back({&window.frame(i), observation});
       }
-      const Eigen::Vector3d p_base =
-          track.views.front().observation.plane.InAxes(
-              geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC.Inverse() * p_W);
+      const Eigen::Vector3d p_base = track.views.front().observation.plane.InAxes(
+          geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC.Inverse() * p_W);
       track.landmark << p_base.hnormalized(), 1 / p_base.z();
       track.has_landmark = true;
       if (track.views.size() >= 2) {
