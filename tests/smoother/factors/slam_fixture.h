@@ -18,7 +18,8 @@ namespace alidade::test {
 struct SlamFixture : WindowFixture {
   SlamFixture(unsigned seed, ErrorConvention error, bool calibrated, const std::vector<int>& anchors,
               FixtureView seen = FixtureView::kAhead)
-      : WindowFixture(seed, 5, 12, 1.0, seen), convention(error) {
+      : WindowFixture(seed, 5, 12, calibrated && seen == FixtureView::kBehind ? 0.0 : 1.0, seen),
+        convention(error) {
     EXPECT_TRUE(MakeInitialPrior(error, window.frame(0), 1e-3 * Matrix15d::Identity(), &first));
     if (calibrated) {
       const CalibrationEstimate estimate = CalibrateWindow(this);

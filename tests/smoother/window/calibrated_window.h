@@ -9,8 +9,9 @@
 namespace alidade::test {
 
 /// A pinhole camera for the fixture, or double-sphere where it sees behind itself, all of whose calibration
-/// is estimated: views keep their pixels, and the frames were placed by other time offsets than the present
-/// one.
+/// is estimated: views keep their pixels, and the frames of the pinhole were placed by other time offsets
+/// than the present one. Through a lens that is not straight the rows over the intrinsics are exact at a
+/// residual of zero.
 inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
   const Result<CameraModel> camera =
       fixture->seen_view == FixtureView::kAhead
@@ -21,7 +22,7 @@ inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
   config.extrinsics = config.time_offset = config.intrinsics = true;
   for (int i = 0; i < fixture->window.size(); ++i) {
     WindowFrame& frame = fixture->window.frame(i);
-    frame.time_offset_s = 0.001 * i;
+    frame.time_offset_s = fixture->seen_view == FixtureView::kAhead ? 0.001 * i : 0.004;
     frame.rates = BodyRates(fixture->random.Vector(1), frame.nav_state().v_WB);
   }
   for (auto& [id, track] : fixture->window.tracks()) {
