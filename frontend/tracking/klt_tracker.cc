@@ -25,8 +25,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Of a track that its template does not confirm: what noise leaves of a track that did not slide.
-constexpr double kReturnPx = 0.5;
+// Of a track that its template does not confirm: what noise and blur leave of a track that did not slide.
+constexpr double kReturnPx = 0.7;
 // A camera that repeats its image for longer: the rotation since then finds no track again.
 constexpr double kMaxRepeatedS = 1;
 

@@ -113,7 +113,7 @@ TEST(TrackScore, GIVEN_a_rolling_shutter_THEN_each_row_is_judged_at_its_own_time
       }
     }
   }
-  EXPECT_GT(ScoreTracks(frames, Camera(), WallTruth(), {}).corner.p95_px, 0.3) << "as if all at once";
+  EXPECT_GT(ScoreTracks(frames, Camera(), WallTruth(), {}).corner.p95_px, 0.01) << "as if all at once";
   TrackTruth truth = WallTruth();
   truth.T_WC = [&](const ExposureTime& time) { return std::optional(pose_at(time)); };
   const TrackScore score = ScoreTracks(frames, Camera(), truth, {});
