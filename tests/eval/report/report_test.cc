@@ -147,7 +147,7 @@ TEST(Tables, GivenAComparisonThenSummaryHasARowACellWithTheColumnsOthersRelyOn) 
   EXPECT_THAT(lines[1], ::testing::StartsWith("po_invio_multi,filter,figure8,1,ok,5f1c1"));
   EXPECT_THAT(lines[12], ::testing::StartsWith("vins_mono_class,smoother,V1_01_easy,2,failed,"));
   EXPECT_THAT(lines[12], ::testing::EndsWith(
-                             ",0,,,,,,,,,,,,,,,,,,,,,,,\"cam0/tracks.csv:12: </script><b>\"\"torn\"\" row, "
+                             ",0,,,,,,,,,,,,,,,,,,,,,,,,,\"cam0/tracks.csv:12: </script><b>\"\"torn\"\" row, "
                              "expected 4 columns\""));
 }
 

@@ -13,11 +13,15 @@ namespace {
 
 TEST(SimulatorConfigTest, EveryShippedConfigurationIsValid) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(ALIDADE_SOURCE_DIR "/configs/datasets")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(ALIDADE_SOURCE_DIR "/configs/datasets")) {
+    if (entry.is_directory()) {
+      continue;
+    }
     // Those that stand on a recording are refused until it is named.
     const std::string stem = entry.path().stem();
     std::vector<std::string> settings;
-    if (stem == "hybrid" || stem == "rendered") {
+    if (stem == "hybrid" || stem == "rendered" || stem == "rendered_hard") {
       settings = {"hybrid_dataset=somewhere"};
     } else if (stem == "recorded" || stem == "gnss_recorded") {
       settings = {"trajectory_file=" + testing::TempDir()};

