@@ -47,7 +47,6 @@ class Receiver {
       : config_(config),
         trajectory_(trajectory),
         start_gpst_ns_(start_ns - SecondsToNs(config.time_offset_s)),
-        seed_(seed),
         catalog_(std::move(catalog)),
         clock_(config, seed),
         enu_(
@@ -241,7 +240,6 @@ class Receiver {
   const SimGnssConfig& config_;
   const ContinuousTrajectory& trajectory_;
   TimeNs start_gpst_ns_;
-  std::uint64_t seed_;
   std::shared_ptr<const SatelliteCatalog> catalog_;
   SimReceiverClock clock_;
   EnuFrame enu_;
