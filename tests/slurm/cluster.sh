@@ -78,6 +78,11 @@ start_node() {
   slurmd -N "$1"
 }
 
+# Whether a task runs on a node.
+node_is_busy() {
+  grep --quiet --null-data --no-messages "^SLURMD_NODENAME=$1$" /proc/[0-9]*/environ
+}
+
 # Ends the daemon of a node and all that it runs, as when the machine fails. Prints the number of processes.
 kill_node() {
   local victims environment process parent

@@ -22,7 +22,7 @@ $(for i in 1 2 3 4; do
   echo "  - {config: $source/configs/estimators/po_invio_two.yaml, name: window_$i, set: {filter.window: $((4 + i))}}"
 done)
 sequences:
-  - {config: $source/configs/datasets/figure8_short.yaml, name: short, set: {duration_s: 2, path_m: 2.6}, seeds: 1..50}
+  - {config: $source/configs/datasets/figure8_short.yaml, name: short, set: {duration_s: 4, path_m: 5.2}, seeds: 1..50}
 metrics: {rpe: [1]}
 EOF
 "$program" compare --plan=plan.yaml --output=local --jobs=2 --quiet >/dev/null
@@ -36,12 +36,16 @@ for i in $(seq 600); do
 done
 [[ $done_cells -lt 190 ]] || { echo "too late to kill a node: $done_cells cells"; exit 1; }
 for i in $(seq 20); do  # until it has hit a task
+  for j in $(seq 200); do
+    node_is_busy node1 && break
+    sleep 0.01
+  done
   killed=$(kill_node node1)
   [[ $killed -ge 2 ]] && break
   start_node node1
   sleep 0.5
 done
-[[ $killed -ge 2 ]]
+[[ $killed -ge 2 ]] || { echo "skipped: no task was hit"; exit 77; }
 "$program" compare --status=cluster_run | head -1
 sleep 8  # SlurmdTimeout: the node is declared dead, its job requeued
 start_node node1
