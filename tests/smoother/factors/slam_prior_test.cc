@@ -270,10 +270,11 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
   const VectorXd camera_after = known_after.calibration_deviations;
   EXPECT_LT((after - before).norm(), 1e-5 * before.norm());
   ASSERT_EQ(camera_after.size(), fixture.calibration.size());
+  // Within a narrow cone a coefficient of a curved lens is hardly seen.
+  const double learnt = fixture.seen_view == test::FixtureView::kBehind ? 0.9999 : 0.999;
   for (Index i = 0; i < camera_after.size(); ++i) {
     EXPECT_NEAR(camera_after[i], camera_before[i], 1e-5 * camera_before[i]) << i;
-    // Of a curved lens within a narrow cone a coefficient is hardly seen.
-    EXPECT_LT(camera_after[i], 0.9999 * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
+    EXPECT_LT(camera_after[i], learnt * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
   }
 }
 
