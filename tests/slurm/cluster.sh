@@ -78,14 +78,10 @@ start_node() {
   slurmd -N "$1"
 }
 
-# Whether a task runs on a node.
-node_is_busy() {
-  grep --quiet --null-data --no-messages "^SLURMD_NODENAME=$1$" /proc/[0-9]*/environ
-}
-
-# Ends the daemon of a node and all that it runs, as when the machine fails. Prints the number of processes.
-kill_node() {
-  local victims environment process parent
+# Ends the daemon of a node and all that it runs, as when the machine fails, if it runs a task: all are stopped first, and live on when
+# the program is not among them, since a task that has ended is not requeued. Prints the number of processes ended.
+kill_busy_node() {
+  local victims environment process parent busy=false
   victims=("$(cat "$cluster/$1.pid")")
   for environment in $(grep --files-with-matches --null-data --no-messages "^SLURMD_NODENAME=$1$" /proc/[0-9]*/environ); do
     process=${environment#/proc/}
@@ -96,6 +92,15 @@ kill_node() {
       victims+=("$parent")
     fi
   done
+  kill -STOP "${victims[@]}" 2>/dev/null || true
+  for process in "${victims[@]}"; do
+    grep --quiet --no-messages '^[0-9]* (alidade) T' "/proc/$process/stat" && busy=true
+  done
+  if ! $busy; then
+    kill -CONT "${victims[@]}" 2>/dev/null || true
+    echo 0
+    return
+  fi
   kill -9 "${victims[@]}" 2>/dev/null || true
   rm -f "$cluster/$1.pid"
   echo "${#victims[@]}"
