@@ -5,26 +5,21 @@
 #include <map>
 #include <optional>
 
-#include "core/calibration.h"
 #include "core/dense_solvers.h"
 #include "core/format.h"
-#include "core/lie.h"
 #include "core/median.h"
 #include "core/robust.h"
-#include "core/visual_observation.h"
+#include "eval/calibrate/camera_gyro_rays.h"
 #include "eval/calibrate/gyro_path.h"
-#include "frontend/initialization/dynamic_window.h"
 #include "frontend/initialization/epipolar_ray.h"
 
 namespace alidade {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Coordinate = CameraGyroCoordinate;
 using Tangent = Eigen::Matrix<double, 3, 2>;
-using LensRows = Eigen::Matrix<double, 3, Coordinate::kCount - Coordinate::kFocal>;
 
 constexpr double kKernelSigma = 2.5;
 /// Cost of a view that the lens model cannot take, as of one four sigma off.
@@ -34,135 +29,6 @@ constexpr double kInflationOfShort = 10;
 /// Share of the readout time: while rows are read the camera is taken to move as on average between its two
 /// frames.
 constexpr double kReadoutModel = 0.03;
-
-/// A unit ray in its camera and its derivative by the intrinsics, in the order of the coordinates.
-struct Ray {
-  Vector3d direction = Vector3d::UnitZ();
-  double sigma = 0;      ///< angle of one pixel [rad]
-  double pixel_row = 0;  ///< row / height - 1/2
-};
-
-bool RayOf(const CameraModel& camera, const Vector2d& pixel, Ray* ray) {
-  NormalizedObservation observation;
-  if (!NormalizeObservation(camera, pixel, 1.0, &observation)) {
-    return false;
-  }
-  ray->direction = BearingOf(observation);
-  ray->sigma = AngularDeviation(observation);
-  ray->pixel_row = pixel.y() / camera.height_px() - 0.5;
-  return true;
-}
-
-/// Rows over a plane's coordinates by fu, fv, centre and coefficients, to those over a ray, `to_ray`, by the
-/// coordinates of the fit.
-LensRows RowsOfLens(const CameraModel& camera, const Tangent& to_ray,
-                    const Eigen::Matrix<double, 2, 8>& plane_rows) {
-  LensRows rows = LensRows::Zero();
-  const Eigen::Vector4d& k = camera.intrinsics();
-  const Vector2d by_fu = plane_rows.col(0) * k[0];
-  const Vector2d by_fv = plane_rows.col(1) * k[1];
-  rows.col(0) = to_ray * (by_fu + by_fv);
-  rows.col(1) = to_ray * (by_fu - by_fv) / 2;
-  rows.middleCols<2>(2) = to_ray * plane_rows.middleCols<2>(2);
-  const int coefficients = std::min(CoefficientCount(camera.model()), 4);
-  rows.middleCols(4, coefficients) = to_ray * plane_rows.middleCols(4, coefficients);
-  return rows;
-}
-
-/// IntrinsicsOfRay by the tangent plane, wherever the ray points.
-LensRows IntrinsicsOfSphericalRay(const CameraModel& camera, const Vector3d& direction) {
-  Eigen::Matrix<double, 2, 8> pixel_rows;
-  NormalizedObservation at;
-  at.plane = BearingPlane::TangentAt(direction);
-  Eigen::Matrix2d pixel_from_plane;
-  if (!IntrinsicsJacobian(camera, direction, &pixel_rows) || !PixelJacobian(camera, at, &pixel_from_plane)) {
-    return LensRows::Zero();
-  }
-  return RowsOfLens(camera, at.plane.axes().leftCols<2>(), -pixel_from_plane.inverse() * pixel_rows);
-}
-
-/// d direction / d (focal, ratio, centre, lens) at `direction`: the pixel is kept.
-LensRows IntrinsicsOfRay(const CameraModel& camera, const Vector3d& direction) {
-  if (camera.is_spherical()) {
-    return IntrinsicsOfSphericalRay(camera, direction);
-  }
-  LensRows rows = LensRows::Zero();
-  const Vector2d z = direction.head<2>() / direction.z();
-  Eigen::Matrix<double, 2, 8> pixel_rows;
-  Vector2d pixel;
-  Eigen::Matrix<double, 2, 3> projection;
-  if (!IntrinsicsJacobian(camera, z, &pixel_rows) ||
-      !camera.Project(Vector3d(z.x(), z.y(), 1), &pixel, &projection)) {
-    return rows;
-  }
-  const Eigen::Matrix<double, 2, 8> plane_rows = -projection.leftCols<2>().inverse() * pixel_rows;
-  Eigen::Matrix<double, 3, 2> to_ray;
-  const double length = std::hypot(1.0, z.norm());
-  to_ray << Eigen::Matrix2d::Identity(), 0, 0;
-  to_ray = (to_ray - direction * direction.head<2>().transpose()).eval() / length;
-  return RowsOfLens(camera, to_ray, plane_rows);
-}
-
-/// One frame of a pair at the present model.
-struct FrameMotion {
-  double t_s = 0;                        ///< IMU time of the middle row
-  Matrix3d R_0B = Matrix3d::Identity();  ///< body to the first body
-  Vector3d rate_C = Vector3d::Zero();    ///< of the camera, in its own axes [rad/s]
-};
-
-/// Camera orientations of a pair at the present model.
-struct PairMotion {
-  FrameMotion i, j;
-  Matrix3d R_ij = Matrix3d::Identity();  ///< camera j to camera i
-  Matrix3d bias_j = Matrix3d::Zero();    ///< R_ij(b + d) = R_ij Exp(bias_j d)
-};
-
-PairMotion MotionOf(const FramePair& pair, const CameraGyroModel& model, const GyroPath& path) {
-  PairMotion motion;
-  motion.i.t_s = pair.t_i_s + model.time_offset_s;
-  motion.j.t_s = pair.t_j_s + model.time_offset_s;
-  const GyroPath::Point i = path.At(motion.i.t_s);
-  const GyroPath::Point j = path.At(motion.j.t_s);
-  const Matrix3d R_CB = model.R_BC.transpose();
-  motion.i.R_0B = i.R_0t;
-  motion.j.R_0B = j.R_0t;
-  motion.i.rate_C = R_CB * i.rate_B;
-  motion.j.rate_C = R_CB * j.rate_B;
-  motion.R_ij = R_CB * i.R_0t.transpose() * j.R_0t * model.R_BC;
-  motion.bias_j = R_CB * GyroPath::BiasJacobian(i, j);
-  return motion;
-}
-
-/// A ray seen by its row's camera, in the axes of the middle row's.
-Vector3d TurnToMiddleRow(const Ray& ray, const FrameMotion& frame, const CameraGyroModel& model,
-                         const GyroPath& path) {
-  if (model.readout_s == 0) {
-    return ray.direction;
-  }
-  const Matrix3d R_0row = path.At(frame.t_s + model.readout_s * ray.pixel_row).R_0t;
-  return model.R_BC.transpose() * (frame.R_0B.transpose() * (R_0row * (model.R_BC * ray.direction)));
-}
-
-/// One view of a pair at a model: its rays in the middle rows' cameras.
-struct ViewRays {
-  bool seen = false;
-  Ray i, j;
-  EpipolarRay epipolar;
-};
-
-ViewRays RaysOf(const PairView& view, const CameraGyroModel& model, const PairMotion& motion,
-                const GyroPath& path, double noise_px) {
-  ViewRays rays;
-  if (!RayOf(model.camera, view.pixel_i, &rays.i) || !RayOf(model.camera, view.pixel_j, &rays.j)) {
-    return rays;
-  }
-  rays.seen = true;
-  rays.epipolar.ray_i = TurnToMiddleRow(rays.i, motion.i, model, path);
-  rays.epipolar.ray_j = motion.R_ij * TurnToMiddleRow(rays.j, motion.j, model, path);
-  rays.epipolar.normal = rays.epipolar.ray_i.cross(rays.epipolar.ray_j);
-  rays.epipolar.sigma = noise_px * std::hypot(rays.i.sigma, rays.j.sigma);
-  return rays;
-}
 
 Tangent TangentOf(const Vector3d& direction) {
   Tangent tangent;
@@ -464,7 +330,7 @@ class Fit {
     fit_.inflation /= std::max(1, free);
   }
 
-  /// Of the estimate, from the scatter of what each block of time moves it by; negative infinity for fewer
+  /// Of the estimate, from the scatter of what each block of time moves it by; none with fewer
   /// than four blocks. The sandwich estimator with clusters (Liang and Zeger 1986), each coordinate for
   /// itself.
   [[nodiscard]] std::optional<CameraGyroError> VariancesByBlocks(
@@ -503,52 +369,6 @@ class Fit {
 };
 
 }  // namespace
-
-bool Retract(const CameraGyroError& error, CameraGyroModel* model) {
-  if (!error.allFinite()) {
-    return false;
-  }
-  Eigen::Vector4d intrinsics = model->camera.intrinsics();
-  intrinsics[0] *= 1 + error[Coordinate::kFocal] + error[Coordinate::kFocalRatio] / 2;
-  intrinsics[1] *= 1 + error[Coordinate::kFocal] - error[Coordinate::kFocalRatio] / 2;
-  intrinsics.tail<2>() += error.segment<2>(Coordinate::kCentre);
-  const LensCoefficients lens = model->camera.coefficients() + error.segment<5>(Coordinate::kLens);
-  const std::vector<double> coefficients(lens.data(), lens.data() + CoefficientCount(model->camera.model()));
-  const Result<CameraModel> camera = CameraModel::Create(model->camera.model(), intrinsics, coefficients,
-                                                         model->camera.width_px(), model->camera.height_px());
-  if (!camera.ok()) {
-    return false;
-  }
-  model->camera = *camera;
-  model->gyro_bias += error.segment<3>(Coordinate::kGyroBias);
-  model->R_BC = so3::Normalize(model->R_BC * so3::Exp(error.segment<3>(Coordinate::kRotation)));
-  model->time_offset_s += error[Coordinate::kTimeOffset];
-  model->readout_s += error[Coordinate::kReadout];
-  return true;
-}
-
-CameraGyroError CameraGyroOffset(const CameraGyroModel& from, const CameraGyroModel& to) {
-  CameraGyroError error = CameraGyroError::Zero();
-  error.segment<3>(Coordinate::kGyroBias) = to.gyro_bias - from.gyro_bias;
-  error.segment<3>(Coordinate::kRotation) = so3::Log(from.R_BC.transpose() * to.R_BC);
-  error[Coordinate::kTimeOffset] = to.time_offset_s - from.time_offset_s;
-  error[Coordinate::kReadout] = to.readout_s - from.readout_s;
-  const Eigen::Vector4d& a = from.camera.intrinsics();
-  const Eigen::Vector4d& b = to.camera.intrinsics();
-  error[Coordinate::kFocal] = (b[0] / a[0] + b[1] / a[1]) / 2 - 1;
-  error[Coordinate::kFocalRatio] = b[0] / a[0] - b[1] / a[1];
-  error.segment<2>(Coordinate::kCentre) = b.tail<2>() - a.tail<2>();
-  error.segment<5>(Coordinate::kLens) = to.camera.coefficients() - from.camera.coefficients();
-  return error;
-}
-
-CameraGyroError CameraGyroPrior() {
-  CameraGyroError prior = CameraGyroError::Zero();
-  prior.segment<3>(Coordinate::kGyroBias).setConstant(0.1);
-  prior.segment<3>(Coordinate::kRotation).setConstant(1);
-  prior[Coordinate::kTimeOffset] = 0.3;
-  return prior;
-}
 
 Result<CameraGyroFit> FitCameraToGyro(const std::vector<FramePair>& pairs, const std::vector<ImuSample>& imu,
                                       const CameraGyroModel& start, const CameraGyroFitOptions& options) {
