@@ -107,6 +107,7 @@ Status PrepareOutputFolder(const std::string& path, bool allowed) {
 
 void Say(const std::string& line) {
   if (!FLAGS_quiet) {
+    std::fflush(stdout);  // a log of both streams keeps their order
     std::fprintf(stderr, "%s\n", line.c_str());
   }
 }
