@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -18,6 +15,7 @@
 #include "eval/render/hall_file.h"
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_reader.h"
+#include "tests/eval/render/rendered_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -25,79 +23,14 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// The figure-8 at EuRoC's size and frame rate through a lens like EuRoC's.
-SimulatorConfig RenderedConfig() {
-  SimulatorConfig config;
-  config.duration_s = 2;
-  config.path_m = 2.6;
-  config.imu_rate_hz = 200;
-  config.camera_rate_hz = 20;
-  config.camera_time_offset_s = 0.01;
-  config.distortion = DistortionModel::kRadialTangential;
-  config.distortion_coefficients << -0.28, 0.07, 2e-4, 2e-5;
-  config.landmark_min_distance_m = 0.8;
-  config.render.enabled = true;
-  return config;
-}
-
-/// The same, a quarter as wide and high: for what does not depend on the size.
-SimulatorConfig SmallConfig() {
-  SimulatorConfig config = RenderedConfig();
-  config.width_px = 188;
-  config.height_px = 120;
-  config.focal_px = 115;
-  config.duration_s = 1;
-  return config;
-}
-
-struct Scene {
-  SimulatorConfig config;
-  Simulation simulation;
-  RenderedSequence sequence;
-
-  static Scene Make(const SimulatorConfig& config, unsigned seed = 3) {
-    Simulation simulation = SimulateWithMotion(config, seed).value();
-    RenderedSequence sequence = RenderedSequence::Create(config, simulation, seed).value();
-    return {config, std::move(simulation), std::move(sequence)};
-  }
-
-  [[nodiscard]] const Dataset& dataset() const { return simulation.dataset; }
-  [[nodiscard]] Pose CameraAt(TimeNs stamp_ns) const {
-    const double time_s =
-        SecondsBetween(simulation.motion_start_ns, stamp_ns) + dataset().rig.camera_time_offset_s;
-    return simulation.motion->At(time_s).nav.T_WB() * dataset().rig.T_BC;
-  }
-};
-
-double Quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
-/// Distances [px] of tracked pixels from where the surface point of the track's first pixel projects.
-std::vector<double> ReprojectionErrors(const Scene& scene, const std::vector<TrackFrame>& frames) {
-  const CameraModel& camera = scene.dataset().rig.camera;
-  std::map<std::int64_t, Vector3d> points_W;
-  std::vector<double> errors;
-  for (const TrackFrame& frame : frames) {
-    const Pose T_WC = scene.CameraAt(frame.stamp_ns);
-    for (const TrackObservation& observation : frame.observations) {
-      const auto known = points_W.find(observation.track_id);
-      Vector2d place;
-      if (known != points_W.end()) {
-        EXPECT_TRUE(camera.Project(T_WC.Inverse() * known->second, &place));
-        errors.push_back((observation.pixel - place).norm());
-      } else if (camera.Unproject(observation.pixel, &place)) {
-        const Vector3d ray_W = T_WC.rotation * place.homogeneous().normalized();
-        const double distance = scene.sequence.hall().Distance(T_WC.translation, ray_W);
-        points_W[observation.track_id] = T_WC.translation + distance * ray_W;
-      }
-    }
-  }
-  return errors;
-}
+using test::FrameWith;
+using test::MeanGrey;
+using test::Quantile;
+using test::RenderedConfig;
+using test::ReprojectionErrors;
+using test::Scene;
+using test::Sharpness;
+using test::SmallConfig;
 
 TEST(RenderedSequence, TrackedCornersFitTheTruthWithinAThirdOfAPixel) {
   const Scene scene = Scene::Make(RenderedConfig());
@@ -162,33 +95,6 @@ TEST(RenderedSequence, NothingStandsInThePath) {
   }
 }
 
-/// Mean squared difference of neighbours along a row: how sharp an image is.
-double Sharpness(const GreyImage& image) {
-  double sum = 0;
-  for (std::size_t i = 1; i < image.pixels.size(); ++i) {
-    const double step = image.pixels[i] - image.pixels[i - 1];
-    sum += step * step;
-  }
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-double MeanGrey(const GreyImage& image) {
-  double sum = 0;
-  for (const unsigned char grey : image.pixels) {
-    sum += grey;
-  }
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-/// The frame at 0.5 s with other keys of the renderer.
-GreyImage FrameWith(const std::function<void(RenderConfig*)>& change) {
-  SimulatorConfig config = SmallConfig();
-  config.render.read_noise_grey = 0;
-  config.render.shot_noise_grey = 0;
-  change(&config.render);
-  return Scene::Make(config).sequence.Frame(10);
-}
-
 TEST(RenderedSequence, ALongExposureBlursAFastTurn) {
   const GreyImage sharp = FrameWith([](RenderConfig* render) { render->exposure_s = 0; });
   const GreyImage blurred = FrameWith([](RenderConfig* render) { render->exposure_s = 0.2; });
@@ -241,247 +147,6 @@ TEST(RenderedSequence, ThreadsChangeNoByteAndTheFolderReadsBack) {
   const std::vector<TrackFrame> from_memory =
       TrackRenderedImages(scene.sequence, scene.dataset(), FrontendConfig(), {.jobs = 2}).value();
   EXPECT_EQ(DigestOf({read.rig, read.imu, from_files}), DigestOf({read.rig, read.imu, from_memory}));
-}
-
-/// All effects of docs/renderer.md at once.
-SimulatorConfig HardConfig() {
-  SimulatorConfig config = SmallConfig();
-  RenderConfig& render = config.render;
-  render.brightness = 0.4;
-  render.auto_exposure = true;
-  render.light_contrast = 3;
-  render.light_step = 0.4;
-  render.light_step_period_s = 0.4;
-  render.vignetting = 0.5;
-  render.aperture_m = 0.002;
-  render.focus_distance_m = 0.6;
-  render.line_delay_s = 1e-4;
-  render.repetitive_share = 0.2;
-  render.bare_share = 0.3;
-  render.moving_density_per_m2 = 0.3;
-  render.floor_gloss = 0.2;
-  render.lamp_spacing_m = 2;
-  return config;
-}
-
-TEST(RenderedSequence, WithAllEffectsThreadsChangeNoByteAndTheFolderReadsBack) {
-  const Scene scene = Scene::Make(HardConfig());
-  ASSERT_GT(scene.sequence.hall().moving.size(), 2U);
-  ASSERT_EQ(scene.sequence.exposures().size(), 21U);
-  const test::TemporaryFolder one, three;
-  for (const auto& [folder, jobs] : {std::pair(&one, 1), std::pair(&three, 3)}) {
-    ASSERT_TRUE(WriteDataset(scene.dataset(), folder->path()).ok());
-    ASSERT_TRUE(WriteRenderedImages(scene.sequence, folder->path(), {.jobs = jobs}).ok());
-  }
-  EXPECT_EQ(DigestOfFolder(one.path()).value(), DigestOfFolder(three.path()).value());
-  EXPECT_EQ(ReadDataset(one.path())->rig.line_delay_s, 1e-4);
-  EXPECT_EQ(ReadTrajectory(CameraPosesPath(one.path()))->points.size(), 21U * 9);
-  const Hall read = ReadHall(HallPath(one.path())).value();
-  EXPECT_EQ(read.epoch_ns, scene.sequence.hall().epoch_ns);
-  for (const double time_s : {0.1, 0.8}) {
-    const Vector3d p_W = scene.simulation.motion->At(time_s).nav.p_WB;
-    for (int i = 0; i < 100; ++i) {
-      const Vector3d direction(std::cos(0.063 * i), std::sin(0.063 * i), -0.1);
-      EXPECT_EQ(read.Distance(p_W, direction.normalized(), time_s),
-                scene.sequence.hall().Distance(p_W, direction.normalized(), time_s));
-    }
-  }
-}
-
-TEST(RenderedSequence, ARowOfARollingShutterIsThatOfAnImageTakenAtItsTime) {
-  // Global shutters at the time of the row: the time offset moves the exposure alone.
-  SimulatorConfig config = SmallConfig();
-  config.render.moving_density_per_m2 = 0.3;
-  config.render.line_delay_s = 2e-4;
-  const GreyImage rolling = Scene::Make(config).sequence.Frame(10);
-  const double offset_s = config.camera_time_offset_s;
-  config.render.line_delay_s = 0;
-  const GreyImage global = Scene::Make(config).sequence.Frame(10);
-  for (const int row : {3, 60, 110}) {
-    config.camera_time_offset_s = offset_s + 2e-4 * (row - 60);
-    const GreyImage at_its_time = Scene::Make(config).sequence.Frame(10);
-    int off = 0, off_global = 0;
-    for (int x = 0; x < config.width_px; ++x) {
-      const auto pixel = static_cast<std::size_t>(row * config.width_px + x);
-      off += std::abs(rolling.pixels[pixel] - at_its_time.pixels[pixel]) > 1 ? 1 : 0;
-      off_global += std::abs(rolling.pixels[pixel] - global.pixels[pixel]) > 1 ? 1 : 0;
-    }
-    EXPECT_LE(off, 3) << "row " << row << ": rays that graze an edge may differ";
-    if (row != 60) {
-      EXPECT_GT(off_global, 20) << "row " << row;
-    }
-  }
-}
-
-TEST(RenderedSequence, TracksOfARollingShutterFitTheRowsTimes) {
-  SimulatorConfig config = RenderedConfig();
-  config.duration_s = 1;
-  config.path_m = 1.3;
-  config.render.line_delay_s = 4e-5;
-  const Scene scene = Scene::Make(config);
-  const test::TemporaryFolder folder;
-  ASSERT_TRUE(WriteDataset(scene.dataset(), folder.path()).ok());
-  ASSERT_TRUE(WriteRenderedImages(scene.sequence, folder.path(), {.jobs = 2}).ok());
-  Dataset read = ReadDataset(folder.path()).value();
-  const std::vector<TrackFrame> frames = TrackImages(read, FrontendConfig(), {}).value();
-  const auto median_px = [&] {
-    return ScoreTracks(frames, read.rig.camera, TruthOfTracks(read, frames).value(), {}).corner.median_px;
-  };
-  EXPECT_LT(median_px(), 0.15);
-  const double by_row_px = median_px();
-  read.rig.line_delay_s = 0;
-  EXPECT_GT(median_px(), 2 * by_row_px) << "as if all rows were exposed at once";
-}
-
-TEST(RenderedSequence, MovingBoxesKeepAwayFromTheBody) {
-  SimulatorConfig config = SmallConfig();
-  config.duration_s = 10;
-  config.path_m = 13;
-  config.render.moving_density_per_m2 = 0.3;
-  const Scene scene = Scene::Make(config);
-  const Hall& hall = scene.sequence.hall();
-  ASSERT_GT(hall.moving.size(), 2U);
-  for (double time_s = 0; time_s < config.duration_s; time_s += 0.05) {
-    const Vector3d p = scene.simulation.motion->At(time_s).nav.p_WB - hall.origin_W;
-    for (const MovingBox& moving : hall.moving) {
-      const Vector3d seen = p - moving.Shift(time_s);
-      const Vector3d low = moving.box.low.cast<double>(), high = moving.box.high.cast<double>();
-      EXPECT_GT((seen - seen.cwiseMax(low).cwiseMin(high)).norm(), config.landmark_min_distance_m - 0.1);
-    }
-  }
-}
-
-TEST(RenderedSequence, WhatIsOutOfFocusIsBlurredAndNotShifted) {
-  const auto with_lens = [](double focus_m) {
-    return FrameWith([&](RenderConfig* render) {
-      render->exposure_s = 0;
-      render->samples = 16;
-      render->aperture_m = 0.02;
-      render->focus_distance_m = focus_m;
-    });
-  };
-  const GreyImage pinhole = FrameWith([](RenderConfig* render) {
-    render->exposure_s = 0;
-    render->samples = 16;
-  });
-  const GreyImage near = with_lens(0.5), in_focus = with_lens(3);
-  EXPECT_LT(Sharpness(near), 0.6 * Sharpness(in_focus));
-  EXPECT_GT(Sharpness(in_focus), 0.7 * Sharpness(pinhole));
-  EXPECT_NEAR(MeanGrey(near), MeanGrey(pinhole), 3);
-}
-
-TEST(RenderedSequence, GainKeepsThePictureAndRaisesTheNoise) {
-  const auto exposed = [](double gain, double noise) {
-    return FrameWith([&](RenderConfig* render) {
-      render->brightness = 0.8 / gain;
-      render->gain = gain;
-      render->read_noise_grey = noise;
-      render->shot_noise_grey = 0.1 * noise;
-    });
-  };
-  const GreyImage clean = exposed(4, 0), noisy = exposed(4, 1);
-  EXPECT_NEAR(MeanGrey(clean), MeanGrey(exposed(1, 0)), 0.5);
-  double excess = 0;
-  for (std::size_t i = 0; i < clean.pixels.size(); ++i) {
-    const double difference = noisy.pixels[i] - clean.pixels[i];
-    excess += difference * difference - (16 + 0.4 * clean.pixels[i]);
-  }
-  EXPECT_NEAR(excess / static_cast<double>(clean.pixels.size()), 1.0 / 6, 2);
-}
-
-TEST(RenderedSequence, VignettingDarkensTheCornersByItsShare) {
-  const GreyImage plain = FrameWith([](RenderConfig*) {});
-  const GreyImage dark = FrameWith([](RenderConfig* render) { render->vignetting = 0.6; });
-  const auto ratio_at = [&](int x, int y) {
-    const auto pixel = static_cast<std::size_t>(y * plain.width_px + x);
-    return dark.pixels[pixel] / static_cast<double>(plain.pixels[pixel]);
-  };
-  EXPECT_NEAR(ratio_at(94, 60), 1, 0.02);
-  EXPECT_NEAR(ratio_at(0, 0), 0.4, 0.03);
-}
-
-TEST(RenderedSequence, TheLightStepsAndExposureControlBringsTheImageBack) {
-  SimulatorConfig config = SmallConfig();
-  config.duration_s = 2;
-  config.path_m = 0.2;
-  config.render.light_step = 0.5;
-  config.render.light_step_period_s = 1;
-  const Scene fixed = Scene::Make(config);
-  EXPECT_NEAR(MeanGrey(fixed.sequence.Frame(21)), 0.5 * MeanGrey(fixed.sequence.Frame(18)), 2);
-  config.render.auto_exposure = true;
-  config.render.exposure_target_grey = 90;
-  const Scene controlled = Scene::Make(config);
-  EXPECT_NEAR(MeanGrey(controlled.sequence.Frame(18)), 90, 9);
-  EXPECT_LT(MeanGrey(controlled.sequence.Frame(21)), 60) << "the control is late";
-  EXPECT_NEAR(MeanGrey(controlled.sequence.Frame(38)), 90, 9);
-}
-
-TEST(RenderedSequence, TheFloorMirrorsWhatStandsOnIt) {
-  // The view from below the floor against the plain intersection of the mirrored ray.
-  const Scene scene = Scene::Make(SmallConfig());
-  const Hall& hall = scene.sequence.hall();
-  const CameraModel& camera = scene.dataset().rig.camera;
-  const Pose T_WC = scene.CameraAt(scene.sequence.stamps().front());
-  std::vector<Eigen::Vector3f> rays;
-  for (int y = 0; y < camera.height_px(); y += 3) {
-    for (int x = 0; x < camera.width_px(); x += 3) {
-      Vector2d place = Vector2d::Zero();
-      camera.Unproject(Vector2d(x, y), &place);
-      rays.push_back(place.homogeneous().normalized().cast<float>());
-    }
-  }
-  const ViewTile field = ViewTile::Around(rays);
-  const HallView mirrored = HallView::InFloor(hall, T_WC, field, 0);
-  std::vector<HallView::Candidate> candidates;
-  mirrored.ListCandidates(field, &candidates);
-  int off = 0, met = 0;
-  for (const Eigen::Vector3f& ray : rays) {
-    Vector3d direction = T_WC.rotation * ray.cast<double>();
-    const double first = hall.Distance(T_WC.translation, direction);
-    Vector3d place = T_WC.translation + first * direction;
-    if (std::abs(place.z() - hall.origin_W.z() - static_cast<double>(hall.room.low.z())) > 1e-6) {
-      continue;
-    }
-    direction.z() = -direction.z();
-    place.z() += 1e-5;
-    const double expected = first + hall.Distance(place, direction);
-    const double found = static_cast<double>(mirrored.Cast(ray, candidates).distance);
-    off += std::abs(found - expected) > 1e-3 ? 1 : 0;
-    ++met;
-  }
-  EXPECT_GT(met, 60);
-  EXPECT_LT(off, met / 100 + 1);
-}
-
-TEST(RenderedSequence, SharesOfFacesAreBareOrRepeatTheirMotif) {
-  SimulatorConfig config = SmallConfig();
-  config.render.bare_share = 0.5;
-  config.render.repetitive_share = 1;
-  const Scene scene = Scene::Make(config);
-  int bare = 0, repeated = 0, all = 0;
-  for (const HallBox& box : scene.sequence.hall().boxes) {
-    for (const Surface& face : box.faces) {
-      bare += face.texture == static_cast<int>(TextureKind::kPaint) ? 1 : 0;
-      repeated += face.texture == static_cast<int>(TextureKind::kMotif) ? 1 : 0;
-      ++all;
-    }
-  }
-  EXPECT_EQ(bare + repeated, all);
-  EXPECT_NEAR(bare, 0.5 * all, 0.15 * all);
-  const Texture motif = MakeTexture(TextureKind::kMotif, 8, 3);
-  for (int i = 0; i < 50; ++i) {
-    const float x = 1.7F * static_cast<float>(i), y = 2.3F * static_cast<float>(i);
-    EXPECT_NEAR(motif.At(x, y, 0), motif.At(x + 32, y + 96, 0), 0.1);
-  }
-}
-
-TEST(RenderedSequence, ExposureControlThatCannotWorkIsRefused) {
-  SimulatorConfig config = SmallConfig();
-  config.render.auto_exposure = true;
-  config.render.exposure_max_s = 0.001;
-  EXPECT_EQ(config.Validate().code(), StatusCode::kConfig);
-  config.render.exposure_s = 0;
-  EXPECT_NE(config.Validate().message().find("render.exposure_s"), std::string::npos);
 }
 
 TEST(RenderedSequence, SeedsDrawOtherHallsAndNoise) {
