@@ -118,6 +118,20 @@ HallHit HallView::OnFace(const HallBox& box, const Vector3f& shift, int axis, bo
   return hit;
 }
 
+HallHit HallView::OnColumn(const HallColumn& column, float distance, const Vector3f& direction) const {
+  HallHit hit;
+  hit.place = origin_ + distance * direction;
+  hit.direction = direction;
+  const Eigen::Vector2f normal =
+      (origin_.head<2>() + distance * direction.head<2>() - column.centre) / column.radius;
+  hit.surface = &column.surface;
+  hit.distance = distance;
+  hit.cosine = std::abs(normal.dot(direction.head<2>()));
+  hit.x_m = column.radius * std::atan2(normal.y(), normal.x());
+  hit.y_m = hit.place.z();
+  return hit;
+}
+
 HallHit HallView::Cast(const Vector3f& ray_C, const std::vector<Candidate>& candidates) const {
   const Vector3f direction = R_WC_ * ray_C;
   const Vector3f inverse = direction.cwiseInverse();
@@ -159,22 +173,12 @@ HallHit HallView::Cast(const Vector3f& ray_C, const std::vector<Candidate>& cand
       }
     }
   }
-  if (column_met == nullptr) {
-    // The room is left through its far face, a box entered through its near one.
-    const bool high = (direction[axis] > 0) == (met == &hall_.room);
-    return OnFace(*met, shift, axis, high, best, direction);
+  if (column_met != nullptr) {
+    return OnColumn(*column_met, best, direction);
   }
-  const Eigen::Vector2f normal =
-      (origin_.head<2>() + best * direction.head<2>() - column_met->centre) / column_met->radius;
-  HallHit hit;
-  hit.surface = &column_met->surface;
-  hit.distance = best;
-  hit.cosine = std::abs(normal.dot(direction.head<2>()));
-  hit.x_m = column_met->radius * std::atan2(normal.y(), normal.x());
-  hit.place = origin_ + best * direction;
-  hit.direction = direction;
-  hit.y_m = hit.place.z();
-  return hit;
+  // The room is left through its far face, a box entered through its near one.
+  const bool high = (direction[axis] > 0) == (met == &hall_.room);
+  return OnFace(*met, shift, axis, high, best, direction);
 }
 
 }  // namespace alidade

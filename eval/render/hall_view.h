@@ -72,7 +72,10 @@ class HallView {
 
   void AddBox(const HallBox& box, const Eigen::Vector3f& shift, const Eigen::Vector3f& axis_W,
               const ViewTile& field);
-  /// Enters a plane of `box` that is displaced by `shift`: place and angle.
+  /// A column at `distance` along `direction`.
+  [[nodiscard]] HallHit OnColumn(const HallColumn& column, float distance,
+                                 const Eigen::Vector3f& direction) const;
+  /// A face of `box` that is displaced by `shift`.
   [[nodiscard]] HallHit OnFace(const HallBox& box, const Eigen::Vector3f& shift, int axis, bool high,
                                float distance, const Eigen::Vector3f& direction) const;
 
