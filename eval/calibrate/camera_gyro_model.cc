@@ -6,8 +6,11 @@
 #include "core/status.h"
 
 namespace alidade {
+namespace {
 
 using Coordinate = CameraGyroCoordinate;
+
+}  // namespace
 
 bool Retract(const CameraGyroError& error, CameraGyroModel* model) {
   if (!error.allFinite()) {
