@@ -35,6 +35,14 @@ Eigen::Matrix<double, 2, 8> WithLens(const CameraModel& camera, const Vector2d& 
 
 }  // namespace
 
+CameraCalibration GivenCamera(const RigCalibration& rig, const VisionConfig& vision) {
+  CameraCalibration given{rig.camera, rig.T_BC, rig.camera_time_offset_s};
+  if (rig.line_delay_s != 0 && vision.rolling_shutter) {
+    given.line_delay_s = rig.line_delay_s;
+  }
+  return given;
+}
+
 CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera) {
   const auto take = [this](bool wanted, int size, int* first) {
     *first = wanted ? size_ : -1;
@@ -46,6 +54,7 @@ CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const Came
   intrinsics_size_ = 4 + (lens ? CoefficientCount(camera.model()) : 0);
   take(config.extrinsics || watched, 6, &extrinsics_);
   take(config.time_offset || watched, 1, &time_offset_);
+  take(config.line_delay, 1, &line_delay_);
   take(config.intrinsics || watched, intrinsics_size_, &intrinsics_);
 }
 
@@ -69,6 +78,9 @@ VectorXd WatchedDeviations(const CalibrationLayout& layout) {
 CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const CameraCalibration& given) {
   CalibrationEstimate estimate{CalibrationLayout(config, given.camera), given, {}};
   const CalibrationLayout& layout = estimate.layout;
+  if (layout.line_delay() >= 0) {
+    estimate.mean.line_delay_s = given.line_delay_s.value_or(0);
+  }
   estimate.deviations.resize(layout.size());
   if (config.watched()) {
     estimate.deviations = WatchedDeviations(layout);
@@ -83,6 +95,9 @@ CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const Ca
   }
   if (layout.time_offset() >= 0) {
     estimate.deviations[layout.time_offset()] = config.time_offset_std_s;
+  }
+  if (layout.line_delay() >= 0) {
+    estimate.deviations[layout.line_delay()] = config.line_delay_std_s;
   }
   if (layout.intrinsics() >= 0) {
     auto part = estimate.deviations.segment(layout.intrinsics(), layout.intrinsics_size());
@@ -116,6 +131,9 @@ bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const VectorXd>& 
   if (layout.time_offset() >= 0) {
     calibration->time_offset_s += error[layout.time_offset()];
   }
+  if (layout.line_delay() >= 0) {
+    calibration->line_delay_s = calibration->line_delay_s.value_or(0) + error[layout.line_delay()];
+  }
   return true;
 }
 
@@ -129,6 +147,9 @@ VectorXd Local(const CalibrationLayout& layout, const CameraCalibration& estimat
   }
   if (layout.time_offset() >= 0) {
     error[layout.time_offset()] = truth.time_offset_s - estimate.time_offset_s;
+  }
+  if (layout.line_delay() >= 0) {
+    error[layout.line_delay()] = truth.line_delay_s.value_or(0) - estimate.line_delay_s.value_or(0);
   }
   if (layout.intrinsics() >= 0) {
     const int size = layout.intrinsics_size();
@@ -207,14 +228,17 @@ Matrix6d ExtrinsicsToCameraJacobian(const Eigen::Matrix3d& R_WB) {
 }
 
 void CalibrationRows(const CalibrationLayout& layout, const CameraModel& camera, const Eigen::Matrix3d& R_WB,
-                     const Vector6d* camera_from_time, const Eigen::Matrix<double, 2, 6>& camera_rows,
+                     const CameraFromTimes& camera_from, const Eigen::Matrix<double, 2, 6>& camera_rows,
                      const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows) {
   rows.setZero();
   if (layout.extrinsics() >= 0) {
     rows.middleCols<6>(layout.extrinsics()) = camera_rows * ExtrinsicsToCameraJacobian(R_WB);
   }
-  if (layout.time_offset() >= 0 && camera_from_time != nullptr) {
-    rows.col(layout.time_offset()) = camera_rows * *camera_from_time;
+  if (layout.time_offset() >= 0 && camera_from.offset != nullptr) {
+    rows.col(layout.time_offset()) = camera_rows * *camera_from.offset;
+  }
+  if (layout.line_delay() >= 0 && camera_from.line_delay != nullptr) {
+    rows.col(layout.line_delay()) = camera_rows * *camera_from.line_delay;
   }
   if (layout.intrinsics() < 0) {
     return;

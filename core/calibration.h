@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "core/calibration_config.h"
+#include "core/rig_calibration.h"
+#include "core/vision_config.h"
 #include "core/visual_observation.h"
 
 namespace alidade {
@@ -12,19 +15,25 @@ struct CameraCalibration {
   CameraModel camera;
   Pose T_BC;                 ///< camera to body
   double time_offset_s = 0;  ///< t_imu = t_camera + offset
+  /// Of a rolling shutter (core/rig_calibration.h); empty: all rows are exposed at once.
+  std::optional<double> line_delay_s = {};
 };
+
+/// That of a rig; the line delay only with vision.rolling_shutter.
+[[nodiscard]] CameraCalibration GivenCamera(const RigCalibration& rig, const VisionConfig& vision);
 
 /// Which coordinates the error of a CameraCalibration has, and where. In this order, each group only when its
 /// key is on:
 ///
 ///   extrinsics   (phi, dp): R_BC = R^_BC Exp(phi), p_BC = p^_BC + dp     6, rad and m
 ///   time offset  additive                                                1, s
+///   line delay   additive                                                1, s
 ///   intrinsics   fu fv cu cv, then the lens coefficients, additive       4 + CoefficientCount, px and 1
 ///
 /// These coordinates are the same in every error convention of the state.
 class CalibrationLayout {
  public:
-  static constexpr int kMaxSize = 15;
+  static constexpr int kMaxSize = 16;
 
   CalibrationLayout() = default;
   CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera);
@@ -33,6 +42,7 @@ class CalibrationLayout {
   /// First coordinate of a group, -1 when it is not estimated.
   [[nodiscard]] int extrinsics() const { return extrinsics_; }
   [[nodiscard]] int time_offset() const { return time_offset_; }
+  [[nodiscard]] int line_delay() const { return line_delay_; }
   [[nodiscard]] int intrinsics() const { return intrinsics_; }
   [[nodiscard]] int intrinsics_size() const { return intrinsics_size_; }
 
@@ -40,6 +50,7 @@ class CalibrationLayout {
   int size_ = 0;
   int extrinsics_ = -1;
   int time_offset_ = -1;
+  int line_delay_ = -1;
   int intrinsics_ = -1;
   int intrinsics_size_ = 0;
 };
@@ -89,13 +100,19 @@ bool IntrinsicsJacobian(const CameraModel& camera, const Eigen::Vector3d& ray,
 /// and moves by R_WB dp.
 [[nodiscard]] Matrix6d ExtrinsicsToCameraJacobian(const Eigen::Matrix3d& R_WB);
 
+/// What the times of a camera's exposure move, each d zeta_C / d one of them; null where the pose itself
+/// carries it, or where nothing moves.
+struct CameraFromTimes {
+  const Vector6d* offset = nullptr;
+  const Vector6d* line_delay = nullptr;
+};
+
 /// Rows of one view over the calibration, 2 x layout.size(): `camera_rows`, over (phi, dp) of the view's
-/// camera, chained through the extrinsics at R_WB and, through `camera_from_time` (d zeta_C / d time offset;
-/// null where the pose itself carries the offset), the time offset; and W d(predicted - z) / d intrinsics
-/// with W of the observation, whose z is a function of the intrinsics: z = Unproject(pixel), so dz = -(d
-/// pixel / d z)^-1 (d pixel / d intrinsics). Outside the camera's domain the latter are zero.
+/// camera, chained through the extrinsics at R_WB and through the times; and W d(predicted - z) / d
+/// intrinsics with W of the observation, whose z is a function of the intrinsics: z = Unproject(pixel), so dz
+/// = -(d pixel / d z)^-1 (d pixel / d intrinsics). Outside the camera's domain the latter are zero.
 void CalibrationRows(const CalibrationLayout& layout, const CameraModel& camera, const Eigen::Matrix3d& R_WB,
-                     const Vector6d* camera_from_time, const Eigen::Matrix<double, 2, 6>& camera_rows,
+                     const CameraFromTimes& camera_from, const Eigen::Matrix<double, 2, 6>& camera_rows,
                      const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows);
 
 }  // namespace alidade

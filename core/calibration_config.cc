@@ -8,6 +8,10 @@ void CalibrationConfig::Describe(ConfigVisitor& visitor) {
       &extrinsics);
   visitor.Boolean({"time_offset", "-", "estimate the camera's time offset; needs motion that is not uniform"},
                   &time_offset);
+  visitor.Boolean(
+      {"line_delay", "-",
+       "estimate the time from one row of a rolling shutter to the next; needs turns of the camera"},
+      &line_delay);
   visitor.Boolean({"intrinsics", "-", "estimate focal lengths, principal point and lens coefficients"},
                   &intrinsics);
   visitor.Boolean({"watch", "-",
@@ -22,6 +26,9 @@ void CalibrationConfig::Describe(ConfigVisitor& visitor) {
       &translation_std_m, 1e-6, 1);
   visitor.Real({"time_offset_std_s", "s", "prior standard deviation of the given time offset"},
                &time_offset_std_s, 1e-7, 0.1);
+  visitor.Real(
+      {"line_delay_std_s", "s", "prior standard deviation of the given time from one row to the next"},
+      &line_delay_std_s, 1e-9, 1e-3);
   visitor.Real({"focal_std_px", "px", "prior standard deviation of each focal length"}, &focal_std_px, 1e-4,
                1000);
   visitor.Real({"center_std_px", "px", "prior standard deviation of each coordinate of the principal point"},

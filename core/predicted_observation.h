@@ -14,7 +14,7 @@ namespace alidade {
 [[nodiscard]] inline NormalizedObservation Predicted(const NormalizedObservation& measured,
                                                      const Eigen::Vector2d& residual) {
   return {measured.z + measured.sqrt_information.inverse() * residual, measured.sqrt_information,
-          measured.plane};
+          measured.plane, measured.row_px};
 }
 
 }  // namespace alidade

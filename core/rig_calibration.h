@@ -27,7 +27,7 @@ struct RigCalibration {
   ImuNoise imu_noise;
   double camera_time_offset_s = 0;  ///< t_imu = t_camera + offset
   /// Of a rolling shutter: row v is exposed at the stamp + line_delay_s (v - height / 2), in the middle of
-  /// its exposure; 0: all rows at once. Estimators do not use it yet.
+  /// its exposure; 0: all rows at once.
   double line_delay_s = 0;
   GnssReceiver gnss = {};
   std::vector<FixSensor> fixes = {};

@@ -18,6 +18,10 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
       {{"lens", PlaneChoice::kLens},
        {"normalized", PlaneChoice::kNormalized},
        {"tangent", PlaneChoice::kTangent}});
+  visitor.Boolean({"rolling_shutter", "-",
+                   "every observation has the time of its row, where the camera's sheet has a line delay or "
+                   "calibration.line_delay estimates it; false: all rows are taken as exposed at once"},
+                  &rolling_shutter);
   visitor.Real({"gate_probability", "-",
                 "chi-square gate: a track is used if its NIS is below this quantile; 1 disables the gate"},
                &gate_probability, 0.5, 1.0);

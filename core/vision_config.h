@@ -24,6 +24,7 @@ struct VisionConfig {
   double pixel_noise_px = 1.0;
   PixelNoiseModel noise = PixelNoiseModel::kGiven;
   PlaneChoice observation_plane = PlaneChoice::kLens;
+  bool rolling_shutter = true;
   double gate_probability = 0.99;
   double max_gated_share = 0.5;
   double max_relative_depth_deviation = 0.1;

@@ -31,6 +31,7 @@ bool NormalizeObservation(const CameraModel& camera, const Eigen::Vector2d& pixe
     *observation = seen;
   }
   observation->sqrt_information = pixel_jacobian / pixel_noise_px;
+  observation->row_px = pixel.y() - 0.5 * camera.height_px();
   return true;
 }
 

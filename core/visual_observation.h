@@ -13,6 +13,8 @@ struct NormalizedObservation {
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d sqrt_information = Eigen::Matrix2d::Identity();
   BearingPlane plane = {};  ///< the ideal normalised plane, unless the lens wants another
+  /// Of the pixel, its row less that in the middle of the image: with a rolling shutter, when it was exposed.
+  double row_px = 0;
 
   /// Geometric-mean standard deviation on the plane.
   [[nodiscard]] double deviation() const;

@@ -71,7 +71,7 @@ bool FeatureUpdate::GatherViews(const FilterState& state, const Track& track) {
     const int index = state.FindClone(view.serial);
     CHECK_GE(index, 0) << "a track refers to a clone that left the window";
     const Clone& clone = state.clones()[static_cast<size_t>(index)];
-    poses_.push_back(clone.T_WC);
+    poses_.push_back(state.CameraPoseAt(clone, view.observation));
     observations_.push_back(view.observation);
     if (inflate_base && observations_.size() == 1) {
       observations_.back().sqrt_information /= filter_.base_inflation;

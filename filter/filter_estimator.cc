@@ -18,7 +18,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
       state_(config.filter.error, config.filter.first_estimates,
-             InitialCalibration(config.calibration, {rig_.camera, rig.T_BC, rig.camera_time_offset_s}),
+             InitialCalibration(config.calibration, GivenCamera(rig_, config.vision)),
              {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled}),
       update_(config.filter, config.vision, config.filter.window + 1, state_.layout().size()),
       slam_(config.filter, config.filter.window + 1),
@@ -69,8 +69,8 @@ std::optional<CalibrationEstimate> FilterEstimator::LatestCalibration() const {
 
 Status FilterEstimator::AddImu(const ImuSample& sample) {
   // Before the first frame nothing was propagated that would tell the rate there.
-  if (state_.layout().time_offset() >= 0 && serial_ + 1 == first_serial_) {
-    last_gyro_radps_ = sample.gyro;
+  if ((state_.layout().time_offset() >= 0 || state_.has_rolling_shutter()) && serial_ + 1 == first_serial_) {
+    last_turn_ = MeasuredTurn{sample.gyro};
   }
   return imu_.Add(sample);
 }
@@ -87,7 +87,7 @@ Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
   }
   imu_.DropBefore(stamp_ns);
   rest_.AddImu(interval_);
-  last_gyro_radps_ = interval_.back().gyro;
+  last_turn_ = TurnAtEnd(interval_);
   return Status::Ok();
 }
 
@@ -101,7 +101,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(state_.calibration().time_offset_s)));
   frame_stamp_ns_ = state_.stamp_ns();
   ++serial_;
-  state_.AddClone(serial_, last_gyro_radps_);
+  state_.AddClone(serial_, last_turn_);
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   stopwatch.Restart();
   statistics_.pixel_noise_px = pixel_noise_.px();

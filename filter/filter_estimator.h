@@ -114,7 +114,7 @@ class FilterEstimator : public Estimator {
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
-  Eigen::Vector3d last_gyro_radps_ = Eigen::Vector3d::Zero();  ///< at the state's stamp
+  MeasuredTurn last_turn_;             ///< at the state's stamp
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

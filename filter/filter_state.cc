@@ -7,6 +7,8 @@
 
 namespace alidade {
 
+using Eigen::Matrix3d;
+
 FilterState::FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits)
     : FilterState(convention, first_estimates, CalibrationEstimate{{}, {{}, T_BC, 0}, {}}, limits) {}
 
@@ -82,7 +84,7 @@ Status FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise
   return Status::Ok();
 }
 
-void FilterState::AddClone(int serial, const Eigen::Vector3d& gyro_radps) {
+void FilterState::AddClone(int serial, const MeasuredTurn& turn) {
   // In every convention the error of a pose is the first six components of the navigation error.
   covariance_.CloneCore(0, 6);
   if (observer_ != nullptr) {
@@ -96,10 +98,11 @@ void FilterState::AddClone(int serial, const Eigen::Vector3d& gyro_radps) {
   clone.stamp_ns = stamp_ns_;
   clone.T_WB = nav_.T_WB();
   clone.T_WB_first = nav_first_.T_WB();
+  clone.motion = MotionOf(turn, bias_.gyro, nav_.R_WB, nav_.v_WB);
   RefreshClone(&clone);
   clones_.push_back(clone);
   if (layout().time_offset() >= 0) {
-    const Vector6d rates = BodyRates(gyro_radps - bias_.gyro, nav_.v_WB);
+    const Vector6d rates = BodyRates(clone.motion.omega_B, nav_.v_WB);
     const Vector6d gain = InverseChartJacobian(convention_, clone.T_WB) * rates;
     covariance_.AddToRows(CloneOffset(clones_.size() - 1), gain,
                           CalibrationOffset() + layout().time_offset());
@@ -237,11 +240,38 @@ CalibrationEstimate FilterState::EstimatedCalibration() const {
   return estimate;
 }
 
-void FilterState::FillCalibrationRows(const Clone& clone, const Eigen::Matrix<double, 2, 6>& camera_rows,
+Pose FilterState::CameraPoseAt(const Clone& clone, const NormalizedObservation& observation) const {
+  if (!has_rolling_shutter()) {
+    return clone.T_WC;
+  }
+  return clone.T_WC *
+         CameraAfter(clone.motion, calibration_.T_BC, *calibration_.line_delay_s * observation.row_px);
+}
+
+ExposedCamera FilterState::CameraAt(const Clone& clone, const NormalizedObservation& observation) const {
+  const double later_s = *calibration_.line_delay_s * observation.row_px;
+  const Pose moved = CameraAfter(clone.motion, calibration_.T_BC, later_s);
+  const Matrix3d& R_WB = (first_estimates_ ? clone.T_WB_first : clone.T_WB).rotation;
+  ExposedCamera exposed;
+  exposed.T_WC = clone.T_WC * moved;
+  exposed.T_WC_jacobian = clone.T_WC_jacobian * moved;
+  exposed.camera_from_error =
+      BodyToCameraJacobian(clone.T_WC_jacobian.rotation, moved) * clone.camera_from_error;
+  exposed.R_WB = R_WB * clone.motion.After(later_s).rotation;
+  exposed.camera_from_line_delay =
+      observation.row_px *
+      (BodyToCameraJacobian(exposed.R_WB, calibration_.T_BC) * clone.motion.Rates(R_WB, later_s));
+  return exposed;
+}
+
+void FilterState::FillCalibrationRows(const Clone& clone, const ExposedCamera* exposed,
+                                      const Eigen::Matrix<double, 2, 6>& camera_rows,
                                       const NormalizedObservation& observation,
                                       Eigen::Ref<Eigen::MatrixXd> rows) const {
   const Pose& T_WB = first_estimates_ ? clone.T_WB_first : clone.T_WB;
-  CalibrationRows(given_.layout, calibration_.camera, T_WB.rotation, nullptr, camera_rows, observation, rows);
+  CalibrationRows(given_.layout, calibration_.camera, exposed != nullptr ? exposed->R_WB : T_WB.rotation,
+                  {nullptr, exposed != nullptr ? &exposed->camera_from_line_delay : nullptr}, camera_rows,
+                  observation, rows);
 }
 
 bool FilterState::AllFinite() const {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/body_motion.h"
 #include "core/calibration.h"
 #include "core/error_convention.h"
 #include "core/imu_propagation.h"
@@ -21,11 +22,22 @@ struct Clone {
   int slot = 0;  ///< in [0, max_clones), its own as long as it lives
   TimeNs stamp_ns = 0;
   Pose T_WB;
-  Pose T_WB_first;  ///< when it was cloned
+  Pose T_WB_first;    ///< when it was cloned
+  BodyMotion motion;  ///< of the body then, for the rows of a rolling shutter
   // Derived from the poses and the extrinsics; refreshed after every correction.
   Pose T_WC;
   Pose T_WC_jacobian;                                 ///< where Jacobians are evaluated: T_WC, or its first
   Matrix6d camera_from_error = Matrix6d::Identity();  ///< d zeta_C / d xi of this clone, at T_WC_jacobian
+};
+
+/// The camera of a clone when it exposed one observation: that of the clone, moved on by the time between the
+/// stamp and the observation's row.
+struct ExposedCamera {
+  Pose T_WC;
+  Pose T_WC_jacobian;               ///< as in Clone
+  Matrix6d camera_from_error;       ///< d zeta_C / d xi of the clone, at T_WC_jacobian
+  Eigen::Matrix3d R_WB;             ///< of the body then, likewise
+  Vector6d camera_from_line_delay;  ///< d zeta_C / d line delay
 };
 
 /// A long-lived landmark kept in the state; its error is a LandmarkError.
@@ -82,8 +94,8 @@ class FilterState {
                    const Eigen::Vector3d& gravity_W);
   /// Clones the pose at the current time t^. With an estimated time offset the clone's error is that of the
   /// pose when the frame was really exposed, at t^ + dt: theta and p of the clone have (omega, v) dt besides
-  /// the current ones. gyro_radps: measured at t^.
-  void AddClone(int serial, const Eigen::Vector3d& gyro_radps = Eigen::Vector3d::Zero());
+  /// the current ones. turn: measured at t^.
+  void AddClone(int serial, const MeasuredTurn& turn = {});
   /// Landmarks anchored in the clone move their anchor to the newest one.
   void RemoveClone(size_t index);
   /// Enters a landmark whose rows were linearised at the present state: p_W moves by R_f^-1 t. R_f must be
@@ -121,9 +133,16 @@ class FilterState {
   [[nodiscard]] const CalibrationLayout& layout() const { return given_.layout; }
   [[nodiscard]] const CameraCalibration& calibration() const { return calibration_; }
   [[nodiscard]] CalibrationEstimate EstimatedCalibration() const;
+  /// Whether the rows of an image are exposed one after the other.
+  [[nodiscard]] bool has_rolling_shutter() const { return calibration_.line_delay_s.has_value(); }
+  /// Precondition: has_rolling_shutter().
+  [[nodiscard]] ExposedCamera CameraAt(const Clone& clone, const NormalizedObservation& observation) const;
+  /// CameraAt().T_WC, that of the clone without a rolling shutter.
+  [[nodiscard]] Pose CameraPoseAt(const Clone& clone, const NormalizedObservation& observation) const;
   /// A view's rows over the calibration, 2 x layout().size(); `camera_rows`: over (phi, dp) of the clone's
-  /// camera. The time offset acts through the clone's own error.
-  void FillCalibrationRows(const Clone& clone, const Eigen::Matrix<double, 2, 6>& camera_rows,
+  /// camera, or with a rolling shutter of `exposed`. The time offset acts through the clone's own error.
+  void FillCalibrationRows(const Clone& clone, const ExposedCamera* exposed,
+                           const Eigen::Matrix<double, 2, 6>& camera_rows,
                            const NormalizedObservation& observation, Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   [[nodiscard]] const std::vector<Clone>& clones() const { return clones_; }           ///< oldest first

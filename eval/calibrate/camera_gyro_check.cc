@@ -93,12 +93,13 @@ void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Fin
                100 * focal, 100 * focal_std, fit.model.camera.intrinsics()[0], sheet.camera.intrinsics()[0]));
   }
   const double readout_s = fit.model.readout_s;
-  if (std::abs(readout_s) > kReadoutS &&
-      std::abs(readout_s) > kSigmas * fit.deviations[Coordinate::kReadout]) {
+  const double of_sheet_s = sheet.readout_s;
+  if (std::abs(readout_s - of_sheet_s) > kReadoutS &&
+      std::abs(readout_s - of_sheet_s) > kSigmas * fit.deviations[Coordinate::kReadout]) {
     findings->Warning(
-        Format("cam0: rolling shutter: the rows of an image are exposed over %.1f +- %.1f ms; estimators "
-               "take them as exposed at once",
-               1e3 * readout_s, 1e3 * fit.deviations[Coordinate::kReadout]));
+        Format("cam0: rolling shutter: images and gyroscope agree with the rows of an image exposed over "
+               "%.1f +- %.1f ms, line_delay_s of the sheet says %.1f",
+               1e3 * readout_s, 1e3 * fit.deviations[Coordinate::kReadout], 1e3 * of_sheet_s));
   }
 }
 
@@ -124,6 +125,7 @@ CameraGyroModel ModelOfSheet(const RigCalibration& rig) {
   model.camera = rig.camera;
   model.R_BC = rig.T_BC.rotation;
   model.time_offset_s = rig.camera_time_offset_s;
+  model.readout_s = rig.line_delay_s * rig.camera.height_px();
   return model;
 }
 

@@ -79,10 +79,8 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
     CheckSpan("cam0", stamps.front(), stamps.back(), dataset, findings);
   }
   if (dataset.rig.line_delay_s != 0) {
-    findings->Warning(
-        Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms; estimators "
-               "take them as exposed at once",
-               1e3 * std::abs(dataset.rig.line_delay_s) * dataset.rig.camera.height_px()));
+    findings->Fact(Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms",
+                          1e3 * std::abs(dataset.rig.line_delay_s) * dataset.rig.camera.height_px()));
   }
   if (!dataset.tracks.empty()) {
     CheckTracks(dataset, findings);

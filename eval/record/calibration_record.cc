@@ -24,7 +24,8 @@ CalibrationError CompareCalibrations(const CameraCalibration& estimate, const Ca
   return {so3::Log(estimate.T_BC.rotation.transpose() * truth.T_BC.rotation).norm(),
           (estimate.T_BC.translation - truth.T_BC.translation).norm(),
           std::abs(estimate.time_offset_s - truth.time_offset_s),
-          (estimate.camera.intrinsics() - truth.camera.intrinsics()).head<2>().cwiseAbs().maxCoeff()};
+          (estimate.camera.intrinsics() - truth.camera.intrinsics()).head<2>().cwiseAbs().maxCoeff(),
+          std::abs(estimate.line_delay_s.value_or(0) - truth.line_delay_s.value_or(0))};
 }
 
 std::string CalibrationColumns(const CalibrationEstimate& estimate) {
@@ -36,6 +37,9 @@ std::string CalibrationColumns(const CalibrationEstimate& estimate) {
   if (layout.time_offset() >= 0) {
     columns += ",time_offset_s";
   }
+  if (layout.line_delay() >= 0) {
+    columns += ",line_delay_s";
+  }
   for (int i = 0; layout.intrinsics() >= 0 && i < layout.intrinsics_size(); ++i) {
     Append(kIntrinsicNames[i], &columns);
   }
@@ -44,6 +48,9 @@ std::string CalibrationColumns(const CalibrationEstimate& estimate) {
   }
   if (layout.time_offset() >= 0) {
     columns += ",std_time_offset_s";
+  }
+  if (layout.line_delay() >= 0) {
+    columns += ",std_line_delay_s";
   }
   for (int i = 0; layout.intrinsics() >= 0 && i < layout.intrinsics_size(); ++i) {
     Append(std::string("std_") + kIntrinsicNames[i], &columns);
@@ -67,6 +74,9 @@ std::string CalibrationFields(const CalibrationEstimate& estimate) {
   }
   if (layout.time_offset() >= 0) {
     Append(mean.time_offset_s, &fields);
+  }
+  if (layout.line_delay() >= 0) {
+    Append(mean.line_delay_s.value_or(0), &fields);
   }
   for (int i = 0; layout.intrinsics() >= 0 && i < layout.intrinsics_size(); ++i) {
     Append(i < 4 ? mean.camera.intrinsics()[i] : mean.camera.coefficients()[i - 4], &fields);

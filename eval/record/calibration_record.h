@@ -13,6 +13,7 @@ struct CalibrationError {
   double translation_m = 0;
   double time_offset_s = 0;
   double focal_px = 0;  ///< of the worse axis
+  double line_delay_s = 0;
 };
 [[nodiscard]] CalibrationError CompareCalibrations(const CameraCalibration& estimate,
                                                    const CameraCalibration& truth);

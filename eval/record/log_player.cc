@@ -223,8 +223,9 @@ void LogPlayer::TakeFinalized() {
 void LogPlayer::CompareCalibration() {
   if (options_.true_rig != nullptr && !result_.records.empty() && result_.records.back().calibration) {
     const RigCalibration& truth = *options_.true_rig;
-    result_.calibration_error = CompareCalibrations(result_.records.back().calibration->mean,
-                                                    {truth.camera, truth.T_BC, truth.camera_time_offset_s});
+    result_.calibration_error =
+        CompareCalibrations(result_.records.back().calibration->mean,
+                            {truth.camera, truth.T_BC, truth.camera_time_offset_s, truth.line_delay_s});
   }
 }
 

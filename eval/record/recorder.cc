@@ -242,6 +242,9 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
                                  {"translation_m", error.translation_m},
                                  {"time_offset_s", error.time_offset_s},
                                  {"focal_px", error.focal_px}};
+    if (result.records.back().calibration->layout.line_delay() >= 0) {
+      json["calibration_error"]["line_delay_s"] = error.line_delay_s;
+    }
   }
   if (identity.config.gnss.enabled || HasGnss(result)) {
     json["gnss"] = GnssJson(identity, result);

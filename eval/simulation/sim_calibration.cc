@@ -22,6 +22,7 @@ Result<RigCalibration> MiscalibratedRig(const SimulatorConfig& config, const Rig
     intrinsics[i] +=
         sign() * (i < 2 ? config.calibration_focal_error_px : config.calibration_center_error_px);
   }
+  wrong.line_delay_s += config.calibration_line_delay_error_s * sign();
   if (intrinsics != rig.camera.intrinsics()) {
     const double* first = rig.camera.coefficients().data();
     Result<CameraModel> camera =

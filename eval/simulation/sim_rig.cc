@@ -22,9 +22,6 @@ Result<RigCalibration> RigOfDataset(const SimulatorConfig& config) {
 }  // namespace
 
 double SimLineDelay(const SimulatorConfig& config, double recorded_s) {
-  if (!config.render.enabled) {
-    return 0;
-  }
   return config.render.line_delay_s != 0 ? config.render.line_delay_s : recorded_s;
 }
 

@@ -14,7 +14,7 @@ namespace alidade {
 Result<RigCalibration> MakeSimRig(const SimulatorConfig& config);
 
 /// Line delay of the simulated camera: render.line_delay_s, or that of the recording's camera where the key
-/// is zero. Simulated tracks are of images that are exposed at once: zero unless images are rendered.
+/// is zero.
 [[nodiscard]] double SimLineDelay(const SimulatorConfig& config, double recorded_s);
 
 /// The other camera_count - 1 cameras, without frames: each of the same model as the first, displaced and

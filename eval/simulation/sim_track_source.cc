@@ -4,6 +4,11 @@
 #include <utility>
 
 namespace alidade {
+namespace {
+
+constexpr int kRowPasses = 8;
+
+}  // namespace
 
 TrackSource::TrackSource(const SimulatorConfig& config, const CameraModel& camera,
                          const std::vector<Eigen::Vector3d>& landmarks, std::uint64_t seed,
@@ -20,11 +25,12 @@ TrackSource::TrackSource(const SimulatorConfig& config, const CameraModel& camer
       priority_(landmarks.size()),
       noise_px_(landmarks.size()) {}
 
-TrackFrame TrackSource::Observe(TimeNs stamp_ns, const Pose& T_WC,
+TrackFrame TrackSource::Observe(TimeNs stamp_ns, const ImageExposure& exposure,
                                 const std::vector<TrackedPoint>& elsewhere) {
   ++frame_;
   stamp_ns_ = stamp_ns;
-  T_CW_ = T_WC.Inverse();
+  exposure_ = &exposure;
+  T_CW_ = exposure.CameraAt(0.5 * camera_.height_px()).Inverse();
   TrackFrame frame;
   frame.stamp_ns = stamp_ns;
   Deal();
@@ -58,9 +64,14 @@ void TrackSource::Deal() {
 std::optional<Eigen::Vector2d> TrackSource::See(const Eigen::Vector3d& p_W) const {
   const Eigen::Vector3d p_C = T_CW_ * p_W;
   Eigen::Vector2d pixel;
-  const bool visible = p_C.squaredNorm() <= config_.max_range_m * config_.max_range_m &&
-                       camera_.Project(p_C, &pixel) && camera_.InImage(pixel, config_.border_px);
-  return visible ? std::optional(pixel) : std::nullopt;
+  bool visible =
+      p_C.squaredNorm() <= config_.max_range_m * config_.max_range_m && camera_.Project(p_C, &pixel);
+  // The row says when, and when says the row: each pass divides the error by the rows that pass while the
+  // image moves by one, 10 or more.
+  for (int pass = 0; visible && !exposure_->at_once() && pass < kRowPasses; ++pass) {
+    visible = camera_.Project(exposure_->CameraAt(pixel.y()).Inverse() * p_W, &pixel);
+  }
+  return visible && camera_.InImage(pixel, config_.border_px) ? std::optional(pixel) : std::nullopt;
 }
 
 void TrackSource::ProjectLandmarks() {

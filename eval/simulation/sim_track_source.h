@@ -9,6 +9,7 @@
 #include "core/navigation_state.h"
 #include "core/random.h"
 #include "core/track_frame.h"
+#include "eval/simulation/image_exposure.h"
 #include "eval/simulation/sim_fault.h"
 #include "eval/simulation/simulator_config.h"
 
@@ -34,7 +35,8 @@ class TrackSource {
 
   /// The next frame. `elsewhere` are tracks of another camera: those in view are observed under their ids,
   /// without faults, and have precedence.
-  TrackFrame Observe(TimeNs stamp_ns, const Pose& T_WC, const std::vector<TrackedPoint>& elsewhere);
+  TrackFrame Observe(TimeNs stamp_ns, const ImageExposure& exposure,
+                     const std::vector<TrackedPoint>& elsewhere);
 
   /// The tracks alive after Observe.
   [[nodiscard]] std::vector<TrackedPoint> Tracked() const;
@@ -80,7 +82,8 @@ class TrackSource {
   // Of the frame at hand.
   int frame_ = -1;
   TimeNs stamp_ns_ = 0;
-  Pose T_CW_;
+  const ImageExposure* exposure_ = nullptr;
+  Pose T_CW_;  ///< when the middle row is exposed
   std::vector<double> loss_draw_, priority_;
   std::vector<Eigen::Vector2d> noise_px_;
   std::vector<std::optional<Eigen::Vector2d>> pixels_;  ///< noise-free; empty for a landmark out of view

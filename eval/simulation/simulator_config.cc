@@ -154,6 +154,9 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
       &config->calibration_translation_error_m, 0, 10);
   visitor.Real({"calibration_time_error_s", "s", "error of the given time offset, random sign"},
                &config->calibration_time_error_s, 0, 1);
+  visitor.Real({"calibration_line_delay_error_s", "s",
+                "error of the given line delay, random sign; 1e-5: 5 ms over 480 rows"},
+               &config->calibration_line_delay_error_s, 0, 1e-3);
   visitor.Real({"calibration_focal_error_px", "px", "error of each given focal length, random sign"},
                &config->calibration_focal_error_px, 0, 1000);
   visitor.Real({"calibration_center_error_px", "px",

@@ -96,6 +96,7 @@ struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   double calibration_rotation_error_rad = 0;
   double calibration_translation_error_m = 0;
   double calibration_time_error_s = 0;
+  double calibration_line_delay_error_s = 0;
   double calibration_focal_error_px = 0;
   double calibration_center_error_px = 0;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/format.h"
@@ -11,6 +12,7 @@
 #include "core/observation_plane.h"
 #include "frontend/initialization/dynamic_initializer.h"
 #include "frontend/initialization/dynamic_window.h"
+#include "frontend/initialization/middle_row.h"
 #include "frontend/initialization/static_initializer.h"
 #include "frontend/initialization/track_motion.h"
 
@@ -217,6 +219,14 @@ Result<NavEstimate> Initializer::AddFrame(const TrackFrame& frame) {
   }
   if (self.frames.empty()) {
     self.first_stamp_ns = in_imu_time.stamp_ns;
+  }
+  const std::span<const ImuSample> samples = self.imu.samples();
+  if (self.config.vision.rolling_shutter && !samples.empty()) {
+    const auto after =
+        std::upper_bound(samples.begin(), samples.end(), in_imu_time.stamp_ns,
+                         [](TimeNs stamp_ns, const ImuSample& sample) { return stamp_ns < sample.stamp_ns; });
+    in_imu_time =
+        AtMiddleRow(self.rig, (after == samples.begin() ? after : after - 1)->gyro, std::move(in_imu_time));
   }
   self.frames.push_back(std::move(in_imu_time));
   self.Trim();

@@ -60,7 +60,9 @@ BatchSequence::BatchSequence(const EstimatorConfig& config, const RigCalibration
       kernel_{config.batch.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.batch.gate_probability),
       rest_(config.vision, config.init, rig_.camera),
-      calibration_{{}, {rig_.camera, rig.T_BC, 0}} {}
+      calibration_{{}, GivenCamera(rig_, config.vision)} {
+  calibration_.mean.time_offset_s = 0;  // frames come in IMU time
+}
 
 bool BatchSequence::Start(const NavEstimate& initial) {
   frames_.clear();
@@ -100,7 +102,13 @@ Status BatchSequence::AddMeasurement(const Measurement& measurement, bool accept
 
 void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu) {
   rest_.AddImu(imu);
+  if (!frames_.back()->turn && !imu.empty()) {
+    frames_.back()->turn = MeasuredTurn{imu.front().gyro};
+  }
   frames_.push_back(MakeFrame(estimate, static_cast<int>(frames_.size())));
+  if (!imu.empty()) {
+    frames_.back()->turn = TurnAtEnd(imu);
+  }
   frames_.back()->imu = std::move(imu);
   invalid_.push_back(0);
 }
@@ -179,7 +187,8 @@ TrackSelection BatchSequence::Select(bool gate) {
   std::vector<FrameGeometry> geometry;
   geometry.reserve(frames_.size());
   for (const std::unique_ptr<WindowFrame>& frame : frames_) {
-    geometry.push_back(MakeGeometry(frame->nav_state(), rig_.T_BC));
+    UpdateRates(frame.get());
+    geometry.push_back(MakeGeometry(*frame, frame->nav_state(), calibration_.mean));
   }
   TrackSelection selection;
   SelectMeasurements(gate, &selection);
@@ -229,12 +238,14 @@ std::vector<WindowView> BatchSequence::Inliers(const std::vector<FrameGeometry>&
       !SolveLandmark(track.views, geometry, guard, kMaxLandmarkIterations, &landmark)) {
     return track.views;
   }
-  const FrameGeometry& base = geometry[static_cast<size_t>(track.views.front().frame->index)];
+  FrameGeometry base_row;
+  FrameGeometry view_row;
+  const FrameGeometry& base = AtRow(geometry, track.views.front(), &base_row);
   std::vector<WindowView> inliers;
   for (const WindowView& view : track.views) {
     ViewRows rows;
-    if (LinearizeView(base, geometry[static_cast<size_t>(view.frame->index)], view.observation, guard,
-                      landmark, &rows, track.views.front().observation.plane) &&
+    if (LinearizeView(base, AtRow(geometry, view, &view_row), view.observation, guard, landmark, &rows,
+                      track.views.front().observation.plane) &&
         gate_.Accepts(rows.squared_norm, 2)) {
       inliers.push_back(view);
     }

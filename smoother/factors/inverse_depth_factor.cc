@@ -38,8 +38,9 @@ NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) 
 }  // namespace
 
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
-                                       const WindowCalibration* calibration, const BearingPlane& plane)
-    : base_(base), view_(view), calibration_(calibration), plane_(plane) {}
+                                       const WindowCalibration* calibration, const BearingPlane& plane,
+                                       double base_row_px)
+    : base_(base), view_(view), calibration_(calibration), plane_(plane), base_row_px_(base_row_px) {}
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
@@ -48,8 +49,12 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
     return false;
   }
   const NormalizedObservation observation = Seen(camera, *view_);
-  const FrameGeometry base = MakeGeometry(*base_, UnpackNavState(parameters[0]), camera.mean);
-  const FrameGeometry view = MakeGeometry(*view_->frame, UnpackNavState(parameters[1]), camera.mean);
+  const FrameGeometry base_frame = MakeGeometry(*base_, UnpackNavState(parameters[0]), camera.mean);
+  const FrameGeometry view_frame = MakeGeometry(*view_->frame, UnpackNavState(parameters[1]), camera.mean);
+  FrameGeometry base_row;
+  FrameGeometry view_row;
+  const FrameGeometry& base = AtRow(base_frame, base_row_px_, &base_row);
+  const FrameGeometry& view = AtRow(view_frame, observation.row_px, &view_row);
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   AnchoredRows rows;
   const bool in_front = LinearizeAnchoredView(base, view, observation, {}, landmark, &rows,
@@ -97,7 +102,7 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
   }
   if (calibrates && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
     Eigen::Matrix2Xd rows(2, camera.size());
-    CalibrationRows(camera.layout, camera.mean.camera, Eigen::Matrix3d::Identity(), nullptr,
+    CalibrationRows(camera.layout, camera.mean.camera, Eigen::Matrix3d::Identity(), {},
                     Eigen::Matrix<double, 2, 6>::Zero(), Predicted(observation, r), rows);
     StoreCalibration(rows, *calibration_, parameters[1], tangent_jacobians[1]);
   }

@@ -22,9 +22,9 @@ class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;
 
-  /// All must outlive the factor. `plane`: of the base's observation.
+  /// All must outlive the factor. `plane` and `base_row_px`: of the base's observation.
   InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration,
-                     const BearingPlane& plane = kNormalizedPlane);
+                     const BearingPlane& plane = kNormalizedPlane, double base_row_px = 0);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
@@ -41,6 +41,7 @@ class InverseDepthFactor {
   const WindowView* view_;
   const WindowCalibration* calibration_;
   BearingPlane plane_;
+  double base_row_px_;
 };
 
 /// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Block landmark and,

@@ -154,10 +154,10 @@ bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool wi
     const int anchor = tracks_[i]->anchor->index;
     for (const WindowView& view : scene.Views(tracks_, i)) {
       AnchoredRows rows;
-      if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)],
-                                 geometry[static_cast<size_t>(view.frame->index)], view.observation, kernel_,
-                                 landmarks.segment<3>(row), &rows, with_frames, &scene.calibration,
-                                 tracks_[i]->plane())) {
+      FrameGeometry row_geometry;
+      if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)], AtRow(geometry, view, &row_geometry),
+                                 view.observation, kernel_, landmarks.segment<3>(row), &rows, with_frames,
+                                 &scene.calibration, tracks_[i]->plane())) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);

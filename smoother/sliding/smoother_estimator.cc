@@ -46,7 +46,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       rest_(config.vision, config.init, rig_.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
-      given_(InitialCalibration(config.calibration, {rig_.camera, rig.T_BC, rig.camera_time_offset_s})),
+      given_(InitialCalibration(config.calibration, GivenCamera(rig_, config.vision))),
       calibration_{given_.layout, given_.mean},
       fixed_{{}, given_.mean} {}
 
@@ -170,9 +170,9 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   frame->stamp_ns = stamp_ns;
   frame->bias = from.bias;
   frame->time_offset_s = camera().time_offset_s;
-  frame->gyro_radps = interval_.back().gyro;
-  if (!window_.newest().gyro_radps) {
-    window_.newest().gyro_radps = interval_.front().gyro;  // of the frame it was initialised on
+  frame->turn = TurnAtEnd(interval_);
+  if (!window_.newest().turn) {
+    window_.newest().turn = MeasuredTurn{interval_.front().gyro};  // of the frame it was initialised on
   }
   Preintegration preintegration(from.imu_bias(), noise_);
   preintegration.Add(interval_);

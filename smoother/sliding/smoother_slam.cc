@@ -17,9 +17,12 @@ constexpr double kMaxFeatureDepthDeviation = 0.04;
 constexpr double kStateShare = 0.5;
 constexpr size_t kMinFeatureViews = 3;
 
-bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, const WindowFrame& from,
-              WindowTrack* track) {
-  const FrameGeometry& before = geometry[static_cast<size_t>(from.index)];
+/// The coordinates of a feature are those of its anchor when the middle row was exposed; before, those of the
+/// base's row.
+bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, WindowTrack* track) {
+  FrameGeometry row;
+  const FrameGeometry& before = track->anchor != nullptr ? geometry[static_cast<size_t>(track->anchor->index)]
+                                                         : AtRow(geometry, track->views.front(), &row);
   const FrameGeometry& after = geometry[static_cast<size_t>(newest.index)];
   const AnchorPlanes planes{track->plane(), PlaneInAnchor(before, track->plane(), after, track->landmark)};
   AnchorChange change;
@@ -42,7 +45,7 @@ std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<F
       continue;
     }
     WindowTrack& track = found->second;
-    if (track.anchor->index > 0 || AnchorIn(window_.newest(), geometry, *track.anchor, &track)) {
+    if (track.anchor->index > 0 || AnchorIn(window_.newest(), geometry, &track)) {
       staying.push_back(&track);
     }
   }
@@ -74,7 +77,7 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
   });
   std::vector<WindowTrack*> promoted;
   for (WindowTrack* track : candidates) {
-    if (promoted.size() < free && AnchorIn(window_.newest(), geometry, window_.frame(0), track)) {
+    if (promoted.size() < free && AnchorIn(window_.newest(), geometry, track)) {
       promoted.push_back(track);
     }
   }

@@ -165,7 +165,8 @@ void PriorRows::AddView(const WindowTrack& track, const WindowView& view, int la
   AnchoredRows rows;
   const int anchor = track.anchor->index;
   const int seen = view.frame->index;
-  if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], geometry_[static_cast<size_t>(seen)],
+  FrameGeometry row;
+  if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], AtRow(geometry_, view, &row),
                              view.observation, slam_.kernel, track.landmark, &rows, true, &calibration_,
                              track.plane())) {
     return;

@@ -91,8 +91,10 @@ ViewTerm::ViewTerm(std::shared_ptr<const ViewContext> context, const WindowTrack
 
 Status ViewTerm::Linearize(LinearTerm* linear) const {
   const WindowView& view = track_->views[view_];
-  const FrameGeometry& base = context_->geometry[static_cast<size_t>(track_->views.front().frame->index)];
-  const FrameGeometry& frame = context_->geometry[static_cast<size_t>(view.frame->index)];
+  FrameGeometry base_row;
+  FrameGeometry view_row;
+  const FrameGeometry& base = AtRow(context_->geometry, track_->views.front(), &base_row);
+  const FrameGeometry& frame = AtRow(context_->geometry, view, &view_row);
   ViewRows rows;
   if (!LinearizeView(base, frame, view.observation, context_->kernel, track_->landmark, &rows,
                      track_->plane())) {
@@ -105,7 +107,8 @@ Status ViewTerm::Linearize(LinearTerm* linear) const {
   linear->residual = root * rows.residual;
   linear->jacobian.leftCols<kPoseColumns>() = root * rows.pose;
   linear->jacobian.middleCols<kLandmarkColumns>(kPoseColumns) = root * rows.landmark;
-  CalibrationRows(camera.layout, camera.mean.camera, frame.R_WB, &frame.camera_from_time, root * rows.camera,
+  CalibrationRows(camera.layout, camera.mean.camera, frame.R_WB,
+                  {&frame.camera_from_time, &frame.camera_from_line_delay}, root * rows.camera,
                   Predicted(view.observation, rows.residual), linear->jacobian.rightCols(camera.size()));
   return Status::Ok();
 }
@@ -119,7 +122,7 @@ void ViewTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
     cost_ = std::make_unique<LiftedCost<BaseBearingFactor>>(BaseBearingFactor(&base, calibration));
   } else {
     cost_ = std::make_unique<LiftedCost<InverseDepthFactor>>(
-        InverseDepthFactor(base.frame, &view, calibration, track_->plane()));
+        InverseDepthFactor(base.frame, &view, calibration, track_->plane(), base.observation.row_px));
     parameters.insert(parameters.begin(), {blocks->Nav(base.frame->index), blocks->Nav(view.frame->index)});
   }
   if (parameters.size() < cost_->parameter_block_sizes().size()) {
@@ -140,7 +143,8 @@ DepthPriorTerm::DepthPriorTerm(std::shared_ptr<const ViewContext> context, const
 }
 
 Status DepthPriorTerm::Linearize(LinearTerm* linear) const {
-  const FrameGeometry& base = context_->geometry[static_cast<size_t>(track_->views.front().frame->index)];
+  FrameGeometry row;
+  const FrameGeometry& base = AtRow(context_->geometry, track_->views.front(), &row);
   const double* landmark = track_->landmark.data();
   const Eigen::Matrix<double, 1, 6> camera =
       track_->depth_prior.sqrt_information * InverseDepthRow(base, track_->landmark, track_->plane());

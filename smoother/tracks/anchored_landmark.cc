@@ -39,7 +39,7 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
     const CalibrationLayout& layout = calibration->layout;
     // The ray's part; the cameras' places follow.
     rows->calibration.resize(2, layout.size());
-    CalibrationRows(layout, calibration->mean.camera, view.R_WB, nullptr, Eigen::Matrix<double, 2, 6>::Zero(),
+    CalibrationRows(layout, calibration->mean.camera, view.R_WB, {}, Eigen::Matrix<double, 2, 6>::Zero(),
                     Predicted(observation, rows->residual), rows->calibration);
     rows->calibration += whitening * (over_anchor * CalibrationChain(layout, anchor) +
                                       over_view * CalibrationChain(layout, view));
@@ -53,10 +53,11 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
   }
   double chi2 = 0;
   AnchoredRows rows;
+  FrameGeometry row;
   for (const WindowView& view : track.views) {
     if (!LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
-                               geometry[static_cast<size_t>(view.frame->index)], view.observation, {},
-                               track.landmark, &rows, false, nullptr, track.plane())) {
+                               AtRow(geometry, view, &row), view.observation, {}, track.landmark, &rows,
+                               false, nullptr, track.plane())) {
       return std::numeric_limits<double>::infinity();
     }
     chi2 += rows.squared_norm;

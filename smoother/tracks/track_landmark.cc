@@ -11,8 +11,9 @@ struct CameraViews {
   CameraViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry) {
     T_WC.reserve(views.size());
     observations.reserve(views.size());
+    FrameGeometry scratch;
     for (const WindowView& view : views) {
-      T_WC.push_back(geometry[static_cast<size_t>(view.frame->index)].T_WC);
+      T_WC.push_back(AtRow(geometry, view, &scratch).T_WC);
       observations.push_back(view.observation);
     }
   }

@@ -15,9 +15,6 @@ using Eigen::Vector3d;
 
 constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into its camera no row can be trusted
 
-const FrameGeometry& Geometry(std::span<const FrameGeometry> geometry, const WindowView& view) {
-  return geometry[static_cast<size_t>(view.frame->index)];
-}
 /// The depth prior on rho, the inverse depth in the base view.
 void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const BearingPlane& base_plane,
                    const Vector3d& landmark, const CalibrationLayout* layout, TrackWorkspace* workspace) {
@@ -42,7 +39,9 @@ void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const Bea
 /// Weighted rows of every view over its own pose and the landmark. False behind a view.
 bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                     const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace) {
-  const FrameGeometry& base = Geometry(geometry, views.front());
+  FrameGeometry base_row;
+  FrameGeometry view_row;
+  const FrameGeometry& base = AtRow(geometry, views.front(), &base_row);
   workspace->rows.resize(views.size());
   workspace->coupling.resize(views.size());
   workspace->reduced.resize(views.size());
@@ -52,8 +51,8 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   workspace->chi2 = 0;
   for (size_t k = 0; k < views.size(); ++k) {
     ViewRows& rows = workspace->rows[k];
-    if (!LinearizeView(base, Geometry(geometry, views[k]), views[k].observation, kernel, landmark, &rows,
-                       views.front().observation.plane)) {
+    if (!LinearizeView(base, AtRow(geometry, views[k], &view_row), views[k].observation, kernel, landmark,
+                       &rows, views.front().observation.plane)) {
       return false;
     }
     workspace->robust_cost += kernel.Rho(rows.squared_norm);
@@ -77,11 +76,13 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
   Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(size, 3);
   auto own = system->hessian.bottomRightCorner(size, size);
   auto gradient = system->gradient.tail(size);
+  FrameGeometry view_row;
   for (size_t k = 0; k < views.size(); ++k) {
     const ViewRows& view = workspace.rows[k];
-    const FrameGeometry& frame = Geometry(geometry, views[k]);
-    CalibrationRows(calibration.layout, calibration.mean.camera, frame.R_WB, &frame.camera_from_time,
-                    view.camera, Predicted(views[k].observation, view.residual), rows);
+    const FrameGeometry& frame = AtRow(geometry, views[k], &view_row);
+    CalibrationRows(calibration.layout, calibration.mean.camera, frame.R_WB,
+                    {&frame.camera_from_time, &frame.camera_from_line_delay}, view.camera,
+                    Predicted(views[k].observation, view.residual), rows);
     coupling.noalias() += view.weight * rows.transpose() * view.landmark;
     own.noalias() += view.weight * rows.transpose() * rows;
     gradient.noalias() += view.weight * rows.transpose() * view.residual;
@@ -163,7 +164,8 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   workspace->prior_hessian.setZero();
   workspace->prior_gradient.setZero();
   if (prior.sqrt_information > 0) {
-    AddDepthPrior(prior, Geometry(geometry, views.front()), views.front().observation.plane, landmark,
+    FrameGeometry row;
+    AddDepthPrior(prior, AtRow(geometry, views.front(), &row), views.front().observation.plane, landmark,
                   system->calibration == nullptr ? nullptr : &system->calibration->layout, workspace);
   }
   // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
@@ -222,7 +224,8 @@ std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowVie
   for (size_t k = 0; k < views.size(); ++k) {
     error.row.segment<6>(6 * views[k].frame->index) -= (workspace.coupling[k] * last).transpose();
   }
-  const FrameGeometry& base = Geometry(geometry, views.front());
+  FrameGeometry row;
+  const FrameGeometry& base = AtRow(geometry, views.front(), &row);
   error.row.segment<6>(6 * views.front().frame->index) +=
       InverseDepthRow(base, landmark, views.front().observation.plane) * base.camera_from_body;
   return error;

@@ -45,7 +45,32 @@ FrameGeometry MakeGeometry(const WindowFrame& frame, const NavState& state, cons
     geometry.R_WB = first.R_WB;
     geometry.camera_from_time = first.camera_from_time;
   }
+  if (camera.line_delay_s) {
+    geometry.read_out = {&frame.motion, camera.T_BC, *camera.line_delay_s};
+  }
   return geometry;
+}
+
+const FrameGeometry& AtRow(const FrameGeometry& frame, double row_px, FrameGeometry* scratch) {
+  if (!frame.read_out) {
+    return frame;
+  }
+  const auto& [motion, T_BC, line_delay_s] = *frame.read_out;
+  const double later_s = line_delay_s * row_px;
+  const Pose moved = CameraAfter(*motion, T_BC, later_s);
+  const Matrix6d row_from_frame = BodyToCameraJacobian(frame.Linearized().rotation, moved);
+  scratch->T_WC = frame.T_WC * moved;
+  scratch->T_WC_first.reset();
+  if (frame.T_WC_first) {
+    scratch->T_WC_first = *frame.T_WC_first * moved;
+  }
+  scratch->camera_from_body.noalias() = row_from_frame * frame.camera_from_body;
+  scratch->camera_from_time.noalias() = row_from_frame * frame.camera_from_time;
+  scratch->R_WB = frame.R_WB * motion->After(later_s).rotation;
+  scratch->camera_from_line_delay =
+      row_px * (BodyToCameraJacobian(scratch->R_WB, T_BC) * motion->Rates(frame.R_WB, later_s));
+  scratch->read_out.reset();
+  return *scratch;
 }
 
 std::vector<FrameGeometry> MakeGeometry(const Window& window, const CameraCalibration& camera) {
@@ -73,6 +98,9 @@ CameraFromCalibration CalibrationChain(const CalibrationLayout& layout, const Fr
   }
   if (layout.time_offset() >= 0) {
     chain.col(layout.time_offset()) = frame.camera_from_time;
+  }
+  if (layout.line_delay() >= 0) {
+    chain.col(layout.line_delay()) = frame.camera_from_line_delay;
   }
   return chain;
 }

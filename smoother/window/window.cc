@@ -79,10 +79,16 @@ std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<Wind
   return views;
 }
 
+void UpdateRates(WindowFrame* frame) {
+  const Eigen::Vector3d bias = frame->imu_bias().gyro;
+  const NavState nav = frame->nav_state();
+  frame->motion = MotionOf(frame->turn.value_or(MeasuredTurn{bias}), bias, nav.R_WB, nav.v_WB);
+  frame->rates = BodyRates(frame->motion.omega_B, nav.v_WB);
+}
+
 void Window::UpdateRates() {
   for (const std::unique_ptr<WindowFrame>& frame : frames_) {
-    const Eigen::Vector3d bias = frame->imu_bias().gyro;
-    frame->rates = BodyRates(frame->gyro_radps.value_or(bias) - bias, frame->nav_state().v_WB);
+    alidade::UpdateRates(frame.get());
   }
 }
 

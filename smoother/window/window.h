@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/body_motion.h"
 #include "core/clock_state.h"
 #include "core/landmark_solver.h"
 #include "core/preintegration.h"
@@ -31,9 +32,10 @@ struct WindowFrame {
   std::optional<RestMeasurement> rest;           ///< set when the rig stood still in this frame
   // With an estimated time offset: the camera saw from where the body is later by the present offset less
   // this one, moving on at these rates (core/calibration.h, BodyRates).
-  double time_offset_s = 0;                   ///< that placed the frame in IMU time
-  std::optional<Eigen::Vector3d> gyro_radps;  ///< measured at the frame
-  Vector6d rates = Vector6d::Zero();          ///< kept fixed in a solve
+  double time_offset_s = 0;           ///< that placed the frame in IMU time
+  std::optional<MeasuredTurn> turn;   ///< measured at the frame
+  Vector6d rates = Vector6d::Zero();  ///< kept fixed in a solve
+  BodyMotion motion;                  ///< likewise, for the rows of a rolling shutter
   /// With smoother.first_estimates, once the prior holds the frame.
   std::optional<FirstEstimate> first;
   // Once aligned with GNSS (smoother/sliding/gnss_window.h).
@@ -49,6 +51,9 @@ struct WindowFrame {
   /// Precondition: clock.
   [[nodiscard]] Vector6d clock_state() const { return Eigen::Map<const Vector6d>(clock->data()); }
 };
+
+/// What moves the frame's camera with the time offset and within the image, at its present state.
+void UpdateRates(WindowFrame* frame);
 
 /// Frames in time order; the index of each is its place.
 using WindowFrames = std::vector<std::unique_ptr<WindowFrame>>;
@@ -104,7 +109,7 @@ class Window {
   /// domain.
   int AddObservations(const CameraModel& camera, double pixel_noise_px,
                       const std::vector<TrackObservation>& observations);
-  /// What moves each frame's camera with the time offset, at the present states.
+  /// UpdateRates of every frame.
   void UpdateRates();
   /// Rays of all views anew, after the camera's intrinsics have changed; see Renormalized.
   void Renormalize(const CameraModel& camera);

@@ -200,7 +200,7 @@ MatrixXd ChainRows(const Rig& rig, const CalibrationLayout& layout, const TrackL
     rows.block<2, 6>(2 * k, 6 * k) = camera *
                                      BodyToCameraJacobian(rig.bodies[view].R_WB, rig.calibration.T_BC) *
                                      ChartJacobian(convention, rig.bodies[view].T_WB());
-    CalibrationRows(layout, rig.calibration.camera, rig.bodies[view].R_WB, &from_time, camera,
+    CalibrationRows(layout, rig.calibration.camera, rig.bodies[view].R_WB, {&from_time}, camera,
                     observations[view], rows.block(2 * k, 6 * count, 2, layout.size()));
   }
   return rows;
@@ -266,7 +266,7 @@ MatrixXd PoseOnlyRows(const Rig& rig, const CalibrationLayout& layout, const tes
         over_cameras.middleCols<6>(6 * k) * ExtrinsicsToCameraJacobian(R_WB);
     calibration.col(layout.time_offset()) += over_cameras.middleCols<6>(6 * k) * rig.CameraFromTime(view);
     MatrixXd minus_rays(2, layout.size());
-    CalibrationRows(layout, rig.calibration.camera, R_WB, nullptr, Eigen::Matrix<double, 2, 6>::Zero(),
+    CalibrationRows(layout, rig.calibration.camera, R_WB, {}, Eigen::Matrix<double, 2, 6>::Zero(),
                     {z[view], Eigen::Matrix2d::Identity()}, minus_rays);
     calibration -= over_rays.middleCols<2>(2 * k) * minus_rays;
   }
@@ -350,8 +350,8 @@ TEST(CalibrationTest, InverseDepthResidualIsNumericInEveryConvention) {
       for (size_t k = 0; k < 2; ++k) {
         MatrixXd rows(2, layout.size());
         const Vector6d from_time = rig.CameraFromTime(k);
-        CalibrationRows(layout, rig.calibration.camera, rig.bodies[k].R_WB, &from_time, jacobians[k], rays[k],
-                        rows);
+        CalibrationRows(layout, rig.calibration.camera, rig.bodies[k].R_WB, {&from_time}, jacobians[k],
+                        rays[k], rows);
         analytic.rightCols(layout.size()) += rows;
         analytic.middleCols<6>(6 * static_cast<Eigen::Index>(k)) =
             jacobians[k] * BodyToCameraJacobian(rig.bodies[k].R_WB, rig.calibration.T_BC) *

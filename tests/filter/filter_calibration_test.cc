@@ -57,7 +57,7 @@ TEST(FilterCalibrationTest, CloneMovesWithTheTimeOffset) {
     const NavEstimate initial = SomeState(&random);
     ASSERT_TRUE(state.Reset(initial).ok());
     const Eigen::Vector3d gyro = random.Vector(1);
-    state.AddClone(1, gyro);
+    state.AddClone(1, MeasuredTurn{gyro});
     const MatrixXd p = state.covariance().Covariance();
     const double variance = std::pow(CalibrationConfig().time_offset_std_s, 2);
     // Numerically: the error of a pose that is dt further on.

@@ -86,6 +86,52 @@ TEST(LandmarkViewTest, RowsAreNumericInEveryConvention) {
   }
 }
 
+// Through a rolling shutter: the camera has moved on by the row's time, and the rows over extrinsics and line
+// delay say what they change of that.
+TEST(LandmarkViewTest, RowsOfARollingShutterAreNumeric) {
+  RandomStates random(83);
+  for (const ErrorConvention convention : test::kAllConventions) {
+    for (int trial = 0; trial < 20; ++trial) {
+      CalibrationConfig config;
+      config.extrinsics = config.line_delay = true;
+      const CalibrationEstimate calibration =
+          InitialCalibration(config, {CameraModel(), kExtrinsics, 0, trial == 0 ? 0 : 5e-5});
+      FilterState state(convention, false, calibration, {2, 1, false});
+      NavEstimate initial;
+      initial.nav = {so3::Exp(random.Vector(0.2)), random.Vector(1), random.Vector(2)};
+      initial.covariance.diagonal().setConstant(1e-4);
+      ASSERT_TRUE(state.Reset(initial).ok());
+      state.AddClone(1, {random.Vector(2), random.Vector(10)});
+      const Clone& clone = state.clones().front();
+      NormalizedObservation observation = SomeObservation(&random);
+      observation.row_px = random.Uniform(-240, 240);
+      LandmarkViewRows rows;
+      ASSERT_TRUE(LinearizeView(state, clone, observation, kPoint, kPoint, &rows));
+      MatrixXd analytic(2, 13);
+      analytic << rows.clone, rows.calibration;
+      const auto residual = [&](const VectorXd& xi) -> VectorXd {
+        const Pose T_WB = Retract(convention, clone.T_WB, Vector6d(xi.head<6>()));
+        const Pose T_BC = Retract(ErrorConvention::kSo3xRn, kExtrinsics, Vector6d(xi.segment<6>(6)));
+        // A millisecond a row is the unit of the last coordinate.
+        const double later_s = (*calibration.mean.line_delay_s + 1e-3 * xi[12]) * observation.row_px;
+        const Vector3d turn = later_s * clone.motion.omega_B + later_s * later_s / 2 * clone.motion.alpha_B;
+        const Pose body_after{T_WB.rotation * so3::Exp(turn),
+                              T_WB.translation + later_s * (T_WB.rotation * clone.motion.v_B)};
+        ObservationRows moved;
+        EXPECT_TRUE(LinearizeObservation(body_after * T_BC, observation, kPoint, &moved));
+        return moved.residual;
+      };
+      analytic.col(12) *= 1e-3;
+      EXPECT_EQ(test::CompareJacobians(analytic, test::NumericJacobian(residual, 13), 1e-6), "");
+      EXPECT_LT((rows.residual - residual(VectorXd::Zero(13))).norm(), 1e-9);
+      EXPECT_LT((state.CameraPoseAt(clone, observation).translation -
+                 state.CameraAt(clone, observation).T_WC.translation)
+                    .norm(),
+                1e-12);
+    }
+  }
+}
+
 TEST(LandmarkViewTest, ALandmarkBehindTheCameraIsRefused) {
   RandomStates random(82);
   const FilterState state = OneClone(ErrorConvention::kRightInvariant, &random);

@@ -55,7 +55,8 @@ struct SlamFixture : WindowFixture {
   /// calibration).
   [[nodiscard]] Eigen::VectorXd ViewResidual(const WindowTrack& track, const WindowView& view,
                                              const Eigen::VectorXd& delta) const {
-    const auto camera_pose = [&](const WindowFrame& frame, const Eigen::VectorXd& pose) -> Pose {
+    const auto camera_pose = [&](const WindowFrame& frame, const Eigen::VectorXd& pose,
+                                 double row_px) -> Pose {
       Vector9d xi = Vector9d::Zero();
       xi.head<6>() = pose;
       Pose T_WB = Retract(convention, frame.nav_state(), xi).T_WB();
@@ -66,13 +67,14 @@ struct SlamFixture : WindowFixture {
       const double later_s = camera.time_offset_s - frame.time_offset_s;
       T_WB.rotation = T_WB.rotation * so3::Exp(Eigen::Vector3d(later_s * frame.rates.head<3>()));
       T_WB.translation += later_s * frame.rates.tail<3>();
-      return T_WB * camera.T_BC;
+      return T_WB * frame.motion.After(*camera.line_delay_s * row_px) * camera.T_BC;
     };
     const Eigen::Vector3d l = track.landmark + delta.segment<3>(12);
     const Eigen::Vector3d on_plane(l.x() / l.z(), l.y() / l.z(), 1 / l.z());
     const Eigen::Vector3d p_W =
-        camera_pose(*track.anchor, delta.head<6>()) * Eigen::Vector3d(track.plane().axes() * on_plane);
-    const Eigen::Vector3d p_C = camera_pose(*view.frame, delta.segment<6>(6)).Inverse() * p_W;
+        camera_pose(*track.anchor, delta.head<6>(), 0) * Eigen::Vector3d(track.plane().axes() * on_plane);
+    const Eigen::Vector3d p_C =
+        camera_pose(*view.frame, delta.segment<6>(6), view.observation.row_px).Inverse() * p_W;
     if (!calibrated()) {
       const Eigen::Vector3d in_axes = view.observation.plane.axes().transpose() * p_C;
       return view.observation.sqrt_information * (in_axes.hnormalized() - view.observation.z);
@@ -83,7 +85,9 @@ struct SlamFixture : WindowFixture {
   }
   void Anchor(const WindowFrame* from, const WindowFrame* to, WindowTrack* track) const {
     const std::vector<FrameGeometry> geometry = Geometry();
-    const FrameGeometry& before = geometry[static_cast<size_t>(from->index)];
+    FrameGeometry row;
+    const FrameGeometry& before = track->anchor == nullptr ? AtRow(geometry, track->views.front(), &row)
+                                                           : geometry[static_cast<size_t>(from->index)];
     const FrameGeometry& after = geometry[static_cast<size_t>(to->index)];
     const AnchorPlanes planes{track->plane(), PlaneInAnchor(before, track->plane(), after, track->landmark)};
     AnchorChange moved;

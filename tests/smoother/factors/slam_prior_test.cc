@@ -51,10 +51,10 @@ TEST_P(SlamPriorTest, RowsOfAnAnchoredViewAgainstDifferences) {
     for (const WindowTrack* track : fixture.change.after) {
       const WindowView& view = track->views[1];
       AnchoredRows rows;
+      FrameGeometry row;
       ASSERT_TRUE(LinearizeAnchoredView(geometry[static_cast<size_t>(track->anchor->index)],
-                                        geometry[static_cast<size_t>(view.frame->index)], view.observation,
-                                        {}, track->landmark, &rows, true, &fixture.calibration,
-                                        track->plane()));
+                                        AtRow(geometry, view, &row), view.observation, {}, track->landmark,
+                                        &rows, true, &fixture.calibration, track->plane()));
       MatrixXd analytic(2, size);
       analytic << rows.anchor * ChartJacobian(convention(), track->anchor->nav_state().T_WB()),
           rows.view * ChartJacobian(convention(), view.frame->nav_state().T_WB()), rows.landmark,
@@ -227,10 +227,11 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
   SlamFixture fixture = Fixture(9, {3, 4});
   for (auto& [id, track] : fixture.window.tracks()) {  // without noise, at their landmarks
     const std::vector<FrameGeometry> geometry = fixture.Geometry();
-    const int base = track.anchor != nullptr ? track.anchor->index : track.views.front().frame->index;
+    FrameGeometry base_row, view_row;
+    const FrameGeometry& base = track.anchor != nullptr ? geometry[static_cast<size_t>(track.anchor->index)]
+                                                        : AtRow(geometry, track.views.front(), &base_row);
     for (WindowView& view : track.views) {
-      const AnchoredPointInCamera seen(geometry[static_cast<size_t>(base)].T_WC,
-                                       geometry[static_cast<size_t>(view.frame->index)].T_WC, track.landmark,
+      const AnchoredPointInCamera seen(base.T_WC, AtRow(geometry, view, &view_row).T_WC, track.landmark,
                                        track.plane());
       view.observation.z = view.observation.plane.InAxes(seen.q).hnormalized();
       if (fixture.calibrated()) {
@@ -246,9 +247,10 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
     for (const WindowTrack* track : fixture.tracks()) {
       Eigen::Vector3d landmark = track->landmark;
       AnchorChange back;
+      FrameGeometry row;
       if (track->anchor != nullptr) {
-        EXPECT_TRUE(ChangeAnchor(geometry[static_cast<size_t>(track->anchor->index)], geometry[0],
-                                 track->landmark, &back, nullptr,
+        EXPECT_TRUE(ChangeAnchor(geometry[static_cast<size_t>(track->anchor->index)],
+                                 AtRow(geometry, track->views.front(), &row), track->landmark, &back, nullptr,
                                  {track->plane(), track->views.front().observation.plane}));
         landmark = back.to;
       }

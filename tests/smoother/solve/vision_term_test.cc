@@ -61,12 +61,14 @@ void ExpectInformationOfCeresAndNumeric(WindowTerm* term, const WindowFrames& fr
   }
 }
 
-/// Estimates the calibration too. `exact`: frames were placed by the present time offset, as their rays were.
+/// Estimates the calibration too. `exact`: frames were placed by the present time offset, as their rays were,
+/// and all rows exposed at once.
 void Calibrate(bool exact, WindowFixture* fixture) {
   const CalibrationEstimate estimate = CalibrateWindow(fixture);
   fixture->calibration = {estimate.layout, estimate.mean};
   for (int i = 0; exact && i < fixture->window.size(); ++i) {
     fixture->window.frame(i).time_offset_s = estimate.mean.time_offset_s;
+    fixture->calibration.mean.line_delay_s = 0;
   }
 }
 
@@ -102,9 +104,9 @@ void MakeViewsExact(SlamFixture* fixture) {
   for (auto& [id, track] : fixture->window.tracks()) {
     for (WindowView& view : track.views) {
       if (track.anchor != nullptr) {
+        FrameGeometry row;
         const AnchoredPointInCamera seen(geometry[static_cast<size_t>(track.anchor->index)].T_WC,
-                                         geometry[static_cast<size_t>(view.frame->index)].T_WC,
-                                         track.landmark, track.plane());
+                                         AtRow(geometry, view, &row).T_WC, track.landmark, track.plane());
         view.observation.z = view.observation.plane.InAxes(seen.q).hnormalized();
         ASSERT_TRUE(!fixture->calibrated() || fixture->calibration.mean.camera.Project(seen.q, &view.pixel));
       }

@@ -137,7 +137,7 @@ TEST(WindowCalibrationTest, PriorOnTheCalibrationIsNumeric) {
     return residual;
   };
   const VectorXd at = VectorXd::Zero(kBlock);
-  EXPECT_NEAR(evaluate(at, nullptr).norm(), 0.7 * std::sqrt(11.0), 1e-3);
+  EXPECT_NEAR(evaluate(at, nullptr).norm(), 0.7 * std::sqrt(12.0), 1e-3);
   Eigen::Matrix<double, Eigen::Dynamic, kBlock, Eigen::RowMajor> jacobian(factor.rows(), kBlock);
   evaluate(at, jacobian.data());
   const auto residual = [&](const VectorXd& block) { return evaluate(block, nullptr); };
@@ -156,8 +156,8 @@ TEST(WindowCalibrationTest, MarginalizationKeepsWhatIsKnown) {
     const NewestEstimate known_before = test::Newest(fixture.window, prior, all, {fixture.gravity_W});
     const Matrix15d before = known_before.covariance;
     const VectorXd deviations_before = known_before.calibration_deviations;
-    ASSERT_EQ(deviations_before.size(), 11);
-    for (int i = 0; i < 11; ++i) {
+    ASSERT_EQ(deviations_before.size(), 12);
+    for (int i = 0; i < 12; ++i) {
       EXPECT_LT(deviations_before[i], (1 + 1e-9) * fixture.estimate.deviations[i]) << i;
     }
     const PoseSystem leaving = fixture.Vision(0, 0);
@@ -189,7 +189,8 @@ TEST(WindowCalibrationTest, InverseDepthRowsAgainstDifferences) {
     const WindowTrack& track = *fixture.tracks().front();
     const WindowView& view = track.views.back();
     const WindowFrame* base = track.views.front().frame;
-    const InverseDepthFactor factor(base, &view, &fixture.calibration, track.plane());
+    const InverseDepthFactor factor(base, &view, &fixture.calibration, track.plane(),
+                                    track.views.front().observation.row_px);
     const BaseBearingFactor bearing(&track.views.front(), &fixture.calibration);
     VectorXd at = VectorXd::Zero(kBlock);
     for (int i = 0; ahead && i < fixture.calibration.size(); ++i) {
@@ -251,8 +252,9 @@ void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
   const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, truth);
   for (auto& [id, track] : fixture.window.tracks()) {
     for (WindowView& view : track.views) {
-      const AnchoredPointInCamera seen(geometry[static_cast<size_t>(track.views.front().frame->index)].T_WC,
-                                       geometry[static_cast<size_t>(view.frame->index)].T_WC, track.landmark);
+      FrameGeometry base_row, view_row;
+      const AnchoredPointInCamera seen(AtRow(geometry, track.views.front(), &base_row).T_WC,
+                                       AtRow(geometry, view, &view_row).T_WC, track.landmark);
       view.observation.z = seen.q.hnormalized();
     }
   }
@@ -264,8 +266,9 @@ void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
     SlamChange change;
     for (auto& [id, track] : fixture.window.tracks()) {
       AnchorChange moved;
+      FrameGeometry row;
       if (track.views.front().frame->index == 0 &&
-          ChangeAnchor(geometry.front(), geometry.back(), track.landmark, &moved)) {
+          ChangeAnchor(AtRow(geometry, track.views.front(), &row), geometry.back(), track.landmark, &moved)) {
         track.landmark = moved.to;
         track.anchor = &fixture.window.newest();
         change.after.push_back(&track);

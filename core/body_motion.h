@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "core/imu_sample.h"
+#include "core/navigation_state.h"
+
+namespace alidade {
+
+/// How a body moves on around an instant, over some hundredths of a second: its rate grows linearly, its
+/// velocity stays. In the body's own axes at that instant, so that an error of the body's pose there moves
+/// what follows like a rigid body.
+struct BodyMotion {
+  Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d alpha_B = Eigen::Vector3d::Zero();  ///< [rad/s^2]
+  Eigen::Vector3d v_B = Eigen::Vector3d::Zero();      ///< [m/s]
+
+  /// The body `later_s` seconds later (negative: before), in its own frame at the instant: rotation
+  /// Exp(omega s + alpha s^2 / 2), translation v s.
+  [[nodiscard]] Pose After(double later_s) const;
+  /// d zeta / d later_s of that pose in the canonical chart, the body being turned by R_WB at the instant:
+  /// (omega + alpha s, R_WB v).
+  [[nodiscard]] Vector6d Rates(const Eigen::Matrix3d& R_WB, double later_s) const;
+};
+
+/// What the gyroscope says of a body's turn at the end of an interval.
+struct MeasuredTurn {
+  Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();    ///< the last sample
+  Eigen::Vector3d alpha_radps2 = Eigen::Vector3d::Zero();  ///< its change over the last 10 ms or more
+};
+/// Precondition: `samples` in time order, at least one. Of a shorter interval the change is that over all of
+/// it.
+[[nodiscard]] MeasuredTurn TurnAtEnd(std::span<const ImuSample> samples);
+/// The motion of a body there. `gyro_bias` [rad/s], v_WB [m/s] in the world's axes.
+[[nodiscard]] BodyMotion MotionOf(const MeasuredTurn& turn, const Eigen::Vector3d& gyro_bias,
+                                  const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& v_WB);
+
+/// The camera of a body in motion, s seconds after the instant, from its own frame at the instant:
+/// T_BC^-1 After(s) T_BC.
+[[nodiscard]] Pose CameraAfter(const BodyMotion& motion, const Pose& T_BC, double later_s);
+
+}  // namespace alidade
