@@ -14,12 +14,17 @@ constexpr TimeNs kLeastSpanNs = 10'000'000;
 
 }  // namespace
 
+Vector3d BodyMotion::TurnAfter(double later_s) const {
+  return later_s * (omega_B + 0.5 * later_s * alpha_B);
+}
+
 Pose BodyMotion::After(double later_s) const {
-  return {so3::Exp(Vector3d(later_s * (omega_B + 0.5 * later_s * alpha_B))), later_s * v_B};
+  return {so3::Exp(TurnAfter(later_s)), later_s * v_B};
 }
 
 Vector6d BodyMotion::Rates(const Matrix3d& R_WB, double later_s) const {
-  return (Vector6d() << omega_B + later_s * alpha_B, R_WB * v_B).finished();
+  const Vector3d rate_B = so3::RightJacobian(TurnAfter(later_s)) * (omega_B + later_s * alpha_B);
+  return (Vector6d() << rate_B, R_WB * v_B).finished();
 }
 
 MeasuredTurn TurnAtEnd(std::span<const ImuSample> samples) {

@@ -20,8 +20,11 @@ struct BodyMotion {
   /// Exp(omega s + alpha s^2 / 2), translation v s.
   [[nodiscard]] Pose After(double later_s) const;
   /// d zeta / d later_s of that pose in the canonical chart, the body being turned by R_WB at the instant:
-  /// (omega + alpha s, R_WB v).
+  /// (J_r (omega + alpha s), R_WB v), J_r the right Jacobian at the turn until then.
   [[nodiscard]] Vector6d Rates(const Eigen::Matrix3d& R_WB, double later_s) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector3d TurnAfter(double later_s) const;
 };
 
 /// What the gyroscope says of a body's turn at the end of an interval.

@@ -184,5 +184,33 @@ TEST(SimCameraTest, CameraLooksWhereItsViewSays) {
   }
 }
 
+// GIVEN a read-out of 20 ms THEN each observation is where the camera sees the point when it exposes that row.
+TEST(SimCamera, ARollingShutterSeesEachRowAtItsOwnTime) {
+  SimulatorConfig config = test::MinuteConfig();
+  config.duration_s = 10;
+  config.wobble_rad = 0.3;
+  config.pixel_noise_px = 0;
+  config.render.line_delay_s = 0.02 / config.height_px;
+  const test::SimScene scene(config);
+  double farthest_px = 0;
+  int observations = 0;
+  for (const TrackFrame& frame : scene.tracks.frames) {
+    for (const TrackObservation& seen : frame.observations) {
+      const double later_s = config.render.line_delay_s * (seen.pixel.y() - 0.5 * config.height_px);
+      const double t_s = SecondsBetween(0, frame.stamp_ns) + config.camera_time_offset_s + later_s;
+      const Pose T_WC = scene.trajectory->At(t_s).nav.T_WB() * scene.rig.T_BC;
+      const int landmark = scene.LandmarkOf(seen.track_id);
+      Eigen::Vector2d pixel;
+      ASSERT_TRUE(scene.rig.camera.Project(
+          T_WC.Inverse() * scene.landmarks[static_cast<std::size_t>(landmark)], &pixel));
+      EXPECT_LT((pixel - seen.pixel).norm(), 1e-2);
+      farthest_px = std::max(farthest_px, scene.ErrorOf(frame, seen).norm());
+      ++observations;
+    }
+  }
+  EXPECT_GT(observations, 5000);
+  EXPECT_GT(farthest_px, 3) << "against all rows at once";
+}
+
 }  // namespace
 }  // namespace alidade
