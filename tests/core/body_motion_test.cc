@@ -48,8 +48,8 @@ TEST(BodyMotionTest, TheRatesAreThoseOfThePose) {
       zeta << so3::Log(then.rotation.transpose() * pose.rotation), pose.translation - then.translation;
       return zeta;
     };
-    EXPECT_EQ(test::CompareJacobians(motion.Rates(T_WB.rotation, at_s), test::NumericJacobian(moved, 1), 1e-7),
-              "");
+    EXPECT_EQ(
+        test::CompareJacobians(motion.Rates(T_WB.rotation, at_s), test::NumericJacobian(moved, 1), 1e-7), "");
   }
 }
 

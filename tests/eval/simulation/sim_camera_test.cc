@@ -184,7 +184,8 @@ TEST(SimCameraTest, CameraLooksWhereItsViewSays) {
   }
 }
 
-// GIVEN a read-out of 20 ms THEN each observation is where the camera sees the point when it exposes that row.
+// GIVEN a read-out of 20 ms THEN each observation is where the camera sees the point when it exposes that
+// row.
 TEST(SimCamera, ARollingShutterSeesEachRowAtItsOwnTime) {
   SimulatorConfig config = test::MinuteConfig();
   config.duration_s = 10;

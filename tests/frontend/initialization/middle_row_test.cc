@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 
 RigCalibration Rig() {
   RigCalibration rig;
-  rig.camera =
-      CameraModel::Create(DistortionModel::kRadialTangential, {458, 457, 367, 248}, {-0.28, 0.07, 0, 0}, 752, 480)
-          .value();
+  rig.camera = CameraModel::Create(DistortionModel::kRadialTangential, {458, 457, 367, 248},
+                                   {-0.28, 0.07, 0, 0}, 752, 480)
+                   .value();
   rig.T_BC.rotation = so3::Exp(Vector3d(0.3, -1.2, 0.4));
   rig.line_delay_s = 4e-5;
   return rig;
