@@ -78,6 +78,9 @@ class Calibration {
     result_.rig.camera = result_.fit.model.camera;
     result_.rig.T_BC.rotation = result_.fit.model.R_BC;
     result_.rig.camera_time_offset_s = result_.fit.model.time_offset_s;
+    result_.rig.line_delay_s = HasRollingShutter(result_.fit)
+                                   ? result_.fit.model.readout_s / result_.fit.model.camera.height_px()
+                                   : 0;
     if (options_.lever_arm) {
       FindLeverArm();
     }
@@ -128,11 +131,18 @@ class Calibration {
     return Status::Ok();
   }
 
+  /// A shorter read-out is none, or one that moves nothing.
+  static bool HasRollingShutter(const CameraGyroFit& fit) {
+    constexpr double kLeastReadoutS = 3e-3, kSigmas = 5;
+    return std::abs(fit.model.readout_s) >
+           std::max(kLeastReadoutS, kSigmas * fit.deviations[Coordinate::kReadout]);
+  }
+
   /// A camera with a rolling shutter adapts its exposure time as a rule, and half of that moves the time
   /// offset along: what one part of a recording says of another is no better than this.
   static void AllowForExposure(CameraGyroFit* fit) {
-    constexpr double kRollingShutterS = 3e-3, kExposureStdS = 2e-3;
-    if (std::abs(fit->model.readout_s) > kRollingShutterS && fit->deviations[Coordinate::kReadout] > 0) {
+    constexpr double kExposureStdS = 2e-3;
+    if (HasRollingShutter(*fit) && fit->deviations[Coordinate::kReadout] > 0) {
       double& deviation = fit->deviations[Coordinate::kTimeOffset];
       deviation = std::hypot(deviation, kExposureStdS);
     }
