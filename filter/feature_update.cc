@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/landmark_reduction.h"
+#include "core/robust.h"
 #include "filter/landmark_view.h"
 
 namespace alidade {
@@ -16,12 +17,19 @@ namespace {
 
 constexpr double kLeniency = 1.5;  // the two measures of the depth's deviation differ by less
 
+/// A memory is tested at every view. With the gate's error shared by the views of a window, a point that
+/// stands still is refused in a window with that probability at most.
+double DriftLimit(double gate_probability, int window) {
+  return ChiSquareQuantile(2, 1 - (1 - gate_probability) / window);
+}
+
 }  // namespace
 
 FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vision, int max_clones,
                              int calibration_size)
     : filter_(filter),
       vision_(vision),
+      drift_limit_(DriftLimit(vision.gate_probability, filter.window)),
       calibration_(calibration_size),
       keeper_(filter, max_clones, calibration_size) {
   const auto views = static_cast<size_t>(max_clones);
@@ -265,11 +273,13 @@ FeatureUpdate::Block FeatureUpdate::AddBlock(int rows) {
   return block;
 }
 
-void FeatureUpdate::Remember(const FilterState& state, size_t block, double weight, Track* track) {
+void FeatureUpdate::Remember(const FilterState& state, size_t block, double weight, double nis,
+                             Track* track) {
   if (filter_.track_memory == TrackMemoryPolicy::kNone) {
     return;
   }
   TrackMemory& successor = successors_[block];
+  const bool further_view = track->memory.active;
   if (weight < 1 && track->memory.active) {
     const TrackView& view = track->views.back();
     successor.active = keeper_.Extend(state, track->memory, static_cast<size_t>(state.FindClone(view.serial)),
@@ -279,6 +289,10 @@ void FeatureUpdate::Remember(const FilterState& state, size_t block, double weig
     successor.clone_rows *= std::sqrt(weight);
   }
   successor.active = successor.active && keeper_.MayStay(successor, state.clones().back().T_WC.translation);
+  if (further_view) {
+    successor.AddInnovation(nis);
+    successor.active = successor.active && !successor.Drifts(drift_limit_);
+  }
   std::swap(track->memory, successor);
 }
 

@@ -65,8 +65,9 @@ class FeatureUpdate {
   /// One a block, when tracing.
   [[nodiscard]] const std::vector<TracedBlock>& traces() const { return traces_; }
   /// What the track of a block remembers once its rows were applied with the given robust weight; call before
-  /// the state is corrected.
-  void Remember(const FilterState& state, size_t block, double weight, Track* track);
+  /// the state is corrected. `nis`: normalised innovation squared of the rows. A memory ends when its point
+  /// does not stand still (TrackMemory::Drifts).
+  void Remember(const FilterState& state, size_t block, double weight, double nis, Track* track);
   [[nodiscard]] const TrackMemoryKeeper& keeper() const { return keeper_; }
   [[nodiscard]] int rows() const { return rows_; }
   /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I). Until Prepare.
@@ -114,6 +115,7 @@ class FeatureUpdate {
 
   FilterConfig filter_;
   VisionConfig vision_;
+  double drift_limit_;  ///< of TrackMemory::Drifts
   int rows_ = 0;
   int dimension_ = 0;
   bool prepared_ = false;         ///< the rows have been handed over

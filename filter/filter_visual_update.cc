@@ -162,7 +162,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     Track& track = tracks[appended_[block]];
     if (accepted_[block]) {
       pixel_noise_.AddTrack(block_nis_[block], update_.blocks()[block].rows);
-      update_.Remember(state_, block, weights_[block], &track);
+      update_.Remember(state_, block, weights_[block], block_nis_[block], &track);
     } else if (track.memory.active && ++track.memory.refusals > kMaxRefusals) {
       track.memory.active = false;
     }

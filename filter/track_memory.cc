@@ -25,6 +25,14 @@ constexpr double kStateShare = 0.5;
 
 }  // namespace
 
+void TrackMemory::AddInnovation(double nis) {
+  ++further_views;
+  const double size = residual.norm();
+  if (size > 0) {
+    innovations += std::sqrt(nis) / size * residual;
+  }
+}
+
 TrackMemoryKeeper::TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size)
     : error_(filter.error),
       max_depth_deviation_(filter.memory_depth_deviation),
@@ -72,6 +80,8 @@ void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, con
     return;
   }
   memory->refusals = 0;
+  memory->innovations.setZero();
+  memory->further_views = 0;
   memory->p_W = p_W;
   memory->landmark_rows = landmark_rows.triangularView<Eigen::Upper>();
   memory->clone_rows.setZero(3, columns_);
@@ -120,6 +130,9 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
   EliminateLandmark(landmark, rotation, innovation);
   extended->active = true;
   extended->refusals = 0;
+  extended->residual = view.residual;
+  extended->innovations = memory.innovations;
+  extended->further_views = memory.further_views;
   extended->anchor = memory.anchor;
   extended->landmark_rows = landmark.topRows<3>().triangularView<Eigen::Upper>();
   extended->clone_rows.noalias() = rotation.topRows<3>().lazyProduct(stacked_);

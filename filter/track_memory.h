@@ -19,7 +19,18 @@ struct TrackMemory {
   Eigen::Matrix3d landmark_rows = Eigen::Matrix3d::Identity();  ///< R
   /// T: six columns a clone slot, then the calibration's
   Eigen::Matrix<double, 3, Eigen::Dynamic> clone_rows;
-  int refusals = 0;  ///< observations refused in a row
+  int refusals = 0;                                       ///< observations refused in a row
+  Eigen::Vector2d residual = Eigen::Vector2d::Zero();     ///< of the last view, before its update; whitened
+  Eigen::Vector2d innovations = Eigen::Vector2d::Zero();  ///< sum over the further views, each whitened
+  int further_views = 0;
+
+  /// Takes the last view's innovation, of normalised square `nis`, into the sum, along the view's residual.
+  void AddInnovation(double nis);
+  /// Whether the innovations are too much alike: those of a point that stands still are independent, so that
+  /// |sum|^2 / n has the chi-square distribution of two degrees of freedom. `limit`: its largest value.
+  [[nodiscard]] bool Drifts(double limit) const {
+    return innovations.squaredNorm() > limit * static_cast<double>(further_views);
+  }
 };
 
 /// Starts, extends and carries the memories of tracks (docs/track_memory.md).

@@ -212,7 +212,7 @@ TEST_P(EveryConvention, APromotedMemoryLosesNothing) {
     if (i == 4) {
       update.Begin(promoted.state_);
       ASSERT_EQ(update.AppendToRemember(promoted.state_, track), TrackOutcome::kReady);
-      update.Remember(promoted.state_, 0, 1, &track);
+      update.Remember(promoted.state_, 0, 1, 0, &track);
       ASSERT_TRUE(track.memory.active);
       VectorXd correction(promoted.state_.covariance().dimension());
       SquareRootCovariance& covariance = promoted.state_.covariance();

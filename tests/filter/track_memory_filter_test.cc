@@ -48,6 +48,32 @@ TEST(TrackMemoryFilterTest, MemoryBeyondTheWindowBeatsTheWindowAlone) {
   EXPECT_LT(nees, 10);
 }
 
+// GIVEN tracks of little noise, a tenth of which slide over their surface more slowly than the gate sees WHEN
+// they are followed far beyond the window THEN their memories end, and the filter does not trust the slide.
+TEST(TrackMemoryFilterTest, TracksThatSlideBelowTheGateAreNotRemembered) {
+  const Result<SimulatorConfig> sim =
+      LoadSimulatorConfig(ALIDADE_SOURCE_DIR "/configs/datasets/gnss_rendered.yaml",
+                          {"render.enabled=false", "gnss.rate_hz=0", "rest_s=0", "duration_s=60", "path_m=75",
+                           "landmark_layout=room", "landmark_count=600", "max_range_m=60",
+                           "pixel_noise_px=0.05", "outlier_rate=0.1", "outlier_kind=drift", "outlier_px=1"});
+  ASSERT_TRUE(sim.ok()) << sim.message();
+  const Dataset dataset = test::SimulateOrDie(*sim, 4);
+  EstimatorConfig config;
+  config.vision.pixel_noise_px = 0.5;
+  config.filter.update = UpdateTiming::kDelayedAll;
+  config.filter.min_observations = 4;
+  config.filter.update_iterations = 12;
+  config.filter.max_direction_deviation = 0.2;
+  config.filter.track_memory = TrackMemoryPolicy::kCarry;
+  config.filter.memory_depth_deviation = 0.03;
+  config.filter.clone_policy = ClonePolicy::kOldest;
+  const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig);
+  const test::ScenarioResult result =
+      test::RunScenario(dataset, test::DrawInitialState(dataset, 4), filter.get());
+  ASSERT_TRUE(result.status.ok()) << result.status.message();
+  EXPECT_LT(result.nees_pose, 40);
+}
+
 // GIVEN a start as uncertain as a sensor sheet leaves it, landmarks within a metre WHEN the window fills THEN
 // tracks with a memory have corrected the state long before, where a delayed update comes too late to be
 // linear.

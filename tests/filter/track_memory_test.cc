@@ -68,7 +68,7 @@ class TrackMemoryTest : public ::testing::TestWithParam<ErrorConvention> {
     FeatureUpdate update(Remembering(GetParam()), vision_, kFrames + 1);
     update.Begin(state);
     EXPECT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
-    update.Remember(state, 0, 1, &track);
+    update.Remember(state, 0, 1, 0, &track);
     EXPECT_TRUE(track.memory.active);
     return track.memory;
   }
@@ -101,7 +101,7 @@ TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpd
     ASSERT_EQ(track.memory.active ? update.AppendRemembered(sequential, track)
                                   : update.AppendToRemember(sequential, track),
               TrackOutcome::kReady);
-    update.Remember(sequential, 0, 1, &track);
+    update.Remember(sequential, 0, 1, 0, &track);
     ASSERT_TRUE(
         sequential.covariance().Apply(update.Prepare(-1, &sequential.covariance()), correction, nullptr));
     EXPECT_LT(correction.norm(), 1e-9);
@@ -130,7 +130,7 @@ TEST_P(TrackMemoryTest, GivenADepthThatOnlyTheStateLeavesOpenThenNoMemoryStarts)
     Track track = SeenFromClones(state, PointBefore(state), 0, kFrames);
     update.Begin(state);
     EXPECT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
-    update.Remember(state, 0, 1, &track);
+    update.Remember(state, 0, 1, 0, &track);
     return track.memory.active;
   };
   for (const TrackMemoryPolicy policy : {TrackMemoryPolicy::kWindow, TrackMemoryPolicy::kCarry}) {
@@ -211,7 +211,7 @@ TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfWhereTheWorldIsWhateverHappe
   TrackMemoryKeeper keeper(config, kFrames + 1);
   update.Begin(state);
   ASSERT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
-  update.Remember(state, 0, 1, &track);
+  update.Remember(state, 0, 1, 0, &track);
   const auto expect_blind = [&](const char* when) {
     MatrixXd rows(3, state.covariance().dimension() + 3);
     rows << OverState(state, track.memory.clone_rows), track.memory.landmark_rows;
@@ -243,6 +243,48 @@ TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfWhereTheWorldIsWhateverHappe
     state.RemoveClone(state.clones().size() / 2 - 1);
     expect_blind("after a clone left");
   }
+}
+
+// A hundred views of one standard deviation each: to either side in turn, then all to the same side.
+TEST(TrackMemoryTest, InnovationsToOneSideAreADriftAndIndependentOnesAreNot) {
+  constexpr double kLimit = 15.6;
+  TrackMemory still;
+  TrackMemory sliding;
+  int caught_after = 0;
+  for (int view = 1; view <= 100; ++view) {
+    still.residual = Eigen::Vector2d(view % 2 == 0 ? 0.7 : -0.7, view % 3 == 0 ? 0.9 : -0.45);
+    still.AddInnovation(2);
+    EXPECT_FALSE(still.Drifts(kLimit)) << view;
+    sliding.residual = Eigen::Vector2d(0.3, -0.1);
+    sliding.AddInnovation(1);
+    caught_after = caught_after == 0 && sliding.Drifts(kLimit) ? view : caught_after;
+  }
+  EXPECT_EQ(caught_after, 16);  // n^2 / n > 15.6
+}
+
+// Each view is well inside the gate of 9.2.
+TEST_P(TrackMemoryTest, GivenFurtherViewsThatAllMissToOneSideThenTheMemoryEnds) {
+  const FilterState state = CloneEveryFrame(dataset_, GetParam());
+  const auto remembers = [&](double gate_probability, double side) {
+    VisionConfig vision = vision_;
+    vision.gate_probability = gate_probability;
+    Track track = SeenFromClones(state, PointBefore(state), 0, 5);
+    FeatureUpdate update(Remembering(GetParam()), vision, kFrames + 1);
+    update.Begin(state);
+    EXPECT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
+    update.Remember(state, 0, 1, 5, &track);
+    for (size_t seen = 5; seen < kFrames && track.memory.active; ++seen) {
+      track.views = SeenFromClones(state, PointBefore(state), seen, seen + 1).views;
+      track.views.back().observation.z.x() += (seen % 2 == 0 ? side : 1) * 5.0 / 400;
+      update.Begin(state);
+      EXPECT_EQ(update.AppendRemembered(state, track), TrackOutcome::kReady);
+      update.Remember(state, 0, 1, 8, &track);
+    }
+    return track.memory.active;
+  };
+  EXPECT_FALSE(remembers(0.99, 1));
+  EXPECT_TRUE(remembers(0.99, -1));
+  EXPECT_TRUE(remembers(1, 1));
 }
 
 TEST_P(TrackMemoryTest, GivenACorrectionThenTheLandmarkMovesWhereItsRowsPutIt) {
