@@ -83,6 +83,14 @@ Status CheckFirst(const Dataset& dataset, const LogTables& tables) {
   return errors.empty() ? Status::Ok() : Status::Input(dataset.path + ": " + errors);
 }
 
+/// Gives back what the checks alone needed and took.
+void ReleaseChecked(Dataset* dataset) {
+  dataset->truth_extent.reset();
+  std::vector<TimeNs>().swap(dataset->camera_stamps);
+  std::vector<ImageEntry>().swap(dataset->images);
+  malloc_trim(0);
+}
+
 RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const LogTables& tables,
                           const Dataset& dataset, const std::atomic<bool>* stop) {
   ProgressLine progress(config.name + ": frames");
@@ -109,6 +117,30 @@ std::string Summary(const RunResult& result) {
          (result.restarts.empty() ? "" : Format(", %zu restarts", result.restarts.size()));
 }
 
+/// What there is to say of a run that was written, and its exit code.
+int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTables& tables,
+             const MeasurementLog& log, const RunResult& result, const std::atomic<bool>* stop) {
+  Say(Summary(result));
+  const bool asked = config.gnss.enabled || config.fix.enabled;
+  const bool given =
+      (config.gnss.enabled && dataset.gnss != nullptr) || (config.fix.enabled && !dataset.fixes.empty());
+  if (asked && !result.global) {
+    Say(std::string(config.gnss.enabled ? "GNSS was" : "position fixes were") +
+        " not used: " + result.align_report);
+  }
+  if (Failed(result)) {
+    RunOptions options;
+    options.stop = stop;
+    if (const std::optional<std::string> cause = DiagnoseAccelerometerSigns(config, log, tables, result, options)) {
+      return Report(Status::Input(dataset.path + ": " + *cause));
+    }
+  }
+  if (!result.interrupted && result.status.ok() && ((given && !result.global) || !result.restarts.empty())) {
+    return kExitImpaired;
+  }
+  return result.interrupted ? kExitInterrupted : Report(result.status);
+}
+
 }  // namespace
 
 int RunRun(const std::vector<std::string>&) {
@@ -116,7 +148,7 @@ int RunRun(const std::vector<std::string>&) {
   if (!config.ok()) {
     return Report(config.status());
   }
-  const Result<Dataset> dataset = ReadDatasetFromFlags(StorageOf(*config));
+  Result<Dataset> dataset = ReadDatasetFromFlags(StorageOf(*config));
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
@@ -143,30 +175,12 @@ int RunRun(const std::vector<std::string>&) {
   const RunIdentity identity{*config,    dataset->name,      *dataset_digest,       *input_digest,
                              FLAGS_seed, tables->imu.size(), tables->frames.size(), FLAGS_audit};
   Say(DescribeLog(log, *tables, identity.input_digest));
-  malloc_trim(0);  // what the checks took
+  ReleaseChecked(&dataset.value());
   const RunResult result = RunWithProgress(*config, log, *tables, *dataset, stop);
   if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {
     return Report(status);
   }
-  Say(Summary(result));
-  const bool asked = config->gnss.enabled || config->fix.enabled;
-  const bool given =
-      (config->gnss.enabled && dataset->gnss != nullptr) || (config->fix.enabled && !dataset->fixes.empty());
-  if (asked && !result.global) {
-    Say(std::string(config->gnss.enabled ? "GNSS was" : "position fixes were") +
-        " not used: " + result.align_report);
-  }
-  if (Failed(result)) {
-    RunOptions options;
-    options.stop = stop;
-    if (const std::optional<std::string> cause = DiagnoseAccelerometerSigns(*config, log, *tables, result, options)) {
-      return Report(Status::Input(dataset->path + ": " + *cause));
-    }
-  }
-  if (!result.interrupted && result.status.ok() && ((given && !result.global) || !result.restarts.empty())) {
-    return kExitImpaired;
-  }
-  return result.interrupted ? kExitInterrupted : Report(result.status);
+  return Conclude(*config, *dataset, *tables, log, result, stop);
 }
 
 }  // namespace alidade::cli
