@@ -8,7 +8,6 @@
 
 namespace alidade {
 
-
 /// Where a sequence comes from: a folder in the extended ASL layout, or a ROS bag with the calibration that
 /// the bag lacks.
 struct DatasetSource {

@@ -130,7 +130,8 @@ class PairWalk {
       last_ns = frame->stamp_ns;
     }
     const bool usable = 3 * flow_px >= options_.least_flow_px && first.stamp_ns >= begin_ns_ &&
-                        last_ns <= end_ns_ && !gaps_.Within(first.stamp_ns - margin_ns_, last_ns + margin_ns_);
+                        last_ns <= end_ns_ &&
+                        !gaps_.Within(first.stamp_ns - margin_ns_, last_ns + margin_ns_);
     return usable ? std::optional(FramePair{SecondsBetween(origin_ns_, first.stamp_ns),
                                             SecondsBetween(origin_ns_, last_ns), std::move(views)})
                   : std::nullopt;

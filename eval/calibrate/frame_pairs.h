@@ -35,11 +35,11 @@ struct FramePairOptions {
 /// Consecutive pairs along a recording, each from one frame to the first later one by which its tracks have
 /// moved far enough, or to the last that shares enough tracks if they have moved a third as far. Frames
 /// without such a partner, as at rest, begin none. Of more than `most` pairs, that many, spread evenly.
-[[nodiscard]] std::vector<FramePair> ChooseFramePairs(const LogTables& tables, const FramePairOptions& options,
-                                                      std::size_t most);
+[[nodiscard]] std::vector<FramePair> ChooseFramePairs(const LogTables& tables,
+                                                      const FramePairOptions& options, std::size_t most);
 
-/// The samples within `margin_s` of the pairs, the first two, whose first is the origin of their time, and the
-/// last.
+/// The samples within `margin_s` of the pairs, the first two, whose first is the origin of their time, and
+/// the last.
 [[nodiscard]] std::vector<ImuSample> SamplesAround(const std::vector<FramePair>& pairs,
                                                    const Table<ImuSample>& imu, double margin_s);
 

@@ -40,8 +40,8 @@ Result<EstimatorConfig> LoadConfig() {
   return config;
 }
 
-/// Where the long tables of the input and of the output go while the program runs: beside the output, which has
-/// room for them.
+/// Where the long tables of the input and of the output go while the program runs: beside the output, which
+/// has room for them.
 std::string SpoolFolder() {
   return NearestFolder(FLAGS_output);
 }
@@ -131,7 +131,8 @@ int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTab
   if (Failed(result)) {
     RunOptions options;
     options.stop = stop;
-    if (const std::optional<std::string> cause = DiagnoseAccelerometerSigns(config, log, tables, result, options)) {
+    if (const std::optional<std::string> cause =
+            DiagnoseAccelerometerSigns(config, log, tables, result, options)) {
       return Report(Status::Input(dataset.path + ": " + *cause));
     }
   }

@@ -108,9 +108,8 @@ Status CompleteFrames(const std::string& tracks_path, const DatasetStorage& stor
   if (dataset->tables != nullptr) {
     const Table<TrackFrame> tracks =
         std::exchange(dataset->tables->frames, Table<TrackFrame>::InFile(storage.spool_folder));
-    return AddEmptyFrames(tracks_path, dataset->camera_stamps, tracks, [dataset](const TrackFrame& frame) {
-      return dataset->tables->frames.Add(frame);
-    });
+    return AddEmptyFrames(tracks_path, dataset->camera_stamps, tracks,
+                          [dataset](const TrackFrame& frame) { return dataset->tables->frames.Add(frame); });
   }
   std::vector<TrackFrame> frames;
   ALIDADE_RETURN_IF_ERROR(AddEmptyFrames(tracks_path, dataset->camera_stamps, Table(dataset->tracks),

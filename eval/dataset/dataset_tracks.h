@@ -18,7 +18,8 @@ Result<std::vector<TrackFrame>> ReadTracks(const std::string& path);
 Status ReadTracks(const std::string& path, Table<TrackFrame>* frames);
 
 /// tracks.csv cannot say that a frame saw nothing; timestamps.csv beside it can. All frames, with those of
-/// `tracks` where they saw something, are handed to `take`. kInput: a frame of `tracks` that is not in `stamps`.
+/// `tracks` where they saw something, are handed to `take`. kInput: a frame of `tracks` that is not in
+/// `stamps`.
 Status AddEmptyFrames(const std::string& tracks_path, const std::vector<TimeNs>& stamps,
                       const Table<TrackFrame>& tracks, const std::function<Status(const TrackFrame&)>& take);
 

@@ -24,7 +24,7 @@ class TruthPart {
   TruthPart(const DatasetStorage& storage, const Dataset& dataset) {
     constexpr TimeNs kMarginNs = 10 * kSecondNs;  // beyond any time offset and any gap
     const LogTables tables = TablesOf(dataset);
-    const TimeNs first_ns = !tables.frames.empty()       ? tables.frames.front().stamp_ns
+    const TimeNs first_ns = !tables.frames.empty()    ? tables.frames.front().stamp_ns
                             : !dataset.images.empty() ? dataset.images.front().stamp_ns
                                                       : tables.imu.front().stamp_ns;
     from_ns_ = first_ns - kMarginNs;
@@ -167,7 +167,8 @@ void CheckTruth(const Dataset& dataset, Findings* findings) {
   const TimeNs shared_first = std::max(stamps.front(), imu.front().stamp_ns);
   const TimeNs shared_last = std::min(stamps.back(), imu.back().stamp_ns);
   const double covered = std::max(0.0, SecondsBetween(shared_first, shared_last)) / imu_span;
-  findings->Fact(Format("truth: covers %.1f %% of the IMU's time, path %.2f m%s%s", 100 * covered, extent.path_m,
+  findings->Fact(Format("truth: covers %.1f %% of the IMU's time, path %.2f m%s%s", 100 * covered,
+                        extent.path_m,
                         dataset.truth->has_velocity ? ", with velocity and biases" : ", poses only",
                         dataset.truth->has_covariance ? ", with covariances" : ""));
   if (covered < 0.5) {

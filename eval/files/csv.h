@@ -19,9 +19,10 @@ struct CsvColumn {
   bool unit_required = false;
 };
 
-/// Walks the rows of a delimited text file, of which it holds one block at a time. Numbers are parsed from whole
-/// fields: trailing characters, "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a byte
-/// order mark are accepted. Every fault is kInput "file:line: column N (name): found 'text', expected ...".
+/// Walks the rows of a delimited text file, of which it holds one block at a time. Numbers are parsed from
+/// whole fields: trailing characters, "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a
+/// byte order mark are accepted. Every fault is kInput "file:line: column N (name): found 'text', expected
+/// ...".
 class CsvReader {
  public:
   /// No table has a longer row.
@@ -31,8 +32,8 @@ class CsvReader {
   static Result<CsvReader> Open(const std::string& path, char separator = ',');
 
   /// Moves to the next row that is not blank; false at the end of the file. A row that cannot be read, or is
-  /// longer than kMaxRowBytes, is a row of one empty field, and the last one: whatever is asked of it gives its
-  /// fault.
+  /// longer than kMaxRowBytes, is a row of one empty field, and the last one: whatever is asked of it gives
+  /// its fault.
   bool NextRow();
   [[nodiscard]] size_t columns() const { return fields_.size(); }
   [[nodiscard]] std::string_view field(size_t column) const { return fields_[column]; }
@@ -59,7 +60,8 @@ class CsvReader {
 
   CsvReader(std::string path, File file, char separator);
   void Split(std::string_view line);
-  /// Brings all of the line at begin_ into the block and tells its length; at the end of the file what is left.
+  /// Brings all of the line at begin_ into the block and tells its length; at the end of the file what is
+  /// left.
   size_t LoadLine();
 
   std::string path_;

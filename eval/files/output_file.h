@@ -14,8 +14,8 @@ Status WriteFileAtomically(const std::string& path, std::string_view content);
 
 /// Takes the next piece of a file.
 using AppendText = std::function<Status(std::string_view)>;
-/// The same of a file that `write` hands over piece by piece, which ends at the first error: its own or that of
-/// the file.
+/// The same of a file that `write` hands over piece by piece, which ends at the first error: its own or that
+/// of the file.
 Status WriteFileAtomically(const std::string& path, const std::function<Status(const AppendText&)>& write);
 
 /// Removes what processes that were killed left below `folder`: temporary files of WriteFileAtomically. Only

@@ -70,7 +70,8 @@ Status SpoolFile::Read(std::uint64_t at, std::size_t count, std::string* bytes) 
   bytes->resize(count);
   std::size_t done = 0;
   while (done < count && at + done < written_) {
-    const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(count - done, written_ - at - done));
+    const std::size_t wanted =
+        static_cast<std::size_t>(std::min<std::uint64_t>(count - done, written_ - at - done));
     const ssize_t got = ::pread(descriptor_, bytes->data() + done, wanted, static_cast<off_t>(at + done));
     if (got < 0 && errno == EINTR) {
       continue;

@@ -24,7 +24,8 @@ class SpoolFile {
   /// kOutput: the folder cannot be written to, or the disk is full.
   Status Append(std::string_view bytes);
   [[nodiscard]] std::uint64_t size() const { return written_ + buffer_.size(); }
-  /// Puts at most `count` bytes from `at` on into `bytes`: fewer only at the end. kOutput: they cannot be read.
+  /// Puts at most `count` bytes from `at` on into `bytes`: fewer only at the end. kOutput: they cannot be
+  /// read.
   Status Read(std::uint64_t at, std::size_t count, std::string* bytes) const;
 
  private:
@@ -37,8 +38,8 @@ class SpoolFile {
   std::string buffer_;
 };
 
-/// The nearest folder above `path`, or it itself, that exists: where files for an output may be put before its
-/// folder is made.
+/// The nearest folder above `path`, or it itself, that exists: where files for an output may be put before
+/// its folder is made.
 [[nodiscard]] std::string NearestFolder(const std::string& path);
 
 }  // namespace alidade

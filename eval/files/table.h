@@ -16,8 +16,8 @@
 namespace alidade {
 
 /// The rows of a long table, to be passed over in order as often as is wanted: a view of rows in memory, or
-/// rows in a file without a name (SpoolFile), of which a pass holds one block at a time. A handle: copies share
-/// the rows. Rows in a file need, beside them,
+/// rows in a file without a name (SpoolFile), of which a pass holds one block at a time. A handle: copies
+/// share the rows. Rows in a file need, beside them,
 ///
 ///   void Encode(const Row&, ByteWriter*);
 ///   void Decode(ByteReader*, Row*);

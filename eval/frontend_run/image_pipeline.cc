@@ -179,9 +179,8 @@ Result<LogTables> MakeTables(const Dataset& dataset, const FrontendConfig& confi
     return HasNoInput(dataset);
   }
   tables.frames = Table<TrackFrame>::InFile(spool_folder);
-  ALIDADE_RETURN_IF_ERROR(TrackImages(dataset, config, options, [&tables](TrackFrame* frame) {
-    return tables.frames.Add(*frame);
-  }));
+  ALIDADE_RETURN_IF_ERROR(TrackImages(dataset, config, options,
+                                      [&tables](TrackFrame* frame) { return tables.frames.Add(*frame); }));
   return tables;
 }
 

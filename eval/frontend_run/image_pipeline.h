@@ -52,8 +52,8 @@ Status TrackImages(const Dataset& dataset, const FrontendConfig& config, const P
 Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
                                const PipelineOptions& options);
 
-/// The same of a sequence that was read into files (DatasetStorage), as its long tables; what the front end makes
-/// goes into `spool_folder`. Errors also: SpoolFile's.
+/// The same of a sequence that was read into files (DatasetStorage), as its long tables; what the front end
+/// makes goes into `spool_folder`. Errors also: SpoolFile's.
 Result<LogTables> MakeTables(const Dataset& dataset, const FrontendConfig& config,
                              const PipelineOptions& options, const std::string& spool_folder);
 

@@ -63,7 +63,8 @@ double SecondsSound(const RunResult& result) {
   static_cast<void>(ForEachRecord(result, [&](const RunRecord& record) {
     if (before_ns != INT64_MIN) {
       sound = sound && record.status == "ok";
-      sound_s += !sound || record.statistics.at_rest ? 0 : SecondsBetween(before_ns, record.estimate.stamp_ns);
+      sound_s +=
+          !sound || record.statistics.at_rest ? 0 : SecondsBetween(before_ns, record.estimate.stamp_ns);
     }
     before_ns = record.estimate.stamp_ns;
     return Status::Ok();
@@ -95,8 +96,7 @@ bool Failed(const RunResult& result) {
 
 std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& config,
                                                       const MeasurementLog& log, const LogTables& tables,
-                                                      const RunResult& failed,
-                                                      const RunOptions& options) {
+                                                      const RunResult& failed, const RunOptions& options) {
   constexpr double kLeastS = 5;
   constexpr double kWaitS = 10;  // for a start
   if (tables.frames.empty() || SecondsSound(failed) > kLeastS) {

@@ -121,9 +121,8 @@ bool LogPlayer::PlayFrame(const TrackFrame& frame) {
   TakeEvents();
   if (result_.status.ok() && !session_.running() && !builder_.lost() &&
       SecondsBetween(tables_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
-    result_.status =
-        Status::Diverged("not initialised within init.max_wait_s = " + std::to_string(config_.init.max_wait_s) +
-                         " s: " + result_.init_report);
+    result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
+                                      std::to_string(config_.init.max_wait_s) + " s: " + result_.init_report);
   }
   return true;
 }

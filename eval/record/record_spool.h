@@ -12,8 +12,8 @@ namespace alidade {
 void Encode(const RunRecord& record, ByteWriter* bytes);
 void Decode(ByteReader* bytes, RunRecord* record);
 
-/// What a long run has to say and does not hold in memory: its records, and the rows of the tables that nothing
-/// later changes, as text.
+/// What a long run has to say and does not hold in memory: its records, and the rows of the tables that
+/// nothing later changes, as text.
 class RecordSpool {
  public:
   explicit RecordSpool(const std::string& folder)

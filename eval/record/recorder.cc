@@ -179,7 +179,8 @@ std::vector<RunTable> FilesOf(const RunIdentity& identity, const RunResult& resu
   const SpoolFile* satellite_rows = result.spool == nullptr ? nullptr : &result.spool->satellite_rows();
   const auto nothing = [](const RunRecord&, std::string*) {};
   return {
-      {"trajectory.tum", true, "", [](const RunRecord& r, std::string* t) { AppendTum(PointOf(r.estimate), t); }},
+      {"trajectory.tum", true, "",
+       [](const RunRecord& r, std::string* t) { AppendTum(PointOf(r.estimate), t); }},
       {"states.csv", true, states, [gnss](const RunRecord& r, std::string* t) { AppendState(r, gnss, t); }},
       {"covariance.csv", true, MotionCovarianceHeader(), AppendMotionCovariance},
       {"timing.csv", true, TimingHeader(), AppendTiming},

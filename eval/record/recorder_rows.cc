@@ -86,9 +86,11 @@ void AppendTiming(const RunRecord& record, std::string* text) {
 }
 
 std::string StatusHeader(const EstimatorConfig& config) {
-  return "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
+  return "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,"
+         "nis_"
          "dof,"
-         "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_nis_"
+         "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_"
+         "nis_"
          "dof" +
          SensorColumns(config) + "\n";
 }
@@ -126,7 +128,8 @@ void AppendObservability(const RunRecord& record, std::string* text) {
   if (record.observability) {
     const ObservabilityRecord& row = *record.observability;
     *text += std::to_string(row.stamp_ns) + "," + std::to_string(row.rank);
-    AppendNumbers(Eigen::Vector4d(row.yaw_leak, row.position_leak, row.yaw_gain, row.null_angle_rad), ',', text);
+    AppendNumbers(Eigen::Vector4d(row.yaw_leak, row.position_leak, row.yaw_gain, row.null_angle_rad), ',',
+                  text);
     *text += '\n';
   }
 }

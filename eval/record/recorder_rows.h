@@ -7,7 +7,8 @@
 
 namespace alidade {
 
-// Rows of the tables of a run (docs/formats.md), a record each, and their headers, with the ends of their lines.
+// Rows of the tables of a run (docs/formats.md), a record each, and their headers, with the ends of their
+// lines.
 
 [[nodiscard]] std::string StatesHeader();
 /// with_clock: with the clock terms behind the other columns, as in a header with ClockColumns.

@@ -28,8 +28,8 @@ struct RunResult {
   /// Of RunOptions::spool_folder, else null: the records before those of `records`, which are the newest, and
   /// what `gnss_residuals` would hold.
   std::shared_ptr<RecordSpool> spool;
-  std::string init_method;         ///< truth | static | dynamic
-  std::string init_report;         ///< what the initialiser found, or why it did not initialise
+  std::string init_method;  ///< truth | static | dynamic
+  std::string init_report;  ///< what the initialiser found, or why it did not initialise
   TimeNs init_stamp_ns = 0;
   int frames_skipped = 0;                     ///< refused by the estimator after initialisation
   std::string skip_report;                    ///< why the first of them was

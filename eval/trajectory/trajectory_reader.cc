@@ -86,7 +86,8 @@ Status ReadRotation(const CsvReader& csv, size_t first, bool w_last, Eigen::Matr
 
 constexpr size_t kPositionColumns = 4;
 
-/// One row of the three comma-separated formats: they share their first columns. `point`: that of the row before.
+/// One row of the three comma-separated formats: they share their first columns. `point`: that of the row
+/// before.
 Status ReadCsvPoint(const CsvReader& csv, const Trajectory& trajectory, bool first, TrajectoryPoint* point) {
   ALIDADE_RETURN_IF_ERROR(csv.ReadStamp(first, point->stamp_ns, &point->stamp_ns));
   ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 1, "position", &point->nav.p_WB));

@@ -45,10 +45,9 @@ Result<bool> ReadCovarianceBeside(const std::string& truth_path, const std::vect
     ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp_ns));
     if (row == stamps.size() || stamp_ns != stamps[row]) {
       return csv->Fault(0, "timestamp",
-                        row == stamps.size()
-                            ? "no row: " + truth_path + " ends before"
-                            : "the stamp " + std::to_string(stamps[row]) +
-                                  " of the same row of " + truth_path);
+                        row == stamps.size() ? "no row: " + truth_path + " ends before"
+                                             : "the stamp " + std::to_string(stamps[row]) +
+                                                   " of the same row of " + truth_path);
     }
     Matrix6d covariance = Matrix6d::Zero();
     ALIDADE_RETURN_IF_ERROR(ReadPoseCovariance(*csv, 1, &covariance));
@@ -66,10 +65,9 @@ Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth) {
   for (const TrajectoryPoint& point : truth->points) {
     stamps.push_back(point.stamp_ns);
   }
-  const Result<bool> read =
-      ReadCovarianceBeside(truth_path, stamps, [truth](size_t row, const Matrix6d& covariance) {
-        truth->points[row].covariance = covariance;
-      });
+  const Result<bool> read = ReadCovarianceBeside(
+      truth_path, stamps,
+      [truth](size_t row, const Matrix6d& covariance) { truth->points[row].covariance = covariance; });
   ALIDADE_RETURN_IF_ERROR(read.status());
   truth->has_covariance = *read;
   return Status::Ok();

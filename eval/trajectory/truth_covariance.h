@@ -19,8 +19,8 @@ namespace alidade {
 /// or left over.
 Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth);
 
-/// The same of a truth with these stamps: the covariance of its row `row` is handed to `take`. False: there are
-/// none.
+/// The same of a truth with these stamps: the covariance of its row `row` is handed to `take`. False: there
+/// are none.
 Result<bool> ReadCovarianceBeside(const std::string& truth_path, const std::vector<TimeNs>& stamps,
                                   const std::function<void(size_t row, const Matrix6d& covariance)>& take);
 

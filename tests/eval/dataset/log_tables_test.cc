@@ -24,7 +24,8 @@ std::string DigestOfTables(const Dataset& dataset) {
   return DigestOf(MeasurementsOf(dataset), TablesOf(dataset)).value();
 }
 
-/// 60 s at 200 Hz with faulty rows, 10 Hz of tracks, frames that saw nothing, a second camera, truth at 20 Hz.
+/// 60 s at 200 Hz with faulty rows, 10 Hz of tracks, frames that saw nothing, a second camera, truth at 20
+/// Hz.
 void WriteSequence(const test::TemporaryFolder& folder) {
   test::WriteGoodSequence(folder);
   std::string imu = test::kImuHeader, tracks = test::kTracksHeader, stamps = "#timestamp [ns]\n";
@@ -53,7 +54,8 @@ void WriteSequence(const test::TemporaryFolder& folder) {
   folder.Write("mav0/state_groundtruth_estimate0/data_pose.csv", truth);
 }
 
-// GIVEN a sequence that is read into files, THEN it is that which is read into memory: digest, findings, counts.
+// GIVEN a sequence that is read into files, THEN it is that which is read into memory: digest, findings,
+// counts.
 TEST(LogTables, OfFilesAreThoseOfMemory) {
   const test::TemporaryFolder folder;
   WriteSequence(folder);
@@ -96,8 +98,9 @@ TEST(LogTables, KeepOfTheTruthWhatAStartNeeds) {
 TEST(LogTables, GivenAFaultThenItIsToldAsOfMemory) {
   const test::TemporaryFolder folder;
   WriteSequence(folder);
-  for (const auto& [name, text] : {std::pair("mav0/cam0/tracks.csv", std::string(test::kTracksHeader) + "77,1,2,3\n"),
-                                   std::pair("mav0/imu0/data.csv", std::string(test::kImuHeader) + "77,1,2\n")}) {
+  for (const auto& [name, text] :
+       {std::pair("mav0/cam0/tracks.csv", std::string(test::kTracksHeader) + "77,1,2,3\n"),
+        std::pair("mav0/imu0/data.csv", std::string(test::kImuHeader) + "77,1,2\n")}) {
     folder.Write(name, text);
     EXPECT_EQ(ReadDataset(folder.path(), {folder.path(), 5}).message(), ReadDataset(folder.path()).message());
     EXPECT_FALSE(ReadDataset(folder.path()).ok());

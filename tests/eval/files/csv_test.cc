@@ -10,8 +10,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// GIVEN a file of many blocks, with a byte order mark, CRLF, blank lines and no end of the last line, THEN every
-// row is read whole and its line is right.
+// GIVEN a file of many blocks, with a byte order mark, CRLF, blank lines and no end of the last line, THEN
+// every row is read whole and its line is right.
 TEST(CsvReader, ReadsRowsOfAnyLengthAcrossBlocks) {
   const test::TemporaryFolder folder;
   std::string text = "\xEF\xBB\xBF\n \r\n#a,b\r\n";
@@ -50,7 +50,8 @@ TEST(CsvReader, GivenARowWithoutEndThenItIsNeverHeldWhole) {
   EXPECT_TRUE(csv->ExpectColumns(2).ok());
   ASSERT_TRUE(csv->NextRow());  // the row that cannot be held
   std::int64_t number = 0;
-  for (const Status& status : {csv->ExpectColumns(2), csv->ReadInt64(0, "a", &number), csv->ExpectHeader({{"a"}})}) {
+  for (const Status& status :
+       {csv->ExpectColumns(2), csv->ReadInt64(0, "a", &number), csv->ExpectHeader({{"a"}})}) {
     EXPECT_EQ(status.code(), StatusCode::kInput);
     EXPECT_THAT(status.message(), HasSubstr(path + ": is larger than expected: holds a row of more than"));
   }

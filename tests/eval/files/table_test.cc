@@ -30,8 +30,8 @@ Line LineOf(int number) {
   return {number, std::string(number % 500 == 499 ? 400'000 : static_cast<size_t>(number % 900), 'x')};
 }
 
-// GIVEN rows of several buffers, some larger than a block, THEN every pass gives them all, in order, also after
-// more were added, and no file stays in the folder.
+// GIVEN rows of several buffers, some larger than a block, THEN every pass gives them all, in order, also
+// after more were added, and no file stays in the folder.
 TEST(Table, GivesEveryRowOfAFileOnEveryPass) {
   const test::TemporaryFolder folder;
   Table<Line> table = Table<Line>::InFile(folder.path());
@@ -76,7 +76,8 @@ TEST(SpoolFile, GivenAFolderThatIsNotThereThenLittleIsKeptAndMuchIsRefused) {
   EXPECT_EQ(bytes, "ttle");
   const Status status = file.Append(std::string(SpoolFile::kBuffer, 'x'));
   EXPECT_EQ(status.code(), StatusCode::kOutput);
-  EXPECT_THAT(status.message(), testing::HasSubstr(folder.File("none") + ": no temporary file can be made: "));
+  EXPECT_THAT(status.message(),
+              testing::HasSubstr(folder.File("none") + ": no temporary file can be made: "));
 }
 
 TEST(SpoolFile, NearestFolderIsTheFirstThatExists) {

@@ -35,7 +35,8 @@ TEST(FailureDiagnosisTest, ANegatedAccelerometerIsNamed) {
   const MeasurementLog log = LogWithSigns({-1, -1, -1});
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
   EXPECT_TRUE(Failed(failed));
-  const std::optional<std::string> cause = DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  const std::optional<std::string> cause =
+      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }
@@ -43,7 +44,8 @@ TEST(FailureDiagnosisTest, ANegatedAccelerometerIsNamed) {
 TEST(FailureDiagnosisTest, ANegatedAxisIsNamed) {
   const MeasurementLog log = LogWithSigns({1, 1, -1});
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
-  const std::optional<std::string> cause = DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  const std::optional<std::string> cause =
+      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("z axis negated"));
 }

@@ -29,8 +29,8 @@ Dataset SimulateOf(const std::string& name, const std::vector<std::string>& sett
 }
 
 EstimatorConfig Preset(const std::string& name, const std::vector<std::string>& settings) {
-  const Result<EstimatorConfig> config =
-      LoadEstimatorConfig(std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/" + name + ".yaml", settings);
+  const Result<EstimatorConfig> config = LoadEstimatorConfig(
+      std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/" + name + ".yaml", settings);
   EXPECT_TRUE(config.ok()) << config.message();
   return *config;
 }
@@ -79,15 +79,16 @@ class SpooledRun : public testing::TestWithParam<const char*> {};
 // GIVEN a run that calibrates, THEN its files are those of a run that is held in memory.
 TEST_P(SpooledRun, WritesWhatARunInMemoryWrites) {
   const Dataset dataset = SimulateOf("figure8_short.yaml", {"duration_s=20", "path_m=26"});
-  const EstimatorConfig config =
-      Preset("alidade_filter", {std::string("backend=") + GetParam(), "init.method=truth", "smoother.window=6",
-                                "calibration.watch=false", "calibration.time_offset=true"});
+  const EstimatorConfig config = Preset(
+      "alidade_filter", {std::string("backend=") + GetParam(), "init.method=truth", "smoother.window=6",
+                         "calibration.watch=false", "calibration.time_offset=true"});
   ExpectTheSameFiles(config, dataset, {"states.csv", "calibration.csv", "covariance.csv", "status.csv"});
 }
 
 // The same with an alignment, which turns what was told before it, after more records than memory holds.
 TEST_P(SpooledRun, TurnsWhatItHasPutAway) {
-  const Dataset dataset = SimulateOf("gnss_figure8_short.yaml", {"duration_s=20", "path_m=83", "gnss.rate_hz=2"});
+  const Dataset dataset =
+      SimulateOf("gnss_figure8_short.yaml", {"duration_s=20", "path_m=83", "gnss.rate_hz=2"});
   const EstimatorConfig config =
       Preset("gvio", {std::string("backend=") + GetParam(), "init.method=truth", "gnss.model_std_scale=0",
                       "gnss.pseudorange_std_m=0.5", "smoother.window=6", "gnss.align_min_epochs=20"});
@@ -135,7 +136,8 @@ TEST(SpooledRun, GivenNoRoomThenTheRunEndsAndSaysSo) {
   RunOptions options;
   options.truth = &*dataset.truth;
   options.spool_folder = "/proc/self/none";
-  const RunResult result = RunEstimator(Preset("po_invio_two", {"init.method=truth"}), MeasurementsOf(dataset), options);
+  const RunResult result =
+      RunEstimator(Preset("po_invio_two", {"init.method=truth"}), MeasurementsOf(dataset), options);
   EXPECT_EQ(result.status.code(), StatusCode::kOutput);
   EXPECT_THAT(result.status.message(), testing::HasSubstr("/proc/self/none: no temporary file can be made"));
 }
