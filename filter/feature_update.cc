@@ -40,7 +40,7 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
   residual_.resize(2 * max_clones);
   point_jacobian_.resize(2 * max_clones, 3);
   track_jacobian_.resize(2 * max_clones, 6 * max_clones + calibration_);
-  Reserve(512);
+  Reserve(1024);  // untouched rows take no memory
   successors_.resize(kUsualTracks);
   for (TrackMemory& successor : successors_) {
     successor.clone_rows.resize(

@@ -6,18 +6,19 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/digest.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/files/hash.h"
 
 namespace alidade {
 
-Result<Dataset> ReadDataset(const DatasetSource& source) {
+Result<Dataset> ReadDataset(const DatasetSource& source, const DatasetStorage& storage) {
   if (!IsBag(source.path)) {
     if (!source.topics.empty() || !source.calibration.empty()) {
       return Status::Usage(source.path +
                            ": is not a bag; topics and calibration apply to bags, a folder has its own "
                            "sensor.yaml");
     }
-    return ReadDataset(source.path);
+    return ReadDataset(source.path, storage);
   }
   BagImportOptions options;
   ALIDADE_RETURN_IF_ERROR(MakeBagTopics(source.topics).status());  // before the calibration's errors
@@ -32,6 +33,9 @@ Result<Dataset> ReadDataset(const DatasetSource& source) {
   Result<BagImport> import = ReadBag(source.path, options);
   ALIDADE_RETURN_IF_ERROR(import.status());
   import->dataset.remarks = std::move(import->remarks);
+  if (!storage.spool_folder.empty()) {
+    ALIDADE_RETURN_IF_ERROR(MoveTablesToFiles(storage.spool_folder, &import->dataset));
+  }
   return std::move(import->dataset);
 }
 

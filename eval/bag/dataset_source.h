@@ -4,10 +4,9 @@
 #include <vector>
 
 #include "core/status.h"
+#include "eval/dataset/dataset.h"
 
 namespace alidade {
-
-struct Dataset;
 
 /// Where a sequence comes from: a folder in the extended ASL layout, or a ROS bag with the calibration that
 /// the bag lacks.
@@ -20,8 +19,8 @@ struct DatasetSource {
 
 /// ReadDataset of a folder or ReadBag, with the remarks of either in Dataset::remarks. kUsage: invalid
 /// topics, or topics or calibration for a folder, which has its own; kInput: as ReadDataset and
-/// ImportCalibration.
-Result<Dataset> ReadDataset(const DatasetSource& source);
+/// ImportCalibration. A bag is read whole before it goes into files.
+Result<Dataset> ReadDataset(const DatasetSource& source, const DatasetStorage& storage = {});
 
 /// SHA-256 (hex) over everything that the sequence is read from.
 Result<std::string> DigestOf(const DatasetSource& source);

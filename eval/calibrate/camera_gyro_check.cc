@@ -106,18 +106,14 @@ void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Fin
 }  // namespace
 
 std::vector<FramePair> FramePairsOf(const MeasurementLog& log, std::size_t most) {
+  return FramePairsOf(log.rig, TablesOf(log), most);
+}
+
+std::vector<FramePair> FramePairsOf(const RigCalibration& rig, const LogTables& tables, std::size_t most) {
   constexpr double kFlowShare = 0.1;  // of the image's width
   FramePairOptions options;
-  options.least_flow_px = kFlowShare * log.rig.camera.width_px();
-  std::vector<FramePair> pairs = ChooseFramePairs(log.frames, log.imu, options);
-  if (pairs.size() <= most) {
-    return pairs;
-  }
-  std::vector<FramePair> some;
-  for (std::size_t k = 0; k < most; ++k) {
-    some.push_back(std::move(pairs[k * pairs.size() / most]));
-  }
-  return some;
+  options.least_flow_px = kFlowShare * rig.camera.width_px();
+  return ChooseFramePairs(tables, options, most);
 }
 
 CameraGyroModel ModelOfSheet(const RigCalibration& rig) {
@@ -130,12 +126,20 @@ CameraGyroModel ModelOfSheet(const RigCalibration& rig) {
 }
 
 void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, Findings* findings) {
-  const CameraGyroModel sheet = ModelOfSheet(log.rig);
+  CheckCameraAgainstGyro(log.rig, TablesOf(log), most_pairs, findings);
+}
+
+void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, std::size_t most_pairs,
+                            Findings* findings) {
+  constexpr double kMarginS = 2;  // beyond what the fit takes
+  const CameraGyroModel sheet = ModelOfSheet(rig);
   CameraGyroSearchOptions options;
   options.prior[Coordinate::kFocal] = 0.3;
   options.prior[Coordinate::kReadout] = 0.03;
-  const std::vector<FramePair> pairs = FramePairsOf(log, most_pairs);
-  const Result<CameraGyroFit> fit = FindCameraGyro(pairs, log.imu, sheet, options);
+  const std::vector<FramePair> pairs = FramePairsOf(rig, tables, most_pairs);
+  const std::vector<ImuSample> imu =
+      SamplesAround(pairs, tables.imu, kMarginS + std::abs(sheet.time_offset_s));
+  const Result<CameraGyroFit> fit = FindCameraGyro(pairs, imu, sheet, options);
   if (!fit.ok()) {
     findings->Fact("cam0 against the gyroscope: not compared: " + fit.message());
     return;

@@ -9,6 +9,9 @@ namespace alidade {
 /// The pairs of a log for a fit, with a motion that suits its camera; `most`: at most that many, spread
 /// evenly.
 [[nodiscard]] std::vector<FramePair> FramePairsOf(const MeasurementLog& log, std::size_t most);
+/// The same of the log's long tables.
+[[nodiscard]] std::vector<FramePair> FramePairsOf(const RigCalibration& rig, const LogTables& tables,
+                                                  std::size_t most);
 
 /// The camera of a sheet as a start for a fit.
 [[nodiscard]] CameraGyroModel ModelOfSheet(const RigCalibration& rig);
@@ -18,5 +21,7 @@ namespace alidade {
 /// matters (2 ms, 0.5 deg, 1 %, 3 ms), as warnings; other axes than the sheet's are an error. A fact tells
 /// what was compared, or why nothing was. most_pairs: of images, spread evenly over the recording.
 void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, Findings* findings);
+void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, std::size_t most_pairs,
+                            Findings* findings);
 
 }  // namespace alidade

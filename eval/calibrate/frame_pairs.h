@@ -5,6 +5,7 @@
 
 #include "core/imu_sample.h"
 #include "core/track_frame.h"
+#include "eval/dataset/log_tables.h"
 
 namespace alidade {
 
@@ -33,9 +34,13 @@ struct FramePairOptions {
 
 /// Consecutive pairs along a recording, each from one frame to the first later one by which its tracks have
 /// moved far enough, or to the last that shares enough tracks if they have moved a third as far. Frames
-/// without such a partner, as at rest, begin none.
-[[nodiscard]] std::vector<FramePair> ChooseFramePairs(const std::vector<TrackFrame>& frames,
-                                                      const std::vector<ImuSample>& imu,
-                                                      const FramePairOptions& options);
+/// without such a partner, as at rest, begin none. Of more than `most` pairs, that many, spread evenly.
+[[nodiscard]] std::vector<FramePair> ChooseFramePairs(const LogTables& tables,
+                                                      const FramePairOptions& options, std::size_t most);
+
+/// The samples within `margin_s` of the pairs, the first two, whose first is the origin of their time, and
+/// the last.
+[[nodiscard]] std::vector<ImuSample> SamplesAround(const std::vector<FramePair>& pairs,
+                                                   const Table<ImuSample>& imu, double margin_s);
 
 }  // namespace alidade

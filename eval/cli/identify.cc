@@ -20,7 +20,7 @@ Result<Dataset> ReadImuFromFlags() {
     return ReadDatasetFromFlags();
   }
   Dataset dataset;
-  ALIDADE_RETURN_IF_ERROR(ReadImuFolder(FLAGS_dataset + "/mav0", &dataset));
+  ALIDADE_RETURN_IF_ERROR(ReadImuFolder(FLAGS_dataset + "/mav0", {}, &dataset));
   return dataset;
 }
 

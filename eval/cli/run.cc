@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <cstdio>
 
 #include "core/format.h"
@@ -9,7 +11,9 @@
 #include "eval/config/config_yaml.h"
 #include "eval/dataset/dataset_check.h"
 #include "eval/dataset/digest.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/files/hash.h"
+#include "eval/files/spool_file.h"
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/record/failure_diagnosis.h"
 #include "eval/record/recorder.h"
@@ -36,22 +40,33 @@ Result<EstimatorConfig> LoadConfig() {
   return config;
 }
 
-Result<MeasurementLog> LogWithProgress(const Dataset& dataset, const FrontendConfig& frontend,
-                                       const std::atomic<bool>* stop) {
+/// Where the long tables of the input and of the output go while the program runs: beside the output, which
+/// has room for them.
+std::string SpoolFolder() {
+  return NearestFolder(FLAGS_output);
+}
+
+DatasetStorage StorageOf(const EstimatorConfig& config) {
+  const bool starts_with_truth = config.init.method == InitMethod::kTruth;
+  return {SpoolFolder(), starts_with_truth ? config.init.max_wait_s : 0};
+}
+
+Result<LogTables> TablesWithProgress(const Dataset& dataset, const FrontendConfig& frontend,
+                                     const std::atomic<bool>* stop) {
   ProgressLine progress("images");
   PipelineOptions options;
   options.stop = stop;
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   options.remark = Say;
-  return MakeLog(dataset, frontend, options);
+  return MakeTables(dataset, frontend, options, SpoolFolder());
 }
 
 /// What `check` says of the sequence: warnings go to standard error, errors end the run before it begins.
-Status CheckFirst(const Dataset& dataset, const MeasurementLog& log) {
+Status CheckFirst(const Dataset& dataset, const LogTables& tables) {
   constexpr size_t kMostPairs = 60;
   Findings findings;
-  if (!log.frames.empty()) {
-    CheckCameraAgainstGyro(log, kMostPairs, &findings);
+  if (!tables.frames.empty()) {
+    CheckCameraAgainstGyro(dataset.rig, tables, kMostPairs, &findings);
   }
   std::vector<DatasetFinding> list = CheckDataset(dataset);
   for (DatasetFinding& finding : findings.Take()) {
@@ -68,8 +83,16 @@ Status CheckFirst(const Dataset& dataset, const MeasurementLog& log) {
   return errors.empty() ? Status::Ok() : Status::Input(dataset.path + ": " + errors);
 }
 
-RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const Dataset& dataset,
-                          const std::atomic<bool>* stop) {
+/// Gives back what the checks alone needed and took.
+void ReleaseChecked(Dataset* dataset) {
+  dataset->truth_extent.reset();
+  std::vector<TimeNs>().swap(dataset->camera_stamps);
+  std::vector<ImageEntry>().swap(dataset->images);
+  malloc_trim(0);
+}
+
+RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& log, const LogTables& tables,
+                          const Dataset& dataset, const std::atomic<bool>* stop) {
   ProgressLine progress(config.name + ": frames");
   RunOptions options;
   options.truth = dataset.truth ? &*dataset.truth : nullptr;
@@ -77,19 +100,46 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
   options.stop = stop;
   options.audit = FLAGS_audit;
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
-  return RunEstimator(config, log, options);
+  // An estimator that looks back holds all of the log, and all of its records.
+  options.spool_folder = FLAGS_audit || config.backend == Backend::kBatch ? "" : SpoolFolder();
+  return RunEstimator(config, log, tables, options);
 }
 
 std::string Summary(const RunResult& result) {
   const std::string times = Format("%.1f s wall, %.1f s CPU", result.wall_s, result.cpu_s);
-  if (result.records.empty()) {
+  if (RecordCount(result) == 0) {
     return StatusWord(result) + ": no frame was estimated, " + times;
   }
-  const double frames = static_cast<double>(result.records.size());
-  return StatusWord(result) + ": " + std::to_string(result.records.size()) + " frames, " +
+  const double frames = static_cast<double>(RecordCount(result));
+  return StatusWord(result) + ": " + std::to_string(RecordCount(result)) + " frames, " +
          std::to_string(result.frames_skipped) + " skipped, start: " + result.init_method + ", " + times +
          Format(", %.2f ms CPU a frame", 1e3 * result.cpu_s / frames) +
          (result.restarts.empty() ? "" : Format(", %zu restarts", result.restarts.size()));
+}
+
+/// What there is to say of a run that was written, and its exit code.
+int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTables& tables,
+             const MeasurementLog& log, const RunResult& result, const std::atomic<bool>* stop) {
+  Say(Summary(result));
+  const bool asked = config.gnss.enabled || config.fix.enabled;
+  const bool given =
+      (config.gnss.enabled && dataset.gnss != nullptr) || (config.fix.enabled && !dataset.fixes.empty());
+  if (asked && !result.global) {
+    Say(std::string(config.gnss.enabled ? "GNSS was" : "position fixes were") +
+        " not used: " + result.align_report);
+  }
+  if (Failed(result)) {
+    RunOptions options;
+    options.stop = stop;
+    if (const std::optional<std::string> cause =
+            DiagnoseAccelerometerSigns(config, log, tables, result, options)) {
+      return Report(Status::Input(dataset.path + ": " + *cause));
+    }
+  }
+  if (!result.interrupted && result.status.ok() && ((given && !result.global) || !result.restarts.empty())) {
+    return kExitImpaired;
+  }
+  return result.interrupted ? kExitInterrupted : Report(result.status);
 }
 
 }  // namespace
@@ -99,7 +149,7 @@ int RunRun(const std::vector<std::string>&) {
   if (!config.ok()) {
     return Report(config.status());
   }
-  const Result<Dataset> dataset = ReadDatasetFromFlags();
+  Result<Dataset> dataset = ReadDatasetFromFlags(StorageOf(*config));
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
@@ -111,39 +161,27 @@ int RunRun(const std::vector<std::string>&) {
     return Report(status);
   }
   const std::atomic<bool>* stop = InstallInterruptHandler();
-  const Result<MeasurementLog> log = LogWithProgress(*dataset, config->frontend, stop);
-  if (!log.ok()) {
-    return stop->load() ? kExitInterrupted : Report(log.status());
+  const Result<LogTables> tables = TablesWithProgress(*dataset, config->frontend, stop);
+  if (!tables.ok()) {
+    return stop->load() ? kExitInterrupted : Report(tables.status());
   }
-  if (const Status status = CheckFirst(*dataset, *log); !status.ok()) {
+  if (const Status status = CheckFirst(*dataset, *tables); !status.ok()) {
     return Report(status);
   }
-  const RunIdentity identity{*config,    dataset->name,   *dataset_digest,    DigestOf(*log),
-                             FLAGS_seed, log->imu.size(), log->frames.size(), FLAGS_audit};
-  Say(DescribeLog(*log, identity.input_digest));
-  const RunResult result = RunWithProgress(*config, *log, *dataset, stop);
+  const MeasurementLog log = MeasurementsOf(*dataset);
+  const Result<std::string> input_digest = DigestOf(log, *tables);
+  if (!input_digest.ok()) {
+    return Report(input_digest.status());
+  }
+  const RunIdentity identity{*config,    dataset->name,      *dataset_digest,       *input_digest,
+                             FLAGS_seed, tables->imu.size(), tables->frames.size(), FLAGS_audit};
+  Say(DescribeLog(log, *tables, identity.input_digest));
+  ReleaseChecked(&dataset.value());
+  const RunResult result = RunWithProgress(*config, log, *tables, *dataset, stop);
   if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {
     return Report(status);
   }
-  Say(Summary(result));
-  const bool asked = config->gnss.enabled || config->fix.enabled;
-  const bool given =
-      (config->gnss.enabled && dataset->gnss != nullptr) || (config->fix.enabled && !dataset->fixes.empty());
-  if (asked && !result.global) {
-    Say(std::string(config->gnss.enabled ? "GNSS was" : "position fixes were") +
-        " not used: " + result.align_report);
-  }
-  if (Failed(result)) {
-    RunOptions options;
-    options.stop = stop;
-    if (const std::optional<std::string> cause = DiagnoseAccelerometerSigns(*config, *log, result, options)) {
-      return Report(Status::Input(dataset->path + ": " + *cause));
-    }
-  }
-  if (!result.interrupted && result.status.ok() && ((given && !result.global) || !result.restarts.empty())) {
-    return kExitImpaired;
-  }
-  return result.interrupted ? kExitInterrupted : Report(result.status);
+  return Conclude(*config, *dataset, *tables, log, result, stop);
 }
 
 }  // namespace alidade::cli

@@ -46,8 +46,8 @@ DatasetSource SourceFromFlags() {
   return {FLAGS_dataset, FLAGS_topics, SplitWords(FLAGS_calibration), FLAGS_camera};
 }
 
-Result<Dataset> ReadDatasetFromFlags() {
-  Result<Dataset> dataset = ReadDataset(SourceFromFlags());
+Result<Dataset> ReadDatasetFromFlags(const DatasetStorage& storage) {
+  Result<Dataset> dataset = ReadDataset(SourceFromFlags(), storage);
   if (dataset.ok()) {
     for (const std::string& remark : dataset->remarks) {
       Say(remark);

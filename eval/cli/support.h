@@ -49,7 +49,7 @@ Result<EstimatorConfig> EstimatorConfigFromFlags();
 [[nodiscard]] DatasetSource SourceFromFlags();
 
 /// Reads it; what was guessed or passed over goes to standard error.
-Result<Dataset> ReadDatasetFromFlags();
+Result<Dataset> ReadDatasetFromFlags(const DatasetStorage& storage = {});
 
 /// From here on SIGINT and SIGTERM end the program at once with its exit code, for work that does not poll; a
 /// file that is being written is completed first. InstallInterruptHandler replaces it.

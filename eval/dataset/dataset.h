@@ -11,6 +11,8 @@
 
 namespace alidade {
 
+struct LogTables;
+
 struct ImageEntry {
   /// In a bag, `path` names the bag.
   struct InBag {
@@ -34,6 +36,21 @@ struct ImuRejections {
   [[nodiscard]] std::size_t dropped() const { return duplicate + late + not_finite; }
 };
 
+/// Where a reader puts what grows with the length of a sequence.
+struct DatasetStorage {
+  /// For one pass through a sequence of any length: IMU and tracks go into files without names in this folder
+  /// (Dataset::tables). Empty: into memory.
+  std::string spool_folder;
+  /// Of the truth, with spool_folder: what a start needs, up to so long after the first frame [s].
+  double truth_s = 0;
+};
+
+/// Of a truth that was not kept whole: stamps and length.
+struct TruthExtent {
+  std::vector<TimeNs> stamps;
+  double path_m = 0;
+};
+
 /// A sequence in the extended ASL layout (contract: <seq>/mav0/{imu0,cam0,state_groundtruth_estimate0}).
 struct Dataset {
   std::string path;
@@ -55,6 +72,10 @@ struct Dataset {
   std::optional<Trajectory>
       truth;  ///< state_groundtruth_estimate0/{data.csv | data_pose.csv | data_position.csv}
   std::string truth_path;
+  /// Of DatasetStorage::spool_folder, else null; `imu`, `tracks` and the frames of `extra_cameras` are then
+  /// empty, and `truth` is the part that a start needs, its extent beside it.
+  std::shared_ptr<LogTables> tables;
+  std::optional<TruthExtent> truth_extent;
 };
 
 /// What the estimators are given of a sequence; without tracks, if the front end has still to make them.

@@ -10,6 +10,7 @@
 #include "core/regular_file.h"
 #include "eval/dataset/dataset_tracks.h"
 #include "eval/dataset/log_hasher.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/input_file.h"
@@ -102,29 +103,31 @@ Result<std::vector<ImageEntry>> ReadImages(const fs::path& folder, const CameraM
   return images;
 }
 
-/// tracks.csv cannot say that a frame saw nothing; timestamps.csv beside it can. Adds those frames.
-Status AddEmptyFrames(const std::string& tracks_path, Dataset* dataset) {
+/// Adds the frames that saw nothing to those of tracks.csv.
+Status CompleteFrames(const std::string& tracks_path, const DatasetStorage& storage, Dataset* dataset) {
+  if (dataset->tables != nullptr) {
+    const Table<TrackFrame> tracks =
+        std::exchange(dataset->tables->frames, Table<TrackFrame>::InFile(storage.spool_folder));
+    return AddEmptyFrames(tracks_path, dataset->camera_stamps, tracks,
+                          [dataset](const TrackFrame& frame) { return dataset->tables->frames.Add(frame); });
+  }
   std::vector<TrackFrame> frames;
-  size_t next = 0;
-  for (const TimeNs stamp : dataset->camera_stamps) {
-    if (next < dataset->tracks.size() && dataset->tracks[next].stamp_ns == stamp) {
-      frames.push_back(std::move(dataset->tracks[next++]));
-    } else {
-      frames.push_back({stamp, {}, 0});
-    }
-  }
-  if (next < dataset->tracks.size()) {
-    return Status::Input(tracks_path + ": stamp " + std::to_string(dataset->tracks[next].stamp_ns) +
-                         " is not in timestamps.csv beside it, expected every frame there");
-  }
+  ALIDADE_RETURN_IF_ERROR(AddEmptyFrames(tracks_path, dataset->camera_stamps, Table(dataset->tracks),
+                                         [&frames](const TrackFrame& frame) {
+                                           frames.push_back(frame);
+                                           return Status::Ok();
+                                         }));
   dataset->tracks = std::move(frames);
   return Status::Ok();
 }
 
 /// The three sources a camera folder may hold; at least one must be there.
-Status ReadSources(const fs::path& folder, Dataset* dataset) {
+Status ReadSources(const fs::path& folder, const DatasetStorage& storage, Dataset* dataset) {
   const std::string tracks_path = (folder / "tracks.csv").string();
-  if (MayExist(tracks_path)) {
+  if (MayExist(tracks_path) && dataset->tables != nullptr) {
+    dataset->tables->frames = Table<TrackFrame>::InFile(storage.spool_folder);
+    ALIDADE_RETURN_IF_ERROR(ReadTracks(tracks_path, &dataset->tables->frames));
+  } else if (MayExist(tracks_path)) {
     Result<std::vector<TrackFrame>> tracks = ReadTracks(tracks_path);
     ALIDADE_RETURN_IF_ERROR(tracks.status());
     dataset->tracks = std::move(tracks).value();
@@ -139,20 +142,18 @@ Status ReadSources(const fs::path& folder, Dataset* dataset) {
     ALIDADE_RETURN_IF_ERROR(images.status());
     dataset->images = std::move(images).value();
   }
-  if (dataset->tracks.empty() && dataset->camera_stamps.empty() && dataset->images.empty()) {
+  const bool has_tracks = !TablesOf(*dataset).frames.empty();
+  if (!has_tracks && dataset->camera_stamps.empty() && dataset->images.empty()) {
     return Status::Input(folder.string() +
                          ": expected tracks.csv, data.csv with images, or timestamps.csv; found none");
   }
-  if (!dataset->tracks.empty() && !dataset->camera_stamps.empty()) {
-    ALIDADE_RETURN_IF_ERROR(AddEmptyFrames(tracks_path, dataset));
-  }
-  return Status::Ok();
+  return has_tracks && !dataset->camera_stamps.empty() ? CompleteFrames(tracks_path, storage, dataset)
+                                                       : Status::Ok();
 }
 
 double MeasuredCameraRate(const Dataset& dataset) {
-  if (!dataset.tracks.empty()) {
-    return MeasuredRate(dataset.tracks.front().stamp_ns, dataset.tracks.back().stamp_ns,
-                        dataset.tracks.size());
+  if (const Table<TrackFrame> frames = TablesOf(dataset).frames; !frames.empty()) {
+    return MeasuredRate(frames.front().stamp_ns, frames.back().stamp_ns, frames.size());
   }
   if (!dataset.images.empty()) {
     return MeasuredRate(dataset.images.front().stamp_ns, dataset.images.back().stamp_ns,
@@ -162,20 +163,20 @@ double MeasuredCameraRate(const Dataset& dataset) {
                       dataset.camera_stamps.size());
 }
 
-Status ReadFirstCamera(const fs::path& folder, Dataset* dataset) {
+Status ReadFirstCamera(const fs::path& folder, const DatasetStorage& storage, Dataset* dataset) {
   const Result<CameraSensor> sensor = ReadCameraSensor((folder / "sensor.yaml").string());
   ALIDADE_RETURN_IF_ERROR(sensor.status());
   dataset->rig.camera = sensor->camera;
   dataset->rig.T_BC = sensor->T_BC;
   dataset->rig.camera_time_offset_s = sensor->time_offset_s;
   dataset->rig.line_delay_s = sensor->line_delay_s;
-  ALIDADE_RETURN_IF_ERROR(ReadSources(folder, dataset));
+  ALIDADE_RETURN_IF_ERROR(ReadSources(folder, storage, dataset));
   dataset->camera_rate_hz = sensor->rate_hz.value_or(MeasuredCameraRate(*dataset));
   return Status::Ok();
 }
 
 /// cam1, cam2, ... where they hold tracks.csv.
-Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
+Status ReadExtraCameras(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
   for (int k = 1; MayBeFolder(mav + "/cam" + std::to_string(k)); ++k) {
     const fs::path folder = fs::path(mav) / ("cam" + std::to_string(k));
     if (!MayExist((folder / "tracks.csv").string())) {
@@ -183,10 +184,20 @@ Status ReadExtraCameras(const std::string& mav, Dataset* dataset) {
     }
     const Result<CameraSensor> sensor = ReadCameraSensor((folder / "sensor.yaml").string());
     ALIDADE_RETURN_IF_ERROR(sensor.status());
-    Result<std::vector<TrackFrame>> frames = ReadTracks((folder / "tracks.csv").string());
+    ExtraCamera& extra = dataset->extra_cameras.emplace_back();
+    extra.camera = sensor->camera;
+    extra.T_BC = sensor->T_BC;
+    extra.camera_time_offset_s = sensor->time_offset_s;
+    const std::string path = (folder / "tracks.csv").string();
+    if (dataset->tables != nullptr) {
+      Table<TrackFrame>& frames =
+          dataset->tables->extra_frames.emplace_back(Table<TrackFrame>::InFile(storage.spool_folder));
+      ALIDADE_RETURN_IF_ERROR(ReadTracks(path, &frames));
+      continue;
+    }
+    Result<std::vector<TrackFrame>> frames = ReadTracks(path);
     ALIDADE_RETURN_IF_ERROR(frames.status());
-    dataset->extra_cameras.push_back(
-        {sensor->camera, sensor->T_BC, sensor->time_offset_s, std::move(frames).value()});
+    extra.frames = std::move(frames).value();
   }
   return Status::Ok();
 }
@@ -219,27 +230,27 @@ bool HasCamera(const Dataset& dataset) {
 }
 
 /// Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
-void AddFrames(const std::vector<TrackFrame>& frames, LogHasher* hasher) {
+Status AddFrames(const Table<TrackFrame>& frames, LogHasher* hasher) {
   hasher->Add(static_cast<std::uint64_t>(frames.size()));
-  for (const TrackFrame& frame : frames) {
+  return frames.ForEach([hasher](const TrackFrame& frame) {
     hasher->Add(std::int64_t{frame.stamp_ns});
     hasher->Add(static_cast<std::uint64_t>(frame.observations.size()));
     for (const TrackObservation& observation : frame.observations) {
       hasher->Add(observation.track_id);
       hasher->Add(observation.pixel);
     }
-  }
+  });
 }
 
 }  // namespace
 
-Status ReadCameraFolders(const std::string& mav, Dataset* dataset) {
+Status ReadCameraFolders(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
   const fs::path first = fs::path(mav) / "cam0";
   if (!MayBeFolder(first.string())) {
     return Status::Ok();
   }
-  ALIDADE_RETURN_IF_ERROR(ReadFirstCamera(first, dataset));
-  return ReadExtraCameras(mav, dataset);
+  ALIDADE_RETURN_IF_ERROR(ReadFirstCamera(first, storage, dataset));
+  return ReadExtraCameras(mav, storage, dataset);
 }
 
 std::string ExtraCameraYaml(const Dataset& dataset, size_t k) {
@@ -286,13 +297,15 @@ void DigestCamera(const CameraModel& camera, const Pose& T_BC, LogHasher* hasher
   hasher->Add(T_BC.translation);
 }
 
-void DigestTracks(const MeasurementLog& log, LogHasher* hasher) {
-  AddFrames(log.frames, hasher);
-  for (const ExtraCamera& extra : log.extra_cameras) {
+Status DigestTracks(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher) {
+  ALIDADE_RETURN_IF_ERROR(AddFrames(tables.frames, hasher));
+  for (size_t k = 0; k < log.extra_cameras.size(); ++k) {
+    const ExtraCamera& extra = log.extra_cameras[k];
     DigestCamera(extra.camera, extra.T_BC, hasher);
     hasher->Add(extra.camera_time_offset_s);
-    AddFrames(extra.frames, hasher);
+    ALIDADE_RETURN_IF_ERROR(AddFrames(tables.extra_frames[k], hasher));
   }
+  return Status::Ok();
 }
 
 }  // namespace alidade

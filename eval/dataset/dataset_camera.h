@@ -16,7 +16,7 @@ class LogHasher;
 /// images) that exist; then cam1, cam2, ..., consecutively numbered, where they hold tracks.csv. A further
 /// camera with images alone is skipped, because the front end tracks cam0 only. Errors (kInput) as
 /// ReadDataset's.
-Status ReadCameraFolders(const std::string& mav, Dataset* dataset);
+Status ReadCameraFolders(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
 /// Writes tracks and stamps; images are not written. Without camera and with GNSS there is no cam0.
 Status WriteCameraFolders(const Dataset& dataset, const std::string& mav);
 
@@ -26,7 +26,7 @@ Status WriteCameraFolders(const Dataset& dataset, const std::string& mav);
 /// Model and extrinsics of a camera.
 void DigestCamera(const CameraModel& camera, const Pose& T_BC, LogHasher* hasher);
 /// The tracks of all cameras and the calibration of those after the first, which is part of the rig.
-void DigestTracks(const MeasurementLog& log, LogHasher* hasher);
+Status DigestTracks(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
 
 /// Rate, gaps and tracks of cam0.
 void CheckCamera(const Dataset& dataset, Findings* findings);

@@ -2,6 +2,7 @@
 
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/dataset_parts.h"
+#include "eval/dataset/log_tables.h"
 
 namespace alidade {
 
@@ -13,7 +14,7 @@ std::vector<DatasetFinding> CheckDataset(const Dataset& dataset) {
   }
   for (const DatasetPart& part : DatasetParts()) {
     part.check(dataset, &findings);
-    if (dataset.imu.size() < kLeastSamples) {
+    if (TablesOf(dataset).imu.size() < kLeastSamples) {
       break;
     }
   }

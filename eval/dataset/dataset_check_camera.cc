@@ -5,6 +5,7 @@
 #include "core/format.h"
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/log_tables.h"
 
 namespace alidade {
 namespace {
@@ -15,25 +16,27 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
     int observations = 0;
   };
   std::map<std::int64_t, Life> lives;
+  size_t frames = 0;
   size_t total = 0;
   size_t outside = 0;
   size_t returned = 0;
-  for (size_t i = 0; i < dataset.tracks.size(); ++i) {
-    for (const TrackObservation& observation : dataset.tracks[i].observations) {
+  static_cast<void>(TablesOf(dataset).frames.ForEach([&](const TrackFrame& frame) {
+    const size_t i = frames++;
+    for (const TrackObservation& observation : frame.observations) {
       Life& life = lives[observation.track_id];
       returned += life.observations > 0 && life.last_frame + 1 < i ? 1 : 0;
       life = {i, life.observations + 1};
       outside += dataset.rig.camera.InImage(observation.pixel) ? 0 : 1;
       ++total;
     }
-  }
+  }));
   size_t useful = 0;
   for (const auto& [id, life] : lives) {
     useful += life.observations >= 3 ? 1 : 0;
   }
   findings->Fact(
       Format("cam0: %zu observations of %zu tracks, %.1f a frame, mean length %.2f; %zu tracks of 3 or more",
-             total, lives.size(), static_cast<double>(total) / static_cast<double>(dataset.tracks.size()),
+             total, lives.size(), static_cast<double>(total) / static_cast<double>(frames),
              static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
   if (outside > 0) {
     const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
@@ -56,9 +59,9 @@ std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
     return dataset.camera_stamps;
   }
   std::vector<TimeNs> stamps;
-  for (const TrackFrame& frame : dataset.tracks) {
-    stamps.push_back(frame.stamp_ns);
-  }
+  // A file that cannot be read again is told by the next who reads it.
+  static_cast<void>(TablesOf(dataset).frames.ForEach(
+      [&stamps](const TrackFrame& frame) { stamps.push_back(frame.stamp_ns); }));
   if (stamps.empty()) {
     for (const ImageEntry& image : dataset.images) {
       stamps.push_back(image.stamp_ns);
@@ -82,7 +85,7 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
     findings->Fact(Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms",
                           1e3 * std::abs(dataset.rig.line_delay_s) * dataset.rig.camera.height_px()));
   }
-  if (!dataset.tracks.empty()) {
+  if (!TablesOf(dataset).frames.empty()) {
     CheckTracks(dataset, findings);
   } else if (!dataset.images.empty()) {
     findings->Fact(Format("cam0: %zu images, no tracks: the front end runs on them", dataset.images.size()));

@@ -5,6 +5,7 @@
 
 #include "core/format.h"
 #include "core/median.h"
+#include "eval/dataset/log_tables.h"
 
 namespace alidade {
 
@@ -62,8 +63,9 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
 }
 
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
-  const TimeNs imu_first = dataset.imu.front().stamp_ns;
-  const TimeNs imu_last = dataset.imu.back().stamp_ns;
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  const TimeNs imu_first = imu.front().stamp_ns;
+  const TimeNs imu_last = imu.back().stamp_ns;
   findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
                         SecondsBetween(imu_first, first), SecondsBetween(imu_last, last)));
   if (last < imu_first || first > imu_last) {

@@ -184,7 +184,7 @@ void SortFixes(const std::vector<FixSensor>& sensors, std::vector<PositionFix>* 
                    [&](const PositionFix& a, const PositionFix& b) { return imu_stamp(a) < imu_stamp(b); });
 }
 
-Status ReadFixFolders(const std::string& mav, Dataset* dataset) {
+Status ReadFixFolders(const std::string& mav, const DatasetStorage& /*storage*/, Dataset* dataset) {
   for (int sensor = 0;; ++sensor) {
     const fs::path folder = fs::path(mav) / ("fix" + std::to_string(sensor));
     if (!MayBeFolder(folder.string())) {
@@ -227,9 +227,9 @@ Status WriteFixFolders(const Dataset& dataset, const std::string& mav) {
   return Status::Ok();
 }
 
-void DigestFixes(const MeasurementLog& log, LogHasher* hasher) {
+Status DigestFixes(const MeasurementLog& log, const LogTables& /*tables*/, LogHasher* hasher) {
   if (log.fixes.empty()) {
-    return;
+    return Status::Ok();
   }
   for (const FixSensor& sensor : log.rig.fixes) {
     hasher->Add(sensor.p_BA);
@@ -243,6 +243,7 @@ void DigestFixes(const MeasurementLog& log, LogHasher* hasher) {
     hasher->Add(fix.p_A);
     hasher->Add(fix.covariance);
   }
+  return Status::Ok();
 }
 
 }  // namespace alidade

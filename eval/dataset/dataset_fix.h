@@ -26,7 +26,7 @@ class LogHasher;
 /// Other keys are remarks. Errors (kInput): a key's value with file:line:column; of data.csv file and line of
 /// a torn row, a stamp that does not increase, a covariance that is not positive definite; those of
 /// ReadPositionRows and ReadNmeaFile.
-Status ReadFixFolders(const std::string& mav, Dataset* dataset);
+Status ReadFixFolders(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
 
 /// Writes fix0, fix1, ... with sensor.yaml and data.csv.
 Status WriteFixFolders(const Dataset& dataset, const std::string& mav);
@@ -38,7 +38,7 @@ Status WriteFixFolders(const Dataset& dataset, const std::string& mav);
 Result<FixSensor> ParseFixSheet(const std::string& text, const std::string& where);
 
 /// Sensors and fixes; nothing for a log without fixes.
-void DigestFixes(const MeasurementLog& log, LogHasher* hasher);
+Status DigestFixes(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
 
 /// Rate, gaps, deviations and frames of the position fixes; nothing without them.
 void CheckFixes(const Dataset& dataset, Findings* findings);

@@ -157,7 +157,7 @@ Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& whe
   return GnssSheet(*sensor);
 }
 
-Status ReadGnssFolder(const std::string& mav, Dataset* dataset) {
+Status ReadGnssFolder(const std::string& mav, const DatasetStorage& /*storage*/, Dataset* dataset) {
   const std::string folder = (fs::path(mav) / "gnss0").string();
   if (!MayBeFolder(folder)) {
     return Status::Ok();

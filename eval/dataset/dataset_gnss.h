@@ -20,7 +20,7 @@ class LogHasher;
 ///   observations    file; navigation, orbits (SP3), clocks (CLK): file or list of files, in the folder
 ///
 /// Other keys are remarks. Errors (kInput): a key's value, a file that cannot be read.
-Status ReadGnssFolder(const std::string& mav, Dataset* dataset);
+Status ReadGnssFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
 
 /// Writes sensor.yaml, obs.rnx and nav.rnx, if there is GNSS. The navigation file holds broadcast ephemerides
 /// only.
@@ -40,7 +40,7 @@ Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& whe
 
 /// Receiver, observations and broadcast ephemerides; precise products are not part of it. Nothing without
 /// GNSS.
-void DigestGnss(const MeasurementLog& log, LogHasher* hasher);
+Status DigestGnss(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
 
 /// Rate, satellites, span, and whether the ephemerides serve; nothing without GNSS.
 void CheckGnss(const Dataset& dataset, Findings* findings);

@@ -11,6 +11,7 @@
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/imu_intake.h"
 #include "eval/dataset/log_hasher.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/output_file.h"
@@ -32,7 +33,44 @@ Status ReadImuRow(const CsvReader& csv, const std::vector<CsvColumn>& header, Im
   return Status::Ok();
 }
 
-Status ReadImuTable(const std::string& path, Dataset* dataset) {
+/// Where the samples of a table go.
+class ImuSink {
+ public:
+  ImuSink(const DatasetStorage& storage, Dataset* dataset) : dataset_(*dataset) {
+    if (dataset_.tables != nullptr) {
+      dataset_.tables->imu = Table<ImuSample>::InFile(storage.spool_folder);
+    }
+  }
+
+  /// To be called now and then: what is in order for good leaves memory.
+  Status Settle(ImuIntake* intake) {
+    constexpr size_t kMany = 4096;
+    if (dataset_.tables == nullptr || intake->samples().size() < kMany) {
+      return Status::Ok();
+    }
+    return Add(intake->TakeSettled());
+  }
+  /// The rest.
+  Status Finish(const ImuIntake& intake) {
+    if (dataset_.tables != nullptr) {
+      return Add(intake.samples());
+    }
+    dataset_.imu = intake.samples();
+    return Status::Ok();
+  }
+
+ private:
+  Status Add(const std::vector<ImuSample>& samples) {
+    for (const ImuSample& sample : samples) {
+      ALIDADE_RETURN_IF_ERROR(dataset_.tables->imu.Add(sample));
+    }
+    return Status::Ok();
+  }
+
+  Dataset& dataset_;
+};
+
+Status ReadImuTable(const std::string& path, const DatasetStorage& storage, Dataset* dataset) {
   // Units are required here: a gyroscope in deg/s or an accelerometer in g must not pass for SI.
   const std::vector<CsvColumn> header = {{"timestamp", "ns"},
                                          {"w_RS_S_x", "rad s^-1", true},
@@ -44,6 +82,7 @@ Status ReadImuTable(const std::string& path, Dataset* dataset) {
   Result<CsvReader> csv = OpenTable(path, header);
   ALIDADE_RETURN_IF_ERROR(csv.status());
   ImuIntake intake;
+  ImuSink sink(storage, dataset);
   std::string first_fault;
   size_t rows = 0;
   for (; csv->NextRow(); ++rows) {
@@ -52,6 +91,7 @@ Status ReadImuTable(const std::string& path, Dataset* dataset) {
     if (const std::optional<Status> fault = intake.Add(sample); fault && first_fault.empty()) {
       first_fault = csv->Place() + ": " + fault->message();
     }
+    ALIDADE_RETURN_IF_ERROR(sink.Settle(&intake));
   }
   const ImuRejections& rejections = intake.rejections();
   if (static_cast<double>(rejections.dropped()) > kMaxRejectedImuShare * static_cast<double>(rows)) {
@@ -59,11 +99,11 @@ Status ReadImuTable(const std::string& path, Dataset* dataset) {
                                               DescribeRejections(rejections).c_str(),
                                               100 * kMaxRejectedImuShare));
   }
-  if (intake.samples().size() < 2) {
+  if (rows - rejections.dropped() < 2) {
     return Status::Input(path +
-                         Format(": holds %zu samples, expected at least two", intake.samples().size()));
+                         Format(": holds %zu samples, expected at least two", rows - rejections.dropped()));
   }
-  dataset->imu = intake.samples();
+  ALIDADE_RETURN_IF_ERROR(sink.Finish(intake));
   dataset->imu_rejections = rejections;
   if (const std::string told = DescribeRejections(rejections); !told.empty()) {
     dataset->remarks.push_back(path + Format(": of %zu rows ", rows) + told +
@@ -88,21 +128,44 @@ std::string ImuCsv(const std::vector<ImuSample>& imu) {
 
 constexpr double kStandardGravity = 9.80665;
 
+/// What all samples together say.
+class ImuValues {
+ public:
+  void Add(const ImuSample& sample) {
+    Vector6d values;
+    values << sample.gyro, sample.accel;
+    repeated_ += count_ > 0 && values == last_ ? 1 : 0;
+    last_ = values;
+    low_ = low_.cwiseMin(values);
+    high_ = high_.cwiseMax(values);
+    force_ += sample.accel.norm();
+    rate_square_ += sample.gyro.squaredNorm();
+    fastest_ = std::max(fastest_, sample.gyro.norm());
+    ++count_;
+  }
+
+  void CheckUnits(Findings* findings) const;
+  void CheckAxes(Findings* findings) const;
+  void CheckRepeated(Findings* findings) const;
+
+ private:
+  size_t count_ = 0;
+  size_t repeated_ = 0;
+  Vector6d last_ = Vector6d::Zero();
+  Vector6d low_ = Vector6d::Constant(INFINITY), high_ = Vector6d::Constant(-INFINITY);
+  double force_ = 0;
+  double rate_square_ = 0;
+  double fastest_ = 0;
+};
+
 /// Specific force averages to gravity on any path that returns to its starting speed; the gyroscope stays
 /// below what motion a camera can follow.
-void CheckImuUnits(const std::vector<ImuSample>& imu, Findings* findings) {
-  double force = 0;
-  double rate_square = 0;
-  double fastest = 0;
-  for (const ImuSample& sample : imu) {
-    force += sample.accel.norm() / static_cast<double>(imu.size());
-    rate_square += sample.gyro.squaredNorm() / static_cast<double>(imu.size());
-    fastest = std::max(fastest, sample.gyro.norm());
-  }
-  const double rate_rms = std::sqrt(rate_square);
+void ImuValues::CheckUnits(Findings* findings) const {
+  const double force = force_ / static_cast<double>(count_);
+  const double rate_rms = std::sqrt(rate_square_ / static_cast<double>(count_));
   findings->Fact(
       Format("imu0: mean specific force %.3f m/s^2, angular rate rms %.3f rad/s, largest %.3f rad/s", force,
-             rate_rms, fastest));
+             rate_rms, fastest_));
   if (std::abs(force - 1) < 0.3) {
     findings->Error(
         Format("imu0: mean specific force %.3f: the accelerometer seems to be in g, expected m/s^2", force));
@@ -118,43 +181,35 @@ void CheckImuUnits(const std::vector<ImuSample>& imu, Findings* findings) {
         Format("imu0: mean specific force %.3f m/s^2 differs from %.2f: bias, scale error or strong motion",
                force, kStandardGravity));
   }
-  if (rate_rms > 8 || fastest > 40) {
+  if (rate_rms > 8 || fastest_ > 40) {
     findings->Error(Format(
         "imu0: angular rate rms %.2f, largest %.2f: the gyroscope seems to be in deg/s, expected rad/s",
-        rate_rms, fastest));
+        rate_rms, fastest_));
   }
 }
 
 /// An axis that never changes is not connected.
-void CheckImuAxes(const std::vector<ImuSample>& imu, Findings* findings) {
+void ImuValues::CheckAxes(Findings* findings) const {
   constexpr std::array<const char*, 6> kAxes = {"gyroscope x",     "gyroscope y",     "gyroscope z",
                                                 "accelerometer x", "accelerometer y", "accelerometer z"};
-  Vector6d low = Vector6d::Constant(INFINITY), high = Vector6d::Constant(-INFINITY);
-  for (const ImuSample& sample : imu) {
-    Vector6d values;
-    values << sample.gyro, sample.accel;
-    low = low.cwiseMin(values);
-    high = high.cwiseMax(values);
-  }
   for (int axis = 0; axis < 6; ++axis) {
-    if (low[axis] == high[axis]) {
+    if (low_[axis] == high_[axis]) {
       findings->Warning(Format("imu0: %s is %g in all samples: a dead axis?",
-                               kAxes[static_cast<std::size_t>(axis)], low[axis]));
+                               kAxes[static_cast<std::size_t>(axis)], low_[axis]));
     }
   }
 }
 
-void CheckImuValues(const std::vector<ImuSample>& imu, const ImuNoise& noise, Findings* findings) {
-  size_t repeated = 0;
-  for (size_t i = 1; i < imu.size(); ++i) {
-    repeated += imu[i].gyro == imu[i - 1].gyro && imu[i].accel == imu[i - 1].accel ? 1 : 0;
-  }
-  const double share = static_cast<double>(repeated) / static_cast<double>(imu.size() - 1);
-  if (repeated > 0 && share > 0.01) {
+void ImuValues::CheckRepeated(Findings* findings) const {
+  const double share = static_cast<double>(repeated_) / static_cast<double>(count_ - 1);
+  if (repeated_ > 0 && share > 0.01) {
     findings->Warning(
         Format("imu0: %zu rows (%.1f %%) repeat the values of the row before; the real rate is lower",
-               repeated, 100 * share));
+               repeated_, 100 * share));
   }
+}
+
+void CheckImuNoise(const ImuNoise& noise, Findings* findings) {
   if (noise.gyro_noise_density_radps_sqrthz > 0.05 || noise.accel_noise_density_mps2_sqrthz > 0.5) {
     findings->Warning(
         "imu0: noise densities in sensor.yaml are large: are they discrete standard deviations or in deg?");
@@ -163,14 +218,15 @@ void CheckImuValues(const std::vector<ImuSample>& imu, const ImuNoise& noise, Fi
 
 }  // namespace
 
-Status ReadImuFolder(const std::string& mav, Dataset* dataset) {
+Status ReadImuFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
   const fs::path folder = fs::path(mav) / "imu0";
   const Result<ImuSensor> sensor = ReadImuSensor((folder / "sensor.yaml").string());
   ALIDADE_RETURN_IF_ERROR(sensor.status());
   dataset->rig.imu_noise = sensor->noise;
-  ALIDADE_RETURN_IF_ERROR(ReadImuTable((folder / "data.csv").string(), dataset));
-  dataset->imu_rate_hz = sensor->rate_hz.value_or(
-      MeasuredRate(dataset->imu.front().stamp_ns, dataset->imu.back().stamp_ns, dataset->imu.size()));
+  ALIDADE_RETURN_IF_ERROR(ReadImuTable((folder / "data.csv").string(), storage, dataset));
+  const Table<ImuSample> imu = TablesOf(*dataset).imu;
+  dataset->imu_rate_hz =
+      sensor->rate_hz.value_or(MeasuredRate(imu.front().stamp_ns, imu.back().stamp_ns, imu.size()));
   return Status::Ok();
 }
 
@@ -188,27 +244,31 @@ Status WriteImuFolder(const Dataset& dataset, const std::string& mav) {
   return WriteFileAtomically((folder / "data.csv").string(), ImuCsv(dataset.imu));
 }
 
-void DigestImu(const MeasurementLog& log, LogHasher* hasher) {
-  hasher->Add(static_cast<std::uint64_t>(log.imu.size()));
-  for (const ImuSample& sample : log.imu) {
+Status DigestImu(const MeasurementLog& /*log*/, const LogTables& tables, LogHasher* hasher) {
+  hasher->Add(static_cast<std::uint64_t>(tables.imu.size()));
+  return tables.imu.ForEach([hasher](const ImuSample& sample) {
     hasher->Add(std::int64_t{sample.stamp_ns});
     hasher->Add(sample.gyro);
     hasher->Add(sample.accel);
-  }
+  });
 }
 
 void CheckImu(const Dataset& dataset, Findings* findings) {
   std::vector<TimeNs> stamps;
-  for (const ImuSample& sample : dataset.imu) {
+  ImuValues values;
+  // A file that cannot be read again is told by the next who reads it.
+  static_cast<void>(TablesOf(dataset).imu.ForEach([&](const ImuSample& sample) {
     stamps.push_back(sample.stamp_ns);
-  }
+    values.Add(sample);
+  }));
   CheckStamps("imu0", stamps, dataset.imu_rate_hz, findings);
   if (stamps.size() < 2) {
     return;
   }
-  CheckImuUnits(dataset.imu, findings);
-  CheckImuAxes(dataset.imu, findings);
-  CheckImuValues(dataset.imu, dataset.rig.imu_noise, findings);
+  values.CheckUnits(findings);
+  values.CheckAxes(findings);
+  values.CheckRepeated(findings);
+  CheckImuNoise(dataset.rig.imu_noise, findings);
 }
 
 }  // namespace alidade

@@ -14,11 +14,11 @@ class LogHasher;
 
 /// Reads sensor.yaml and data.csv. Errors (kInput): those of ReadImuSensor; torn rows, units that are not
 /// SI, stamps that do not increase, fewer than two samples.
-Status ReadImuFolder(const std::string& mav, Dataset* dataset);
+Status ReadImuFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
 Status WriteImuFolder(const Dataset& dataset, const std::string& mav);
 
 /// The samples; the noise is part of the rig.
-void DigestImu(const MeasurementLog& log, LogHasher* hasher);
+Status DigestImu(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
 
 /// Rate, gaps, units (gravity magnitude, gyro in rad/s), repeated values, noise densities.
 void CheckImu(const Dataset& dataset, Findings* findings);

@@ -14,11 +14,12 @@ class LogHasher;
 /// What a sequence has of one sensor, or its truth. Null: this part has nothing to do there.
 struct DatasetPart {
   /// Reads the part's folders below `mav` into the dataset. Ok without them, unless every sequence has them.
-  Status (*read)(const std::string& mav, Dataset* dataset);
+  Status (*read)(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
   /// Writes the part's folders below `mav`; nothing when the dataset has none of it.
   Status (*write)(const Dataset& dataset, const std::string& mav);
-  /// Adds the part to the digest of a log; nothing when the log has none of it.
-  void (*digest)(const MeasurementLog& log, LogHasher* hasher);
+  /// Adds the part to the digest of a log with these long tables; nothing when the log has none of it.
+  /// Errors: the tables'.
+  Status (*digest)(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
   /// What `check` says about it.
   void (*check)(const Dataset& dataset, Findings* findings);
 };

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "eval/dataset/dataset_parts.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/files/input_file.h"
 
 namespace alidade {
@@ -26,7 +27,7 @@ Status CheckFolders(const std::string& path, const fs::path& mav) {
 
 }  // namespace
 
-Result<Dataset> ReadDataset(const std::string& path) {
+Result<Dataset> ReadDataset(const std::string& path, const DatasetStorage& storage) {
   const fs::path mav = fs::path(path) / "mav0";
   ALIDADE_RETURN_IF_ERROR(CheckFolders(path, mav));
   Dataset dataset;
@@ -34,9 +35,12 @@ Result<Dataset> ReadDataset(const std::string& path) {
   std::error_code ignored;
   const fs::path whole = fs::weakly_canonical(path, ignored);
   dataset.name = whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
+  if (!storage.spool_folder.empty()) {
+    dataset.tables = std::make_shared<LogTables>();
+  }
   for (const DatasetPart& part : DatasetParts()) {
     if (part.read != nullptr) {
-      ALIDADE_RETURN_IF_ERROR(part.read(mav.string(), &dataset));
+      ALIDADE_RETURN_IF_ERROR(part.read(mav.string(), storage, &dataset));
     }
   }
   return dataset;

@@ -1,6 +1,8 @@
 #include "eval/dataset/dataset_tracks.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "eval/dataset/sensor_table.h"
 #include "eval/files/output_file.h"
@@ -26,26 +28,24 @@ Status CloseFrame(TrackFrame* frame, const std::string& place) {
   return Status::Ok();
 }
 
-}  // namespace
-
-Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
+/// Hands every frame of a file to `take`.
+Status ReadFrames(const std::string& path, const std::function<Status(TrackFrame*)>& take) {
   const std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
   Result<CsvReader> csv = OpenTable(path, header);
-  if (!csv.ok()) {
-    return csv.status();
-  }
-  std::vector<TrackFrame> frames;
+  ALIDADE_RETURN_IF_ERROR(csv.status());
+  std::optional<TrackFrame> frame;
   std::string place;
   while (csv->NextRow()) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
     TimeNs stamp = 0;
     ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp));
-    if (frames.empty() || stamp != frames.back().stamp_ns) {
-      if (!frames.empty()) {
-        ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frames.back().stamp_ns, &stamp));
-        ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
+    if (!frame || stamp != frame->stamp_ns) {
+      if (frame) {
+        ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frame->stamp_ns, &stamp));
+        ALIDADE_RETURN_IF_ERROR(CloseFrame(&*frame, place));
+        ALIDADE_RETURN_IF_ERROR(take(&*frame));
       }
-      frames.push_back({stamp, {}, 0});
+      frame = TrackFrame{stamp, {}, 0};
       place = csv->Place();
     }
     TrackObservation observation;
@@ -55,13 +55,49 @@ Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
     }
     ALIDADE_RETURN_IF_ERROR(csv->ReadReal(2, "u", &observation.pixel.x()));
     ALIDADE_RETURN_IF_ERROR(csv->ReadReal(3, "v", &observation.pixel.y()));
-    frames.back().observations.push_back(observation);
+    frame->observations.push_back(observation);
   }
-  if (frames.empty()) {
+  if (!frame) {
     return Status::Input(path + ": holds no track, expected at least one row");
   }
-  ALIDADE_RETURN_IF_ERROR(CloseFrame(&frames.back(), place));
+  ALIDADE_RETURN_IF_ERROR(CloseFrame(&*frame, place));
+  return take(&*frame);
+}
+
+}  // namespace
+
+Result<std::vector<TrackFrame>> ReadTracks(const std::string& path) {
+  std::vector<TrackFrame> frames;
+  ALIDADE_RETURN_IF_ERROR(ReadFrames(path, [&frames](TrackFrame* frame) {
+    frames.push_back(std::move(*frame));
+    return Status::Ok();
+  }));
   return frames;
+}
+
+Status ReadTracks(const std::string& path, Table<TrackFrame>* frames) {
+  return ReadFrames(path, [frames](TrackFrame* frame) { return frames->Add(*frame); });
+}
+
+Status AddEmptyFrames(const std::string& tracks_path, const std::vector<TimeNs>& stamps,
+                      const Table<TrackFrame>& tracks, const std::function<Status(const TrackFrame&)>& take) {
+  Table<TrackFrame>::Pass pass(tracks);
+  Result<const TrackFrame*> next = pass.Next();
+  for (const TimeNs stamp : stamps) {
+    ALIDADE_RETURN_IF_ERROR(next.status());
+    if (*next != nullptr && (*next)->stamp_ns == stamp) {
+      ALIDADE_RETURN_IF_ERROR(take(**next));
+      next = pass.Next();
+    } else {
+      ALIDADE_RETURN_IF_ERROR(take({stamp, {}, 0}));
+    }
+  }
+  ALIDADE_RETURN_IF_ERROR(next.status());
+  if (*next != nullptr) {
+    return Status::Input(tracks_path + ": stamp " + std::to_string((*next)->stamp_ns) +
+                         " is not in timestamps.csv beside it, expected every frame there");
+  }
+  return Status::Ok();
 }
 
 Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path) {

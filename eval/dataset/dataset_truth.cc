@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
@@ -17,16 +18,70 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status ReadOneTruth(const fs::path& folder, Dataset* dataset) {
+/// Of a truth that is passed over: its extent, its first and last point and those that a start may ask for.
+class TruthPart {
+ public:
+  TruthPart(const DatasetStorage& storage, const Dataset& dataset) {
+    constexpr TimeNs kMarginNs = 10 * kSecondNs;  // beyond any time offset and any gap
+    const LogTables tables = TablesOf(dataset);
+    const TimeNs first_ns = !tables.frames.empty()    ? tables.frames.front().stamp_ns
+                            : !dataset.images.empty() ? dataset.images.front().stamp_ns
+                                                      : tables.imu.front().stamp_ns;
+    from_ns_ = first_ns - kMarginNs;
+    to_ns_ = first_ns + SecondsToNs(storage.truth_s) + kMarginNs;
+  }
+
+  void Add(const TrajectoryPoint& point) {
+    extent_.path_m += extent_.stamps.empty() ? 0 : (point.nav.p_WB - last_.nav.p_WB).norm();
+    if (extent_.stamps.empty() || (from_ns_ <= point.stamp_ns && point.stamp_ns <= to_ns_)) {
+      points_.push_back(point);
+    }
+    extent_.stamps.push_back(point.stamp_ns);
+    last_ = point;
+  }
+
+  Status MoveTo(const std::string& path, Trajectory truth, Dataset* dataset) {
+    if (points_.back().stamp_ns != last_.stamp_ns) {
+      points_.push_back(last_);
+    }
+    if (!truth.has_covariance && truth.has_orientation) {
+      const Result<bool> has = ReadCovarianceBeside(path, extent_.stamps, [](size_t, const Matrix6d&) {});
+      ALIDADE_RETURN_IF_ERROR(has.status());
+      truth.has_covariance = *has;
+    }
+    truth.points = std::move(points_);
+    dataset->truth = std::move(truth);
+    dataset->truth_extent = std::move(extent_);
+    return Status::Ok();
+  }
+
+ private:
+  TimeNs from_ns_ = 0, to_ns_ = 0;
+  TruthExtent extent_;
+  TrajectoryPoint last_;
+  std::vector<TrajectoryPoint> points_;
+};
+
+Status ReadTruthPart(const std::string& path, const DatasetStorage& storage, Dataset* dataset) {
+  TruthPart part(storage, *dataset);
+  Result<Trajectory> truth = ReadTrajectory(path, [&part](const TrajectoryPoint& point) { part.Add(point); });
+  ALIDADE_RETURN_IF_ERROR(truth.status());
+  return part.MoveTo(path, std::move(truth).value(), dataset);
+}
+
+Status ReadOneTruth(const fs::path& folder, const DatasetStorage& storage, Dataset* dataset) {
   for (const char* name : {"data.csv", "data_pose.csv", "data_position.csv"}) {
     const fs::path path = folder / name;
     if (!MayExist(path.string())) {
       continue;
     }
+    dataset->truth_path = path.string();
+    if (dataset->tables != nullptr) {
+      return ReadTruthPart(path.string(), storage, dataset);
+    }
     Result<Trajectory> truth = ReadTrajectory(path.string());
     ALIDADE_RETURN_IF_ERROR(truth.status());
     dataset->truth = std::move(truth).value();
-    dataset->truth_path = path.string();
     return Status::Ok();
   }
   if (MayBeFolder(folder.string())) {
@@ -34,6 +89,15 @@ Status ReadOneTruth(const fs::path& folder, Dataset* dataset) {
                          ": expected data.csv, data_pose.csv or data_position.csv; found none");
   }
   return Status::Ok();
+}
+
+TruthExtent ExtentOf(const Trajectory& truth) {
+  TruthExtent extent;
+  for (size_t i = 0; i < truth.points.size(); ++i) {
+    extent.path_m += i == 0 ? 0 : (truth.points[i].nav.p_WB - truth.points[i - 1].nav.p_WB).norm();
+    extent.stamps.push_back(truth.points[i].stamp_ns);
+  }
+  return extent;
 }
 
 }  // namespace
@@ -66,10 +130,10 @@ std::string TruthCsv(const Trajectory& truth) {
   return text;
 }
 
-Status ReadTruthFolder(const std::string& mav, Dataset* dataset) {
-  ALIDADE_RETURN_IF_ERROR(ReadOneTruth(fs::path(mav) / "state_groundtruth_estimate0", dataset));
+Status ReadTruthFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
+  ALIDADE_RETURN_IF_ERROR(ReadOneTruth(fs::path(mav) / "state_groundtruth_estimate0", storage, dataset));
   const fs::path tum_vi = fs::path(mav) / "mocap0";
-  return dataset->truth ? Status::Ok() : ReadOneTruth(tum_vi, dataset);
+  return dataset->truth ? Status::Ok() : ReadOneTruth(tum_vi, storage, dataset);
 }
 
 Status WriteTruthFolder(const Dataset& dataset, const std::string& mav) {
@@ -94,21 +158,17 @@ void CheckTruth(const Dataset& dataset, Findings* findings) {
     findings->Warning("truth: none; estimates cannot be evaluated");
     return;
   }
-  std::vector<TimeNs> stamps;
-  double path = 0;
-  for (const TrajectoryPoint& point : dataset.truth->points) {
-    if (!stamps.empty()) {
-      path += (point.nav.p_WB - dataset.truth->points[stamps.size() - 1].nav.p_WB).norm();
-    }
-    stamps.push_back(point.stamp_ns);
-  }
+  const TruthExtent extent = dataset.truth_extent.value_or(ExtentOf(*dataset.truth));
+  const std::vector<TimeNs>& stamps = extent.stamps;
   CheckStamps("truth", stamps, 0, findings);
   CheckSpan("truth", stamps.front(), stamps.back(), dataset, findings);
-  const double imu_span = SecondsBetween(dataset.imu.front().stamp_ns, dataset.imu.back().stamp_ns);
-  const TimeNs shared_first = std::max(stamps.front(), dataset.imu.front().stamp_ns);
-  const TimeNs shared_last = std::min(stamps.back(), dataset.imu.back().stamp_ns);
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  const double imu_span = SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns);
+  const TimeNs shared_first = std::max(stamps.front(), imu.front().stamp_ns);
+  const TimeNs shared_last = std::min(stamps.back(), imu.back().stamp_ns);
   const double covered = std::max(0.0, SecondsBetween(shared_first, shared_last)) / imu_span;
-  findings->Fact(Format("truth: covers %.1f %% of the IMU's time, path %.2f m%s%s", 100 * covered, path,
+  findings->Fact(Format("truth: covers %.1f %% of the IMU's time, path %.2f m%s%s", 100 * covered,
+                        extent.path_m,
                         dataset.truth->has_velocity ? ", with velocity and biases" : ", poses only",
                         dataset.truth->has_covariance ? ", with covariances" : ""));
   if (covered < 0.5) {

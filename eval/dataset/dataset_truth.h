@@ -14,7 +14,7 @@ class Findings;
 /// Reads the first of data.csv, data_pose.csv and data_position.csv. Errors (kInput): those of
 /// ReadTrajectory; a folder without any of them. Covariances beside it are read and written too
 /// (eval/trajectory/truth_covariance.h).
-Status ReadTruthFolder(const std::string& mav, Dataset* dataset);
+Status ReadTruthFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
 Status WriteTruthFolder(const Dataset& dataset, const std::string& mav);
 
 /// The text of data.csv, data_pose.csv or data_position.csv, whichever holds what the trajectory has.

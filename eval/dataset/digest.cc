@@ -3,6 +3,7 @@
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_parts.h"
 #include "eval/dataset/log_hasher.h"
+#include "eval/dataset/log_tables.h"
 
 namespace alidade {
 namespace {
@@ -23,11 +24,15 @@ void AddRig(const RigCalibration& rig, LogHasher* hasher) {
 }  // namespace
 
 std::string DigestOf(const MeasurementLog& log) {
+  return DigestOf(log, TablesOf(log)).value();  // tables in memory have no errors
+}
+
+Result<std::string> DigestOf(const MeasurementLog& log, const LogTables& tables) {
   LogHasher hasher;
   AddRig(log.rig, &hasher);
   for (const DatasetPart& part : DatasetParts()) {
     if (part.digest != nullptr) {
-      part.digest(log, &hasher);
+      ALIDADE_RETURN_IF_ERROR(part.digest(log, tables, &hasher));
     }
   }
   return hasher.Hex();

@@ -64,9 +64,9 @@ void AddEphemeris(const GlonassEphemeris& e, LogHasher* hasher) {
 
 }  // namespace
 
-void DigestGnss(const MeasurementLog& log, LogHasher* hasher) {
+Status DigestGnss(const MeasurementLog& log, const LogTables& /*tables*/, LogHasher* hasher) {
   if (log.gnss == nullptr) {
-    return;
+    return Status::Ok();
   }
   const GnssReceiver& receiver = log.rig.gnss;
   const GnssLog& gnss = *log.gnss;
@@ -99,6 +99,7 @@ void DigestGnss(const MeasurementLog& log, LogHasher* hasher) {
       AddEphemeris(ephemeris, hasher);
     }
   }
+  return Status::Ok();
 }
 
 }  // namespace alidade

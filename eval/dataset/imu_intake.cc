@@ -44,6 +44,16 @@ std::optional<Status> ImuIntake::Add(const ImuSample& sample) {
   return std::nullopt;
 }
 
+std::vector<ImuSample> ImuIntake::TakeSettled() {
+  const auto settled = std::find_if(samples_.begin(), samples_.end(), [this](const ImuSample& sample) {
+    return LatenessNs(samples_.back().stamp_ns, sample.stamp_ns) <=
+           static_cast<std::uint64_t>(kMaxImuLatenessNs);
+  });
+  std::vector<ImuSample> taken(samples_.begin(), settled);
+  samples_.erase(samples_.begin(), settled);
+  return taken;
+}
+
 std::string DescribeRejections(const ImuRejections& rejections) {
   std::string text;
   if (rejections.dropped() > 0) {

@@ -20,6 +20,8 @@ class ImuIntake {
   std::optional<Status> Add(const ImuSample& sample);
 
   [[nodiscard]] const std::vector<ImuSample>& samples() const { return samples_; }
+  /// Takes out the samples that no later one can come before.
+  [[nodiscard]] std::vector<ImuSample> TakeSettled();
   [[nodiscard]] const ImuRejections& rejections() const { return rejections_; }
 
  private:

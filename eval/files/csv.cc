@@ -1,10 +1,13 @@
 #include "eval/files/csv.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
-#include "eval/files/input_file.h"
+#include "core/regular_file.h"
 
 namespace alidade {
 namespace {
@@ -53,30 +56,77 @@ std::string Quoted(std::string_view text) {
                                  : "'" + std::string(text.substr(0, kLongest)) + "...'";
 }
 
-CsvReader::CsvReader(std::string path, std::string content, char separator)
-    : path_(std::move(path)), content_(std::move(content)), separator_(separator) {
-  if (content_.starts_with("\xEF\xBB\xBF")) {
-    position_ = 3;
+CsvReader::CsvReader(std::string path, File file, char separator)
+    : path_(std::move(path)), file_(std::move(file)), separator_(separator) {}
+
+Result<CsvReader> CsvReader::Open(const std::string& path, char separator) {
+  ALIDADE_RETURN_IF_ERROR(RegularFileSize(path).status());
+  File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (file == nullptr) {
+    return Status::Input(path + ": cannot be read: " + std::strerror(errno));
+  }
+  CsvReader reader(path, std::move(file), separator);
+  reader.LoadLine();
+  if (reader.block_.starts_with("\xEF\xBB\xBF")) {
+    reader.begin_ = 3;
+  }
+  while (true) {  // blank lines count as lines, but not as text
+    const size_t length = reader.LoadLine();
+    ALIDADE_RETURN_IF_ERROR(reader.broken_);
+    if (std::string_view(reader.block_).substr(reader.begin_, length).find_first_not_of(kBlanks) !=
+        std::string_view::npos) {
+      return reader;
+    }
+    if (reader.begin_ + length >= reader.block_.size()) {
+      return Status::Input(path + ": is empty");
+    }
+    reader.begin_ += length + 1;
+    ++reader.line_;
   }
 }
 
-Result<CsvReader> CsvReader::Open(const std::string& path, char separator) {
-  Result<std::string> content = ReadWholeFile(path);
-  if (!content.ok()) {
-    return content.status();
+size_t CsvReader::LoadLine() {
+  constexpr size_t kBlock = size_t{1} << 17;
+  size_t searched = begin_;
+  while (true) {
+    const size_t end = block_.find('\n', searched);
+    if (end != std::string::npos) {
+      return end - begin_;
+    }
+    if (at_end_) {
+      return block_.size() - begin_;
+    }
+    block_.erase(0, begin_);
+    begin_ = 0;
+    searched = block_.size();
+    if (searched > kMaxRowBytes) {
+      broken_ = Status::Input(path_ + ": is larger than expected: holds a row of more than " +
+                              std::to_string(kMaxRowBytes) + " bytes");
+      return 0;
+    }
+    block_.resize(searched + kBlock);
+    const size_t count = std::fread(block_.data() + searched, 1, kBlock, file_.get());
+    block_.resize(searched + count);
+    at_end_ = count < kBlock;
+    if (at_end_ && std::ferror(file_.get()) != 0) {
+      broken_ = Status::Input(path_ + ": cannot be read: " + std::strerror(errno));
+      return 0;
+    }
   }
-  if (content->find_first_not_of(" \t\r\n") == std::string::npos) {
-    return Status::Input(path + ": is empty");
-  }
-  return CsvReader(path, std::move(content).value(), separator);
 }
 
 bool CsvReader::NextRow() {
-  const std::string_view content(content_);
-  while (position_ < content.size()) {
-    const size_t end = std::min(content.find('\n', position_), content.size());
-    const std::string_view line = Trim(content.substr(position_, end - position_));
-    position_ = end + 1;
+  while (broken_.ok()) {
+    const size_t length = LoadLine();
+    if (!broken_.ok()) {
+      fields_.assign(1, std::string_view());
+      return true;
+    }
+    if (begin_ >= block_.size()) {
+      return false;
+    }
+    const std::string_view line = Trim(std::string_view(block_).substr(begin_, length));
+    begin_ = std::min(begin_ + length + 1, block_.size());
     ++line_;
     if (!line.empty()) {
       Split(line);
@@ -106,12 +156,16 @@ std::string CsvReader::Place() const {
 }
 
 Status CsvReader::Fault(size_t column, std::string_view name, const std::string& expected) const {
+  if (!broken_.ok()) {
+    return broken_;
+  }
   const std::string_view found = column < fields_.size() ? fields_[column] : std::string_view();
   return Status::Input(Place() + ": column " + std::to_string(column + 1) + " (" + std::string(name) +
                        "): found " + Quoted(found) + ", expected " + expected);
 }
 
 Status CsvReader::ExpectHeader(const std::vector<CsvColumn>& columns, bool allow_more) const {
+  ALIDADE_RETURN_IF_ERROR(broken_);
   for (size_t i = 0; i < columns.size(); ++i) {
     const std::string expected = HeaderText(columns[i]);
     if (i >= fields_.size()) {
@@ -132,6 +186,7 @@ Status CsvReader::ExpectHeader(const std::vector<CsvColumn>& columns, bool allow
 }
 
 Status CsvReader::ExpectColumns(size_t count) const {
+  ALIDADE_RETURN_IF_ERROR(broken_);
   if (fields_.size() == count) {
     return Status::Ok();
   }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,15 +19,21 @@ struct CsvColumn {
   bool unit_required = false;
 };
 
-/// Walks the rows of a delimited text file held in memory. Numbers are parsed from whole fields: trailing
-/// characters, "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a byte order mark are
-/// accepted. Every fault is kInput "file:line: column N (name): found 'text', expected ...".
+/// Walks the rows of a delimited text file, of which it holds one block at a time. Numbers are parsed from
+/// whole fields: trailing characters, "nan", "inf" and overflow are faults. CRLF line ends, blank lines and a
+/// byte order mark are accepted. Every fault is kInput "file:line: column N (name): found 'text', expected
+/// ...".
 class CsvReader {
  public:
+  /// No table has a longer row.
+  static constexpr std::size_t kMaxRowBytes = std::size_t{1} << 20;
+
   /// `separator` ' ' means any run of spaces and tabs. Errors: the file cannot be read or holds no text.
   static Result<CsvReader> Open(const std::string& path, char separator = ',');
 
-  /// Moves to the next row that is not blank; false at the end of the file.
+  /// Moves to the next row that is not blank; false at the end of the file. A row that cannot be read, or is
+  /// longer than kMaxRowBytes, is a row of one empty field, and the last one: whatever is asked of it gives
+  /// its fault.
   bool NextRow();
   [[nodiscard]] size_t columns() const { return fields_.size(); }
   [[nodiscard]] std::string_view field(size_t column) const { return fields_[column]; }
@@ -48,15 +56,23 @@ class CsvReader {
   [[nodiscard]] Status Fault(size_t column, std::string_view name, const std::string& expected) const;
 
  private:
-  CsvReader(std::string path, std::string content, char separator);
+  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+  CsvReader(std::string path, File file, char separator);
   void Split(std::string_view line);
+  /// Brings all of the line at begin_ into the block and tells its length; at the end of the file what is
+  /// left.
+  size_t LoadLine();
 
   std::string path_;
-  std::string content_;
+  File file_;
   char separator_ = ',';
-  size_t position_ = 0;
+  std::string block_;
+  size_t begin_ = 0;  ///< of what is unread in block_
+  bool at_end_ = false;
   int line_ = 0;
-  std::vector<std::string_view> fields_;  ///< views into content_, valid while the reader is not moved
+  Status broken_;
+  std::vector<std::string_view> fields_;  ///< views into block_, valid while the reader is not moved
 };
 
 /// `text` in quotes, shortened for messages.

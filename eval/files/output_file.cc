@@ -63,6 +63,10 @@ class HeldInterrupts {
 }  // namespace
 
 Status WriteFileAtomically(const std::string& path, std::string_view content) {
+  return WriteFileAtomically(path, [content](const AppendText& append) { return append(content); });
+}
+
+Status WriteFileAtomically(const std::string& path, const std::function<Status(const AppendText&)>& write) {
   const HeldInterrupts held;
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   if (!parent.empty()) {
@@ -78,7 +82,7 @@ Status WriteFileAtomically(const std::string& path, std::string_view content) {
   if (descriptor < 0) {
     return Status::Output(path + ": cannot be written: " + SystemReason());
   }
-  Status status = WriteAll(descriptor, content, path);
+  Status status = write([&](std::string_view content) { return WriteAll(descriptor, content, path); });
   if (::close(descriptor) != 0 && status.ok()) {
     status = Status::Output(path + ": cannot be written: " + SystemReason());
   }

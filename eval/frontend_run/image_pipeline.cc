@@ -41,24 +41,26 @@ class UnreadableImages {
   std::string first_;
 };
 
-}  // namespace
-
-Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::vector<TimeNs>& stamps,
-                                            const ImageSource& image_of, const FrontendConfig& config,
-                                            const PipelineOptions& options) {
+Status Track(const Dataset& dataset, const std::vector<TimeNs>& stamps, const ImageSource& image_of,
+             const FrontendConfig& config, const PipelineOptions& options, const TakeFrame& take) {
   KltTracker tracker(config, dataset.rig);
-  std::vector<TrackFrame> frames;
-  frames.reserve(stamps.size());
-  size_t next_imu = 0;
+  const LogTables tables = TablesOf(dataset);
+  Table<ImuSample>::Pass imu(tables.imu);
+  TimeNs last_imu_ns = INT64_MIN;
   size_t next_image = 0;
   for (const TimeNs stamp_ns : stamps) {
     if (options.stop != nullptr && options.stop->load()) {
       return Status::Diverged("interrupted");
     }
     const TimeNs imu_stamp = stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s);
-    while (next_imu < dataset.imu.size() &&
-           (next_imu == 0 || dataset.imu[next_imu - 1].stamp_ns < imu_stamp)) {
-      tracker.AddImu(dataset.imu[next_imu++]);
+    while (last_imu_ns < imu_stamp) {
+      const Result<const ImuSample*> sample = imu.Next();
+      ALIDADE_RETURN_IF_ERROR(sample.status());
+      if (*sample == nullptr) {
+        break;
+      }
+      last_imu_ns = (*sample)->stamp_ns;
+      tracker.AddImu(**sample);
     }
     const Result<GreyImage> grey = image_of(next_image++);
     if (!grey.ok()) {
@@ -71,7 +73,7 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
     if (options.cpu_ms != nullptr) {
       options.cpu_ms->push_back(1e3 * (ThreadCpuSeconds() - cpu_start_s));
     }
-    frames.push_back(std::move(*frame));
+    ALIDADE_RETURN_IF_ERROR(take(&frame.value()));
     if (options.statistics != nullptr) {
       options.statistics->push_back(tracker.statistics());
     }
@@ -79,11 +81,42 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
       options.progress(next_image, stamps.size());
     }
   }
+  return Status::Ok();
+}
+
+/// Keeps the frames.
+TakeFrame Into(std::vector<TrackFrame>* frames) {
+  return [frames](TrackFrame* frame) {
+    frames->push_back(std::move(*frame));
+    return Status::Ok();
+  };
+}
+
+Status HasNoInput(const Dataset& dataset) {
+  return Status::Input(dataset.path + ": found neither tracks nor images" +
+                       (dataset.camera_stamps.empty() ? "" : " (camera stamps alone)") +
+                       ", expected mav0/cam0/tracks.csv or mav0/cam0/data.csv");
+}
+
+/// Whether the measurements are all there without the front end.
+bool IsComplete(const Dataset& dataset) {
+  const bool no_camera = dataset.images.empty() && dataset.camera_stamps.empty();
+  return !TablesOf(dataset).frames.empty() || (dataset.gnss != nullptr && no_camera);
+}
+
+}  // namespace
+
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::vector<TimeNs>& stamps,
+                                            const ImageSource& image_of, const FrontendConfig& config,
+                                            const PipelineOptions& options) {
+  std::vector<TrackFrame> frames;
+  frames.reserve(stamps.size());
+  ALIDADE_RETURN_IF_ERROR(Track(dataset, stamps, image_of, config, options, Into(&frames)));
   return frames;
 }
 
-Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
-                                            const PipelineOptions& options) {
+Status TrackImages(const Dataset& dataset, const FrontendConfig& config, const PipelineOptions& options,
+                   const TakeFrame& take) {
   if (dataset.images.empty()) {
     return Status::Input(dataset.path + ": found no images, expected mav0/cam0/data.csv and its image files");
   }
@@ -92,39 +125,41 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const Fronte
     stamps.push_back(image.stamp_ns);
   }
   DatasetImages images;
-  std::vector<double> decode_ms;
+  double decode_ms = 0;
   const auto image_of = [&](size_t i) -> Result<GreyImage> {
     const Stopwatch stopwatch;
     Result<GreyImage> grey = images.ReadFor(dataset.rig.camera, dataset.images[i]);
-    if (grey.ok()) {
-      decode_ms.push_back(stopwatch.ElapsedMs());
-    }
+    decode_ms = stopwatch.ElapsedMs();
     return grey;
   };
   UnreadableImages unreadable(dataset.images.size());
   PipelineOptions skipping = options;
   skipping.unreadable = [&](const Status& fault) { return unreadable.Add(dataset.path, fault); };
-  Result<std::vector<TrackFrame>> frames = TrackImages(dataset, stamps, image_of, config, skipping);
+  const Status status = Track(dataset, stamps, image_of, config, skipping, [&](TrackFrame* frame) {
+    frame->frontend_ms += decode_ms;
+    return take(frame);
+  });
   if (options.remark) {
     unreadable.Tell(dataset.path, options.remark);
   }
-  for (size_t i = 0; frames.ok() && i < frames->size(); ++i) {
-    (*frames)[i].frontend_ms += decode_ms[i];
-  }
+  return status;
+}
+
+Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
+                                            const PipelineOptions& options) {
+  std::vector<TrackFrame> frames;
+  ALIDADE_RETURN_IF_ERROR(TrackImages(dataset, config, options, Into(&frames)));
   return frames;
 }
 
 Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
                                const PipelineOptions& options) {
   MeasurementLog log = MeasurementsOf(dataset);
-  const bool no_camera = dataset.images.empty() && dataset.camera_stamps.empty();
-  if (!log.frames.empty() || (log.gnss != nullptr && no_camera)) {
+  if (IsComplete(dataset)) {
     return log;
   }
   if (dataset.images.empty()) {
-    return Status::Input(dataset.path + ": found neither tracks nor images" +
-                         (dataset.camera_stamps.empty() ? "" : " (camera stamps alone)") +
-                         ", expected mav0/cam0/tracks.csv or mav0/cam0/data.csv");
+    return HasNoInput(dataset);
   }
   Result<std::vector<TrackFrame>> frames = TrackImages(dataset, config, options);
   if (!frames.ok()) {
@@ -134,13 +169,32 @@ Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& con
   return log;
 }
 
-std::string DescribeLog(const MeasurementLog& log, const std::string& digest) {
-  size_t observations = 0;
-  for (const TrackFrame& frame : log.frames) {
-    observations += frame.observations.size();
+Result<LogTables> MakeTables(const Dataset& dataset, const FrontendConfig& config,
+                             const PipelineOptions& options, const std::string& spool_folder) {
+  LogTables tables = TablesOf(dataset);
+  if (IsComplete(dataset)) {
+    return tables;
   }
-  return "measurement log " + digest + ": " + std::to_string(log.imu.size()) + " IMU samples, " +
-         std::to_string(log.frames.size()) + " frames, " + std::to_string(observations) + " observations" +
+  if (dataset.images.empty()) {
+    return HasNoInput(dataset);
+  }
+  tables.frames = Table<TrackFrame>::InFile(spool_folder);
+  ALIDADE_RETURN_IF_ERROR(TrackImages(dataset, config, options,
+                                      [&tables](TrackFrame* frame) { return tables.frames.Add(*frame); }));
+  return tables;
+}
+
+std::string DescribeLog(const MeasurementLog& log, const std::string& digest) {
+  return DescribeLog(log, TablesOf(log), digest);
+}
+
+std::string DescribeLog(const MeasurementLog& log, const LogTables& tables, const std::string& digest) {
+  size_t observations = 0;
+  // A file that cannot be read again is told by the next who reads it.
+  static_cast<void>(tables.frames.ForEach(
+      [&observations](const TrackFrame& frame) { observations += frame.observations.size(); }));
+  return "measurement log " + digest + ": " + std::to_string(tables.imu.size()) + " IMU samples, " +
+         std::to_string(tables.frames.size()) + " frames, " + std::to_string(observations) + " observations" +
          (log.gnss == nullptr ? "" : ", " + std::to_string(log.gnss->epochs.size()) + " GNSS epochs");
 }
 

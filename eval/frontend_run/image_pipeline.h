@@ -2,10 +2,11 @@
 
 #include <atomic>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "core/frontend_config.h"
-#include "eval/dataset/dataset.h"
+#include "eval/dataset/log_tables.h"
 #include "frontend/tracking/image_reader.h"
 #include "frontend/tracking/klt_tracker.h"
 
@@ -32,6 +33,9 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
                                             const ImageSource& image_of, const FrontendConfig& config,
                                             const PipelineOptions& options);
 
+/// Takes the frame of each image that was read, in order; what it does with the frame is its own.
+using TakeFrame = std::function<Status(TrackFrame* frame)>;
+
 /// Runs the front end over the images of a sequence, with the gyroscope up to each image. The tracks carry
 /// the wall time of decoding and tracking. An image that cannot be read or has the wrong size is skipped,
 /// with a remark. Errors (kInput): no images; more than kMaxUnreadableShare of them skipped; kDiverged:
@@ -39,12 +43,23 @@ Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const std::v
 Result<std::vector<TrackFrame>> TrackImages(const Dataset& dataset, const FrontendConfig& config,
                                             const PipelineOptions& options);
 
+/// The same frame by frame. Errors also: those of `take`.
+Status TrackImages(const Dataset& dataset, const FrontendConfig& config, const PipelineOptions& options,
+                   const TakeFrame& take);
+
 /// The measurement log of a sequence: its tracks as they are or, when it has images alone, those of the front
 /// end. kInput: it has neither.
 Result<MeasurementLog> MakeLog(const Dataset& dataset, const FrontendConfig& config,
                                const PipelineOptions& options);
 
+/// The same of a sequence that was read into files (DatasetStorage), as its long tables; what the front end
+/// makes goes into `spool_folder`. Errors also: SpoolFile's.
+Result<LogTables> MakeTables(const Dataset& dataset, const FrontendConfig& config,
+                             const PipelineOptions& options, const std::string& spool_folder);
+
 /// "measurement log 3f2a...: 12000 IMU samples, 600 frames, 78421 observations".
 [[nodiscard]] std::string DescribeLog(const MeasurementLog& log, const std::string& digest);
+[[nodiscard]] std::string DescribeLog(const MeasurementLog& log, const LogTables& tables,
+                                      const std::string& digest);
 
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/format.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/record/runner.h"
 
 namespace alidade {
@@ -27,23 +28,29 @@ const std::array<AccelerometerSigns, 7>& OtherSigns() {
   return signs;
 }
 
+/// Those up to a stamp; what cannot be read is missing.
+template <typename Row>
+std::vector<Row> RowsUntil(const Table<Row>& table, TimeNs end_ns) {
+  std::vector<Row> rows;
+  typename Table<Row>::Pass pass(table);
+  for (Result<const Row*> row = pass.Next(); row.ok() && *row != nullptr && (*row)->stamp_ns <= end_ns;
+       row = pass.Next()) {
+    rows.push_back(**row);
+  }
+  return rows;
+}
+
 /// The first seconds of a log, with the accelerometer's axes times `signs`.
-MeasurementLog Beginning(const MeasurementLog& log, const Eigen::Vector3d& signs) {
+MeasurementLog Beginning(const MeasurementLog& log, const LogTables& tables, const Eigen::Vector3d& signs) {
   constexpr TimeNs kLengthNs = 25 * kSecondNs;
   MeasurementLog beginning;
   beginning.rig = log.rig;
-  const TimeNs end_ns = log.frames.front().stamp_ns + kLengthNs;
-  for (ImuSample sample : log.imu) {
-    if (sample.stamp_ns <= end_ns + kSecondNs) {
-      sample.accel = sample.accel.cwiseProduct(signs);
-      beginning.imu.push_back(sample);
-    }
+  const TimeNs end_ns = tables.frames.front().stamp_ns + kLengthNs;
+  beginning.imu = RowsUntil(tables.imu, end_ns + kSecondNs);
+  for (ImuSample& sample : beginning.imu) {
+    sample.accel = sample.accel.cwiseProduct(signs);
   }
-  for (const TrackFrame& frame : log.frames) {
-    if (frame.stamp_ns <= end_ns) {
-      beginning.frames.push_back(frame);
-    }
-  }
+  beginning.frames = RowsUntil(tables.frames, end_ns);
   return beginning;
 }
 
@@ -51,12 +58,17 @@ MeasurementLog Beginning(const MeasurementLog& log, const Eigen::Vector3d& signs
 /// not show.
 double SecondsSound(const RunResult& result) {
   double sound_s = 0;
-  for (std::size_t i = 1; i < result.records.size() && result.records[i].status == "ok"; ++i) {
-    const RunRecord& record = result.records[i];
-    sound_s += record.statistics.at_rest
-                   ? 0
-                   : SecondsBetween(result.records[i - 1].estimate.stamp_ns, record.estimate.stamp_ns);
-  }
+  bool sound = true;
+  TimeNs before_ns = INT64_MIN;
+  static_cast<void>(ForEachRecord(result, [&](const RunRecord& record) {
+    if (before_ns != INT64_MIN) {
+      sound = sound && record.status == "ok";
+      sound_s +=
+          !sound || record.statistics.at_rest ? 0 : SecondsBetween(before_ns, record.estimate.stamp_ns);
+    }
+    before_ns = record.estimate.stamp_ns;
+    return Status::Ok();
+  }));
   return sound_s;
 }
 
@@ -83,11 +95,11 @@ bool Failed(const RunResult& result) {
 }
 
 std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& config,
-                                                      const MeasurementLog& log, const RunResult& failed,
-                                                      const RunOptions& options) {
+                                                      const MeasurementLog& log, const LogTables& tables,
+                                                      const RunResult& failed, const RunOptions& options) {
   constexpr double kLeastS = 5;
   constexpr double kWaitS = 10;  // for a start
-  if (log.frames.empty() || SecondsSound(failed) > kLeastS) {
+  if (tables.frames.empty() || SecondsSound(failed) > kLeastS) {
     return std::nullopt;
   }
   EstimatorConfig filter = config;
@@ -101,12 +113,13 @@ std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& con
   filter.init.max_wait_s = std::min(filter.init.max_wait_s, kWaitS);
   RunOptions quiet = options;
   quiet.progress = nullptr;
+  quiet.spool_folder.clear();
   quiet.audit = false;
-  if (SecondsHeld(RunEstimator(filter, Beginning(log, Eigen::Vector3d::Ones()), quiet)) > kLeastS) {
+  if (SecondsHeld(RunEstimator(filter, Beginning(log, tables, Eigen::Vector3d::Ones()), quiet)) > kLeastS) {
     return std::nullopt;
   }
   for (const AccelerometerSigns& other : OtherSigns()) {
-    const double held_s = SecondsHeld(RunEstimator(filter, Beginning(log, other.signs), quiet));
+    const double held_s = SecondsHeld(RunEstimator(filter, Beginning(log, tables, other.signs), quiet));
     if (held_s > kLeastS) {
       return Format(
           "imu0: with %s negated a filter runs through the first %.0f s without a fault: wrong sign of the "

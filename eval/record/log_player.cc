@@ -18,16 +18,18 @@ constexpr TimeNs kImuAheadNs = kSecondNs;
 
 }  // namespace
 
-LogPlayer::LogPlayer(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
-                     Estimator* estimator)
+LogPlayer::LogPlayer(const EstimatorConfig& config, const MeasurementLog& log, const LogTables& tables,
+                     const RunOptions& options, Estimator* estimator)
     : config_(config),
       log_(log),
+      tables_(tables),
       options_(options),
       estimator_(*estimator),
-      camera_(!log.frames.empty() || log.gnss == nullptr || !config.gnss.enabled),
+      camera_(!tables.frames.empty() || log.gnss == nullptr || !config.gnss.enabled),
       session_(config, log.rig, OptionsOfSession(), estimator),
-      builder_(camera_),
-      result_(builder_.result()) {}
+      builder_(camera_, options.spool_folder),
+      result_(builder_.result()),
+      imu_(tables.imu) {}
 
 SessionOptions LogPlayer::OptionsOfSession() const {
   SessionOptions options;
@@ -85,33 +87,44 @@ Result<NavEstimate> LogPlayer::FirstState(TimeNs imu_ns) const {
 }
 
 void LogPlayer::PlayFrames() {
-  for (size_t i = 0; i < log_.frames.size() && result_.status.ok(); ++i) {
-    if (Stopped()) {
-      result_.interrupted = true;
+  Table<TrackFrame>::Pass frames(tables_.frames);
+  for (size_t i = 0; i < tables_.frames.size() && result_.status.ok(); ++i) {
+    const Result<const TrackFrame*> frame = frames.Next();
+    if (!frame.ok()) {
+      result_.status = frame.status();
       return;
     }
-    if (result_.status = CheckTruth(); !result_.status.ok()) {
-      result_.init_report = result_.status.message();
+    if (!PlayFrame(**frame)) {
       return;
-    }
-    const TrackFrame& frame = log_.frames[i];
-    const TimeNs imu_ns = session_.ImuTime(frame.stamp_ns);
-    AddImuUntil(imu_ns + kImuAheadNs);
-    AddEpochsUntil(imu_ns + kEpochsAheadNs);
-    AddMeasurementsUntil(imu_ns + kImuAheadNs);
-    session_.AddFrame(frame);
-    session_.AdvanceTo(imu_ns);
-    TakeEvents();
-    if (result_.status.ok() && !session_.running() && !builder_.lost() &&
-        SecondsBetween(log_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
-      result_.status = Status::Diverged(
-          "not initialised within init.max_wait_s = " + std::to_string(config_.init.max_wait_s) +
-          " s: " + result_.init_report);
     }
     if (options_.progress) {
-      options_.progress(i + 1, log_.frames.size());
+      options_.progress(i + 1, tables_.frames.size());
     }
   }
+}
+
+bool LogPlayer::PlayFrame(const TrackFrame& frame) {
+  if (Stopped()) {
+    result_.interrupted = true;
+    return false;
+  }
+  if (result_.status = CheckTruth(); !result_.status.ok()) {
+    result_.init_report = result_.status.message();
+    return false;
+  }
+  const TimeNs imu_ns = session_.ImuTime(frame.stamp_ns);
+  AddImuUntil(imu_ns + kImuAheadNs);
+  AddEpochsUntil(imu_ns + kEpochsAheadNs);
+  AddMeasurementsUntil(imu_ns + kImuAheadNs);
+  session_.AddFrame(frame);
+  session_.AdvanceTo(imu_ns);
+  TakeEvents();
+  if (result_.status.ok() && !session_.running() && !builder_.lost() &&
+      SecondsBetween(tables_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {
+    result_.status = Status::Diverged("not initialised within init.max_wait_s = " +
+                                      std::to_string(config_.init.max_wait_s) + " s: " + result_.init_report);
+  }
+  return true;
 }
 
 void LogPlayer::PlayEpochs() {
@@ -136,8 +149,14 @@ void LogPlayer::PlayEpochs() {
 }
 
 void LogPlayer::AddImuUntil(TimeNs stamp_ns) {
-  while (next_imu_ < log_.imu.size() && (next_imu_ == 0 || log_.imu[next_imu_ - 1].stamp_ns < stamp_ns)) {
-    session_.AddImu(log_.imu[next_imu_++]);
+  while (last_imu_ns_ < stamp_ns) {
+    const Result<const ImuSample*> sample = imu_.Next();
+    if (!sample.ok() || *sample == nullptr) {
+      result_.status = sample.ok() ? result_.status : sample.status();
+      return;
+    }
+    last_imu_ns_ = (*sample)->stamp_ns;
+    session_.AddImu(**sample);
   }
 }
 

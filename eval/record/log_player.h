@@ -2,6 +2,7 @@
 
 #include "core/estimator/estimator.h"
 #include "core/estimator/measurement_log.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/record/run_builder.h"
 #include "eval/record/run_options.h"
 #include "eval/run/session.h"
@@ -12,8 +13,9 @@ namespace alidade {
 /// must outlive it.
 class LogPlayer {
  public:
-  LogPlayer(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
-            Estimator* estimator);
+  /// `tables` are those of the log; its own vectors of them are not read.
+  LogPlayer(const EstimatorConfig& config, const MeasurementLog& log, const LogTables& tables,
+            const RunOptions& options, Estimator* estimator);
 
   /// To be called once.
   RunResult Play();
@@ -24,6 +26,8 @@ class LogPlayer {
   /// Why init.method truth cannot start this run whatever the frame.
   [[nodiscard]] Status CheckTruth() const;
   void PlayFrames();
+  /// False: the run is over.
+  bool PlayFrame(const TrackFrame& frame);
   /// GNSS and IMU without a camera.
   void PlayEpochs();
   /// Every sample up to and including the first one at or after `stamp_ns`.
@@ -41,13 +45,15 @@ class LogPlayer {
 
   const EstimatorConfig& config_;
   const MeasurementLog& log_;
+  const LogTables& tables_;
   const RunOptions& options_;
   Estimator& estimator_;
   const bool camera_;  ///< else there are epochs alone
   Session session_;
   RunBuilder builder_;
   RunResult& result_;
-  size_t next_imu_ = 0;
+  Table<ImuSample>::Pass imu_;
+  TimeNs last_imu_ns_ = INT64_MIN;  ///< handed over
   size_t next_epoch_ = 0;
   PerSensor<size_t> next_measurement_;
 };

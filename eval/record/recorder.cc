@@ -1,159 +1,30 @@
 #include "eval/record/recorder.h"
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "eval/config/config_json.h"
 #include "eval/config/config_writer.h"
-#include "eval/files/csv_text.h"
 #include "eval/files/hash.h"
 #include "eval/files/output_file.h"
 #include "eval/record/recorder_covariance.h"
 #include "eval/record/recorder_gnss.h"
-#include "eval/record/recorder_sensors.h"
+#include "eval/record/recorder_rows.h"
 #include "eval/run/make_estimator.h"
 #include "eval/trajectory/trajectory_export.h"
+#include "eval/trajectory/trajectory_point.h"
 
 namespace alidade {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Appends ",x" for every coefficient.
-void AppendNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, char separator, std::string* line) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    *line += separator + ShortestDouble(values[i]);
-  }
-}
-
-/// x y z w, w >= 0.
-Eigen::Vector4d Quaternion(const Eigen::Matrix3d& rotation) {
-  const Eigen::Quaterniond q(rotation);
-  const Eigen::Vector4d xyzw = q.normalized().coeffs();
-  return xyzw[3] < 0 ? Eigen::Vector4d(-xyzw) : xyzw;
-}
-
-/// ",c_00,c_01,...": names of the upper triangle that AppendUpperTriangle writes.
-std::string TriangleNames() {
-  std::string names;
-  for (int row = 0; row < 6; ++row) {
-    for (int column = row; column < 6; ++column) {
-      names += ",c_" + std::to_string(row) + std::to_string(column);
-    }
-  }
-  return names;
-}
-
-void AppendUpperTriangle(const Matrix6d& covariance, std::string* line) {
-  for (Eigen::Index row = 0; row < 6; ++row) {
-    AppendNumbers(covariance.row(row).segment(row, 6 - row).transpose(), ',', line);
-  }
-}
-
-std::string StatesHeader() {
-  return "timestamp_ns,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bg_x,bg_y,bg_z,ba_x,ba_y,ba_z" +
-         TriangleNames() + "\n";
-}
-
-std::string StatesText(const RunResult& result) {
-  std::string text = StatesHeader();
-  if (HasGnss(result)) {
-    text.insert(text.size() - 1, ClockColumns());
-  }
-  for (const RunRecord& record : result.records) {
-    const NavEstimate& estimate = record.estimate;
-    const Eigen::Vector4d xyzw = Quaternion(estimate.nav.R_WB);
-    text += std::to_string(estimate.stamp_ns);
-    AppendNumbers(estimate.nav.p_WB, ',', &text);
-    AppendNumbers(Eigen::Vector4d(xyzw[3], xyzw[0], xyzw[1], xyzw[2]), ',', &text);
-    AppendNumbers(estimate.nav.v_WB, ',', &text);
-    AppendNumbers(estimate.bias.gyro, ',', &text);
-    AppendNumbers(estimate.bias.accel, ',', &text);
-    AppendUpperTriangle(estimate.covariance.topLeftCorner<6, 6>(), &text);
-    text += HasGnss(result) ? ClockFields(record) : "";
-    text += '\n';
-  }
-  return text;
-}
-
 bool HasBound(const RunResult& result) {
-  return !result.records.empty() && result.records.front().filtering_covariance.has_value();
-}
-
-std::string BoundText(const RunResult& result) {
-  std::string text = "timestamp_ns" + TriangleNames() + "\n";
-  for (const RunRecord& record : result.records) {
-    text += std::to_string(record.estimate.stamp_ns);
-    AppendUpperTriangle(*record.filtering_covariance, &text);
-    text += '\n';
-  }
-  return text;
-}
-
-std::string TimingText(const RunResult& result) {
-  std::string text = "timestamp_ns,frontend_ms,propagate_ms,update_ms,backend_ms,total_ms\n";
-  for (const RunRecord& record : result.records) {
-    Eigen::Matrix<double, 5, 1> row;
-    row << record.frontend_ms, record.statistics.propagate_ms, record.statistics.update_ms, record.backend_ms,
-        record.frontend_ms + record.backend_ms;
-    text += std::to_string(record.estimate.stamp_ns);
-    AppendNumbers(row, ',', &text);
-    text += '\n';
-  }
-  return text;
-}
-
-std::string StatusText(const RunResult& result, const EstimatorConfig& config) {
-  std::string text =
-      "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,nis_"
-      "dof,"
-      "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_nis_"
-      "dof";
-  text += SensorColumns(config) + "\n";
-  for (const RunRecord& record : result.records) {
-    const FrameStatistics& s = record.statistics;
-    text += std::to_string(record.estimate.stamp_ns) + "," + record.status;
-    for (const int count :
-         {s.tracks_in, s.features_used, s.features_gated, s.satellites_used, s.satellites_gated}) {
-      text += "," + std::to_string(count);
-    }
-    text += "," + ShortestDouble(s.nis);
-    for (const int count : {s.nis_dof, s.observations_invalid, s.features_waiting, s.features_degenerate,
-                            s.iterations, s.at_rest ? 1 : 0}) {
-      text += "," + std::to_string(count);
-    }
-    std::string reason = record.reason;
-    std::replace_if(
-        reason.begin(), reason.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
-    text += "," + reason + "," + ShortestDouble(s.gnss_nis) + "," + std::to_string(s.gnss_nis_dof);
-    text += SensorFields(config, s) + "\n";
-  }
-  return text;
-}
-
-std::string CalibrationText(const RunResult& result) {
-  std::string text = "timestamp_ns" + CalibrationColumns(*result.records.front().calibration) + "\n";
-  for (const RunRecord& record : result.records) {
-    text += std::to_string(record.estimate.stamp_ns) + CalibrationFields(*record.calibration) + "\n";
-  }
-  return text;
-}
-
-std::string ObservabilityText(const RunResult& result) {
-  std::string text = "timestamp_ns,rank,yaw_leak,position_leak,yaw_gain,null_angle_rad\n";
-  for (const RunRecord& record : result.records) {
-    if (record.observability) {
-      const ObservabilityRecord& row = *record.observability;
-      text += std::to_string(row.stamp_ns) + "," + std::to_string(row.rank);
-      AppendNumbers(Eigen::Vector4d(row.yaw_leak, row.position_leak, row.yaw_gain, row.null_angle_rad), ',',
-                    &text);
-      text += '\n';
-    }
-  }
-  return text;
+  const RunRecord* first = FirstRecord(result);
+  return first != nullptr && first->filtering_covariance.has_value();
 }
 
 /// How the run stood with GNSS.
@@ -182,10 +53,12 @@ Json GnssJson(const RunIdentity& identity, const RunResult& result) {
 Json SensorJson(const RunResult& result, Sensor sensor) {
   int used = 0;
   int gated = 0;
-  for (const RunRecord& record : result.records) {
+  // The same records have just been written: they can be read.
+  static_cast<void>(ForEachRecord(result, [&](const RunRecord& record) {
     used += record.statistics.sensors[sensor].used;
     gated += record.statistics.sensors[sensor].gated;
-  }
+    return Status::Ok();
+  }));
   Json json = {{"aligned", result.global.has_value()},
                {"report", result.align_report},
                {"used", used},
@@ -224,7 +97,7 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   json["counts"] = {{"imu_samples", identity.imu_samples},
                     {"imu_rejected", result.imu_rejected},
                     {"frames", identity.frames},
-                    {"frames_processed", result.records.size()},
+                    {"frames_processed", RecordCount(result)},
                     {"frames_skipped", result.frames_skipped}};
   json["skip_report"] = result.skip_report;
   if (!result.restarts.empty()) {
@@ -259,6 +132,73 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   return json;
 }
 
+/// One file of the run: a header, what the spool has of it, and a row a record.
+struct RunTable {
+  const char* name;
+  bool has = true;
+  std::string header;
+  std::function<void(const RunRecord&, std::string*)> row;
+  const SpoolFile* rows = nullptr;  ///< before those of the records
+};
+
+Status AppendSpool(const SpoolFile& rows, const AppendText& append) {
+  constexpr size_t kBlock = size_t{1} << 18;
+  std::string text;
+  for (std::uint64_t at = 0; at < rows.size(); at += text.size()) {
+    ALIDADE_RETURN_IF_ERROR(rows.Read(at, kBlock, &text));
+    ALIDADE_RETURN_IF_ERROR(append(text));
+  }
+  return Status::Ok();
+}
+
+Status WriteRows(const RunTable& table, const RunResult& result, const AppendText& append) {
+  constexpr size_t kBlock = size_t{1} << 16;
+  std::string text = table.header;
+  if (table.rows != nullptr) {
+    ALIDADE_RETURN_IF_ERROR(append(std::exchange(text, {})));
+    ALIDADE_RETURN_IF_ERROR(AppendSpool(*table.rows, append));
+  }
+  ALIDADE_RETURN_IF_ERROR(ForEachRecord(result, [&](const RunRecord& record) {
+    table.row(record, &text);
+    if (text.size() < kBlock) {
+      return Status::Ok();
+    }
+    const Status status = append(text);
+    text.clear();
+    return status;
+  }));
+  return append(text);
+}
+
+std::vector<RunTable> FilesOf(const RunIdentity& identity, const RunResult& result) {
+  const RunRecord* first = FirstRecord(result);
+  const bool gnss = HasGnss(result);
+  const bool calibrates = first != nullptr && first->calibration;
+  std::string states = StatesHeader();
+  if (gnss) {
+    states.insert(states.size() - 1, ClockColumns());
+  }
+  const SpoolFile* calibration_rows = result.spool == nullptr ? nullptr : &result.spool->calibration_rows();
+  const SpoolFile* satellite_rows = result.spool == nullptr ? nullptr : &result.spool->satellite_rows();
+  const auto nothing = [](const RunRecord&, std::string*) {};
+  return {
+      {"trajectory.tum", true, "",
+       [](const RunRecord& r, std::string* t) { AppendTum(PointOf(r.estimate), t); }},
+      {"states.csv", true, states, [gnss](const RunRecord& r, std::string* t) { AppendState(r, gnss, t); }},
+      {"covariance.csv", true, MotionCovarianceHeader(), AppendMotionCovariance},
+      {"timing.csv", true, TimingHeader(), AppendTiming},
+      {"status.csv", true, StatusHeader(identity.config),
+       [&identity](const RunRecord& r, std::string* t) { AppendStatus(r, identity.config, t); }},
+      {"observability.csv", identity.audited, ObservabilityHeader(), AppendObservability},
+      {"calibration.csv", calibrates,
+       calibrates ? "timestamp_ns" + CalibrationColumns(*first->calibration) + "\n" : "", AppendCalibration,
+       calibration_rows},
+      {"bound.csv", HasBound(result), BoundHeader(), AppendBound},
+      {"trajectory.pos", gnss, gnss ? AntennaHeader() : "",
+       [&result](const RunRecord& r, std::string* t) { AppendAntenna(r, *result.global, t); }},
+      {"gnss.csv", gnss, gnss ? SatelliteTable(result) : "", nothing, satellite_rows}};
+}
+
 }  // namespace
 
 std::string DigestOf(const EstimatorConfig& config) {
@@ -270,29 +210,15 @@ Status WriteRun(const RunIdentity& identity, const RunResult& result, const std:
   const std::filesystem::path path(folder);
   std::error_code ignored;
   std::filesystem::remove(path / "run.json", ignored);
-  // A file that this run does not have must not stay from an earlier one.
-  const auto write = [&path](const char* name, bool has, const std::function<std::string()>& text) {
-    if (has) {
-      return WriteFileAtomically((path / name).string(), text());
+  for (const RunTable& table : FilesOf(identity, result)) {
+    if (table.has) {
+      ALIDADE_RETURN_IF_ERROR(
+          WriteFileAtomically((path / table.name).string(),
+                              [&](const AppendText& append) { return WriteRows(table, result, append); }));
+    } else {  // it must not stay from an earlier run
+      std::filesystem::remove(path / table.name, ignored);
     }
-    std::error_code absent;
-    std::filesystem::remove(path / name, absent);
-    return Status::Ok();
-  };
-  const bool calibrates = !result.records.empty() && result.records.front().calibration;
-  const bool gnss = HasGnss(result);
-  ALIDADE_RETURN_IF_ERROR(write("trajectory.tum", true, [&] { return FormatTum(TrajectoryOf(result)); }));
-  ALIDADE_RETURN_IF_ERROR(write("states.csv", true, [&] { return StatesText(result); }));
-  ALIDADE_RETURN_IF_ERROR(write("covariance.csv", true, [&] { return MotionCovarianceText(result); }));
-  ALIDADE_RETURN_IF_ERROR(write("timing.csv", true, [&] { return TimingText(result); }));
-  ALIDADE_RETURN_IF_ERROR(write("status.csv", true, [&] { return StatusText(result, identity.config); }));
-  ALIDADE_RETURN_IF_ERROR(
-      write("observability.csv", identity.audited, [&] { return ObservabilityText(result); }));
-  ALIDADE_RETURN_IF_ERROR(write("calibration.csv", calibrates, [&] { return CalibrationText(result); }));
-  ALIDADE_RETURN_IF_ERROR(write("bound.csv", HasBound(result), [&] { return BoundText(result); }));
-  ALIDADE_RETURN_IF_ERROR(
-      write("trajectory.pos", gnss, [&] { return AntennaPositions(result, result.global->time_offset_s); }));
-  ALIDADE_RETURN_IF_ERROR(write("gnss.csv", gnss, [&] { return SatelliteTable(result); }));
+  }
   const std::string json =
       RunJson(identity, result).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return WriteFileAtomically((path / "run.json").string(), json);

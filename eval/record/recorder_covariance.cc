@@ -12,26 +12,26 @@ constexpr std::pair<const char*, Eigen::Index> kMotionBlocks[] = {{"v", 6}, {"bg
 
 }  // namespace
 
-std::string MotionCovarianceText(const RunResult& result) {
+std::string MotionCovarianceHeader() {
   std::string text = "timestamp_ns";
   for (const auto& [name, first] : kMotionBlocks) {
     for (const char* axes : {"xx", "xy", "xz", "yy", "yz", "zz"}) {
       text += std::string(",") + name + "_" + axes;
     }
   }
-  text += '\n';
-  for (const RunRecord& record : result.records) {
-    text += std::to_string(record.estimate.stamp_ns);
-    for (const auto& [name, first] : kMotionBlocks) {
-      for (Eigen::Index i = first; i < first + 3; ++i) {
-        for (Eigen::Index j = i; j < first + 3; ++j) {
-          text += "," + ShortestDouble(record.estimate.covariance(i, j));
-        }
+  return text + "\n";
+}
+
+void AppendMotionCovariance(const RunRecord& record, std::string* text) {
+  *text += std::to_string(record.estimate.stamp_ns);
+  for (const auto& [name, first] : kMotionBlocks) {
+    for (Eigen::Index i = first; i < first + 3; ++i) {
+      for (Eigen::Index j = i; j < first + 3; ++j) {
+        *text += "," + ShortestDouble(record.estimate.covariance(i, j));
       }
     }
-    text += '\n';
   }
-  return text;
+  *text += '\n';
 }
 
 Status ReadMotionCovarianceRow(const CsvReader& row, RunRecord* record) {

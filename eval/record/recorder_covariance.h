@@ -9,7 +9,8 @@ namespace alidade {
 
 /// covariance.csv of a run: one row a frame with the upper triangles xx xy xz yy yz zz of the covariances of
 /// velocity [m/s], gyroscope bias [rad/s] and accelerometer bias [m/s^2].
-[[nodiscard]] std::string MotionCovarianceText(const RunResult& result);
+[[nodiscard]] std::string MotionCovarianceHeader();
+void AppendMotionCovariance(const RunRecord& record, std::string* text);
 
 /// Columns of that file, the stamp's included.
 inline constexpr size_t kMotionCovarianceColumns = 19;

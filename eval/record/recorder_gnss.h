@@ -16,9 +16,11 @@ namespace alidade {
 
 /// trajectory.pos: the antenna in RTKLIB's format, from the alignment on. Q is 5; ns the satellites used
 /// since the row before; velocities are those of the body, and their deviations not given.
-[[nodiscard]] std::string AntennaPositions(const RunResult& result, double time_offset_s);
+[[nodiscard]] std::string AntennaHeader();
+/// The row of a record, if it has one. Precondition: `global` is by GNSS.
+void AppendAntenna(const RunRecord& record, const GlobalFrame& global, std::string* text);
 
-/// gnss.csv: every satellite of every used epoch with direction, residuals and whether it was used.
+/// gnss.csv of the epochs in memory.
 [[nodiscard]] std::string SatelliteTable(const RunResult& result);
 
 }  // namespace alidade

@@ -25,6 +25,29 @@ void Add(const FrameStatistics& epoch, FrameStatistics* sum) {
 
 }  // namespace
 
+RunBuilder::RunBuilder(bool camera, const std::string& spool_folder) : camera_(camera) {
+  if (!spool_folder.empty()) {
+    result_.spool = std::make_shared<RecordSpool>(spool_folder);
+  }
+}
+
+void RunBuilder::Spool() {
+  constexpr size_t kMany = 64;
+  if (result_.spool == nullptr || result_.records.size() < kMany) {
+    return;
+  }
+  for (size_t i = 0; i + 1 < result_.records.size(); ++i) {
+    Keep(result_.spool->Add(result_.records[i]));
+  }
+  result_.records.erase(result_.records.begin(), result_.records.end() - 1);
+}
+
+void RunBuilder::Keep(Status status) {
+  if (!status.ok() && result_.status.ok()) {
+    result_.status = std::move(status);
+  }
+}
+
 void RunBuilder::Take(const SessionEvent& event) {
   std::visit([this](const auto& e) { On(e); }, event);
 }
@@ -54,6 +77,7 @@ void RunBuilder::On(const StateEvent& event) {
   if (!result_.records.empty() && event.estimate.stamp_ns <= result_.records.back().estimate.stamp_ns) {
     return;  // an epoch that a later state will hold
   }
+  Spool();
   RunRecord& record = result_.records.emplace_back();
   record.estimate = event.estimate;
   record.statistics = camera_ ? event.statistics : FrameStatistics();
@@ -105,6 +129,9 @@ void RunBuilder::On(const AlignedEvent& event) {
   result_.global = event.global;
   result_.align_report = event.alignment.report;
   // What was told in the local world is turned with it; the last record tells the state as it now stands.
+  if (result_.spool != nullptr) {
+    Keep(result_.spool->Turn(event.alignment));
+  }
   for (RunRecord& record : result_.records) {
     record.estimate = TurnIntoEnu(event.alignment, record.estimate);
     record.status = "local";
@@ -118,7 +145,11 @@ void RunBuilder::On(const AlignedEvent& event) {
 }
 
 void RunBuilder::On(const SatellitesEvent& event) {
-  result_.gnss_residuals.push_back(event.residuals);
+  if (result_.spool != nullptr) {
+    Keep(result_.spool->Add(event.residuals));
+  } else {
+    result_.gnss_residuals.push_back(event.residuals);
+  }
 }
 
 void RunBuilder::On(const WaitingEvent& event) {

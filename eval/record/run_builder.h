@@ -10,7 +10,8 @@ namespace alidade {
 /// Makes a RunResult of what a session reports: a record a frame or, without a camera, an epoch.
 class RunBuilder {
  public:
-  explicit RunBuilder(bool camera) : camera_(camera) {}
+  /// spool_folder: see RunOptions.
+  RunBuilder(bool camera, const std::string& spool_folder);
 
   void Take(const SessionEvent& event);
 
@@ -33,6 +34,10 @@ class RunBuilder {
   void On(const TooLateEvent& event);
   void On(const SkippedEvent& event);
   void On(const FailedEvent& event);
+  /// Moves all records but the newest out of memory, when there are many.
+  void Spool();
+  /// The run ends when its records cannot be kept.
+  void Keep(Status status);
   /// Of the newest record, where it says nothing else.
   void Mark(const char* status, const std::string& reason);
 

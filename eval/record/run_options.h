@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <functional>
+#include <string>
 
 #include "core/navigation_state.h"
 #include "core/rig_calibration.h"
@@ -20,6 +21,9 @@ struct RunOptions {
   std::function<Result<NavEstimate>(TimeNs imu_ns)> start_state;
   const std::atomic<bool>* stop = nullptr;  ///< polled once a frame
   std::function<void(size_t frames_done, size_t frames)> progress;
+  /// Where records of a long run go (RunResult::spool), so that memory does not grow with it; empty: they
+  /// stay in memory. Not for an audited run, nor for an estimator that looks back.
+  std::string spool_folder;
   /// Fills RunRecord::observability when the back end is the filter. Its time counts as the estimator's.
   bool audit = false;
 };

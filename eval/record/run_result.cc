@@ -17,6 +17,35 @@ std::string StatusWord(const RunResult& result) {
   return result.init_method.empty() ? "not_initialized" : "diverged";
 }
 
+size_t RecordCount(const RunResult& result) {
+  return (result.spool == nullptr ? 0 : result.spool->records().size()) + result.records.size();
+}
+
+const RunRecord* FirstRecord(const RunResult& result) {
+  if (result.spool != nullptr && !result.spool->records().empty()) {
+    return &result.spool->records().front();
+  }
+  return result.records.empty() ? nullptr : &result.records.front();
+}
+
+Status ForEachRecord(const RunResult& result, const std::function<Status(const RunRecord&)>& take) {
+  if (result.spool != nullptr) {
+    Table<RunRecord>::Pass pass(result.spool->records());
+    while (true) {
+      const Result<const RunRecord*> record = pass.Next();
+      ALIDADE_RETURN_IF_ERROR(record.status());
+      if (*record == nullptr) {
+        break;
+      }
+      ALIDADE_RETURN_IF_ERROR(take(**record));
+    }
+  }
+  for (const RunRecord& record : result.records) {
+    ALIDADE_RETURN_IF_ERROR(take(record));
+  }
+  return Status::Ok();
+}
+
 Trajectory TrajectoryOf(const RunResult& result) {
   Trajectory trajectory;
   trajectory.has_velocity = trajectory.has_bias = trajectory.has_covariance = true;

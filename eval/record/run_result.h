@@ -1,32 +1,18 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/estimator/estimator.h"
-#include "eval/audit/observability.h"
-#include "eval/record/calibration_record.h"
+#include "eval/record/record_spool.h"
+#include "eval/record/run_record.h"
 #include "eval/run/session_event.h"
 #include "eval/trajectory/trajectory.h"
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade {
-
-/// One processed frame of a run.
-struct RunRecord {
-  NavEstimate estimate;
-  FrameStatistics statistics;
-  double frontend_ms = 0;
-  double backend_ms = 0;  ///< wall time of the estimator for this frame and the IMU samples before it
-  std::string status = "ok";
-  std::optional<ObservabilityRecord> observability;  ///< of an audited run
-  /// Covariance of (phi, dp) given the data up to this frame alone; of the batch estimate.
-  std::optional<Matrix6d> filtering_covariance;
-  std::optional<ClockState> clock;                 ///< once aligned with GNSS
-  std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
-  std::string reason;                              ///< of a status that is not ok
-};
 
 /// A time without an estimate.
 struct Restart {
@@ -39,8 +25,11 @@ struct Restart {
 struct RunResult {
   Status status;                   ///< kDiverged when never initialised or lost; records hold what there was
   std::vector<RunRecord> records;  ///< one a frame since initialisation
-  std::string init_method;         ///< truth | static | dynamic
-  std::string init_report;         ///< what the initialiser found, or why it did not initialise
+  /// Of RunOptions::spool_folder, else null: the records before those of `records`, which are the newest, and
+  /// what `gnss_residuals` would hold.
+  std::shared_ptr<RecordSpool> spool;
+  std::string init_method;  ///< truth | static | dynamic
+  std::string init_report;  ///< what the initialiser found, or why it did not initialise
   TimeNs init_stamp_ns = 0;
   int frames_skipped = 0;                     ///< refused by the estimator after initialisation
   std::string skip_report;                    ///< why the first of them was
@@ -61,7 +50,14 @@ struct RunResult {
 /// ok | diverged | not_initialized | interrupted | failed: one word for tables.
 [[nodiscard]] std::string StatusWord(const RunResult& result);
 
-/// The rows of a result as a trajectory with covariance.
+/// The records of a result, wherever they are.
+[[nodiscard]] size_t RecordCount(const RunResult& result);
+/// Null: there is none.
+[[nodiscard]] const RunRecord* FirstRecord(const RunResult& result);
+/// Hands each to `take`, in order, up to the first error: of `take` or of the spool.
+Status ForEachRecord(const RunResult& result, const std::function<Status(const RunRecord&)>& take);
+
+/// The rows of a result that is held in memory as a trajectory with covariance.
 [[nodiscard]] Trajectory TrajectoryOf(const RunResult& result);
 
 }  // namespace alidade

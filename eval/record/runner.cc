@@ -23,10 +23,16 @@ void AttachAudit(const std::vector<ObservabilityRecord>& audited, RunResult* res
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options,
                        Estimator* estimator) {
-  return LogPlayer(config, log, options, estimator).Play();
+  const LogTables tables = TablesOf(log);
+  return LogPlayer(config, log, tables, options, estimator).Play();
 }
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const RunOptions& options) {
+  return RunEstimator(config, log, TablesOf(log), options);
+}
+
+RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const LogTables& tables,
+                       const RunOptions& options) {
   if (options.audit && config.calibration.any()) {
     RunResult refused;
     refused.status = Status::Config(
@@ -39,12 +45,12 @@ RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
     EstimatorConfig unwatched = config;
     unwatched.calibration.watch = false;
     const std::unique_ptr<Estimator> filter = MakeFilter(unwatched, log.rig, &audit);
-    RunResult result = RunEstimator(unwatched, log, options, filter.get());
+    RunResult result = LogPlayer(unwatched, log, tables, options, filter.get()).Play();
     AttachAudit(audit.records(), &result);
     return result;
   }
   const std::unique_ptr<Estimator> estimator = MakeEstimator(config, log.rig);
-  return RunEstimator(config, log, options, estimator.get());
+  return LogPlayer(config, log, tables, options, estimator.get()).Play();
 }
 
 RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log, const Trajectory* truth,

@@ -2,6 +2,7 @@
 
 #include "core/estimator/estimator.h"
 #include "core/estimator/measurement_log.h"
+#include "eval/dataset/log_tables.h"
 #include "eval/record/run_options.h"
 #include "eval/record/run_result.h"
 #include "eval/run/make_estimator.h"
@@ -23,5 +24,8 @@ namespace alidade {
                                      const RunOptions& options);
 [[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
                                      const Trajectory* truth, unsigned seed);
+/// The same with the log's long tables elsewhere.
+[[nodiscard]] RunResult RunEstimator(const EstimatorConfig& config, const MeasurementLog& log,
+                                     const LogTables& tables, const RunOptions& options);
 
 }  // namespace alidade

@@ -33,10 +33,8 @@ Result<RigCalibration> MakeSimRig(const SimulatorConfig& config) {
     }
     return rig;
   }
-  std::vector<double> coefficients;
-  for (int i = 0; i < CoefficientCount(config.distortion); ++i) {
-    coefficients.push_back(config.distortion_coefficients[i]);
-  }
+  const double* first = config.distortion_coefficients.data();
+  const std::vector<double> coefficients(first, first + CoefficientCount(config.distortion));
   const Eigen::Vector4d intrinsics(config.focal_px, config.focal_px, 0.5 * config.width_px,
                                    0.5 * config.height_px);
   Result<CameraModel> camera =

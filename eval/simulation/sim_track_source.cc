@@ -103,9 +103,9 @@ Eigen::Vector3d TrackSource::PositionOf(const LiveTrack& track) const {
 
 std::optional<Eigen::Vector2d> TrackSource::AppearanceOf(const LiveTrack& track) const {
   const TrackFault& fault = track.fault;
-  const std::optional<Eigen::Vector2d> pixel = fault.wrong && fault.kind == SimOutlierKind::kMoving
-                                                   ? See(PositionOf(track))
-                                                   : pixels_[static_cast<std::size_t>(track.landmark)];
+  std::optional<Eigen::Vector2d> pixel = fault.wrong && fault.kind == SimOutlierKind::kMoving
+                                             ? See(PositionOf(track))
+                                             : pixels_[static_cast<std::size_t>(track.landmark)];
   if (!fault.wrong || !pixel.has_value() || track.frames < fault.onset) {
     return pixel;
   }

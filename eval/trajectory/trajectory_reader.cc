@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "eval/files/csv.h"
 #include "eval/files/decimal_stamp.h"
@@ -10,6 +11,8 @@
 
 namespace alidade {
 namespace {
+
+using TakePoint = std::function<void(const TrajectoryPoint&)>;
 
 constexpr double kMaxQuaternionNormError = 1e-2;
 constexpr size_t kPoseColumns = 8;
@@ -83,11 +86,10 @@ Status ReadRotation(const CsvReader& csv, size_t first, bool w_last, Eigen::Matr
 
 constexpr size_t kPositionColumns = 4;
 
-/// One row of the three comma-separated formats: they share their first columns.
-Status ReadCsvPoint(const CsvReader& csv, const Trajectory& trajectory, TrajectoryPoint* point) {
-  const bool first = trajectory.points.empty();
-  ALIDADE_RETURN_IF_ERROR(
-      csv.ReadStamp(first, first ? 0 : trajectory.points.back().stamp_ns, &point->stamp_ns));
+/// One row of the three comma-separated formats: they share their first columns. `point`: that of the row
+/// before.
+Status ReadCsvPoint(const CsvReader& csv, const Trajectory& trajectory, bool first, TrajectoryPoint* point) {
+  ALIDADE_RETURN_IF_ERROR(csv.ReadStamp(first, point->stamp_ns, &point->stamp_ns));
   ALIDADE_RETURN_IF_ERROR(ReadVector(csv, 1, "position", &point->nav.p_WB));
   if (trajectory.has_orientation) {
     ALIDADE_RETURN_IF_ERROR(ReadRotation(csv, 4, false, &point->nav.R_WB));
@@ -130,15 +132,15 @@ Status RecognizeHeader(const CsvReader& csv, Trajectory* trajectory, size_t* col
       std::to_string(StatesHeader().size()) + " or more)");
 }
 
-Result<Trajectory> ReadCsvTrajectory(CsvReader& csv) {
+Result<Trajectory> ReadCsvTrajectory(CsvReader& csv, const TakePoint& take) {
   Trajectory trajectory;
   size_t columns = 0;
   ALIDADE_RETURN_IF_ERROR(RecognizeHeader(csv, &trajectory, &columns));
-  while (csv.NextRow()) {
+  TrajectoryPoint point;
+  for (bool first = true; csv.NextRow(); first = false) {
     ALIDADE_RETURN_IF_ERROR(csv.ExpectColumns(columns));
-    TrajectoryPoint point;
-    ALIDADE_RETURN_IF_ERROR(ReadCsvPoint(csv, trajectory, &point));
-    trajectory.points.push_back(point);
+    ALIDADE_RETURN_IF_ERROR(ReadCsvPoint(csv, trajectory, first, &point));
+    take(point);
   }
   return trajectory;
 }
@@ -183,20 +185,46 @@ Result<Trajectory> ReadTumTrajectory(const std::string& path) {
   return trajectory;
 }
 
+Status HoldsNone(const std::string& path) {
+  return Status::Input(path + ": holds no pose, expected at least one row");
+}
+
 }  // namespace
 
-Result<Trajectory> ReadTrajectory(const std::string& path) {
+Result<Trajectory> ReadTrajectory(const std::string& path, const TakePoint& take) {
   Result<CsvReader> csv = CsvReader::Open(path);
   if (!csv.ok()) {
     return csv.status();
   }
   csv->NextRow();
-  Result<Trajectory> trajectory = csv->columns() > 1 ? ReadCsvTrajectory(*csv) : ReadTumTrajectory(path);
-  if (trajectory.ok() && trajectory->points.empty()) {
-    return Status::Input(path + ": holds no pose, expected at least one row");
+  bool some = false;
+  const auto count = [&](const TrajectoryPoint& point) {
+    some = true;
+    take(point);
+  };
+  if (csv->columns() > 1) {
+    Result<Trajectory> trajectory = ReadCsvTrajectory(*csv, count);
+    return trajectory.ok() && !some ? HoldsNone(path) : trajectory;
   }
-  if (trajectory.ok() && !trajectory->has_covariance && trajectory->has_orientation) {
-    ALIDADE_RETURN_IF_ERROR(ReadCovarianceBeside(path, &trajectory.value()));
+  Result<Trajectory> trajectory = ReadTumTrajectory(path);
+  if (trajectory.ok()) {
+    for (const TrajectoryPoint& point : trajectory->points) {
+      count(point);
+    }
+    trajectory->points.clear();
+  }
+  return trajectory.ok() && !some ? HoldsNone(path) : trajectory;
+}
+
+Result<Trajectory> ReadTrajectory(const std::string& path) {
+  std::vector<TrajectoryPoint> points;
+  Result<Trajectory> trajectory =
+      ReadTrajectory(path, [&points](const TrajectoryPoint& point) { points.push_back(point); });
+  if (trajectory.ok()) {
+    trajectory->points = std::move(points);
+    if (!trajectory->has_covariance && trajectory->has_orientation) {
+      ALIDADE_RETURN_IF_ERROR(ReadCovarianceBeside(path, &trajectory.value()));
+    }
   }
   return trajectory;
 }

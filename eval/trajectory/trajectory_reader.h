@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "core/status.h"
@@ -14,5 +15,9 @@ namespace alidade {
 /// are read from states.csv, or from a file beside a truth file (truth_covariance.h). Errors (kInput) name
 /// file and line: missing file, torn row, non-finite number, stamps out of order.
 Result<Trajectory> ReadTrajectory(const std::string& path);
+/// The same row by row: `take` is handed each point, and the answer holds none. Covariances beside the file
+/// are not read.
+Result<Trajectory> ReadTrajectory(const std::string& path,
+                                  const std::function<void(const TrajectoryPoint&)>& take);
 
 }  // namespace alidade

@@ -27,10 +27,11 @@ std::string CovariancePath(const std::string& truth_path) {
   return (path.parent_path() / (path.stem().string() + "_covariance.csv")).string();
 }
 
-Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth) {
+Result<bool> ReadCovarianceBeside(const std::string& truth_path, const std::vector<TimeNs>& stamps,
+                                  const std::function<void(size_t row, const Matrix6d& covariance)>& take) {
   const std::string path = CovariancePath(truth_path);
   if (!MayExist(path)) {
-    return Status::Ok();
+    return false;
   }
   Result<CsvReader> csv = CsvReader::Open(path);
   ALIDADE_RETURN_IF_ERROR(csv.status());
@@ -42,21 +43,33 @@ Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
     std::int64_t stamp_ns = 0;
     ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp_ns));
-    if (row == truth->points.size() || stamp_ns != truth->points[row].stamp_ns) {
+    if (row == stamps.size() || stamp_ns != stamps[row]) {
       return csv->Fault(0, "timestamp",
-                        row == truth->points.size()
-                            ? "no row: " + truth_path + " ends before"
-                            : "the stamp " + std::to_string(truth->points[row].stamp_ns) +
-                                  " of the same row of " + truth_path);
+                        row == stamps.size() ? "no row: " + truth_path + " ends before"
+                                             : "the stamp " + std::to_string(stamps[row]) +
+                                                   " of the same row of " + truth_path);
     }
-    ALIDADE_RETURN_IF_ERROR(ReadPoseCovariance(*csv, 1, &truth->points[row].covariance));
-    ++row;
+    Matrix6d covariance = Matrix6d::Zero();
+    ALIDADE_RETURN_IF_ERROR(ReadPoseCovariance(*csv, 1, &covariance));
+    take(row++, covariance);
   }
-  if (row != truth->points.size()) {
+  if (row != stamps.size()) {
     return Status::Input(path + ": holds " + std::to_string(row) + " rows, expected one a pose of " +
-                         truth_path + ": " + std::to_string(truth->points.size()));
+                         truth_path + ": " + std::to_string(stamps.size()));
   }
-  truth->has_covariance = true;
+  return true;
+}
+
+Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth) {
+  std::vector<TimeNs> stamps;
+  for (const TrajectoryPoint& point : truth->points) {
+    stamps.push_back(point.stamp_ns);
+  }
+  const Result<bool> read = ReadCovarianceBeside(
+      truth_path, stamps,
+      [truth](size_t row, const Matrix6d& covariance) { truth->points[row].covariance = covariance; });
+  ALIDADE_RETURN_IF_ERROR(read.status());
+  truth->has_covariance = *read;
   return Status::Ok();
 }
 

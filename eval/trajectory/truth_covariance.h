@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "core/status.h"
 #include "eval/trajectory/trajectory.h"
@@ -16,6 +18,11 @@ namespace alidade {
 /// row, a number that is not finite, a negative variance, a stamp other than that of the pose; rows missing
 /// or left over.
 Status ReadCovarianceBeside(const std::string& truth_path, Trajectory* truth);
+
+/// The same of a truth with these stamps: the covariance of its row `row` is handed to `take`. False: there
+/// are none.
+Result<bool> ReadCovarianceBeside(const std::string& truth_path, const std::vector<TimeNs>& stamps,
+                                  const std::function<void(size_t row, const Matrix6d& covariance)>& take);
 
 /// The text of that file.
 [[nodiscard]] std::string CovarianceCsv(const Trajectory& truth);

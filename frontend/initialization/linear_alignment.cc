@@ -114,7 +114,7 @@ NormalEquations Assemble(const std::vector<RayBundle>& bundles, const std::vecto
 /// |g| falls monotonically in lambda; bisection.
 Vector3d MinimizeOnSphere(const Matrix3d& S, const Vector3d& s, double magnitude) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(S);
-  const Vector3d values = solver.eigenvalues();
+  const Vector3d& values = solver.eigenvalues();
   const Vector3d projected = solver.eigenvectors().transpose() * s;
   const auto solve = [&](double lambda) -> Vector3d { return projected.array() / (values.array() + lambda); };
   const double scale = values[2] + projected.norm() / magnitude;
@@ -150,6 +150,7 @@ bool Solve(const NormalEquations& equations, double magnitude, Vector6d* solutio
 void Reweigh(const std::vector<FramePrediction>& frames, const Vector6d& solution, const Vector3d& p_BC,
              std::vector<RayBundle>* bundles) {
   std::vector<Vector3d> cameras;
+  cameras.reserve(frames.size());
   for (const FramePrediction& frame : frames) {
     cameras.emplace_back(frame.PositionJacobian() * solution + frame.motion.alpha +
                          frame.motion.gamma * p_BC);

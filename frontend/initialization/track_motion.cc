@@ -61,6 +61,7 @@ std::vector<Vector2d> FitFlow(const std::vector<Displacement>& displacements, co
   }
   const Eigen::MatrixXd solution = design.colPivHouseholderQr().solve(shifts);
   std::vector<Vector2d> flow;
+  flow.reserve(displacements.size());
   for (const Displacement& displacement : displacements) {
     flow.emplace_back((design_row(displacement.pixel) * solution).transpose());
   }
@@ -71,6 +72,7 @@ std::vector<Vector2d> FitFlow(const std::vector<Displacement>& displacements, co
 std::vector<bool> KeepInliers(const std::vector<Displacement>& displacements,
                               const std::vector<Vector2d>& flow) {
   std::vector<double> residuals;
+  residuals.reserve(displacements.size());
   for (size_t i = 0; i < displacements.size(); ++i) {
     residuals.push_back((displacements[i].shift - flow[i]).norm());
   }
@@ -79,6 +81,7 @@ std::vector<bool> KeepInliers(const std::vector<Displacement>& displacements,
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double limit = 3.0 * *middle / 1.1774 + 1e-9;  // the median of a Rayleigh variable is 1.1774 sigma
   std::vector<bool> used;
+  used.reserve(residuals.size());
   for (const double residual : residuals) {
     used.push_back(residual <= limit);
   }

@@ -25,8 +25,7 @@ std::string Deviations(const Eigen::Matrix3d& c, const char* format) {
 
 }  // namespace
 
-std::string FormatPositionFile(const std::vector<SinglePointSolution>& solutions,
-                               const std::vector<std::string>& remarks) {
+std::string PositionFileHeader(const std::vector<std::string>& remarks) {
   std::string text;
   for (const std::string& remark : remarks) {
     text += "% " + remark + "\n";
@@ -40,16 +39,26 @@ std::string FormatPositionFile(const std::vector<SinglePointSolution>& solutions
       "  sdeu(m)  sdun(m) age(s)  ratio    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    "
       "sdvne    sdveu"
       "    sdvun\n";
-  for (const SinglePointSolution& s : solutions) {
-    const GeodeticPosition place = ToGeodetic(s.position_E);
-    const Eigen::Matrix3d R_NE = EnuFrame::At(s.position_E).R_EN.transpose();
-    const Eigen::Vector3d v = R_NE * s.velocity_E;
-    text += FormatGpsTime(s.stamp_ns, 3) +
-            Format(" %14.9f %14.9f %10.4f %3d %3d", place.latitude_rad * 180 / M_PI,
-                   place.longitude_rad * 180 / M_PI, place.height_m, 5, s.used) +
-            Deviations(R_NE * s.position_covariance_E * R_NE.transpose(), "48") +
-            Format(" %6.2f %6.1f", 0.0, 0.0) + Format(" %10.5f %10.5f %10.5f", v.y(), v.x(), v.z()) + " " +
-            Deviations(R_NE * s.velocity_covariance_E * R_NE.transpose(), "58") + "\n";
+  return text;
+}
+
+void AppendPosition(const SinglePointSolution& s, std::string* text) {
+  const GeodeticPosition place = ToGeodetic(s.position_E);
+  const Eigen::Matrix3d R_NE = EnuFrame::At(s.position_E).R_EN.transpose();
+  const Eigen::Vector3d v = R_NE * s.velocity_E;
+  *text += FormatGpsTime(s.stamp_ns, 3) +
+           Format(" %14.9f %14.9f %10.4f %3d %3d", place.latitude_rad * 180 / M_PI,
+                  place.longitude_rad * 180 / M_PI, place.height_m, 5, s.used) +
+           Deviations(R_NE * s.position_covariance_E * R_NE.transpose(), "48") +
+           Format(" %6.2f %6.1f", 0.0, 0.0) + Format(" %10.5f %10.5f %10.5f", v.y(), v.x(), v.z()) + " " +
+           Deviations(R_NE * s.velocity_covariance_E * R_NE.transpose(), "58") + "\n";
+}
+
+std::string FormatPositionFile(const std::vector<SinglePointSolution>& solutions,
+                               const std::vector<std::string>& remarks) {
+  std::string text = PositionFileHeader(remarks);
+  for (const SinglePointSolution& solution : solutions) {
+    AppendPosition(solution, &text);
   }
   return text;
 }

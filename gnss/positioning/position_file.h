@@ -12,5 +12,9 @@ namespace alidade {
 /// deviations [m/s] (0 where there is none). `remark` lines head the file, each behind "% ".
 [[nodiscard]] std::string FormatPositionFile(const std::vector<SinglePointSolution>& solutions,
                                              const std::vector<std::string>& remarks);
+/// The lines before the solutions.
+[[nodiscard]] std::string PositionFileHeader(const std::vector<std::string>& remarks);
+/// The line of one.
+void AppendPosition(const SinglePointSolution& solution, std::string* text);
 
 }  // namespace alidade

@@ -53,7 +53,7 @@ void WriteImu(const test::TemporaryFolder& folder) {
 
 Result<Dataset> ReadFixes(const test::TemporaryFolder& folder) {
   Dataset dataset;
-  const Status status = ReadFixFolders(folder.File("mav0"), &dataset);
+  const Status status = ReadFixFolders(folder.File("mav0"), {}, &dataset);
   return status.ok() ? Result<Dataset>(dataset) : status;
 }
 

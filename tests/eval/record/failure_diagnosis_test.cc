@@ -35,7 +35,8 @@ TEST(FailureDiagnosisTest, ANegatedAccelerometerIsNamed) {
   const MeasurementLog log = LogWithSigns({-1, -1, -1});
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
   EXPECT_TRUE(Failed(failed));
-  const std::optional<std::string> cause = DiagnoseAccelerometerSigns(SmallFilter(), log, failed, {});
+  const std::optional<std::string> cause =
+      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }
@@ -43,7 +44,8 @@ TEST(FailureDiagnosisTest, ANegatedAccelerometerIsNamed) {
 TEST(FailureDiagnosisTest, ANegatedAxisIsNamed) {
   const MeasurementLog log = LogWithSigns({1, 1, -1});
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
-  const std::optional<std::string> cause = DiagnoseAccelerometerSigns(SmallFilter(), log, failed, {});
+  const std::optional<std::string> cause =
+      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("z axis negated"));
 }
@@ -61,20 +63,20 @@ TEST(FailureDiagnosisTest, ALossAfterSoundMotionIsNotBlamedOnSigns) {
   }
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
   ASSERT_TRUE(Failed(failed));
-  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, failed, {}).has_value());
+  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {}).has_value());
 }
 
 TEST(FailureDiagnosisTest, ALogThatRunsIsNotQuestioned) {
   const MeasurementLog log = LogWithSigns({1, 1, 1});
   const RunResult result = RunEstimator(SmallFilter(), log, {});
   EXPECT_FALSE(Failed(result)) << result.status.message();
-  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, result, {}).has_value());
+  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), result, {}).has_value());
 }
 
 TEST(FailureDiagnosisTest, WithoutACameraThereIsNothingToCompare) {
   MeasurementLog log = LogWithSigns({1, 1, 1});
   log.frames.clear();
-  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, {}, {}).has_value());
+  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), {}, {}).has_value());
 }
 
 }  // namespace
