@@ -23,15 +23,17 @@ SimulatedTracks SimulateTracks(const SimulatorConfig& config, const ContinuousTr
   tracks.extra_frames.resize(extra_cameras.size());
   for (const TimeNs stamp_ns : stamps) {
     const double exposure_s = SecondsBetween(start_ns, stamp_ns) + rig.camera_time_offset_s;
-    const auto expose = [&](const Pose& T_BC, int height_px) {
-      const auto at = [&](double later_s) { return trajectory.At(exposure_s + later_s).nav.T_WB() * T_BC; };
-      return rig.line_delay_s == 0 ? ImageExposure(at(0)) : ImageExposure(at, rig.line_delay_s, height_px);
-    };
-    tracks.frames.push_back(first.Observe(stamp_ns, expose(rig.T_BC, rig.camera.height_px()), {}));
+    const auto body_after = [&](double later_s) { return trajectory.At(exposure_s + later_s).nav.T_WB(); };
+    const ImageExposure exposure =
+        rig.line_delay_s == 0 ? ImageExposure(body_after(0) * rig.T_BC)
+                              : ImageExposure([&](double later_s) { return body_after(later_s) * rig.T_BC; },
+                                              rig.line_delay_s, rig.camera.height_px());
+    tracks.frames.push_back(first.Observe(stamp_ns, exposure, {}));
     const std::vector<TrackedPoint> tracked = others.empty() ? std::vector<TrackedPoint>() : first.Tracked();
     for (std::size_t k = 0; k < others.size(); ++k) {
-      tracks.extra_frames[k].push_back(others[k].Observe(
-          stamp_ns, expose(extra_cameras[k].T_BC, extra_cameras[k].camera.height_px()), tracked));
+      // Their sheets have no line delay.
+      const ImageExposure at_once(body_after(0) * extra_cameras[k].T_BC);
+      tracks.extra_frames[k].push_back(others[k].Observe(stamp_ns, at_once, tracked));
     }
   }
   tracks.landmark_of_track = first.landmark_of_track();

@@ -4,10 +4,9 @@
 
 #include "eval/record/recorder.h"
 #include "eval/record/recorder_reader.h"
-#include "eval/record/run_options.h"
-#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
+#include "tests/eval/record/estimator_runs.h"
 #include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -27,22 +26,13 @@ SimulatorConfig Miscalibrated(double duration_s) {
 }
 
 EstimatorConfig Calibrating(Backend backend) {
-  EstimatorConfig config;
-  config.backend = backend;
-  config.init.method = InitMethod::kTruth;
-  config.filter.update = UpdateTiming::kDelayedAll;
-  config.filter.track_memory = TrackMemoryPolicy::kCarry;
-  config.filter.clone_policy = ClonePolicy::kOldest;
+  EstimatorConfig config = test::CarryingEstimator(backend);
   config.calibration.extrinsics = config.calibration.time_offset = true;
   return config;
 }
 
 RunResult RunOn(const EstimatorConfig& config, const Dataset& dataset) {
-  RunOptions options;
-  options.truth = &*dataset.truth;
-  options.true_rig = dataset.true_rig ? &*dataset.true_rig : nullptr;
-  options.seed = 101;
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, options);
+  return test::RunOn(config, dataset, 101);
 }
 
 /// Largest error of a coordinate in its own standard deviations.

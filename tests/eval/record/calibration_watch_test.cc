@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "eval/record/run_options.h"
-#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
+#include "tests/eval/record/estimator_runs.h"
 
 // What calibration.watch tells and what it leaves alone, with both back ends.
 
@@ -24,12 +23,7 @@ SimulatorConfig Walk() {
 }
 
 EstimatorConfig Estimating(Backend backend, bool watch) {
-  EstimatorConfig config;
-  config.backend = backend;
-  config.init.method = InitMethod::kTruth;
-  config.filter.update = UpdateTiming::kDelayedAll;
-  config.filter.track_memory = TrackMemoryPolicy::kCarry;
-  config.filter.clone_policy = ClonePolicy::kOldest;
+  EstimatorConfig config = test::CarryingEstimator(backend);
   config.smoother.landmark = SmootherLandmark::kPoseOnly;
   config.smoother.slam_features = 20;
   config.calibration.watch = watch;
@@ -39,10 +33,7 @@ EstimatorConfig Estimating(Backend backend, bool watch) {
 RunResult RunOn(const SimulatorConfig& simulation, const EstimatorConfig& config) {
   const Result<Dataset> dataset = Simulate(simulation, 107);
   EXPECT_TRUE(dataset.ok()) << dataset.message();
-  RunOptions options;
-  options.truth = &*dataset->truth;
-  options.seed = 107;
-  return RunEstimator(config, {dataset->rig, dataset->imu, dataset->tracks}, options);
+  return test::RunOn(config, *dataset, 107);
 }
 
 class CalibrationWatchRunTest : public testing::TestWithParam<Backend> {};

@@ -4,15 +4,19 @@
 
 #include "eval/metrics/association.h"
 #include "eval/metrics/nees.h"
-#include "eval/record/run_options.h"
-#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
+#include "tests/eval/record/estimator_runs.h"
 
 // Estimators on images whose rows are exposed one after the other.
 
 namespace alidade {
 namespace {
+
+using test::CarryingEstimator;
+using test::EveryLandmark;
+using test::NamedEstimator;
+using test::RunOn;
 
 constexpr double kLineDelayS = 0.02 / 480;
 
@@ -28,24 +32,6 @@ Dataset RollingScene(std::uint64_t seed) {
   EXPECT_TRUE(dataset.ok()) << dataset.message();
   EXPECT_EQ(dataset->rig.line_delay_s, kLineDelayS);
   return *std::move(dataset);
-}
-
-EstimatorConfig Estimator(Backend backend) {
-  EstimatorConfig config;
-  config.backend = backend;
-  config.init.method = InitMethod::kTruth;
-  config.filter.update = UpdateTiming::kDelayedAll;
-  config.filter.track_memory = TrackMemoryPolicy::kCarry;
-  config.filter.clone_policy = ClonePolicy::kOldest;
-  return config;
-}
-
-RunResult RunOn(const EstimatorConfig& config, const Dataset& dataset, std::uint64_t seed) {
-  RunOptions options;
-  options.truth = &*dataset.truth;
-  options.true_rig = dataset.true_rig ? &*dataset.true_rig : nullptr;
-  options.seed = seed;
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, options);
 }
 
 struct Score {
@@ -64,32 +50,11 @@ Score ScoreOf(const RunResult& result, const Dataset& dataset) {
   return {std::sqrt(squared / static_cast<double>(pairs->size())), ComputeNees(*pairs).mean_pose};
 }
 
-struct Case {
-  const char* name;
-  EstimatorConfig config;
-};
-
-std::vector<Case> Cases() {
-  EstimatorConfig slam_filter = Estimator(Backend::kFilter);
-  slam_filter.filter.landmark = FilterLandmark::kMsckf;
-  slam_filter.filter.track_memory = TrackMemoryPolicy::kNone;
-  slam_filter.filter.slam_features = 20;
-  EstimatorConfig smoother = Estimator(Backend::kSmoother);
-  smoother.smoother.landmark = SmootherLandmark::kPoseOnly;
-  smoother.smoother.slam_features = 20;
-  EstimatorConfig inverse_depth = Estimator(Backend::kSmoother);
-  inverse_depth.smoother.landmark = SmootherLandmark::kInverseDepth;
-  return {{"filter", Estimator(Backend::kFilter)},
-          {"filter with SLAM features", slam_filter},
-          {"smoother", smoother},
-          {"smoother with inverse depths", inverse_depth}};
-}
-
 // GIVEN a read-out of 20 ms WHEN each observation has its row's time THEN the covariance covers the error,
 // and WHEN all rows are taken as exposed at once it does not.
 TEST(RollingShutterRun, EveryEstimatorIsConsistentWithIt) {
   const Dataset dataset = RollingScene(907);
-  for (const Case& c : Cases()) {
+  for (const NamedEstimator& c : EveryLandmark()) {
     SCOPED_TRACE(c.name);
     const Score with = ScoreOf(RunOn(c.config, dataset, 907), dataset);
     EXPECT_LT(with.nees, 14) << "6 on average over runs";
@@ -105,7 +70,7 @@ TEST(RollingShutterRun, EveryEstimatorIsConsistentWithIt) {
 TEST(RollingShutterRun, TheLineDelayIsFound) {
   Dataset dataset = RollingScene(908);
   dataset.rig.line_delay_s = 0.75 * kLineDelayS;
-  for (Case& c : Cases()) {
+  for (NamedEstimator& c : EveryLandmark()) {
     SCOPED_TRACE(c.name);
     c.config.calibration.line_delay = true;
     c.config.calibration.line_delay_std_s = 1e-5;
@@ -123,7 +88,7 @@ TEST(RollingShutterRun, TheLineDelayIsFound) {
 // times.
 TEST(RollingShutterRun, AStartInMotionTakesTheRowsTimes) {
   const Dataset dataset = RollingScene(909);
-  EstimatorConfig config = Estimator(Backend::kFilter);
+  EstimatorConfig config = CarryingEstimator(Backend::kFilter);
   config.init.method = InitMethod::kDynamic;
   const RunResult result = RunOn(config, dataset, 909);
   ASSERT_TRUE(result.status.ok()) << result.status.message() << result.init_report;

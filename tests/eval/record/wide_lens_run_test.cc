@@ -4,15 +4,19 @@
 
 #include "eval/metrics/association.h"
 #include "eval/metrics/nees.h"
-#include "eval/record/run_options.h"
-#include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
+#include "tests/eval/record/estimator_runs.h"
 
 // Estimators on lenses whose rays point behind the camera.
 
 namespace alidade {
 namespace {
+
+using test::CarryingEstimator;
+using test::EveryLandmark;
+using test::NamedEstimator;
+using test::RunOn;
 
 /// 15 s of the figure-8 with a lens of 220 degrees across the diagonal.
 SimulatorConfig WideScene() {
@@ -24,24 +28,6 @@ SimulatorConfig WideScene() {
   config.focal_px = 199.5;
   config.max_features = 80;
   return config;
-}
-
-EstimatorConfig Estimator(Backend backend) {
-  EstimatorConfig config;
-  config.backend = backend;
-  config.init.method = InitMethod::kTruth;
-  config.filter.update = UpdateTiming::kDelayedAll;
-  config.filter.track_memory = TrackMemoryPolicy::kCarry;
-  config.filter.clone_policy = ClonePolicy::kOldest;
-  return config;
-}
-
-RunResult RunOn(const EstimatorConfig& config, const Dataset& dataset, std::uint64_t seed) {
-  RunOptions options;
-  options.truth = &*dataset.truth;
-  options.true_rig = dataset.true_rig ? &*dataset.true_rig : nullptr;
-  options.seed = seed;
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, options);
 }
 
 NeesResult NeesOf(const RunResult& result, const Dataset& dataset) {
@@ -58,34 +44,13 @@ double MeanUsed(const RunResult& result) {
   return used / static_cast<double>(result.records.size());
 }
 
-struct Case {
-  const char* name;
-  EstimatorConfig config;
-};
-
-std::vector<Case> Cases() {
-  EstimatorConfig slam_filter = Estimator(Backend::kFilter);
-  slam_filter.filter.landmark = FilterLandmark::kMsckf;
-  slam_filter.filter.track_memory = TrackMemoryPolicy::kNone;
-  slam_filter.filter.slam_features = 20;
-  EstimatorConfig smoother = Estimator(Backend::kSmoother);
-  smoother.smoother.landmark = SmootherLandmark::kPoseOnly;
-  smoother.smoother.slam_features = 20;
-  EstimatorConfig inverse_depth = Estimator(Backend::kSmoother);
-  inverse_depth.smoother.landmark = SmootherLandmark::kInverseDepth;
-  return {{"filter", Estimator(Backend::kFilter)},
-          {"filter with SLAM features", slam_filter},
-          {"smoother", smoother},
-          {"smoother with inverse depths", inverse_depth}};
-}
-
 // GIVEN a lens of 220 degrees WHEN each estimator runs with the plane the lens chooses THEN its covariance
 // covers the error, and it uses more of the tracks than the plane z = 1 can carry.
 TEST(WideLensRun, EveryEstimatorIsConsistentOnTangentPlanes) {
   const Result<Dataset> dataset = Simulate(WideScene(), 905);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   ASSERT_EQ(dataset->rig.camera.plane(), ObservationPlane::kTangent);
-  for (const Case& c : Cases()) {
+  for (const NamedEstimator& c : EveryLandmark()) {
     SCOPED_TRACE(c.name);
     const RunResult result = RunOn(c.config, *dataset, 905);
     ASSERT_TRUE(result.status.ok()) << result.status.message();
@@ -116,7 +81,7 @@ TEST(WideLensRun, WhatLiesBesideAndBehindIsEnough) {
     });
   }
   for (const Backend backend : {Backend::kFilter, Backend::kSmoother}) {
-    EstimatorConfig config = Estimator(backend);
+    EstimatorConfig config = CarryingEstimator(backend);
     config.smoother.landmark = SmootherLandmark::kPoseOnly;
     config.init.method = backend == Backend::kFilter ? InitMethod::kDynamic : InitMethod::kTruth;
     const RunResult result = RunOn(config, *dataset, 906);

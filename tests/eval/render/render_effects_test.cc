@@ -22,6 +22,7 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using test::ExcessVariance;
 using test::FrameWith;
 using test::MeanGrey;
 using test::RenderedConfig;
@@ -167,12 +168,7 @@ TEST(RenderEffects, GainKeepsThePictureAndRaisesTheNoise) {
   };
   const GreyImage clean = exposed(4, 0), noisy = exposed(4, 1);
   EXPECT_NEAR(MeanGrey(clean), MeanGrey(exposed(1, 0)), 0.5);
-  double excess = 0;
-  for (std::size_t i = 0; i < clean.pixels.size(); ++i) {
-    const double difference = noisy.pixels[i] - clean.pixels[i];
-    excess += difference * difference - (16 + 0.4 * clean.pixels[i]);
-  }
-  EXPECT_NEAR(excess / static_cast<double>(clean.pixels.size()), 1.0 / 6, 2);
+  EXPECT_NEAR(ExcessVariance(clean, noisy, 16, 0.4), 1.0 / 6, 2);
 }
 
 TEST(RenderEffects, VignettingDarkensTheCornersByItsShare) {

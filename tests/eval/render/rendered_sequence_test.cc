@@ -23,6 +23,7 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using test::ExcessVariance;
 using test::FrameWith;
 using test::MeanGrey;
 using test::Quantile;
@@ -110,13 +111,7 @@ TEST(RenderedSequence, BrightnessAndNoiseAreAsTheirKeysSay) {
     render->read_noise_grey = 3;
     render->shot_noise_grey = 0.1;
   });
-  double excess = 0;
-  for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
-    const double difference = noisy.pixels[i] - plain.pixels[i];
-    excess += difference * difference - (9 + 0.1 * plain.pixels[i]);
-  }
-  // Two roundings add a sixth.
-  EXPECT_NEAR(excess / static_cast<double>(plain.pixels.size()), 1.0 / 6, 0.5);
+  EXPECT_NEAR(ExcessVariance(plain, noisy, 9, 0.1), 1.0 / 6, 0.5);
 }
 
 TEST(RenderedSequence, ThreadsChangeNoByteAndTheFolderReadsBack) {
