@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 
@@ -17,22 +18,29 @@ constexpr size_t kMost = CloneConditional::kMaxNeighbours;
 constexpr int kMostRows = 6 * CloneConditional::kMaxNeighbours;
 using Joint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows>;
 
-/// Indices of the `count` clones nearest to `index` in time, the very nearest first.
-std::array<size_t, kMost> NearestClones(size_t clones, size_t index, size_t count) {
-  std::array<size_t, kMost> nearest{};
-  for (size_t i = 0, before = index, after = index + 1; i < count; ++i) {
+/// Indices of `count` of the other clones, by their distance from `index` in time: the nearest first, then at
+/// ranks that grow geometrically up to the farthest.
+std::array<size_t, kMost> SpreadClones(size_t clones, size_t index, size_t count) {
+  std::array<size_t, kMost> chosen{};
+  const double step = count > 1 ? std::pow(clones - 1, 1.0 / static_cast<double>(count - 1)) : 1;
+  size_t taken = 0;
+  for (size_t rank = 1, before = index, after = index + 1; taken < count; ++rank) {
     const bool earlier = before > 0 && (after == clones || index - before < after - index);
-    nearest[i] = earlier ? --before : after++;
+    const size_t next = earlier ? --before : after++;
+    const auto wanted = static_cast<size_t>(std::lround(std::pow(step, taken)));
+    if (rank >= std::max(taken + 1, wanted)) {
+      chosen[taken++] = next;
+    }
   }
-  return nearest;
+  return chosen;
 }
 
 /// Covariance of (x_m, x_2, x_3 ...), less x_1 each: what follows says nothing about where all of them are.
-Joint RelativeCovariance(const FilterState& state, size_t leaving, const std::array<size_t, kMost>& nearest,
-                         size_t count) {
+Joint RelativeCovariance(const FilterState& state, size_t leaving,
+                         const std::array<size_t, kMost>& neighbours, size_t count) {
   const SquareRootCovariance& covariance = state.covariance();
-  const auto offset = [&](size_t i) { return state.CloneOffset(i == 0 ? leaving : nearest[i]); };
-  const int first = state.CloneOffset(nearest[0]);
+  const auto offset = [&](size_t i) { return state.CloneOffset(i == 0 ? leaving : neighbours[i]); };
+  const int first = state.CloneOffset(neighbours[0]);
   const Matrix6d of_first = covariance.PoseBlock(first, first);
   std::array<Matrix6d, kMost> with_first;
   for (size_t i = 0; i < count; ++i) {
@@ -56,8 +64,8 @@ void ConditionClone(const FilterState& state, size_t index, size_t memories, Clo
   const std::vector<Clone>& clones = state.clones();
   CHECK_GE(clones.size(), 3U);
   const size_t count = std::min(kMost, clones.size() - 1);
-  const std::array<size_t, kMost> nearest = NearestClones(clones.size(), index, count);
-  const Joint p = RelativeCovariance(state, index, nearest, count);
+  const std::array<size_t, kMost> neighbours = SpreadClones(clones.size(), index, count);
+  const Joint p = RelativeCovariance(state, index, neighbours, count);
   const Index others = p.rows() - 6;
   const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMostRows, 6> gain =
       p.bottomRightCorner(others, others).ldlt().solve(p.bottomLeftCorner(others, 6));
@@ -66,9 +74,9 @@ void ConditionClone(const FilterState& state, size_t index, size_t memories, Clo
   conditional->neighbours = count;
   auto over_first = conditional->gain.leftCols<6>();
   over_first.setIdentity();
-  conditional->neighbour_slots[0] = clones[nearest[0]].slot;
+  conditional->neighbour_slots[0] = clones[neighbours[0]].slot;
   for (size_t i = 1; i < count; ++i) {
-    conditional->neighbour_slots[i] = clones[nearest[i]].slot;
+    conditional->neighbour_slots[i] = clones[neighbours[i]].slot;
     const Matrix6d part = gain.middleRows<6>(6 * static_cast<Index>(i - 1)).transpose();
     conditional->gain.middleCols<6>(6 * static_cast<Index>(i)) = part;
     over_first -= part;

@@ -8,7 +8,8 @@
 
 namespace alidade {
 
-/// The marginalised clone seen from its neighbours in time: x_m = G x_s + w, w ~ N(0, C).
+/// The marginalised clone seen from clones that are near in time and some that are not: x_m = G x_s + w,
+/// w ~ N(0, C).
 struct CloneConditional {
   static constexpr int kMaxNeighbours = 8;
   int leaving_serial = 0;
@@ -19,9 +20,10 @@ struct CloneConditional {
   Matrix6d covariance = Matrix6d::Zero();             ///< C
 };
 
-/// How clone `index` follows from its neighbours. `memories`: how many are carried over it; w is common to
-/// them, and C is scaled so that they may take it for their own (docs/track_memory.md). The state has at
-/// least three clones.
+/// How clone `index` follows from others, which reach from its neighbours to the other end of the window: w
+/// is taken as independent of the state, and rows of past updates couple clones that are far apart.
+/// `memories`: how many are carried over it; w is common to them, and C is scaled so that they may take it
+/// for their own (docs/track_memory.md). The state has at least three clones.
 void ConditionClone(const FilterState& state, size_t index, size_t memories, CloneConditional* conditional);
 
 }  // namespace alidade
