@@ -43,11 +43,12 @@ class FeatureUpdate {
   TrackOutcome AppendToRemember(const FilterState& state, const Track& track);
   /// The same for a track that becomes a SLAM feature: linearised at the Gauss-Newton solution, with the
   /// three remaining rows in `landmark_rows`. kWaiting, with nothing appended, while its depth is not known
-  /// to slam_max_depth_deviation.
+  /// to slam_max_depth_deviation and, where tracks are remembered, well enough for a memory to start.
   TrackOutcome AppendLandmark(const FilterState& state, const Track& track, LandmarkRows* landmark_rows) {
-    return AppendViews(
-        state, track,
-        {.max_depth_deviation = filter_.slam_max_depth_deviation, .landmark_rows = landmark_rows});
+    return AppendViews(state, track,
+                       {.max_depth_deviation = filter_.slam_max_depth_deviation,
+                        .to_remember = filter_.track_memory != TrackMemoryPolicy::kNone,
+                        .landmark_rows = landmark_rows});
   }
   /// Appends the two rows that the newest view of a remembered track adds.
   TrackOutcome AppendRemembered(const FilterState& state, const Track& track);

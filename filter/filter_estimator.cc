@@ -120,6 +120,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   SlamFeatures::RemoveEnded(serial_, &tracks_, &state_);
   tracks_.RemoveEnded(serial_);
   if (leaving >= 0) {
+    slam_.Promote(serial_, &tracks_, &state_);
     LeaveMemories(static_cast<size_t>(leaving));
     tracks_.RemoveClone(leaving_serial);
     state_.RemoveClone(static_cast<size_t>(leaving));

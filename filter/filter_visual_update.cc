@@ -28,7 +28,7 @@ void FilterEstimator::AppendTrack(size_t index, int leaving_serial) {
       return;
     }
     outcome = slam_.Append(state_, track, &update_);
-  } else if (slam_.IsCandidate(state_, track, serial_)) {
+  } else if (due_ == DueTracks::kUsual && slam_.IsCandidate(state_, track, serial_)) {
     outcome = update_.AppendLandmark(state_, track, slam_.TakeRows());
     if (outcome == TrackOutcome::kReady) {
       slam_.AssignBlock(update_.blocks().size() - 1);
@@ -146,7 +146,6 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
 
 bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   std::vector<Track>& tracks = tracks_.tracks();
-  slam_.Promote(serial_, &tracks_, &state_);
   if (!CorrectWithDueTracks(leaving_serial)) {
     return false;
   }

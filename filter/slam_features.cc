@@ -36,7 +36,8 @@ void SlamFeatures::Promote(int serial, TrackStore* tracks, FilterState* state) {
       return;
     }
     TrackMemory& memory = track.memory;
-    if (!memory.active || track.last_serial != serial || track.observations < filter_.slam_min_track) {
+    if (!memory.active || memory.carried || track.last_serial != serial ||
+        track.observations < filter_.slam_min_track) {
       continue;
     }
     LandmarkRows& rows = promoted_;

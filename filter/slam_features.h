@@ -24,8 +24,8 @@ class SlamFeatures {
   void Begin();
 
   /// Makes landmarks of remembered tracks seen in frame `serial` that are long enough, while places are free:
-  /// a memory holds the very rows t = R f~ + T x + n that a landmark enters with. Their newest observation is
-  /// not used by it.
+  /// a memory holds the very rows t = R f~ + T x + n that a landmark enters with. One that was carried over a
+  /// clone stays a memory: its noise is not its own alone.
   void Promote(int serial, TrackStore* tracks, FilterState* state);
   /// True when the track, seen in frame `serial`, has earned a place in the state and one is free.
   [[nodiscard]] bool IsCandidate(const FilterState& state, const Track& track, int serial) const;

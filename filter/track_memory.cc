@@ -79,6 +79,7 @@ void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, con
   if (!memory->active) {
     return;
   }
+  memory->carried = false;
   memory->refusals = 0;
   memory->innovations.setZero();
   memory->further_views = 0;
@@ -129,6 +130,7 @@ bool TrackMemoryKeeper::Extend(const FilterState& state, const TrackMemory& memo
   innovation << Vector3d::Zero(), -view.residual;
   EliminateLandmark(landmark, rotation, innovation);
   extended->active = true;
+  extended->carried = memory.carried;
   extended->refusals = 0;
   extended->residual = view.residual;
   extended->innovations = memory.innovations;
@@ -179,6 +181,7 @@ void TrackMemoryKeeper::Carry(const FilterState& state, const CloneConditional& 
   if (rows.isZero(0)) {
     return;
   }
+  memory->carried = true;
   for (size_t s = 0; s < conditional.neighbours; ++s) {
     memory->clone_rows.middleCols<6>(6 * conditional.neighbour_slots[s]) +=
         rows * conditional.gain.middleCols<6>(6 * static_cast<Index>(s));

@@ -19,6 +19,7 @@ struct TrackMemory {
   Eigen::Matrix3d landmark_rows = Eigen::Matrix3d::Identity();  ///< R
   /// T: six columns a clone slot, then the calibration's
   Eigen::Matrix<double, 3, Eigen::Dynamic> clone_rows;
+  bool carried = false;                                   ///< a clone that it saw has left
   int refusals = 0;                                       ///< observations refused in a row
   Eigen::Vector2d residual = Eigen::Vector2d::Zero();     ///< of the last view, before its update; whitened
   Eigen::Vector2d innovations = Eigen::Vector2d::Zero();  ///< sum over the further views, each whitened

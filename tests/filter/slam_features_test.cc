@@ -196,6 +196,22 @@ TEST_P(EveryConvention, ALandmarkThatCameAndWentLeavesWhatAJointUpdateLeaves) {
 
 // GIVEN a track that five views made a memory of WHEN it becomes a landmark instead and sees on THEN nothing
 // was lost: the state is that of one joint update of all views.
+TEST_P(EveryConvention, ACarriedMemoryStaysOne) {
+  SlamFeatures slam(Flight::Filter(), 12);
+  Flight flight(GetParam(), false);
+  flight.Frame();
+  TrackStore store;
+  store.tracks().push_back(flight.track_);
+  store.tracks().front().observations = 100;
+  TrackMemory& memory = store.tracks().front().memory;
+  memory.active = true;
+  memory.carried = true;
+  slam.Promote(flight.serial_, &store, &flight.state_);
+  EXPECT_TRUE(memory.active);
+  EXPECT_FALSE(store.tracks().front().in_state);
+  EXPECT_TRUE(flight.state_.landmarks().empty());
+}
+
 TEST_P(EveryConvention, APromotedMemoryLosesNothing) {
   FilterConfig filter = Flight::Filter();
   filter.error = GetParam();

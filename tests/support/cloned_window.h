@@ -12,16 +12,16 @@ namespace alidade::test {
 
 constexpr int kClonedFrames = 9;
 
-/// A filter state with a clone for each of the first frames of a simulation; nothing updated yet.
+/// A filter state with a clone for each of the first `frames` frames of a simulation; nothing updated yet.
 inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention,
-                                   const NavEstimate& initial) {
-  FilterState state(convention, false, dataset.rig.T_BC, {kClonedFrames + 1, 0});
+                                   const NavEstimate& initial, int frames = kClonedFrames) {
+  FilterState state(convention, false, dataset.rig.T_BC, {frames + 1, 0});
   EXPECT_TRUE(state.Reset(initial).ok());
   ImuBuffer imu(1.0);
   for (const ImuSample& sample : dataset.imu) {
     EXPECT_TRUE(imu.Add(sample).ok());
   }
-  for (int k = 0; k < kClonedFrames; ++k) {
+  for (int k = 0; k < frames; ++k) {
     const TimeNs stamp_ns = dataset.tracks[static_cast<size_t>(k)].stamp_ns;
     if (k > 0) {
       std::vector<ImuSample> interval;
