@@ -1,6 +1,8 @@
 #include "core/body_motion.h"
 
-#include "core/check.h"
+#include <algorithm>
+
+#include "core/imu_buffer.h"
 #include "core/lie.h"
 
 namespace alidade {
@@ -8,9 +10,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-// Over less the noise of two samples, of an IMU at 1 kHz, would turn a row by more than a pixel's tenth.
-constexpr TimeNs kLeastSpanNs = 10'000'000;
 
 }  // namespace
 
@@ -27,19 +26,38 @@ Vector6d BodyMotion::Rates(const Matrix3d& R_WB, double later_s) const {
   return (Vector6d() << rate_B, R_WB * v_B).finished();
 }
 
-MeasuredTurn TurnAtEnd(std::span<const ImuSample> samples) {
-  CHECK(!samples.empty());
-  const ImuSample& last = samples.back();
-  MeasuredTurn turn{last.gyro, Vector3d::Zero()};
-  std::size_t first = samples.size() - 1;
-  while (first > 0 && last.stamp_ns - samples[first].stamp_ns < kLeastSpanNs) {
-    --first;
+MeasuredTurn TurnAround(std::span<const ImuSample> samples, TimeNs stamp_ns, double span_s) {
+  if (samples.empty()) {
+    return {};
   }
-  if (samples[first].stamp_ns < last.stamp_ns) {
-    turn.alpha_radps2 =
-        (last.gyro - samples[first].gyro) / SecondsBetween(samples[first].stamp_ns, last.stamp_ns);
+  const TimeNs from_ns = std::max(samples.front().stamp_ns, stamp_ns - SecondsToNs(span_s));
+  const TimeNs to_ns = std::min(samples.back().stamp_ns, stamp_ns + SecondsToNs(span_s));
+  const TimeNs middle_ns = from_ns + (to_ns - from_ns) / 2;
+  const double half_s = 0.5 * SecondsBetween(from_ns, to_ns);
+  Vector3d area = Vector3d::Zero();    // integral of the rate
+  Vector3d moment = Vector3d::Zero();  // integral of the rate times the time since the middle
+  const auto after =
+      std::upper_bound(samples.begin(), samples.end(), from_ns,
+                       [](TimeNs stamp, const ImuSample& sample) { return stamp < sample.stamp_ns; });
+  if (to_ns <= from_ns) {
+    const bool between =
+        after != samples.begin() && after != samples.end() && (after - 1)->stamp_ns < from_ns;
+    const ImuSample& nearest = after == samples.begin() ? *after : *(after - 1);
+    return {(between ? Interpolate(nearest, *after, from_ns) : nearest).gyro, Vector3d::Zero()};
   }
-  return turn;
+  for (auto next = after; next != samples.end() && (next - 1)->stamp_ns < to_ns; ++next) {
+    const TimeNs begin_ns = std::max((next - 1)->stamp_ns, from_ns);
+    const TimeNs end_ns = std::min(next->stamp_ns, to_ns);
+    const Vector3d begin = Interpolate(*(next - 1), *next, begin_ns).gyro;
+    const Vector3d end = Interpolate(*(next - 1), *next, end_ns).gyro;
+    const double begin_s = SecondsBetween(middle_ns, begin_ns);
+    const double end_s = SecondsBetween(middle_ns, end_ns);
+    area += 0.5 * (end_s - begin_s) * (begin + end);
+    // Simpson's rule, exact here.
+    moment += (end_s - begin_s) / 6 * (begin_s * begin + (begin_s + end_s) * (begin + end) + end_s * end);
+  }
+  const Vector3d slope = 1.5 / (half_s * half_s * half_s) * moment;
+  return {0.5 / half_s * area + SecondsBetween(middle_ns, stamp_ns) * slope, slope};
 }
 
 BodyMotion MotionOf(const MeasuredTurn& turn, const Vector3d& gyro_bias, const Matrix3d& R_WB,

@@ -27,14 +27,16 @@ struct BodyMotion {
   [[nodiscard]] Eigen::Vector3d TurnAfter(double later_s) const;
 };
 
-/// What the gyroscope says of a body's turn at the end of an interval.
+/// What the gyroscope says of a body's turn around an instant.
 struct MeasuredTurn {
-  Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();    ///< the last sample
-  Eigen::Vector3d alpha_radps2 = Eigen::Vector3d::Zero();  ///< its change over the last 10 ms or more
+  Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();    ///< at the instant
+  Eigen::Vector3d alpha_radps2 = Eigen::Vector3d::Zero();  ///< its change with time
 };
-/// Precondition: `samples` in time order, at least one. Of a shorter interval the change is that over all of
-/// it.
-[[nodiscard]] MeasuredTurn TurnAtEnd(std::span<const ImuSample> samples);
+/// The line in time that fits the linearly interpolated gyroscope best, in the mean of squares from `span_s`
+/// before the instant until `span_s` after it, as far as the samples reach. One sample at the instant would
+/// carry the vibration of that moment over the whole span. A span of 0 gives the interpolated sample.
+/// `samples`: in time order; without any all is zero.
+[[nodiscard]] MeasuredTurn TurnAround(std::span<const ImuSample> samples, TimeNs stamp_ns, double span_s);
 /// The motion of a body there. `gyro_bias` [rad/s], v_WB [m/s] in the world's axes.
 [[nodiscard]] BodyMotion MotionOf(const MeasuredTurn& turn, const Eigen::Vector3d& gyro_bias,
                                   const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& v_WB);

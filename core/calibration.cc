@@ -43,6 +43,13 @@ CameraCalibration GivenCamera(const RigCalibration& rig, const VisionConfig& vis
   return given;
 }
 
+double ReadOutSpan(const CameraCalibration& camera) {
+  constexpr double kLeastS = 5e-3;
+  return camera.line_delay_s
+             ? std::max(kLeastS, 0.5 * camera.camera.height_px() * std::abs(*camera.line_delay_s))
+             : 0;
+}
+
 CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera) {
   const auto take = [this](bool wanted, int size, int* first) {
     *first = wanted ? size_ : -1;

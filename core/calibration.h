@@ -22,6 +22,11 @@ struct CameraCalibration {
 /// That of a rig; the line delay only with vision.rolling_shutter.
 [[nodiscard]] CameraCalibration GivenCamera(const RigCalibration& rig, const VisionConfig& vision);
 
+/// How far before and after its stamp a frame's rows need the gyroscope [s]: half the read-out, 5 ms at
+/// least, since over less the noise of two samples of an IMU at 1 kHz would turn a row by a tenth of a pixel;
+/// 0 where all rows are exposed at once.
+[[nodiscard]] double ReadOutSpan(const CameraCalibration& camera);
+
 /// Which coordinates the error of a CameraCalibration has, and where. In this order, each group only when its
 /// key is on:
 ///

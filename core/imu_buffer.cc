@@ -90,8 +90,9 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
   return Status::Ok();
 }
 
-void ImuBuffer::DropBefore(TimeNs stamp_ns) {
-  while (samples().size() >= 2 && samples()[1].stamp_ns <= stamp_ns) {
+void ImuBuffer::DropBefore(TimeNs stamp_ns, double kept_s) {
+  const TimeNs kept_ns = stamp_ns - SecondsToNs(kept_s);
+  while (samples().size() >= 2 && samples()[1].stamp_ns <= kept_ns) {
     ++begin_;
   }
   // Without a sample at or before the stamp, the one that comes before it is still needed.

@@ -38,8 +38,9 @@ class ImuBuffer {
   /// longer than the limit is counted and bridged by interpolation.
   Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* interval);
 
-  /// Forgets samples that no interval starting at or after `stamp_ns` needs.
-  void DropBefore(TimeNs stamp_ns);
+  /// Forgets samples that no interval starting at or after `stamp_ns` needs, but for those of the `kept_s`
+  /// seconds before it, which remain in samples().
+  void DropBefore(TimeNs stamp_ns, double kept_s = 0);
   void Clear() {
     samples_.clear();
     begin_ = 0;

@@ -28,6 +28,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       measurements_(config),
       rest_(config.vision, config.init, rig_.camera),
       imu_(config.imu.max_gap_s),
+      read_out_span_s_(ReadOutSpan(state_.calibration())),
       pixel_noise_(config.vision),
       correction_(state_.covariance().capacity()),
       corrected_(state_.covariance().capacity()) {
@@ -47,7 +48,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   pixel_noise_.Reset();
   aligned_ = false;
   rest_.Clear();
-  imu_.DropBefore(initial.stamp_ns);
+  imu_.DropBefore(initial.stamp_ns, read_out_span_s_);
   frame_stamp_ns_ = INT64_MIN;
   statistics_ = {};
   initialized_ = true;
@@ -68,10 +69,6 @@ std::optional<CalibrationEstimate> FilterEstimator::LatestCalibration() const {
 }
 
 Status FilterEstimator::AddImu(const ImuSample& sample) {
-  // Before the first frame nothing was propagated that would tell the rate there.
-  if ((state_.layout().time_offset() >= 0 || state_.has_rolling_shutter()) && serial_ + 1 == first_serial_) {
-    last_turn_ = MeasuredTurn{sample.gyro};
-  }
   return imu_.Add(sample);
 }
 
@@ -85,9 +82,8 @@ Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
     initialized_ = false;
     return Status::Diverged("filter: up to " + FormatSeconds(stamp_ns) + " s " + propagated.message());
   }
-  imu_.DropBefore(stamp_ns);
+  imu_.DropBefore(stamp_ns, read_out_span_s_);
   rest_.AddImu(interval_);
-  last_turn_ = TurnAtEnd(interval_);
   return Status::Ok();
 }
 
@@ -101,7 +97,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(state_.calibration().time_offset_s)));
   frame_stamp_ns_ = state_.stamp_ns();
   ++serial_;
-  state_.AddClone(serial_, last_turn_);
+  state_.AddClone(serial_, TurnAround(imu_.samples(), state_.stamp_ns(), read_out_span_s_));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   stopwatch.Restart();
   statistics_.pixel_noise_px = pixel_noise_.px();

@@ -104,6 +104,7 @@ class FilterEstimator : public Estimator {
   MeasurementUpdate measurements_;
   RestDetector rest_;
   ImuBuffer imu_;
+  double read_out_span_s_;
   PixelNoise pixel_noise_;
   FrameStatistics statistics_;
   FilterObserver* observer_ = nullptr;
@@ -114,7 +115,6 @@ class FilterEstimator : public Estimator {
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
-  MeasuredTurn last_turn_;             ///< at the state's stamp
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

@@ -62,7 +62,8 @@ Status FilterEstimator::AddGnss(const GnssEpoch& epoch) {
   }
   ALIDADE_RETURN_IF_ERROR(BeginMeasurement("GNSS epoch", epoch.stamp_ns));
   const Stopwatch stopwatch;
-  const bool finite = gnss_.Apply(epoch, last_turn_.gyro_radps, &state_, Correction(), &statistics_);
+  const Eigen::Vector3d gyro_radps = TurnAround(imu_.samples(), state_.stamp_ns(), 0).gyro_radps;
+  const bool finite = gnss_.Apply(epoch, gyro_radps, &state_, Correction(), &statistics_);
   Status status = EndMeasurement("GNSS epoch", epoch.stamp_ns, finite);
   statistics_.update_ms = stopwatch.ElapsedMs();
   return status;

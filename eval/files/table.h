@@ -57,8 +57,8 @@ class Table {
   }
   [[nodiscard]] bool empty() const { return size() == 0; }
   /// Precondition of both: not empty.
-  [[nodiscard]] const Row& front() const { return spool_ != nullptr ? spool_->first : rows_->front(); }
-  [[nodiscard]] const Row& back() const { return spool_ != nullptr ? spool_->last : rows_->back(); }
+  [[nodiscard]] const Row& front() const { return rows_ != nullptr ? rows_->front() : (*spool_).first; }
+  [[nodiscard]] const Row& back() const { return rows_ != nullptr ? rows_->back() : (*spool_).last; }
 
   /// One walk from the first row to the last. The table must outlive it; rows added meanwhile may be missed.
   class Pass {

@@ -30,8 +30,8 @@ class MovingBoxes {
   MovingBoxes(const SimulatorConfig& config, const ContinuousTrajectory& trajectory, std::uint64_t seed,
               Hall* hall)
       : config_(config), stream_(seed, "render.moving"), hall_(hall) {
-    for (double time_s = 0; time_s <= trajectory.DurationSeconds(); time_s += kStepS) {
-      path_.push_back(trajectory.At(time_s).nav.p_WB - hall->origin_W);
+    for (int step = 0; step * kStepS <= trajectory.DurationSeconds(); ++step) {
+      path_.push_back(trajectory.At(step * kStepS).nav.p_WB - hall->origin_W);
     }
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/calibration.h"
 #include "core/format.h"
 
 namespace alidade {
@@ -30,6 +31,7 @@ EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration
     : config_(config),
       rig_(rig),
       options_(options),
+      read_out_span_ns_(SecondsToNs(ReadOutSpan(GivenCamera(rig, config.vision)))),
       estimator_(*estimator),
       events_(*events),
       imu_(config.imu.guard),
@@ -69,7 +71,7 @@ TimeNs EstimatorLoop::EpochLead() const {
 void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
   const Stopwatch stopwatch;
   const TimeNs imu_ns = ImuTime(frame.stamp_ns);
-  DeliverImu(imu_ns);
+  DeliverImu(imu_ns + FrameLead());
   if (degradation_.IsFrozen(frame)) {
     ProcessTracks({frame.stamp_ns, {}, frame.frontend_ms}, stopwatch);
   } else {

@@ -38,6 +38,8 @@ class EstimatorLoop {
   [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const;
   /// How far beyond an epoch the IMU is needed [ns].
   [[nodiscard]] TimeNs EpochLead() const;
+  /// How far beyond a frame: with a rolling shutter until its last row, once the estimator runs.
+  [[nodiscard]] TimeNs FrameLead() const { return running() ? read_out_span_ns_ : 0; }
 
   /// The IMU that there is reaches the message; what it lacks is the estimator's to refuse.
   void ProcessFrame(const TrackFrame& frame);
@@ -83,6 +85,7 @@ class EstimatorLoop {
   const EstimatorConfig& config_;
   const RigCalibration& rig_;
   const SessionOptions& options_;
+  const TimeNs read_out_span_ns_;
   Estimator& estimator_;
   std::vector<SessionEvent>& events_;
   ImuStream imu_;

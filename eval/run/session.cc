@@ -165,7 +165,7 @@ bool Session::IsReady(const Due& due) {
     return false;
   }
   const bool is_epoch = !is_frame && due.sensor->sensor() == Sensor::kGnss;
-  const TimeNs needed_ns = due.imu_ns + (is_epoch ? loop_.EpochLead() : 0);
+  const TimeNs needed_ns = due.imu_ns + (is_frame ? loop_.FrameLead() : is_epoch ? loop_.EpochLead() : 0);
   // Another message of the same time would be of another sensor: it comes after the frame.
   const auto passed = [&](TimeNs watermark) {
     return is_frame ? needed_ns <= watermark : needed_ns < watermark;

@@ -47,7 +47,11 @@ std::unique_ptr<Estimator> MakeBatch(const EstimatorConfig& config, const RigCal
 
 BatchEstimator::BatchEstimator(const EstimatorConfig& config, const RigCalibration& rig,
                                std::unique_ptr<Estimator> initial)
-    : config_(config), initial_(std::move(initial)), imu_(config.imu.max_gap_s), sequence_(config, rig) {}
+    : config_(config),
+      initial_(std::move(initial)),
+      imu_(config.imu.max_gap_s),
+      read_out_span_s_(ReadOutSpan(GivenCamera(rig, config.vision))),
+      sequence_(config, rig) {}
 
 Status BatchEstimator::Initialize(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(initial_->Initialize(initial));
@@ -84,8 +88,8 @@ Status BatchEstimator::ReachFrame(const NavEstimate& estimate) {
   if (const Status status = imu_.Interval(last_ns, estimate.stamp_ns, &interval); !status.ok()) {
     return Status::Diverged("batch: " + status.message());
   }
-  imu_.DropBefore(estimate.stamp_ns);
-  sequence_.AddFrame(estimate, std::move(interval));
+  sequence_.AddFrame(estimate, std::move(interval), imu_.samples());
+  imu_.DropBefore(estimate.stamp_ns, read_out_span_s_);
   return Status::Ok();
 }
 

@@ -45,6 +45,7 @@ class BatchEstimator final : public Estimator {
   EstimatorConfig config_;
   std::unique_ptr<Estimator> initial_;
   ImuBuffer imu_;
+  double read_out_span_s_;
   BatchSequence sequence_;
   bool aligned_ = false;
   std::vector<int> accepted_;  ///< index in the sequence of every accepted frame

@@ -100,15 +100,15 @@ Status BatchSequence::AddMeasurement(const Measurement& measurement, bool accept
   return Status::Ok();
 }
 
-void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu) {
+void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu,
+                             std::span<const ImuSample> around) {
   rest_.AddImu(imu);
-  if (!frames_.back()->turn && !imu.empty()) {
-    frames_.back()->turn = MeasuredTurn{imu.front().gyro};
+  const double span_s = ReadOutSpan(GivenCamera(rig_, config_.vision));
+  if (!frames_.back()->turn) {
+    frames_.back()->turn = TurnAround(around, frames_.back()->stamp_ns, span_s);
   }
   frames_.push_back(MakeFrame(estimate, static_cast<int>(frames_.size())));
-  if (!imu.empty()) {
-    frames_.back()->turn = TurnAtEnd(imu);
-  }
+  frames_.back()->turn = TurnAround(around, estimate.stamp_ns, span_s);
   frames_.back()->imu = std::move(imu);
   invalid_.push_back(0);
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/estimator_config.h"
@@ -48,8 +49,9 @@ class BatchSequence {
   /// Starts anew at an initial state, which is the prior. False: its covariance is not positive
   /// semi-definite.
   bool Start(const NavEstimate& initial);
-  /// Appends a frame: its initial values and the IMU samples since the frame before.
-  void AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu);
+  /// Appends a frame: its initial values and the IMU samples since the frame before. `around`: all samples
+  /// that there are, from before that frame until after this one.
+  void AddFrame(const NavEstimate& estimate, std::vector<ImuSample> imu, std::span<const ImuSample> around);
   /// Adds the observations of the newest frame, whose initial values are `estimate`.
   void AddTracks(const NavEstimate& estimate, const TrackFrame& frame);
   /// Turns the initial values and the prior into the frame of the alignment; yaw and position of the prior

@@ -42,6 +42,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       kernel_{config.vision.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.vision.gate_probability),
       imu_(config.imu.max_gap_s),
+      read_out_span_s_(ReadOutSpan(GivenCamera(rig_, config.vision))),
       pixel_noise_(config.vision),
       rest_(config.vision, config.init, rig_.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
@@ -132,7 +133,10 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
     return Status::Ok();  // the frame the smoother was initialised on
   }
   ALIDADE_RETURN_IF_ERROR(imu_.Interval(window_.newest().stamp_ns, stamp_ns, &interval_));
-  imu_.DropBefore(stamp_ns);
+  if (!window_.newest().turn) {  // of the frame the smoother was initialised on
+    window_.newest().turn = TurnAround(imu_.samples(), window_.newest().stamp_ns, read_out_span_s_);
+  }
+  imu_.DropBefore(stamp_ns, read_out_span_s_);
   rest_.AddImu(interval_);
   std::unique_ptr<WindowFrame> dropped;
   if (!NewestIsKeyframe()) {
@@ -170,10 +174,7 @@ void SmootherEstimator::PropagateToNewest(std::unique_ptr<WindowFrame> dropped, 
   frame->stamp_ns = stamp_ns;
   frame->bias = from.bias;
   frame->time_offset_s = camera().time_offset_s;
-  frame->turn = TurnAtEnd(interval_);
-  if (!window_.newest().turn) {
-    window_.newest().turn = MeasuredTurn{interval_.front().gyro};  // of the frame it was initialised on
-  }
+  frame->turn = TurnAround(imu_.samples(), stamp_ns, read_out_span_s_);
   Preintegration preintegration(from.imu_bias(), noise_);
   preintegration.Add(interval_);
   PackNavState(CarryState(preintegration, from.nav_state(), from.imu_bias(), gravity_W_, nullptr),

@@ -111,6 +111,7 @@ class SmootherEstimator final : public Estimator {
   ObservationKernel kernel_;
   ChiSquareGate gate_;
   ImuBuffer imu_;
+  double read_out_span_s_;
   PixelNoise pixel_noise_;
   RestDetector rest_;
   Window window_;

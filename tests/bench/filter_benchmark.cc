@@ -50,7 +50,7 @@ void FilterFrame(benchmark::State& state, EstimatorConfig (*preset)()) {
       (void)filter->AddImu(dataset.imu[imu++]);
     }
   };
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     state.PauseTiming();
     if (frame == dataset.tracks.size()) {
       filter = MakeFilter(config, dataset.rig);

@@ -49,7 +49,7 @@ void GnssEpochUpdate(benchmark::State& state) {
   update.Align(alignment, &filter);
   Eigen::VectorXd correction(filter.covariance().dimension());
   FrameStatistics statistics;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     epoch.stamp_ns += 100'000'000;  // the clock walks; the sky stands still
     benchmark::DoNotOptimize(update.Apply(epoch, Eigen::Vector3d::Zero(), &filter, correction, &statistics));
     filter.Correct(correction);
@@ -75,7 +75,7 @@ struct Epoch {
 
 void GnssPrepareEpoch(benchmark::State& state) {
   const Epoch epoch = Epoch::Make();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(epoch.builder.Prepare(epoch.observed));
   }
   state.counters["satellites"] = static_cast<double>(epoch.observed.satellites.size());
@@ -86,7 +86,7 @@ void GnssSinglePoint(benchmark::State& state) {
   const Epoch epoch = Epoch::Make();
   const EpochMeasurements prepared = epoch.builder.Prepare(epoch.observed);
   SinglePointSolver solver(epoch.builder, SinglePointOptions());
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(solver.Solve(prepared));
   }
 }

@@ -43,7 +43,7 @@ void BM_TrackFrame(benchmark::State& state) {
   size_t k = 0;
   double features = 0;
   double length = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const Result<TrackFrame> frame =
         tracker.Track(stamp_ns, images[k].data(), rig.camera.width_px(), rig.camera.height_px());
     features += static_cast<double>(frame->observations.size());

@@ -9,7 +9,7 @@ namespace {
 /// One iteration is the whole default sequence: 200 s of IMU at 100 Hz, tracks at 10 Hz.
 void SimulateSequence(benchmark::State& state) {
   unsigned seed = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const Result<Dataset> dataset = Simulate(SimulatorConfig(), ++seed);
     if (!dataset.ok()) {
       state.SkipWithError(dataset.message().c_str());

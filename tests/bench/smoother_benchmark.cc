@@ -39,7 +39,7 @@ void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKer
       (void)smoother->AddImu(dataset.imu[imu++]);
     }
   };
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     state.PauseTiming();
     if (frame == dataset.tracks.size()) {
       smoother = MakeSmoother(config, dataset.rig);

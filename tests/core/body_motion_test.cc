@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/jacobian_checker.h"
 #include "tests/support/random_states.h"
 
@@ -21,18 +23,41 @@ std::vector<ImuSample> Ramp(double rate_hz, int count) {
   return samples;
 }
 
-TEST(BodyMotionTest, TheChangeOfTheRateIsThatOverTenMilliseconds) {
+TEST(BodyMotionTest, ARampIsFoundWhereverTheInstantLies) {
   for (const double rate_hz : {50.0, 100.0, 1000.0}) {
-    const std::vector<ImuSample> samples = Ramp(rate_hz, 30);
-    const MeasuredTurn turn = TurnAtEnd(samples);
-    EXPECT_EQ(turn.gyro_radps, samples.back().gyro);
-    EXPECT_LT((turn.alpha_radps2 - Vector3d(2, -0.5, 0)).norm(), 1e-6) << rate_hz;
+    const std::vector<ImuSample> samples = Ramp(rate_hz, 100);
+    for (const double at_s : {0.03, 0.0333, 0.04}) {
+      for (const double span_s : {0.0, 0.005, 0.02}) {
+        const MeasuredTurn turn = TurnAround(samples, SecondsToNs(at_s), span_s);
+        EXPECT_LT((turn.gyro_radps - Vector3d(0.1 + 2 * at_s, -0.5 * at_s, 0.3)).norm(), 1e-7);
+        EXPECT_LT((turn.alpha_radps2 - (span_s > 0 ? Vector3d(2, -0.5, 0) : Vector3d::Zero())).norm(), 1e-5);
+      }
+    }
   }
-  // One sample off by 0.01 rad/s: of the last step at 1 kHz alone that would be 10 rad/s^2.
-  std::vector<ImuSample> noisy = Ramp(1000, 30);
-  noisy[noisy.size() - 2].gyro.x() += 0.01;
-  EXPECT_LT((TurnAtEnd(noisy).alpha_radps2 - Vector3d(2, -0.5, 0)).norm(), 1e-6);
-  EXPECT_EQ(TurnAtEnd(std::span(noisy).first(1)).alpha_radps2, Vector3d::Zero());
+}
+
+TEST(BodyMotionTest, SamplesThatEndAtTheInstantTellTheRampToo) {
+  const std::vector<ImuSample> samples = Ramp(200, 9);
+  const MeasuredTurn turn = TurnAround(samples, SecondsToNs(0.04), 0.01);
+  EXPECT_LT((turn.gyro_radps - Vector3d(0.18, -0.02, 0.3)).norm(), 1e-7);
+  EXPECT_LT((turn.alpha_radps2 - Vector3d(2, -0.5, 0)).norm(), 1e-5);
+  EXPECT_EQ(TurnAround(samples, SecondsToNs(0.1), 0.01).gyro_radps, samples.back().gyro);
+  EXPECT_EQ(TurnAround(samples, SecondsToNs(-0.1), 0.01).gyro_radps, samples.front().gyro);
+  EXPECT_EQ(TurnAround({}, 0, 0.01).gyro_radps, Vector3d::Zero());
+}
+
+TEST(BodyMotionTest, AVibrationDoesNotLastOverTheSpan) {
+  // 100 Hz about x, at its crest at the instant: over 20 ms it turns the body nowhere.
+  std::vector<ImuSample> samples;
+  for (int k = 0; k < 100; ++k) {
+    const double t_s = k / 1000.0;
+    samples.push_back(
+        {SecondsToNs(t_s), Vector3d(std::cos(2 * M_PI * 100 * (t_s - 0.05)), 0, 0), Vector3d::Zero()});
+  }
+  const MeasuredTurn turn = TurnAround(samples, SecondsToNs(0.05), 0.01);
+  EXPECT_LT(turn.gyro_radps.norm(), 1e-6);
+  EXPECT_LT(turn.alpha_radps2.norm(), 1e-3);
+  EXPECT_NEAR(TurnAround(samples, SecondsToNs(0.05), 0).gyro_radps.x(), 1, 1e-9);
 }
 
 TEST(BodyMotionTest, TheRatesAreThoseOfThePose) {

@@ -7,6 +7,7 @@
 
 #include "core/imu_buffer.h"
 #include "core/preintegration.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -32,7 +33,7 @@ ImuBuffer Buffer(double silent_s, double gap_s) {
 std::pair<double, double> Deviations(ImuBuffer* buffer, double from_s, double to_s, double step_s) {
   ImuIncrement all;
   std::vector<ImuSample> samples;
-  for (double t = from_s; t < to_s - 1e-9; t += step_s) {
+  for (const double t : test::Steps(from_s, to_s - 1e-9, step_s)) {
     EXPECT_TRUE(buffer->Interval(SecondsToNs(t), SecondsToNs(t + step_s), &samples).ok());
     Preintegration part(ImuBias(), kSheet);
     part.Add(samples);

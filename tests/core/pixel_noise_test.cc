@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/steps.h"
+
 namespace alidade {
 namespace {
 
@@ -21,7 +23,7 @@ class Frames {
   explicit Frames(const VisionConfig& config) : noise_(config) {}
 
   double After(double duration_s, double deviation, bool suspect = false) {
-    for (double t = 0; t < duration_s; t += kFrameSeconds) {
+    for (const double t : test::Steps(0, duration_s, kFrameSeconds)) {
       const double assumed = noise_.px() / kGivenPx;
       for (int track = 0; track < 100; ++track) {
         noise_.AddTrack(2 * deviation * deviation / (assumed * assumed), 2);

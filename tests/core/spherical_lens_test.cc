@@ -8,6 +8,7 @@
 #include "core/visual_observation.h"
 #include "tests/support/jacobian_checker.h"
 #include "tests/support/random_states.h"
+#include "tests/support/steps.h"
 
 // Equidistant, double-sphere and eucm beyond 90 degrees off axis.
 
@@ -65,7 +66,7 @@ TEST(SphericalLensTest, TheirDomainReachesBehindTheCamera) {
 TEST(SphericalLensTest, BearingInvertsProjectOverTheWholeDomain) {
   for (const CameraModel& camera : WideLenses()) {
     int beyond = 0;
-    for (double angle = 0; angle < camera.max_angle_rad(); angle += 0.013) {
+    for (const double angle : test::Steps(0, camera.max_angle_rad(), 0.013)) {
       for (const double azimuth : {0.0, 0.7, 2.0, -2.6}) {
         const Vector3d ray = RayAt(angle, azimuth);
         Vector2d pixel;
@@ -206,7 +207,7 @@ TEST(EquidistantTest, WideIsTheFormulaOfThePlaneInFrontOfTheCamera) {
   const CameraModel narrow = Lens(DistortionModel::kEquidistant, 220, k, 300);
   ASSERT_TRUE(wide.is_spherical());
   ASSERT_FALSE(narrow.is_spherical());
-  for (double angle = 0.01; angle < 0.9; angle += 0.05) {
+  for (const double angle : test::Steps(0.01, 0.9, 0.05)) {
     Vector2d a, b;
     ASSERT_TRUE(wide.Project(RayAt(angle, 0.4), &a) && narrow.Project(RayAt(angle, 0.4), &b));
     EXPECT_LT(((a - Vector2d(403, 395)) - (b - Vector2d(153, 145))).norm(), 1e-10);

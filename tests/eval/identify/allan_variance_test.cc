@@ -42,8 +42,11 @@ std::vector<double> DrawFlicker(double bias_instability, std::size_t count, unsi
   const double ratio = std::numbers::sqrt2;
   // The one-sided spectrum B^2 / (pi f) is that of processes of variance v each, sum = v / (f ln ratio).
   const double deviation = bias_instability * std::sqrt(std::log(ratio) / std::numbers::pi);
-  for (double time_s = 0.2 * kPeriod_s; time_s < 20 * kPeriod_s * static_cast<double>(count);
-       time_s *= ratio) {
+  const double longest_s = 20 * kPeriod_s * static_cast<double>(count);
+  const int processes =
+      static_cast<int>(std::ceil(std::log(longest_s / (0.2 * kPeriod_s)) / std::log(ratio)));
+  for (int k = 0; k < processes; ++k) {
+    const double time_s = 0.2 * kPeriod_s * std::pow(ratio, k);
     const double keep = std::exp(-kPeriod_s / time_s);
     double value = deviation * random.Normal();
     for (double& rate : rates) {

@@ -13,6 +13,7 @@
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_reader.h"
 #include "tests/eval/render/rendered_scene.h"
+#include "tests/support/steps.h"
 #include "tests/support/temporary_folder.h"
 
 // What makes real images hard, one effect at a time (docs/renderer.md).
@@ -128,7 +129,7 @@ TEST(RenderEffects, MovingBoxesKeepAwayFromTheBody) {
   const Scene scene = Scene::Make(config);
   const Hall& hall = scene.sequence.hall();
   ASSERT_GT(hall.moving.size(), 2U);
-  for (double time_s = 0; time_s < config.duration_s; time_s += 0.05) {
+  for (const double time_s : test::Steps(0, config.duration_s, 0.05)) {
     const Vector3d p = scene.simulation.motion->At(time_s).nav.p_WB - hall.origin_W;
     for (const MovingBox& moving : hall.moving) {
       const Vector3d seen = p - moving.Shift(time_s);

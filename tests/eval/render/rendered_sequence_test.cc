@@ -16,6 +16,7 @@
 #include "eval/simulation/simulator.h"
 #include "eval/trajectory/trajectory_reader.h"
 #include "tests/eval/render/rendered_scene.h"
+#include "tests/support/steps.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -83,7 +84,7 @@ TEST(RenderedSequence, NothingStandsInThePath) {
   config.duration_s = 20;
   config.path_m = 26;
   const Scene scene = Scene::Make(config);
-  for (double time_s = 0; time_s < config.duration_s; time_s += 0.1) {
+  for (const double time_s : test::Steps(0, config.duration_s, 0.1)) {
     const Vector3d p_WB = scene.simulation.motion->At(time_s).nav.p_WB;
     for (int i = 0; i < 200; ++i) {
       // Evenly over the sphere (Fibonacci).

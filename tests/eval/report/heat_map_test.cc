@@ -101,7 +101,8 @@ TEST(HeatColours, GivenALogarithmicScaleThenDistanceFromOneDarkensEvenlyAndTheTe
   EXPECT_EQ(HeatColour(nees, 100), HeatColour(nees, 4)) << "cut at the darkest";
   EXPECT_NE(HeatColour(nees, 0.5), HeatColour(nees, 2));
   double last = 256;
-  for (double value = 1; value < 4.1; value *= 1.2) {
+  for (int k = 0; k < 8; ++k) {
+    const double value = std::pow(1.2, k);
     const double here = Luminance(HeatColour(nees, value));
     EXPECT_LT(here, last);
     last = here;

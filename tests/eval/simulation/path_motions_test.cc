@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/simulation/sim_trajectory.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -99,7 +100,7 @@ TEST(PathMotions, PathHasTheLengthAskedForAtEverySpeed) {
           config.path_point == SimPathPoint::kCamera ? config.camera_lever_arm_m : Eigen::Vector3d::Zero();
       constexpr double kStep = 2e-3;
       double travelled_m = 0;
-      for (double t = 0.5 * kStep; t < config.duration_s; t += kStep) {
+      for (const double t : test::Steps(0.5 * kStep, config.duration_s, kStep)) {
         const Kinematics motion = trajectory->At(t);
         travelled_m += (motion.nav.v_WB + motion.nav.R_WB * motion.angular_rate_B.cross(p_B)).norm() * kStep;
       }
@@ -111,7 +112,7 @@ TEST(PathMotions, PathHasTheLengthAskedForAtEverySpeed) {
 TEST(PathMotions, AccelerationIsSmoothThroughPauses) {
   const auto trajectory = MakeSimTrajectory(PausingConfig());
   constexpr double kStep = 1e-3;
-  for (double t = 0; t < 45; t += kStep) {
+  for (const double t : test::Steps(0, 45, kStep)) {
     const Kinematics here = trajectory->At(t);
     const Kinematics next = trajectory->At(t + kStep);
     ASSERT_LT((next.acceleration_W - here.acceleration_W).norm(), 20 * kStep) << t;
@@ -125,7 +126,7 @@ TEST(PathMotions, GivenAHoverThenItStaysInItsBoxAndKeepsItsDirection) {
   for (const double yaw_rate_radps : {0.0, 0.2}) {
     config.yaw_rate_radps = yaw_rate_radps;
     const auto trajectory = MakeSimTrajectory(config, 2);
-    for (double t = 0; t <= 60; t += 0.1) {
+    for (const double t : test::Steps(0, 60.05, 0.1)) {
       const NavState nav = trajectory->At(t).nav;
       ASSERT_TRUE((nav.p_WB.array().abs() <= Eigen::Array3d(0.3, 0.2, 0.2)).all()) << nav.p_WB.transpose();
       ASSERT_LT((nav.R_WB - so3::Exp({0, 0, yaw_rate_radps * t})).norm(), 1e-12);
@@ -169,7 +170,7 @@ TEST(PathMotions, GivenALineThenItIsStraightAndItsSpeedChangesByItsShare) {
   config.speed_variation = 0.3;
   const auto trajectory = MakeSimTrajectory(config);
   double slowest = 1e9, fastest = 0;
-  for (double t = 0; t <= 60; t += 0.01) {
+  for (const double t : test::Steps(0, 60.005, 0.01)) {
     const Kinematics motion = trajectory->At(t);
     ASSERT_EQ(motion.nav.p_WB.tail<2>().norm(), 0);
     ASSERT_LT((motion.nav.R_WB - Eigen::Matrix3d::Identity()).norm(), 1e-15);
@@ -185,7 +186,7 @@ TEST(PathMotions, GivenASpiralThenItsRadiusAndHeightGrowAndTheBodyLooksAlongIt) 
   SimulatorConfig config = SpiralConfig();
   config.wobble_rad = 0;
   const auto trajectory = MakeSimTrajectory(config);
-  for (double t = 0; t <= 60; t += 0.1) {
+  for (const double t : test::Steps(0, 60.05, 0.1)) {
     const NavState nav = trajectory->At(t).nav;
     const double turns = nav.p_WB.z() / 1.5;
     ASSERT_NEAR(nav.p_WB.head<2>().norm(), 2 + 0.5 * turns, 1e-9) << t;
@@ -203,7 +204,7 @@ TEST(PathMotions, GivenAPauseThenTheCameraRestsAndTheBodyTurnsOnce) {
   const Eigen::Vector3d p_WC = trajectory->At(first_s).nav.T_WB() * config.camera_lever_arm_m;
   double turned_rad = 0;
   constexpr double kStep = 1e-3;
-  for (double t = first_s; t < first_s + 6; t += kStep) {
+  for (const double t : test::Steps(first_s, first_s + 6, kStep)) {
     const Kinematics motion = trajectory->At(t);
     ASSERT_LT((motion.nav.T_WB() * config.camera_lever_arm_m - p_WC).norm(), 1e-9) << t;
     turned_rad += (motion.nav.R_WB * motion.angular_rate_B).z() * kStep;

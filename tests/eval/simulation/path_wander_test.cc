@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "eval/simulation/sim_trajectory.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -20,7 +21,7 @@ TEST(WanderTest, StaysInItsBoxAndFillsIt) {
     const auto trajectory = MakeSimTrajectory(WanderConfig(), seed);
     Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9);
     Eigen::Vector3d high = -low;
-    for (double t = 0; t <= 1000; t += 0.1) {
+    for (const double t : test::Steps(0, 1000.05, 0.1)) {
       const Eigen::Vector3d p_WB = trajectory->At(t).nav.p_WB;
       low = low.cwiseMin(p_WB);
       high = high.cwiseMax(p_WB);
@@ -36,7 +37,7 @@ TEST(WanderTest, IsSmooth) {
   const auto trajectory = MakeSimTrajectory(WanderConfig(), 1);
   constexpr double kStep = 0.01;
   Kinematics last = trajectory->At(0);
-  for (double t = kStep; t < 1000; t += kStep) {
+  for (const double t : test::Steps(kStep, 1000, kStep)) {
     const Kinematics here = trajectory->At(t);
     ASSERT_LT(here.nav.v_WB.norm(), 6) << t;
     ASSERT_LT(here.angular_rate_B.norm(), 4) << t;
@@ -49,7 +50,7 @@ TEST(WanderTest, IsSmooth) {
 TEST(WanderTest, NeverComesBackToTheSameStateWithinTheRun) {
   const auto trajectory = MakeSimTrajectory(WanderConfig(), 1);
   const NavState start = trajectory->At(0).nav;
-  for (double t = 5; t < 1000; t += 0.05) {
+  for (const double t : test::Steps(5, 1000, 0.05)) {
     const NavState here = trajectory->At(t).nav;
     const double difference = (here.p_WB - start.p_WB).norm() + (here.v_WB - start.v_WB).norm() +
                               so3::Log(start.R_WB.transpose() * here.R_WB).norm();

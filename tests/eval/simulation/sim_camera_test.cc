@@ -11,6 +11,7 @@
 #include <set>
 
 #include "tests/eval/simulation/sim_scene.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -105,7 +106,7 @@ TEST(SimCameraTest, LandmarksKeepTheirDistanceToThePath) {
   ASSERT_EQ(scene.landmarks.size(), static_cast<std::size_t>(scene.config.landmark_count));
   for (const Eigen::Vector3d& landmark : scene.landmarks) {
     double nearest_m = 1e9;
-    for (double t = 0; t < 30; t += 0.05) {
+    for (const double t : test::Steps(0, 30, 0.05)) {
       nearest_m = std::min(nearest_m, (scene.trajectory->At(t).nav.p_WB - landmark).norm());
     }
     EXPECT_GT(nearest_m, 2 - 0.01);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "eval/simulation/sim_trajectory.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -36,7 +37,7 @@ TEST(SimLandmarksTest, ARoomHasItsLandmarksOnAllSixWalls) {
       }
     }
     ASSERT_GE(walls, 1) << p_W.transpose();
-    for (double t = 0; t < 20; t += 0.05) {
+    for (const double t : test::Steps(0, 20, 0.05)) {
       ASSERT_GT((trajectory->At(t).nav.p_WB - p_W).norm(), 0.4 - 0.04);
     }
   }
@@ -69,7 +70,7 @@ TEST(SimLandmarksTest, AVolumeIsEvenlyDense) {
   const auto trajectory = MakeSimTrajectory(config);
   const std::vector<Eigen::Vector3d> landmarks = MakeLandmarks(config, *trajectory, 2).value();
   std::vector<Eigen::Vector3d> path;
-  for (double t = 0; t <= 20; t += 0.1) {
+  for (const double t : test::Steps(0, 20.05, 0.1)) {
     path.push_back(trajectory->At(t).nav.p_WB);
   }
   const auto distance_m = [&path](const Eigen::Vector3d& p_W) {
@@ -81,9 +82,9 @@ TEST(SimLandmarksTest, AVolumeIsEvenlyDense) {
   };
   constexpr double kStep = 0.5;
   double volume[2] = {0, 0};  // beyond and within 4 m of the path, m^3
-  for (double x = -11.25; x < 11.5; x += kStep) {
-    for (double y = -8.75; y < 9; y += kStep) {
-      for (double z = -6.75; z < 7; z += kStep) {
+  for (const double x : test::Steps(-11.25, 11.5, kStep)) {
+    for (const double y : test::Steps(-8.75, 9, kStep)) {
+      for (const double z : test::Steps(-6.75, 7, kStep)) {
         const double d = distance_m({x, y, z});
         volume[d < 4 ? 1 : 0] += d >= 2 && d <= 6 ? kStep * kStep * kStep : 0;
       }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/steps.h"
+
 namespace alidade {
 namespace {
 
@@ -44,7 +46,7 @@ TEST(SimTrajectoryTest, PathHasTheLengthAskedFor) {
     const auto trajectory = MakeSimTrajectory(config);
     constexpr double kStep = 1e-3;
     double path_m = 0;
-    for (double t = 0.5 * kStep; t < config.duration_s; t += kStep) {
+    for (const double t : test::Steps(0.5 * kStep, config.duration_s, kStep)) {
       path_m += trajectory->At(t).nav.v_WB.norm() * kStep;
     }
     EXPECT_NEAR(path_m, 262, config.trajectory == SimTrajectory::kWander ? 2e-3 : 1e-4);
@@ -56,7 +58,7 @@ TEST(SimTrajectoryTest, FigureEightFillsItsBox) {
   const auto trajectory = MakeSimTrajectory(config);
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9);
   Eigen::Vector3d high = -low;
-  for (double t = 0; t < 60; t += 0.01) {
+  for (const double t : test::Steps(0, 60, 0.01)) {
     low = low.cwiseMin(trajectory->At(t).nav.p_WB);
     high = high.cwiseMax(trajectory->At(t).nav.p_WB);
   }
@@ -68,7 +70,7 @@ TEST(SimTrajectoryTest, BodyLooksAlongTheMotion) {
   SimulatorConfig config;
   config.wobble_rad = 0;
   const auto trajectory = MakeSimTrajectory(config);
-  for (double t = 0; t < 60; t += 0.7) {
+  for (const double t : test::Steps(0, 60, 0.7)) {
     const Kinematics motion = trajectory->At(t);
     EXPECT_LT((motion.nav.R_WB.col(0) - motion.nav.v_WB.normalized()).norm(), 1e-12);
     EXPECT_NEAR(motion.nav.R_WB(2, 1), 0, 1e-12) << "no roll without wobble";
@@ -98,7 +100,7 @@ TEST(SimTrajectoryTest, AccelerationIsSmoothThroughTheRamp) {
   // A jump of the third difference by O(1) would mean a kink; the ramp's own jerk is bounded by about 10
   // m/s^3.
   constexpr double kStep = 1e-3;
-  for (double t = 4.9; t < 7.2; t += kStep) {
+  for (const double t : test::Steps(4.9, 7.2, kStep)) {
     const Eigen::Vector3d change =
         trajectory->At(t + kStep).acceleration_W - trajectory->At(t).acceleration_W;
     ASSERT_LT(change.norm(), 10 * kStep) << t;

@@ -10,6 +10,7 @@
 #include "eval/simulation/sim_trajectory.h"
 #include "eval/trajectory/trajectory_reader.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -49,7 +50,7 @@ TEST(SplineTrajectoryTest, FollowsASmoothMotionWithItsDerivatives) {
   EXPECT_LT(spline->fit().rotation_max_rad, 5e-6);
   EXPECT_NEAR(spline->fit().max_gap_s, 0.01, 1e-9);
   const auto truth = MakeSimTrajectory(SimulatorConfig());
-  for (double t = 0.5; t < 19.5; t += 0.0371) {
+  for (const double t : test::Steps(0.5, 19.5, 0.0371)) {
     const Kinematics expected = truth->At(t);
     const Kinematics actual = spline->At(t);
     ASSERT_LT((actual.nav.p_WB - expected.nav.p_WB).norm(), 1e-6) << t;
@@ -74,7 +75,7 @@ TEST(SplineTrajectoryTest, SmoothsNoiseOfItsSamples) {
   const auto truth = MakeSimTrajectory(SimulatorConfig());
   double square = 0;
   int count = 0;
-  for (double t = 0.5; t < 19.5; t += 0.01) {
+  for (const double t : test::Steps(0.5, 19.5, 0.01)) {
     square += (spline->At(t).nav.p_WB - truth->At(t).nav.p_WB).squaredNorm();
     ++count;
   }

@@ -11,6 +11,7 @@
 #include "gnss/orbits/satellite_catalog.h"
 #include "tests/gnss/formats/rinex_text.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -123,7 +124,7 @@ PreciseProducts CircleProducts(int nodes, int step_s) {
 TEST(PreciseOrbitTest, InterpolatesToMillimetresEvenAtTheEnds) {
   const PreciseProducts products = CircleProducts(20, 900);
   const SatelliteId id{GnssSystem::kGps, 1};
-  for (double t = 1; t < 19 * 300 - 1; t += 37.5) {
+  for (const double t : test::Steps(1, 19 * 300 - 1, 37.5)) {
     const std::optional<SatelliteState> state = InterpolatePrecise(products, id, SecondsToNs(t));
     ASSERT_TRUE(state.has_value()) << t;
     EXPECT_LT((state->position_E - Circle(t).position_E).norm(), 2e-3) << t;

@@ -15,6 +15,7 @@
 #include "eval/simulation/sim_trajectory.h"
 #include "eval/trajectory/trajectory_point.h"
 #include "smoother/truth/fixed_point.h"
+#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -54,7 +55,7 @@ Capture MakeCapture(unsigned seed) {
   capture.constants.time_offset_s = -0.008;
   RandomStream orientation(seed, "capture.orientation");
   RandomStream position(seed, "capture.position");
-  for (double time_s = 0.2; time_s < kDurationS - 0.2; time_s += 1 / 120.0) {
+  for (const double time_s : test::Steps(0.2, kDurationS - 0.2, 1 / 120.0)) {
     const NavState nav = trajectory->At(time_s).nav;
     Pose T_TM = Pose{capture.constants.R_TW, Vector3d::Zero()} * nav.T_WB() * capture.constants.T_BM;
     T_TM.rotation = T_TM.rotation * so3::Exp(kNoise.orientation_rad * orientation.Normal3());
