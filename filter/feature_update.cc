@@ -182,6 +182,10 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   }
   auto dense = track_jacobian_.topLeftCorner(2 * views, StateColumns() + (tracing_ ? 2 * views : 0));
   EliminateLandmark(point_jacobian, dense, residual_.head(2 * views));
+  if (purpose.landmark_rows != nullptr && purpose.to_remember &&
+      !keeper_.StateAllows(state, p_W, point_jacobian_.topRows<3>(), dense.topRows(3), clones_)) {
+    return TrackOutcome::kWaiting;
+  }
   const Block block = AddBlock(static_cast<int>(2 * views - 3));
   for (Index k = 0; k < views; ++k) {
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =

@@ -70,12 +70,19 @@ double TrackMemoryKeeper::StateDepthDeviation(const FilterState& state, const Ve
   return whitened.norm();
 }
 
+bool TrackMemoryKeeper::StateAllows(const FilterState& state, const Vector3d& p_W,
+                                    const Matrix3d& landmark_rows,
+                                    const Eigen::Ref<const MatrixXd>& clone_rows,
+                                    const std::vector<int>& clones) {
+  const Vector3d ray = p_W - state.clones()[static_cast<size_t>(clones.back())].T_WC.translation;
+  return StateDepthDeviation(state, ray, landmark_rows, clone_rows, clones) <
+         kStateShare * max_depth_deviation_ * ray.norm();
+}
+
 void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, const Matrix3d& landmark_rows,
                               const Eigen::Ref<const MatrixXd>& clone_rows, const std::vector<int>& clones,
                               TrackMemory* memory) {
-  const Vector3d ray = p_W - state.clones()[static_cast<size_t>(clones.back())].T_WC.translation;
-  memory->active = StateDepthDeviation(state, ray, landmark_rows, clone_rows, clones) <
-                   kStateShare * max_depth_deviation_ * ray.norm();
+  memory->active = StateAllows(state, p_W, landmark_rows, clone_rows, clones);
   if (!memory->active) {
     return;
   }

@@ -40,9 +40,15 @@ class TrackMemoryKeeper {
   /// calibration_size: of the state's CalibrationLayout.
   TrackMemoryKeeper(const FilterConfig& filter, int max_clones, int calibration_size = 0);
 
+  /// Whether the state is certain enough for rows that stay linearised at it; arguments as for Start.
+  [[nodiscard]] bool StateAllows(const FilterState& state, const Eigen::Vector3d& p_W,
+                                 const Eigen::Matrix3d& landmark_rows,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
+                                 const std::vector<int>& clones);
+
   /// The memory that a first update leaves: the three landmark rows of EliminateLandmark. `clone_rows`: over
   /// six columns a view, in the order of `clones` (indices into the state's clones), then the calibration's.
-  /// Not active when the state is too uncertain to keep rows linearised at it.
+  /// Not active when the state does not allow it.
   void Start(const FilterState& state, const Eigen::Vector3d& p_W, const Eigen::Matrix3d& landmark_rows,
              const Eigen::Ref<const Eigen::MatrixXd>& clone_rows, const std::vector<int>& clones,
              TrackMemory* memory);
