@@ -1,9 +1,13 @@
 #include "eval/compare/compare.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/format.h"
@@ -82,7 +86,9 @@ class Comparer {
       return slurm.Run();
     }
     if (!options_.worker.empty()) {
-      WorkerPool pool(options_, cells_, [this](size_t cell, const std::string& fault) { End(cell, fault); });
+      std::vector<size_t> all(cells_.size());
+      std::iota(all.begin(), all.end(), size_t{0});
+      WorkerPool pool(options_, cells_, all, [this](size_t cell) { End(cell, {}); });
       return pool.Run();
     }
     CellRunner runner(plan_, options_, &cells_);
@@ -223,21 +229,33 @@ Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& opti
   return Comparer(plan, options).Collect();
 }
 
-Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part, bool inputs_alone) {
+Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part) {
+  CellList cells;
+  ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
+  std::vector<size_t> wanted;
+  for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()); ++cell) {
+    if (!MayExist(cells.at(cell).report_file)) {
+      wanted.push_back(cell);
+    }
+  }
+  WorkerPool pool(options, cells, wanted, [](size_t) {});
+  return pool.Run();
+}
+
+Status TrackInputs(const Plan& plan, const CompareOptions& options, const CellPart& part) {
   CellList cells;
   ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
   CellRunner runner(plan, options, &cells);
   const CompareInput* prepared = nullptr;
   for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()) && !options.Stopped(); ++cell) {
-    if (!inputs_alone) {
-      if (!MayExist(cells.at(cell).report_file)) {
-        ALIDADE_RETURN_IF_ERROR(runner.Run(cell));
-      }
-    } else if (cells.at(cell).input->may_track() && cells.at(cell).input != prepared) {
+    if (cells.at(cell).input->may_track() && cells.at(cell).input != prepared) {
       prepared = cells.at(cell).input;
+      // The signal ends this process; the cells of the input then track it within their own limits.
+      ::alarm(static_cast<unsigned>(std::ceil(options.limits.time_s)));
       ALIDADE_RETURN_IF_ERROR(runner.Prepare(cell));
     }
   }
+  ::alarm(0);
   return Status::Ok();
 }
 
