@@ -13,7 +13,7 @@ for tool in clang++-14 llvm-cov-14 llvm-profdata-14; do
 done
 rooms=(gnss/formats eval/files eval/config eval/dataset eval/rosbag eval/bag eval/trajectory)
 programs=(alidade_gnss_tests alidade_eval_files_tests alidade_eval_config_tests alidade_eval_dataset_tests alidade_eval_rosbag_tests
-  alidade_eval_bag_tests alidade_eval_trajectory_tests)
+  alidade_eval_bag_tests alidade_eval_trajectory_tests alidade_eval_metrics_tests alidade_eval_compare_tests)
 # Rooms write as well; these files do nothing else.
 not_readers='writer|export|output_file|escape_html|time_left|digest|hash|config_json|folder_lock|spool_file'
 

@@ -16,6 +16,7 @@
 #include "eval/compare/cell_runner.h"
 #include "eval/compare/slurm_run.h"
 #include "eval/compare/worker_pool.h"
+#include "eval/comparison/large_comparison.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/time_left.h"
@@ -44,7 +45,7 @@ class Comparer {
   Comparer(const Plan& plan, const CompareOptions& options) : plan_(plan), options_(options) {}
 
   Result<CompareOutcome> Execute() {
-    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    ALIDADE_RETURN_IF_ERROR(MakeCells());
     ALIDADE_RETURN_IF_ERROR(RemoveEarlier());
     ALIDADE_RETURN_IF_ERROR(WriteCellTable());
     ALIDADE_RETURN_IF_ERROR(RunAll());
@@ -52,7 +53,7 @@ class Comparer {
   }
 
   Result<CompareOutcome> Collect() {
-    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    ALIDADE_RETURN_IF_ERROR(MakeCells());
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
       Take(cell, {});
     }
@@ -60,6 +61,18 @@ class Comparer {
   }
 
  private:
+  Status MakeCells() {
+    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    std::map<std::pair<const PlanEstimator*, const PlanSequence*>, size_t> groups;
+    std::vector<size_t> group;
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+      const auto of = std::pair(cells_.at(cell).estimator, cells_.at(cell).sequence);
+      group.push_back(groups.try_emplace(of, groups.size()).first->second);
+    }
+    shown_ = ShownCells(group, groups.size());
+    return Status::Ok();
+  }
+
   /// Reports of an earlier comparison in this folder, and, unless its cells are to be kept, its tracks.
   Status RemoveEarlier() const {
     std::error_code error;
@@ -120,6 +133,7 @@ class Comparer {
       return;
     }
     cell.result = std::move(report->result);
+    shown_.Thin(index, &cell.result);
     cells_reused_ += report->reused ? 1 : 0;
     NoteInput(cell, *report);
   }
@@ -154,6 +168,7 @@ class Comparer {
     comparison.command = options_.command;
     comparison.baseline = plan_.baseline;
     comparison.notes = NotesOfAbsent();
+    comparison.shown_note = shown_.note();
     for (const PlanSequence& sequence : plan_.sequences) {
       if (!sequence.group.empty()) {
         comparison.groups[sequence.name] = sequence.group;
@@ -213,6 +228,7 @@ class Comparer {
   const CompareOptions& options_;
   const Clock::time_point begin_ = Clock::now();
   CellList cells_;
+  ShownCells shown_;
   std::map<const CompareInput*, FrontendSummary> frontends_;
   std::set<const CompareInput*> noted_;
   size_t cells_done_ = 0;
