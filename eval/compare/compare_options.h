@@ -37,7 +37,7 @@ struct CompareOptions {
   /// Program and words that start a worker (CellWorker) of this comparison; empty: its cells run in this
   /// process, one after the other.
   std::vector<std::string> worker;
-  CellLimits limits;  ///< of cells in worker processes
+  CellLimits limits;          ///< of cells in worker processes
   bool slurm = false;         ///< cells run as jobs of Slurm, started with the words of `worker`
   std::string slurm_options;  ///< words for sbatch
   std::function<void(const std::string& line)> progress;

@@ -85,8 +85,7 @@ Result<std::string> DescribeComparison(const std::string& output) {
     ++complete;
     if (!end.ok() || end->status != "ok") {
       ++failed;
-      failures +=
-          "  " + row + ": " + (end.ok() ? end->status + ", " + end->message : end.message()) + "\n";
+      failures += "  " + row + ": " + (end.ok() ? end->status + ", " + end->message : end.message()) + "\n";
     }
     std::error_code error;
     const auto time = fs::last_write_time(file, error);

@@ -19,8 +19,7 @@ constexpr int kMemoryMs = 50;  // while a cell's memory is watched
 std::vector<CellQueue::Input> InputsOf(const CellList& cells, const std::vector<size_t>& wanted) {
   std::vector<CellQueue::Input> inputs;
   for (const size_t cell : wanted) {
-    if (inputs.empty() || inputs.back().end != cell ||
-        cells.at(cell).input != cells.at(cell - 1).input) {
+    if (inputs.empty() || inputs.back().end != cell || cells.at(cell).input != cells.at(cell - 1).input) {
       inputs.push_back({cell, cell, cells.at(cell).input->may_track()});
     }
     inputs.back().end = cell + 1;

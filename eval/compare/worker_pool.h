@@ -30,8 +30,8 @@ class WorkerPool {
   struct Worker {
     WorkerProcess process;
     bool ready = false;
-    std::optional<size_t> cell;  ///< that it is at
-    std::optional<size_t> last;  ///< that it was at
+    std::optional<size_t> cell;                     ///< that it is at
+    std::optional<size_t> last;                     ///< that it was at
     std::chrono::steady_clock::time_point begin{};  ///< of `cell`
   };
   Status Fill();

@@ -20,7 +20,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Of a process that was asked to end. Its outputs are renamed when they are whole, so being killed does them no harm.
+// Of a process that was asked to end. Its outputs are renamed when they are whole, so being killed does them
+// no harm.
 constexpr std::chrono::seconds kGrace{5};
 
 }  // namespace

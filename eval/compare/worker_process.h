@@ -47,7 +47,7 @@ class WorkerProcess {
   WorkerProcess(pid_t process, int to, int from) : process_(process), to_(to), from_(from) {}
 
   pid_t process_ = 0;  ///< 0: joined
-  int to_ = -1;  ///< -1: closed
+  int to_ = -1;        ///< -1: closed
   int from_ = -1;
   std::optional<std::chrono::steady_clock::time_point> interrupted_;
   std::string text_;  ///< read, not yet taken

@@ -219,11 +219,13 @@ Json NeesBands(int most_runs) {
 /// All but what the plots alone need.
 Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures,
                 const std::vector<AggregateRow>& rows) {
-  Json data = {
-      {"title", comparison.title},        {"command", comparison.command},
-      {"shown_note", comparison.shown_note},
-      {"not_run", comparison.notes},      {"truth_covariance", comparison.SequencesWithTruthCovariance()},
-      {"sequences", ListSequences(rows)}, {"estimators", ListLabels(rows)}};
+  Json data = {{"title", comparison.title},
+               {"command", comparison.command},
+               {"shown_note", comparison.shown_note},
+               {"not_run", comparison.notes},
+               {"truth_covariance", comparison.SequencesWithTruthCovariance()},
+               {"sequences", ListSequences(rows)},
+               {"estimators", ListLabels(rows)}};
   data["figures"] = Json::array();
   for (const Figure& figure : figures) {
     data["figures"].push_back(FigureData(figure));
@@ -266,8 +268,8 @@ std::string ReportData(const Comparison& comparison) {
   const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
   const bool audited = std::any_of(comparison.cells.begin(), comparison.cells.end(),
                                    [](const CellResult& cell) { return !cell.series.rank.empty(); });
-  const auto shown =
-      std::count_if(comparison.cells.begin(), comparison.cells.end(), [](const CellResult& c) { return c.shown; });
+  const auto shown = std::count_if(comparison.cells.begin(), comparison.cells.end(),
+                                   [](const CellResult& c) { return c.shown; });
   const int most = PointsPerSeries(static_cast<size_t>(shown), audited);
   Json data = TablesData(comparison, figures, rows);
   data["points"] = most;

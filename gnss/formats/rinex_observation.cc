@@ -275,8 +275,8 @@ Result<ObservationFile> ParseEpochs(const std::string& path, std::string_view te
 
 Result<ObservationFile> ParseRinexObservation(const std::string& path, std::string_view text) {
   std::vector<ObservationEpoch> epochs;
-  Result<ObservationFile> file = ParseEpochs(
-      path, text, [&epochs](ObservationEpoch epoch) { epochs.push_back(std::move(epoch)); });
+  Result<ObservationFile> file =
+      ParseEpochs(path, text, [&epochs](ObservationEpoch epoch) { epochs.push_back(std::move(epoch)); });
   if (file.ok()) {
     file->epochs = std::move(epochs);
   }

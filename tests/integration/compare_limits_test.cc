@@ -32,19 +32,20 @@ class CompareLimits : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// GIVEN a limit of time WHEN a cell of ours stands still and a command never ends, nor what it has left in the
-// background, THEN both have failed and say why, nothing of them lives on, and the others are there.
+// GIVEN a limit of time WHEN a cell of ours stands still and a command never ends, nor what it has left in
+// the background, THEN both have failed and say why, nothing of them lives on, and the others are there.
 TEST_F(CompareLimits, ACellThatHangsIsEnded) {
   WritePlan(
       ", {name: theirs, command: 'setsid sleep 3000 & echo $! > {output}/pid; sleep 3000', sequences: "
       "[short]}",
       kShort + ", seeds: 1..2}, {config: " + Source("configs/datasets/figure8_short.yaml") +
           ", name: stopped, set: {duration_s: 60, path_m: 78}}");
-  const CommandResult result = Shell(
-      "exec 2>&1; OUT=" + folder_.File("out") + "; " + Words("--jobs=3 --cell-time-limit-s=8") +
-      " & main=$!; mark=$OUT/scores/po_invio_multi/stopped/1.cbor.running"
-      "; until test -s $mark; do sleep 0.01; done; kill -STOP $(cut -d' ' -f2 $mark); wait $main; echo code $?"
-      "; kill -0 $(cat $OUT/cells/theirs/short/1/pid) 2>&1");
+  const CommandResult result =
+      Shell("exec 2>&1; OUT=" + folder_.File("out") + "; " + Words("--jobs=3 --cell-time-limit-s=8") +
+            " & main=$!; mark=$OUT/scores/po_invio_multi/stopped/1.cbor.running"
+            "; until test -s $mark; do sleep 0.01; done; kill -STOP $(cut -d' ' -f2 $mark); wait $main; echo "
+            "code $?"
+            "; kill -0 $(cat $OUT/cells/theirs/short/1/pid) 2>&1");
   EXPECT_THAT(result.output, HasSubstr("3 of 5 cells failed"));
   EXPECT_THAT(result.output, HasSubstr("code 7"));
   EXPECT_THAT(result.output, HasSubstr("No such process"));
@@ -95,11 +96,11 @@ TEST_F(CompareLimits, ALimitBelowZeroIsRefused) {
 TEST_F(CompareLimits, AnInterruptionDoesNotWaitForACellThatHangs) {
   WritePlan("", "{config: " + Source("configs/datasets/figure8_short.yaml") +
                     ", name: stopped, set: {duration_s: 60, path_m: 78}}");
-  const CommandResult result = Shell(
-      "exec 2>&1; " + Words("") + " & main=$!; mark=" + folder_.File("out") +
-      "/scores/po_invio_multi/stopped/1.cbor.running; until test -s $mark; do sleep 0.01; done"
-      "; worker=$(cut -d' ' -f2 $mark); kill -STOP $worker; kill -TERM $main; wait $main"
-      "; echo code $?; kill -0 $worker");
+  const CommandResult result =
+      Shell("exec 2>&1; " + Words("") + " & main=$!; mark=" + folder_.File("out") +
+            "/scores/po_invio_multi/stopped/1.cbor.running; until test -s $mark; do sleep 0.01; done"
+            "; worker=$(cut -d' ' -f2 $mark); kill -STOP $worker; kill -TERM $main; wait $main"
+            "; echo code $?; kill -0 $worker");
   EXPECT_THAT(result.output, HasSubstr("code 130"));
   EXPECT_THAT(result.output, HasSubstr("No such process"));
 }

@@ -21,8 +21,8 @@ namespace {
 using testing::HasSubstr;
 
 Dataset Simulated(const std::string& name, const std::vector<std::string>& settings) {
-  const Result<SimulatorConfig> config = LoadSimulatorConfig(
-      std::string(ALIDADE_SOURCE_DIR) + "/configs/datasets/" + name + ".yaml", settings);
+  const Result<SimulatorConfig> config =
+      LoadSimulatorConfig(std::string(ALIDADE_SOURCE_DIR) + "/configs/datasets/" + name + ".yaml", settings);
   CHECK(config.ok()) << config.message();
   Result<Dataset> dataset = Simulate(*config, 1);
   CHECK(dataset.ok()) << dataset.message();

@@ -30,9 +30,8 @@ double LargestDeviation(const FilePosition& position) {
 }
 
 TEST_F(PositionRows, StampsAreDatesOrWeeksAndRepeatedOnesArePassedOver) {
-  const auto rows =
-      Read("% GPST\n2288 252801.000" + kPlace + "1 9\n2023/11/14 22:13:21.000" + kPlace +
-           "1 9\n2023/11/14 22:13:22.500" + kPlace + "1 9\n");
+  const auto rows = Read("% GPST\n2288 252801.000" + kPlace + "1 9\n2023/11/14 22:13:21.000" + kPlace +
+                         "1 9\n2023/11/14 22:13:22.500" + kPlace + "1 9\n");
   ASSERT_TRUE(rows.ok()) << rows.message();
   ASSERT_EQ(rows->size(), 2u);  // 2288 252801 is 2023/11/14 22:13:21
   EXPECT_EQ((*rows)[0].stamp_ns, GpsTimeFromWeek(TimeScale::kGps, 2288, 252'801 * kSecondNs));
@@ -65,7 +64,8 @@ TEST_F(PositionRows, DeviationsAreTakenAndThoseThatCannotBeLoseTheirCorrelation)
 
 TEST_F(PositionRows, TornOnesAreNamedByLine) {
   for (const auto& [row, message] : std::vector<std::pair<std::string, std::string>>{
-           {"6000 0" + kPlace, "a.pos:2: found '6000 0', expected a date and time, or week and second of week"},
+           {"6000 0" + kPlace,
+            "a.pos:2: found '6000 0', expected a date and time, or week and second of week"},
            {"2288 x" + kPlace, "expected a date and time"},
            {"2288 604801" + kPlace, "expected a date and time"},
            {"2288 1 22 x 5", "expected three coordinates"},
