@@ -14,8 +14,8 @@ done
 rooms=(gnss/formats eval/files eval/config eval/dataset eval/rosbag eval/bag eval/trajectory)
 programs=(alidade_gnss_tests alidade_eval_files_tests alidade_eval_config_tests alidade_eval_dataset_tests alidade_eval_rosbag_tests
   alidade_eval_bag_tests alidade_eval_trajectory_tests alidade_eval_metrics_tests alidade_eval_compare_tests)
-# Rooms write as well; these files do nothing else.
-not_readers='writer|export|output_file|escape_html|time_left|digest|hash|config_json|folder_lock|spool_file'
+# Rooms write and hold as well; these files do nothing else.
+not_readers='writer|export|output_file|escape_html|time_left|digest|hash|config_json|folder_lock|spool_file|csv_text|png_image|/ephemeris'
 
 jobs=${JOBS:-$(nproc)}
 [[ -f build/build.ninja ]] || cmake --preset release >&2
@@ -34,14 +34,15 @@ for room in "${rooms[@]}"; do
     echo "$out/${target}_$(basename "$object") $words ${command##* -c }"
   done
 done >"$out/sources.txt"
-# compile OBJECT WORD ... SOURCE: unless it is newer than all sources it may include.
+
+# compile OBJECT WORD ... SOURCE: unless it is newer than all that it was made of.
 compile() {
   local object=$1
   shift
-  if [[ -f $object && -z $(find ../core ../gnss ../eval \( -name '*.cc' -o -name '*.h' \) -newer "$object" -print -quit) ]]; then
+  if [[ -f $object.d ]] && ! tr ' \\' '\n\n' <"$object.d" | grep / | grep -v ':$' | xargs sh -c 'find "$@" -newer "$0"' "$object" 2>&1 | grep -q .; then
     return
   fi
-  eval "clang++-14 -std=c++20 -O1 -DNDEBUG -fprofile-instr-generate -fcoverage-mapping $* -c -o '$object'"
+  eval "clang++-14 -std=c++20 -O1 -DNDEBUG -fprofile-instr-generate -fcoverage-mapping -MMD -MF '$object.d' $* -c -o '$object'"
 }
 export -f compile
 rm -f "$out"/*.profraw
