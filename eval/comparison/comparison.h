@@ -90,9 +90,8 @@ struct CellResult {
   std::optional<double> filtering_sigma_pos_m, filtering_sigma_ori_deg;
   /// How far the last online calibration is from the truth.
   std::optional<double> calibration_rotation_deg, calibration_translation_m, calibration_time_ms;
-  int restarts = 0;  ///< times the estimate was lost
-  bool shown =
-      true;  ///< in reports a run; of a large comparison not all are (eval/comparison/large_comparison.h)
+  int restarts = 0;   ///< times the estimate was lost
+  bool shown = true;  ///< by itself in reports; of a large comparison (large_comparison.h) not all are
   CellSeries series;
   std::vector<SkyTrack> sky;  ///< empty without GNSS
 };
