@@ -5,8 +5,8 @@ WORKDIR /alidade
 COPY scripts/install_dependencies.sh scripts/
 RUN scripts/install_dependencies.sh
 COPY . .
-RUN scripts/build.sh release alidade alidade_pages
-RUN cd build && cpack -G DEB -D CPACK_COMPONENTS_ALL=runtime -B /packages
+RUN scripts/build.sh package alidade alidade_pages
+RUN cd build-package && cpack -G DEB -D CPACK_COMPONENTS_ALL=runtime -B /packages
 
 FROM debian:12-slim
 RUN --mount=type=bind,from=build,source=/packages,target=/packages \

@@ -43,7 +43,7 @@ const std::vector<Command>& Commands() {
        "run estimators x sequences x seeds on identical inputs; write tables and report.html",
        "compare --plan=demo --output=out/demo --jobs=2",
        {"plan", "output", "jobs", "resume", "overwrite", "data", "figures", "engine", "slurm_options",
-        "status", "stage", "part", "quiet"},
+        "cell_time_limit_s", "cell_memory_limit_mib", "status", "stage", "part", "quiet"},
        {},
        0,
        RunCompare},

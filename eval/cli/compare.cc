@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <utility>
 
+#include "core/format.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -52,6 +56,12 @@ std::vector<std::string> WorkerWords() {
   if (FLAGS_resume) {
     words.push_back("--resume");
   }
+  if (FLAGS_cell_time_limit_s > 0) {
+    words.push_back(Format("--cell-time-limit-s=%.17g", FLAGS_cell_time_limit_s));
+  }
+  if (FLAGS_cell_memory_limit_mib > 0) {
+    words.push_back(Format("--cell-memory-limit-mib=%.17g", FLAGS_cell_memory_limit_mib));
+  }
   return words;
 }
 
@@ -86,7 +96,16 @@ int RunStage(const Plan& plan, CompareOptions options) {
   if (!part.ok()) {
     return Report(part.status());
   }
-  const int code = Report(RunCells(plan, options, *part, FLAGS_stage == "tracks"));
+  if (FLAGS_stage == "tracks") {
+    const int code = Report(TrackInputs(plan, options, *part));
+    return options.Stopped() ? kExitInterrupted : code;
+  }
+  options.worker = WorkerWords();
+  options.worker.push_back("--stage=worker");
+  if (std::getenv("SLURM_ARRAY_TASK_ID") != nullptr) {
+    options.jobs = 1;  // --jobs is the number of tasks there
+  }
+  const int code = Report(RunCells(plan, options, *part));
   return options.Stopped() ? kExitInterrupted : code;
 }
 
@@ -104,6 +123,12 @@ Status CheckFlags() {
   ALIDADE_RETURN_IF_ERROR(CheckWord("stage", FLAGS_stage, {"all", "worker", "tracks", "cells", "tables"}));
   if (FLAGS_jobs < 1 || FLAGS_jobs > 1024) {
     return Status::Usage("compare: --jobs: found " + std::to_string(FLAGS_jobs) + ", expected 1 to 1024");
+  }
+  for (const auto& [flag, value] : {std::pair("cell-time-limit-s", FLAGS_cell_time_limit_s),
+                                    std::pair("cell-memory-limit-mib", FLAGS_cell_memory_limit_mib)}) {
+    if (!std::isfinite(value) || value < 0) {
+      return Status::Usage(Format("compare: --%s: found %g, expected 0 (none) or more", flag, value));
+    }
   }
   return Status::Ok();
 }
@@ -137,6 +162,7 @@ int RunCompare(const std::vector<std::string>&) {
                     (FLAGS_figures.empty() ? "" : " --figures=" + FLAGS_figures);
   options.progress = Say;
   options.stop = InstallInterruptHandler();
+  options.limits = {FLAGS_cell_time_limit_s, FLAGS_cell_memory_limit_mib};
   if (FLAGS_stage != "all") {
     return RunStage(*plan, std::move(options));
   }

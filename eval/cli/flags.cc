@@ -14,6 +14,12 @@ DEFINE_string(backend, "", "filter | smoother | batch: overrides the key `backen
 DEFINE_string(calibration, "", "calibration files of Kalibr, OpenVINS or VINS, separated by commas");
 DEFINE_string(camera, "cam0", "camera to use from calibration files with several");
 DEFINE_string(catalogue, "", "catalogue of data sets, instead of the shipped one");
+DEFINE_double(cell_memory_limit_mib, 0,
+              "memory of a cell, its input and what it starts included, beyond which it is ended and has "
+              "failed [MiB]; 0: no limit");
+DEFINE_double(cell_time_limit_s, 0,
+              "wall time of a cell, its input included, after which it is ended and has failed [s]; 0: no "
+              "limit");
 DEFINE_bool(check, false, "report the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(compression, "none", "none | bz2 | lz4: compression of the chunks of a bag");

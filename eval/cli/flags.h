@@ -13,6 +13,8 @@ DECLARE_string(backend);
 DECLARE_string(calibration);
 DECLARE_string(camera);
 DECLARE_string(catalogue);
+DECLARE_double(cell_memory_limit_mib);
+DECLARE_double(cell_time_limit_s);
 DECLARE_bool(check);
 DECLARE_string(clk);
 DECLARE_string(compression);

@@ -46,26 +46,28 @@ void SayWarnings(const ReaderWarnings& warnings) {
   }
 }
 
-Result<std::vector<SinglePointSolution>> SolveAll(const ObservationFile& observations,
-                                                  SinglePointSolver* solver) {
-  std::vector<SinglePointSolution> solutions;
+/// Reads the observations again, epoch by epoch, and appends the lines of the solutions to `text`.
+Status SolveAll(std::size_t epochs, SinglePointSolver* solver, std::string* text) {
+  std::size_t done = 0, solved = 0, read = 0;
   std::string first_failure;
   ProgressLine progress("epoch");
-  for (std::size_t i = 0; i < observations.epochs.size(); ++i) {
-    Result<SinglePointSolution> solution = solver->Solve(observations.epochs[i]);
+  const auto solve = [&](const ObservationEpoch& epoch) {
+    const Result<SinglePointSolution> solution = solver->Solve(epoch);
     if (solution.ok()) {
-      solutions.push_back(*std::move(solution));
+      ++solved;
+      AppendPosition(*solution, text);
     } else if (first_failure.empty()) {
       first_failure = solution.message();
     }
-    progress.Update(i + 1, observations.epochs.size());
-  }
-  if (solutions.empty()) {
+    progress.Update(++done, epochs);
+  };
+  ALIDADE_RETURN_IF_ERROR(ScanRinexObservation(FLAGS_obs, solve, &read).status());
+  if (solved == 0) {
     return Status::Input(FLAGS_obs + ": no epoch has a solution; the first one: " + first_failure);
   }
-  Say(FLAGS_output + Format(": %zu of %zu epochs solved", solutions.size(), observations.epochs.size()) +
+  Say(FLAGS_output + Format(": %zu of %zu epochs solved", solved, epochs) +
       (first_failure.empty() ? "" : "; first failure: " + first_failure));
-  return solutions;
+  return Status::Ok();
 }
 
 int Run() {
@@ -73,7 +75,10 @@ int Run() {
   if (!config.ok()) {
     return Report(config.status());
   }
-  const Result<ObservationFile> observations = ReadRinexObservation(FLAGS_obs);
+  // Twice through the file, which may be longer than memory: what its event records say of the receiver holds
+  // for all epochs.
+  std::size_t epochs = 0;
+  const Result<ObservationFile> observations = ScanRinexObservation(FLAGS_obs, nullptr, &epochs);
   if (!observations.ok()) {
     return Report(observations.status());
   }
@@ -86,17 +91,17 @@ int Run() {
   SayWarnings(warnings);
   SinglePointSolver solver(MeasurementBuilder(*catalog, config->corrections, observations->glonass_channels),
                            config->solution, observations->approximate_position_E);
-  const Result<std::vector<SinglePointSolution>> solutions = SolveAll(*observations, &solver);
-  if (!solutions.ok()) {
-    return Report(solutions.status());
-  }
   std::vector<std::string> remarks = {std::string("program   : alidade ") + ALIDADE_VERSION};
   for (const std::string& list : {FLAGS_obs, FLAGS_nav, FLAGS_sp3, FLAGS_clk}) {
     for (const std::string& path : SplitWords(list)) {
       remarks.push_back("inp file  : " + std::filesystem::path(path).filename().string());
     }
   }
-  return Report(WriteFileAtomically(FLAGS_output, FormatPositionFile(*solutions, remarks)));
+  std::string text = PositionFileHeader(remarks);
+  if (const Status status = SolveAll(epochs, &solver, &text); !status.ok()) {
+    return Report(status);
+  }
+  return Report(WriteFileAtomically(FLAGS_output, text));
 }
 
 }  // namespace

@@ -4,6 +4,15 @@
 
 namespace alidade {
 
+Status ReportFault(const CompareCell& cell, const std::string& fault) {
+  const RunningMark its_own(cell.report_file);  // takes the one that was left, and removes it
+  CellReport report;
+  report.result = cell.result;
+  report.result.status = "failed";
+  report.result.message = fault;
+  return WriteCellFile(report, cell.report_file);
+}
+
 CellRunner::CellRunner(const Plan& plan, const CompareOptions& options, CellList* cells)
     : plan_(plan), options_(options), cells_(cells) {
   pipeline_.stop = options.stop;

@@ -1,11 +1,14 @@
 #pragma once
 
-#include <vector>
+#include <string>
 
 #include "eval/compare/cell_list.h"
 #include "eval/comparison/cell_file.h"
 
 namespace alidade {
+
+/// Writes the report of a cell whose process has ended without one: failed, and why. Errors: kOutput.
+Status ReportFault(const CompareCell& cell, const std::string& fault);
 
 /// Runs cells one after the other in this process. The input of the last one is kept: runs of cells of one
 /// input load it once.

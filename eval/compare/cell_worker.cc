@@ -26,6 +26,8 @@ Status ServeCells(const Plan& plan, const CompareOptions& options) {
   // A key on a terminal reaches the whole group; the process that started this one passes it on.
   std::signal(SIGINT, SIG_IGN);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
+  // What a command leaves running stays below this process, and is ended with it.
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
   CellList cells;
   ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
   ALIDADE_RETURN_IF_ERROR(Answer("ready"));

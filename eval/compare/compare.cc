@@ -1,9 +1,13 @@
 #include "eval/compare/compare.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/format.h"
@@ -12,6 +16,7 @@
 #include "eval/compare/cell_runner.h"
 #include "eval/compare/slurm_run.h"
 #include "eval/compare/worker_pool.h"
+#include "eval/comparison/large_comparison.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/time_left.h"
@@ -40,7 +45,7 @@ class Comparer {
   Comparer(const Plan& plan, const CompareOptions& options) : plan_(plan), options_(options) {}
 
   Result<CompareOutcome> Execute() {
-    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    ALIDADE_RETURN_IF_ERROR(MakeCells());
     ALIDADE_RETURN_IF_ERROR(RemoveEarlier());
     ALIDADE_RETURN_IF_ERROR(WriteCellTable());
     ALIDADE_RETURN_IF_ERROR(RunAll());
@@ -48,7 +53,7 @@ class Comparer {
   }
 
   Result<CompareOutcome> Collect() {
-    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    ALIDADE_RETURN_IF_ERROR(MakeCells());
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
       Take(cell, {});
     }
@@ -56,6 +61,18 @@ class Comparer {
   }
 
  private:
+  Status MakeCells() {
+    ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
+    std::map<std::pair<const PlanEstimator*, const PlanSequence*>, size_t> groups;
+    std::vector<size_t> group;
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+      const auto of = std::pair(cells_.at(cell).estimator, cells_.at(cell).sequence);
+      group.push_back(groups.try_emplace(of, groups.size()).first->second);
+    }
+    shown_ = ShownCells(group, groups.size());
+    return Status::Ok();
+  }
+
   /// Reports of an earlier comparison in this folder, and, unless its cells are to be kept, its tracks.
   Status RemoveEarlier() const {
     std::error_code error;
@@ -82,7 +99,9 @@ class Comparer {
       return slurm.Run();
     }
     if (!options_.worker.empty()) {
-      WorkerPool pool(options_, cells_, [this](size_t cell, const std::string& fault) { End(cell, fault); });
+      std::vector<size_t> all(cells_.size());
+      std::iota(all.begin(), all.end(), size_t{0});
+      WorkerPool pool(options_, cells_, all, [this](size_t cell) { End(cell, {}); });
       return pool.Run();
     }
     CellRunner runner(plan_, options_, &cells_);
@@ -114,6 +133,7 @@ class Comparer {
       return;
     }
     cell.result = std::move(report->result);
+    shown_.Thin(index, &cell.result);
     cells_reused_ += report->reused ? 1 : 0;
     NoteInput(cell, *report);
   }
@@ -148,6 +168,7 @@ class Comparer {
     comparison.command = options_.command;
     comparison.baseline = plan_.baseline;
     comparison.notes = NotesOfAbsent();
+    comparison.shown_note = shown_.note();
     for (const PlanSequence& sequence : plan_.sequences) {
       if (!sequence.group.empty()) {
         comparison.groups[sequence.name] = sequence.group;
@@ -207,6 +228,7 @@ class Comparer {
   const CompareOptions& options_;
   const Clock::time_point begin_ = Clock::now();
   CellList cells_;
+  ShownCells shown_;
   std::map<const CompareInput*, FrontendSummary> frontends_;
   std::set<const CompareInput*> noted_;
   size_t cells_done_ = 0;
@@ -223,21 +245,33 @@ Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& opti
   return Comparer(plan, options).Collect();
 }
 
-Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part, bool inputs_alone) {
+Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part) {
+  CellList cells;
+  ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
+  std::vector<size_t> wanted;
+  for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()); ++cell) {
+    if (!MayExist(cells.at(cell).report_file)) {
+      wanted.push_back(cell);
+    }
+  }
+  WorkerPool pool(options, cells, wanted, [](size_t) {});
+  return pool.Run();
+}
+
+Status TrackInputs(const Plan& plan, const CompareOptions& options, const CellPart& part) {
   CellList cells;
   ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
   CellRunner runner(plan, options, &cells);
   const CompareInput* prepared = nullptr;
   for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()) && !options.Stopped(); ++cell) {
-    if (!inputs_alone) {
-      if (!MayExist(cells.at(cell).report_file)) {
-        ALIDADE_RETURN_IF_ERROR(runner.Run(cell));
-      }
-    } else if (cells.at(cell).input->may_track() && cells.at(cell).input != prepared) {
+    if (cells.at(cell).input->may_track() && cells.at(cell).input != prepared) {
       prepared = cells.at(cell).input;
+      // The signal ends this process; the cells of the input then track it within their own limits.
+      ::alarm(static_cast<unsigned>(std::ceil(options.limits.time_s)));
       ALIDADE_RETURN_IF_ERROR(runner.Prepare(cell));
     }
   }
+  ::alarm(0);
   return Status::Ok();
 }
 

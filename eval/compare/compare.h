@@ -21,9 +21,12 @@ struct CompareOutcome {
 /// simulation's configuration, before anything runs; kOutput.
 Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options);
 
-/// The `part` of the cells of a comparison that has begun elsewhere, in this process; those whose report is
-/// there are passed over. `inputs_alone`: only tracks the images of their inputs.
-Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part, bool inputs_alone);
+/// The `part` of the cells of a comparison that has begun elsewhere, in options.jobs worker processes; those
+/// whose report is there are passed over.
+Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part);
+
+/// Tracks the images of the inputs of these cells, in this process, each within options.limits.time_s.
+Status TrackInputs(const Plan& plan, const CompareOptions& options, const CellPart& part);
 
 /// The tables of a comparison whose cells have run elsewhere; a cell without a report has failed.
 Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& options);

@@ -19,6 +19,12 @@ struct CellPart {
   [[nodiscard]] size_t End(size_t cells) const { return cells * (index + 1) / parts; }
 };
 
+/// Beyond these a cell is killed, its input and all that it starts included, and has failed.
+struct CellLimits {
+  double time_s = 0;      ///< wall time [s]; 0: none
+  double memory_mib = 0;  ///< MemoryOfTree of its process [MiB]; 0: none
+};
+
 /// How a comparison runs and what it writes.
 struct CompareOptions {
   std::string output;
@@ -31,6 +37,7 @@ struct CompareOptions {
   /// Program and words that start a worker (CellWorker) of this comparison; empty: its cells run in this
   /// process, one after the other.
   std::vector<std::string> worker;
+  CellLimits limits;          ///< of cells in worker processes
   bool slurm = false;         ///< cells run as jobs of Slurm, started with the words of `worker`
   std::string slurm_options;  ///< words for sbatch
   std::function<void(const std::string& line)> progress;

@@ -81,13 +81,11 @@ Result<std::string> DescribeComparison(const std::string& output) {
       }
       continue;
     }
-    const Result<CellReport> report = ReadCellFile(file);
+    const Result<CellEnd> end = ReadCellEnd(file);
     ++complete;
-    if (!report.ok() || report->result.status != "ok") {
+    if (!end.ok() || end->status != "ok") {
       ++failed;
-      failures += "  " + row + ": " +
-                  (report.ok() ? report->result.status + ", " + report->result.message : report.message()) +
-                  "\n";
+      failures += "  " + row + ": " + (end.ok() ? end->status + ", " + end->message : end.message()) + "\n";
     }
     std::error_code error;
     const auto time = fs::last_write_time(file, error);

@@ -4,15 +4,22 @@
 
 #include <algorithm>
 
+#include "core/format.h"
+#include "eval/compare/cell_runner.h"
+
 namespace alidade {
 namespace {
 
-constexpr int kPollMs = 200;  // how late a stop may be noticed
+using Clock = std::chrono::steady_clock;
 
-std::vector<CellQueue::Input> InputsOf(const CellList& cells) {
+constexpr int kPollMs = 200;   // how late a stop or the end of a cell's time may be noticed
+constexpr int kMemoryMs = 50;  // while a cell's memory is watched
+
+/// Contiguous cells of one input.
+std::vector<CellQueue::Input> InputsOf(const CellList& cells, const std::vector<size_t>& wanted) {
   std::vector<CellQueue::Input> inputs;
-  for (size_t cell = 0; cell < cells.size(); ++cell) {
-    if (cell == 0 || cells.at(cell).input != cells.at(cell - 1).input) {
+  for (const size_t cell : wanted) {
+    if (inputs.empty() || inputs.back().end != cell || cells.at(cell).input != cells.at(cell - 1).input) {
       inputs.push_back({cell, cell, cells.at(cell).input->may_track()});
     }
     inputs.back().end = cell + 1;
@@ -23,8 +30,8 @@ std::vector<CellQueue::Input> InputsOf(const CellList& cells) {
 }  // namespace
 
 WorkerPool::WorkerPool(const CompareOptions& options, const CellList& cells,
-                       std::function<void(size_t cell, const std::string& how)> ended)
-    : options_(options), queue_(InputsOf(cells)), ended_(std::move(ended)) {}
+                       const std::vector<size_t>& wanted, std::function<void(size_t cell)> ended)
+    : options_(options), cells_(cells), queue_(InputsOf(cells, wanted)), ended_(std::move(ended)) {}
 
 Status WorkerPool::Run() {
   while (!options_.Stopped()) {
@@ -34,8 +41,9 @@ Status WorkerPool::Run() {
       break;
     }
     ALIDADE_RETURN_IF_ERROR(Listen());
+    ALIDADE_RETURN_IF_ERROR(Watch());
   }
-  for (const Worker& worker : workers_) {
+  for (Worker& worker : workers_) {
     worker.process.Interrupt();  // all before the first is waited for
   }
   workers_.clear();
@@ -48,7 +56,7 @@ Status WorkerPool::Fill() {
   while (workers_.size() < static_cast<size_t>(options_.jobs) && idle++ < queue_.size()) {
     Result<WorkerProcess> process = WorkerProcess::Start(options_.worker);
     ALIDADE_RETURN_IF_ERROR(process.status());
-    workers_.push_back({std::move(*process), false, {}, {}});
+    workers_.push_back({std::move(*process), false, {}, {}, {}});
   }
   return Status::Ok();
 }
@@ -58,6 +66,7 @@ void WorkerPool::Feed() {
     if (worker->ready && !worker->cell) {
       worker->cell = queue_.Next(worker->last);
       if (worker->cell) {
+        worker->begin = Clock::now();
         worker->process.Tell(std::to_string(*worker->cell));
       }
     }
@@ -71,14 +80,15 @@ Status WorkerPool::Listen() {
   for (const Worker& worker : workers_) {
     descriptors.push_back({worker.process.descriptor(), POLLIN, 0});
   }
-  if (::poll(descriptors.data(), descriptors.size(), kPollMs) <= 0) {
+  const int wait_ms = options_.limits.memory_mib > 0 ? kMemoryMs : kPollMs;
+  if (::poll(descriptors.data(), descriptors.size(), wait_ms) <= 0) {
     return Status::Ok();
   }
   auto worker = workers_.begin();
   for (const pollfd& descriptor : descriptors) {
     const auto next = std::next(worker);
     if (descriptor.revents != 0) {
-      ALIDADE_RETURN_IF_ERROR(worker->process.Read() ? Hear(&*worker) : Bury(worker));
+      ALIDADE_RETURN_IF_ERROR(worker->process.Read() ? Hear(&*worker) : Bury(worker, {}));
     }
     worker = next;
   }
@@ -91,7 +101,7 @@ Status WorkerPool::Hear(Worker* worker) {
       worker->ready = true;
     } else if (worker->cell && *line == "done " + std::to_string(*worker->cell)) {
       queue_.Ended(*worker->cell);
-      ended_(*worker->cell, {});
+      ended_(*worker->cell);
       worker->last = worker->cell;
       worker->cell.reset();
     } else {
@@ -101,7 +111,32 @@ Status WorkerPool::Hear(Worker* worker) {
   return Status::Ok();
 }
 
-Status WorkerPool::Bury(std::list<Worker>::iterator worker) {
+std::string WorkerPool::BeyondLimit(const Worker& worker) const {
+  const CellLimits& limits = options_.limits;
+  if (limits.time_s > 0 &&
+      std::chrono::duration<double>(Clock::now() - worker.begin).count() > limits.time_s) {
+    return Format("took longer than %g s (--cell-time-limit-s)", limits.time_s);
+  }
+  constexpr double kMib = 1 << 20;
+  if (limits.memory_mib > 0 && static_cast<double>(worker.process.Memory()) > limits.memory_mib * kMib) {
+    return Format("took more than %g MiB of memory (--cell-memory-limit-mib)", limits.memory_mib);
+  }
+  return {};
+}
+
+Status WorkerPool::Watch() {
+  for (auto worker = workers_.begin(); worker != workers_.end();) {
+    const auto next = std::next(worker);
+    if (std::string fault = worker->cell ? BeyondLimit(*worker) : std::string(); !fault.empty()) {
+      worker->process.Kill();
+      ALIDADE_RETURN_IF_ERROR(Bury(worker, std::move(fault)));
+    }
+    worker = next;
+  }
+  return Status::Ok();
+}
+
+Status WorkerPool::Bury(std::list<Worker>::iterator worker, std::string fault) {
   const std::string how = worker->process.Join();
   const std::optional<size_t> cell = worker->cell;
   const bool ready = worker->ready;
@@ -111,7 +146,9 @@ Status WorkerPool::Bury(std::list<Worker>::iterator worker) {
   }
   if (cell && !options_.Stopped()) {
     queue_.Ended(*cell);
-    ended_(*cell, "its process ended with " + how);
+    ALIDADE_RETURN_IF_ERROR(
+        ReportFault(cells_.at(*cell), fault.empty() ? "its process ended with " + how : fault));
+    ended_(*cell);
   }
   return Status::Ok();
 }

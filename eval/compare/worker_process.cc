@@ -9,10 +9,22 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <thread>
+#include <utility>
 
 #include "core/format.h"
+#include "eval/compare/process_tree.h"
 
 namespace alidade {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Of a process that was asked to end. Its outputs are renamed when they are whole, so being killed does them
+// no harm.
+constexpr std::chrono::seconds kGrace{5};
+
+}  // namespace
 
 Result<WorkerProcess> WorkerProcess::Start(const std::vector<std::string>& words) {
   std::array<int, 2> in{-1, -1}, out{-1, -1};
@@ -47,14 +59,30 @@ Result<WorkerProcess> WorkerProcess::Start(const std::vector<std::string>& words
 }
 
 WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
-    : process_(other.process_), to_(other.to_), from_(other.from_), text_(std::move(other.text_)) {
+    : process_(other.process_),
+      to_(other.to_),
+      from_(other.from_),
+      interrupted_(other.interrupted_),
+      text_(std::move(other.text_)) {
   other.process_ = 0;
   other.to_ = -1;
   other.from_ = -1;
 }
 
 WorkerProcess::~WorkerProcess() {
+  if (process_ <= 0) {
+    return;
+  }
   Interrupt();
+  ::close(std::exchange(to_, -1));
+  siginfo_t ended{};
+  while (ended.si_pid == 0 && Clock::now() < *interrupted_ + kGrace &&
+         ::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(ended.si_pid == 0 ? 5 : 0));
+  }
+  if (ended.si_pid == 0) {
+    Kill();
+  }
   Join();
 }
 
@@ -86,17 +114,30 @@ std::optional<std::string> WorkerProcess::Line() {
   return line;
 }
 
-void WorkerProcess::Interrupt() const {
-  if (process_ > 0) {
+void WorkerProcess::Interrupt() {
+  if (process_ > 0 && !interrupted_) {
+    interrupted_ = Clock::now();
     kill(process_, SIGTERM);
   }
+}
+
+void WorkerProcess::Kill() const {
+  if (process_ > 0) {
+    KillTree(process_);
+  }
+}
+
+int64_t WorkerProcess::Memory() const {
+  return process_ > 0 ? MemoryOfTree(process_) : 0;
 }
 
 std::string WorkerProcess::Join() {
   if (process_ <= 0) {
     return {};
   }
-  ::close(to_);
+  if (to_ >= 0) {
+    ::close(std::exchange(to_, -1));
+  }
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }

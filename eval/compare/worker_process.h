@@ -2,6 +2,8 @@
 
 #include <sys/types.h>
 
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +18,8 @@ class WorkerProcess {
  public:
   /// words: the program and its arguments. Error (kOutput): it cannot be started.
   static Result<WorkerProcess> Start(const std::vector<std::string>& words);
-  ~WorkerProcess();  ///< asks it to end, and waits
+  /// Asks it to end, and waits; one that does not end in time is killed, with all that it started.
+  ~WorkerProcess();
   WorkerProcess(WorkerProcess&& other) noexcept;
   WorkerProcess& operator=(WorkerProcess&&) = delete;
   WorkerProcess(const WorkerProcess&) = delete;
@@ -32,7 +35,11 @@ class WorkerProcess {
   [[nodiscard]] int descriptor() const { return from_; }
 
   /// Asks it to end (SIGTERM).
-  void Interrupt() const;
+  void Interrupt();
+  /// Ends it and all that it started (SIGKILL).
+  void Kill() const;
+  /// Of the process and all that it started (MemoryOfTree) [bytes].
+  [[nodiscard]] int64_t Memory() const;
   /// Closes its input, waits for its end, and says how it ended: "code 3", "signal 9 (Killed)".
   std::string Join();
 
@@ -40,8 +47,9 @@ class WorkerProcess {
   WorkerProcess(pid_t process, int to, int from) : process_(process), to_(to), from_(from) {}
 
   pid_t process_ = 0;  ///< 0: joined
-  int to_ = -1;
+  int to_ = -1;        ///< -1: closed
   int from_ = -1;
+  std::optional<std::chrono::steady_clock::time_point> interrupted_;
   std::string text_;  ///< read, not yet taken
 };
 

@@ -208,7 +208,61 @@ T FromJson(const Json& json) {
   }
 }
 
+/// Takes two texts of the object "result" and passes over all else.
+class EndReader : public nlohmann::json_sax<Json> {
+ public:
+  CellEnd end;
+
+  bool key(string_t& name) override {
+    key_ = name;
+    in_result_ = depth_ == 1 ? name == "result" : in_result_;
+    return true;
+  }
+  bool string(string_t& text) override {
+    if (depth_ == 2 && in_result_ && (key_ == "status" || key_ == "message")) {
+      (key_ == "status" ? end.status : end.message) = text;
+    }
+    return true;
+  }
+  bool start_object(size_t /*size*/) override { return Open(); }
+  bool end_object() override { return Close(); }
+  bool start_array(size_t /*size*/) override { return Open(); }
+  bool end_array() override { return Close(); }
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool parse_error(size_t /*at*/, const std::string& /*last*/, const Json::exception& /*error*/) override {
+    return false;
+  }
+
+ private:
+  bool Open() {
+    ++depth_;
+    return true;
+  }
+  bool Close() {
+    --depth_;
+    return true;
+  }
+  int depth_ = 0;
+  bool in_result_ = false;
+  std::string key_;
+};
+
 }  // namespace
+
+Result<CellEnd> ReadCellEnd(const std::string& path) {
+  const Result<std::string> bytes = ReadWholeFile(path);
+  ALIDADE_RETURN_IF_ERROR(bytes.status());
+  EndReader reader;
+  if (!Json::sax_parse(*bytes, &reader, Json::input_format_t::cbor) || reader.end.status.empty()) {
+    return Status::Input(path + ": not the result of a cell");
+  }
+  return std::move(reader.end);
+}
 
 Status WriteCellFile(const CellReport& report, const std::string& path) {
   const std::vector<uint8_t> bytes = Json::to_cbor(ToJson(report));

@@ -1,42 +1,42 @@
 #include "eval/comparison/cell_group.h"
 
+#include <map>
+#include <set>
 #include <utility>
-
-#include "eval/comparison/distinct.h"
 
 namespace alidade {
 
-std::string LabelOf(const Comparison& comparison, const CellResult& cell) {
-  for (const CellResult& other : comparison.cells) {
-    const bool both_known = !other.backend.empty() && !cell.backend.empty();
-    if (other.estimator == cell.estimator && both_known && other.backend != cell.backend) {
-      return cell.estimator + " (" + cell.backend + ")";
+std::vector<std::string> LabelsOf(const Comparison& comparison) {
+  std::map<std::string, std::set<std::string>> backends;
+  for (const CellResult& cell : comparison.cells) {
+    if (!cell.backend.empty()) {
+      backends[cell.estimator].insert(cell.backend);
     }
   }
-  return cell.estimator;
+  std::vector<std::string> labels;
+  for (const CellResult& cell : comparison.cells) {
+    const bool several = !cell.backend.empty() && backends.at(cell.estimator).size() > 1;
+    labels.push_back(several ? cell.estimator + " (" + cell.backend + ")" : cell.estimator);
+  }
+  return labels;
 }
 
 std::vector<CellGroup> GroupCells(const Comparison& comparison) {
-  std::vector<std::string> of_cell;  // a label costs a walk over all cells: once each
-  for (const CellResult& cell : comparison.cells) {
-    of_cell.push_back(LabelOf(comparison, cell));
+  const std::vector<std::string> labels = LabelsOf(comparison);
+  std::map<std::string, size_t> sequence_rank, label_rank;
+  std::map<std::pair<size_t, size_t>, CellGroup> by_rank;
+  for (size_t i = 0; i < labels.size(); ++i) {
+    const CellResult& cell = comparison.cells[i];
+    const size_t sequence = sequence_rank.try_emplace(cell.sequence, sequence_rank.size()).first->second;
+    const size_t label = label_rank.try_emplace(labels[i], label_rank.size()).first->second;
+    CellGroup& group = by_rank[{sequence, label}];
+    group.label = labels[i];
+    group.sequence = cell.sequence;
+    group.cells.push_back(&cell);
   }
-  const std::vector<std::string> labels = Distinct(of_cell, [](const std::string& label) { return label; });
-  const std::vector<std::string> sequences =
-      Distinct(comparison.cells, [](const CellResult& cell) { return cell.sequence; });
   std::vector<CellGroup> groups;
-  for (const std::string& sequence : sequences) {
-    for (const std::string& label : labels) {
-      CellGroup group{label, sequence, {}};
-      for (size_t i = 0; i < of_cell.size(); ++i) {
-        if (of_cell[i] == label && comparison.cells[i].sequence == sequence) {
-          group.cells.push_back(&comparison.cells[i]);
-        }
-      }
-      if (!group.cells.empty()) {
-        groups.push_back(std::move(group));
-      }
-    }
+  for (auto& [rank, group] : by_rank) {
+    groups.push_back(std::move(group));
   }
   return groups;
 }

@@ -16,7 +16,7 @@ struct CellGroup {
 /// By sequence, then label, both in order of first appearance; they point into `comparison`.
 [[nodiscard]] std::vector<CellGroup> GroupCells(const Comparison& comparison);
 
-/// The label of a cell's aggregate row.
-[[nodiscard]] std::string LabelOf(const Comparison& comparison, const CellResult& cell);
+/// The labels of the cells' aggregate rows: the estimator, with its backend where it has several.
+[[nodiscard]] std::vector<std::string> LabelsOf(const Comparison& comparison);
 
 }  // namespace alidade

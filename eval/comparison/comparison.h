@@ -90,7 +90,8 @@ struct CellResult {
   std::optional<double> filtering_sigma_pos_m, filtering_sigma_ori_deg;
   /// How far the last online calibration is from the truth.
   std::optional<double> calibration_rotation_deg, calibration_translation_m, calibration_time_ms;
-  int restarts = 0;  ///< times the estimate was lost
+  int restarts = 0;   ///< times the estimate was lost
+  bool shown = true;  ///< by itself in reports; of a large comparison (large_comparison.h) not all are
   CellSeries series;
   std::vector<SkyTrack> sky;  ///< empty without GNSS
 };
@@ -112,6 +113,7 @@ struct Comparison {
   std::vector<ReferenceFigure> references;
   std::string command;                  ///< command line that repeats it
   std::vector<std::string> notes = {};  ///< printed with the tables, such as sequences that were not run
+  std::string shown_note = {};          ///< of a large one: of which cells it has curves
   /// Figures whose paired differences the tables show; pairs.csv has all of them.
   std::vector<std::string> pair_figures = {"rmse_ori_deg", "rmse_pos_m"};
   bool pair_across = false;  ///< show them over the sequences, one sample a sequence, not within each

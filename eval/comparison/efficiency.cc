@@ -63,7 +63,7 @@ std::vector<Efficiency> ComputeEfficiency(const Comparison& comparison) {
   if (batch == comparison.cells.end()) {
     return entries;
   }
-  const std::string bound_label = LabelOf(comparison, *batch);
+  const std::string bound_label = LabelsOf(comparison)[static_cast<size_t>(batch - comparison.cells.begin())];
   const std::vector<CellGroup> groups = GroupCells(comparison);
   for (const CellGroup& group : groups) {
     for (const CellGroup& bound : groups) {

@@ -8,6 +8,7 @@
 
 #include "core/numbers.h"
 #include "eval/comparison/aggregate.h"
+#include "eval/comparison/cell_group.h"
 #include "eval/comparison/efficiency.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/comparison/paired.h"
@@ -31,12 +32,14 @@ Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
 
 /// Cells whose sky the page holds: of each estimator's first seed, since it is the same for all; of a large
 /// comparison one a sequence, for its size.
-std::set<const CellResult*> CellsWithSky(const Comparison& comparison) {
+std::set<const CellResult*> CellsWithSky(const Comparison& comparison,
+                                         const std::vector<std::string>& labels) {
   constexpr size_t kMostSkies = 12;
   std::map<std::pair<std::string, std::string>, const CellResult*> by_estimator, by_sequence;
-  for (const CellResult& cell : comparison.cells) {
+  for (size_t i = 0; i < labels.size(); ++i) {
+    const CellResult& cell = comparison.cells[i];
     if (!cell.sky.empty()) {
-      const CellResult*& kept = by_estimator[{cell.sequence, LabelOf(comparison, cell)}];
+      const CellResult*& kept = by_estimator[{cell.sequence, labels[i]}];
       kept = kept == nullptr || cell.seed < kept->seed ? &cell : kept;
       by_sequence.try_emplace({cell.sequence, ""}, &cell);
     }
@@ -54,14 +57,14 @@ Json InnovationJson(const InnovationSummary& of) {
 }
 
 /// What the tables and box plots need of a run.
-Json CellData(const Comparison& comparison, const std::vector<Figure>& figures, const CellResult& cell) {
+Json CellData(const std::string& label, const std::vector<Figure>& figures, const CellResult& cell) {
   Json rpe = Json::array();
   for (const RpeResult& result : cell.rpe) {
     rpe.push_back({{"d", result.distance_m},
                    {"n", result.count},
                    {"q", RoundedJson(BoxQuantiles(result.pos_errors_m), 4)}});
   }
-  return {{"estimator", LabelOf(comparison, cell)},
+  return {{"estimator", label},
           {"sequence", cell.sequence},
           {"seed", cell.seed},
           {"status", cell.status},
@@ -216,10 +219,13 @@ Json NeesBands(int most_runs) {
 /// All but what the plots alone need.
 Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures,
                 const std::vector<AggregateRow>& rows) {
-  Json data = {
-      {"title", comparison.title},        {"command", comparison.command},
-      {"not_run", comparison.notes},      {"truth_covariance", comparison.SequencesWithTruthCovariance()},
-      {"sequences", ListSequences(rows)}, {"estimators", ListLabels(rows)}};
+  Json data = {{"title", comparison.title},
+               {"command", comparison.command},
+               {"shown_note", comparison.shown_note},
+               {"not_run", comparison.notes},
+               {"truth_covariance", comparison.SequencesWithTruthCovariance()},
+               {"sequences", ListSequences(rows)},
+               {"estimators", ListLabels(rows)}};
   data["figures"] = Json::array();
   for (const Figure& figure : figures) {
     data["figures"].push_back(FigureData(figure));
@@ -239,8 +245,11 @@ Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures
                                   {"figures", reference.figures}});
   }
   data["cells"] = Json::array();
-  for (const CellResult& cell : comparison.cells) {
-    data["cells"].push_back(CellData(comparison, figures, cell));
+  const std::vector<std::string> labels = LabelsOf(comparison);
+  for (size_t i = 0; i < labels.size(); ++i) {
+    if (comparison.cells[i].shown) {
+      data["cells"].push_back(CellData(labels[i], figures, comparison.cells[i]));
+    }
   }
   return data;
 }
@@ -259,7 +268,9 @@ std::string ReportData(const Comparison& comparison) {
   const std::vector<AggregateRow> rows = Aggregate(comparison, figures);
   const bool audited = std::any_of(comparison.cells.begin(), comparison.cells.end(),
                                    [](const CellResult& cell) { return !cell.series.rank.empty(); });
-  const int most = PointsPerSeries(comparison.cells.size(), audited);
+  const auto shown = std::count_if(comparison.cells.begin(), comparison.cells.end(),
+                                   [](const CellResult& c) { return c.shown; });
+  const int most = PointsPerSeries(static_cast<size_t>(shown), audited);
   Json data = TablesData(comparison, figures, rows);
   data["points"] = most;
   data["maps"] = HeatMapsJson(MakeHeatMaps(rows, figures));
@@ -269,11 +280,14 @@ std::string ReportData(const Comparison& comparison) {
   }
   data["nees_bands"] = NeesBands(most_runs);
   data["nees_over_time"] = NeesData(comparison, most);
-  const std::set<const CellResult*> with_sky = CellsWithSky(comparison);
-  for (size_t i = 0; i < comparison.cells.size(); ++i) {
-    const CellResult& cell = comparison.cells[i];
-    data["cells"][i]["series"] = SeriesJson(cell.series, most);
-    data["cells"][i]["sky"] = with_sky.count(&cell) > 0 ? SkyJson(cell.sky) : Json(Json::array());
+  const std::set<const CellResult*> with_sky = CellsWithSky(comparison, LabelsOf(comparison));
+  size_t place = 0;
+  for (const CellResult& cell : comparison.cells) {
+    if (cell.shown) {
+      Json& entry = data["cells"][place++];
+      entry["series"] = SeriesJson(cell.series, most);
+      entry["sky"] = with_sky.count(&cell) > 0 ? SkyJson(cell.sky) : Json(Json::array());
+    }
   }
   std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   // '<' stands only inside strings, where its escape means the same.

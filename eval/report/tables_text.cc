@@ -141,6 +141,7 @@ std::string MarkdownText(const Comparison& comparison, const std::vector<TextTab
   for (const std::string& line : lost) {
     text += "- " + EscapeMarkdown(line) + "\n";
   }
+  text += comparison.shown_note.empty() ? "" : "\n" + comparison.shown_note + "\n";
   text += comparison.notes.empty() ? "" : "\n## Not run\n\n";
   for (const std::string& note : comparison.notes) {
     text += "- " + EscapeMarkdown(note) + "\n";

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/format.h"
+#include "gnss/base/mapped_text.h"
 #include "gnss/base/system_index.h"
 #include "gnss/formats/compact_rinex.h"
 #include "gnss/formats/rinex_epoch_line.h"
@@ -16,11 +17,21 @@ constexpr std::size_t kObservationWidth = 14;
 constexpr std::size_t kFieldsALine2 = 5;
 constexpr std::size_t kSatellitesALine2 = 12;
 
+using TakeEpoch = std::function<void(ObservationEpoch)>;
+
 class EpochReader {
  public:
   EpochReader(LineReader* lines, ObservationFile* file, ObservationLayout* layout,
-              ObservationHeaderParser* header)
-      : lines_(*lines), file_(*file), layout_(*layout), header_(*header), modern_(file->version >= 3) {}
+              ObservationHeaderParser* header, const TakeEpoch& take)
+      : lines_(*lines),
+        file_(*file),
+        layout_(*layout),
+        header_(*header),
+        take_(take),
+        modern_(file->version >= 3) {}
+
+  /// Of the first epoch; none: there is none.
+  [[nodiscard]] std::optional<TimeNs> first_ns() const { return first_ns_; }
 
   void ReadAll() {
     while (lines_.Next()) {
@@ -77,7 +88,7 @@ class EpochReader {
     if (!whole) {
       return;
     }
-    if (!file_.epochs.empty() && epoch.stamp_ns <= file_.epochs.back().stamp_ns) {
+    if (first_ns_ && epoch.stamp_ns <= last_ns_) {
       Warn(lines_.Fault("the epoch ending here is not later than the previous one; skipped"));
       return;
     }
@@ -89,7 +100,9 @@ class EpochReader {
       Warn(lines_.Fault("a satellite occurs twice in the epoch ending here; the first is used"));
       epoch.satellites.erase(twin, epoch.satellites.end());
     }
-    file_.epochs.push_back(std::move(epoch));
+    first_ns_ = first_ns_.value_or(epoch.stamp_ns);
+    last_ns_ = epoch.stamp_ns;
+    take_(std::move(epoch));
   }
 
   /// False when the epoch is torn by the end of the file.
@@ -220,23 +233,21 @@ class EpochReader {
   ObservationFile& file_;
   ObservationLayout& layout_;
   ObservationHeaderParser& header_;
+  const TakeEpoch& take_;
   bool modern_;
+  std::optional<TimeNs> first_ns_;
+  TimeNs last_ns_ = 0;
 };
 
-void WarnOfLeapSeconds(const std::string& path, ObservationFile* file) {
-  if (!file->leap_seconds || file->epochs.empty()) {
-    return;
-  }
-  const int expected = LeapSeconds(file->epochs.front().stamp_ns);
-  if (*file->leap_seconds != expected) {
+void WarnOfLeapSeconds(const std::string& path, TimeNs first_ns, ObservationFile* file) {
+  const int expected = LeapSeconds(first_ns);
+  if (file->leap_seconds && *file->leap_seconds != expected) {
     file->warnings.Add(
         Status::Input(path + Format(": LEAP SECONDS: found %d, expected %d", *file->leap_seconds, expected)));
   }
 }
 
-}  // namespace
-
-Result<ObservationFile> ParseRinexObservation(const std::string& path, std::string_view text) {
+Result<ObservationFile> ParseEpochs(const std::string& path, std::string_view text, const TakeEpoch& take) {
   std::string plain;
   if (IsCompactRinex(text)) {
     Result<std::string> unpacked = DecodeCompactRinex(path, text);
@@ -251,12 +262,38 @@ Result<ObservationFile> ParseRinexObservation(const std::string& path, std::stri
   ObservationHeaderParser header(&file, &layout);
   LineReader lines(path, text);
   ALIDADE_RETURN_IF_ERROR(header.ParseHeader(&lines));
-  EpochReader(&lines, &file, &layout, &header).ReadAll();
-  if (file.epochs.empty()) {
+  EpochReader reader(&lines, &file, &layout, &header, take);
+  reader.ReadAll();
+  if (!reader.first_ns()) {
     return file.warnings.Nothing(path, "epoch of observations");
   }
-  WarnOfLeapSeconds(path, &file);
+  WarnOfLeapSeconds(path, *reader.first_ns(), &file);
   return file;
+}
+
+}  // namespace
+
+Result<ObservationFile> ParseRinexObservation(const std::string& path, std::string_view text) {
+  std::vector<ObservationEpoch> epochs;
+  Result<ObservationFile> file =
+      ParseEpochs(path, text, [&epochs](ObservationEpoch epoch) { epochs.push_back(std::move(epoch)); });
+  if (file.ok()) {
+    file->epochs = std::move(epochs);
+  }
+  return file;
+}
+
+Result<ObservationFile> ScanRinexObservation(const std::string& path, const TakeEpoch& take,
+                                             std::size_t* epochs) {
+  const Result<MappedText> text = MappedText::Open(path);
+  ALIDADE_RETURN_IF_ERROR(text.status());
+  *epochs = 0;
+  return ParseEpochs(path, text->text(), [&](ObservationEpoch epoch) {
+    ++*epochs;
+    if (take) {
+      take(std::move(epoch));
+    }
+  });
 }
 
 Result<ObservationFile> ReadRinexObservation(const std::string& path) {

@@ -54,13 +54,4 @@ void AppendPosition(const SinglePointSolution& s, std::string* text) {
            Deviations(R_NE * s.velocity_covariance_E * R_NE.transpose(), "58") + "\n";
 }
 
-std::string FormatPositionFile(const std::vector<SinglePointSolution>& solutions,
-                               const std::vector<std::string>& remarks) {
-  std::string text = PositionFileHeader(remarks);
-  for (const SinglePointSolution& solution : solutions) {
-    AppendPosition(solution, &text);
-  }
-  return text;
-}
-
 }  // namespace alidade

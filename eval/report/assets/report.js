@@ -123,12 +123,14 @@
   }
 
   function drawFacts() {
-    const ok = data.cells.filter(function (cell) { return cell.status === 'ok'; }).length;
+    const runs = d3.sum(data.aggregate, function (row) { return row.cells; });
+    const ok = d3.sum(data.aggregate, function (row) { return row.ok; });
     const count = function (n, word) { return n + ' ' + word + (n === 1 ? '' : 's'); };
     element('facts').innerHTML = count(data.estimators.length, 'estimator') + ' on ' + count(data.sequences.length, 'sequence') + ', ' +
-      count(data.cells.length, 'run') + (ok === data.cells.length ? ', all ok' : ', <b class="bad">' + (data.cells.length - ok) + ' not ok</b>') +
-      (data.not_run.length ? '; <b class="bad">not run: ' + data.not_run.length + '</b>' : '');
-    element('lost').hidden = ok === data.cells.length;
+      count(runs, 'run') + (ok === runs ? ', all ok' : ', <b class="bad">' + (runs - ok) + ' not ok</b>') +
+      (data.not_run.length ? '; <b class="bad">not run: ' + data.not_run.length + '</b>' : '') +
+      (data.shown_note ? '. ' + report.escape(data.shown_note) : '');
+    element('lost').hidden = ok === runs;
     element('lost-list').innerHTML = failureList(data.cells, true);
     element('not-run').hidden = !data.not_run.length;
     element('not-run-list').innerHTML = data.not_run.map(function (note) { return '<li>' + report.escape(note) + '</li>'; }).join('');

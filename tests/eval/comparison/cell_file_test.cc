@@ -71,6 +71,18 @@ TEST(CellFile, KeepsEveryBit) {
   EXPECT_EQ(read->remarks, report.remarks);
 }
 
+TEST(CellFile, TheEndAloneIsTheSame) {
+  const test::TemporaryFolder folder;
+  CellReport report = Report();
+  report.result.status = "failed";
+  report.result.message = "why";
+  ASSERT_TRUE(WriteCellFile(report, folder.File("a.cbor")).ok());
+  const Result<CellEnd> end = ReadCellEnd(folder.File("a.cbor"));
+  ASSERT_TRUE(end.ok()) << end.message();
+  EXPECT_EQ(end->status, "failed");
+  EXPECT_EQ(end->message, "why");
+}
+
 TEST(CellFile, GivenATornOrForeignFileThenItSaysSo) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(WriteCellFile(Report(), folder.File("a.cbor")).ok());
@@ -80,6 +92,7 @@ TEST(CellFile, GivenATornOrForeignFileThenItSaysSo) {
     const Result<CellReport> torn = ReadCellFile(folder.File("torn.cbor"));
     ASSERT_FALSE(torn.ok()) << length;
     EXPECT_THAT(torn.message(), HasSubstr("torn.cbor: not the result of a cell")) << length;
+    EXPECT_FALSE(ReadCellEnd(folder.File("torn.cbor")).ok()) << length;
   }
   folder.Write("list.cbor", "\x81\x01");
   EXPECT_FALSE(ReadCellFile(folder.File("list.cbor")).ok());

@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include "core/format.h"
 #include "tests/gnss/formats/rinex_text.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
@@ -202,6 +205,46 @@ TEST(RinexObservationTest, Version2EventsAndDamage) {
   ASSERT_EQ(file.epochs.size(), 2u);
   EXPECT_DOUBLE_EQ(*Only(file.epochs[1].satellites.at(0)).pseudorange_m, 2.2e7);
   EXPECT_EQ(file.warnings.count, 1);
+}
+
+// GIVEN a file, plain, as gzip and cut to nothing WHEN it is scanned THEN the epochs, the header and the
+// warnings are those of reading it whole.
+TEST(RinexObservationTest, ScanningGivesTheSameEpochs) {
+  const test::TemporaryFolder folder;
+  std::string text = kHeader3;
+  for (int second = 0; second < 60; ++second) {
+    text += Format("> 2020 06 25 00 00 %02d.0000000  0  1\n", second) + Satellite("G07", 2.1e7 + second);
+  }
+  text += "> 2020 06 25 00 00 30.0000000  0  1\n" + Satellite("G07", 2.1e7);  // earlier
+  const std::string plain = folder.Write("plain.rnx", text);
+  const std::string gzip = folder.File("gzip.rnx.gz");
+  gzFile file = gzopen(gzip.c_str(), "wb");
+  ASSERT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
+  gzclose(file);
+  const Result<ObservationFile> whole = ReadRinexObservation(plain);
+  ASSERT_TRUE(whole.ok()) << whole.message();
+  ASSERT_EQ(whole->epochs.size(), 60u);
+  for (const std::string& path : {plain, gzip}) {
+    std::vector<ObservationEpoch> epochs;
+    std::size_t count = 0;
+    const Result<ObservationFile> scanned = ScanRinexObservation(
+        path, [&epochs](ObservationEpoch epoch) { epochs.push_back(std::move(epoch)); }, &count);
+    ASSERT_TRUE(scanned.ok()) << scanned.message();
+    EXPECT_EQ(count, 60u);
+    ASSERT_EQ(epochs.size(), 60u);
+    for (std::size_t i = 0; i < epochs.size(); ++i) {
+      EXPECT_EQ(epochs[i].stamp_ns, whole->epochs[i].stamp_ns);
+      EXPECT_EQ(Only(epochs[i].satellites.at(0)).pseudorange_m, 2.1e7 + static_cast<double>(i));
+    }
+    EXPECT_TRUE(scanned->epochs.empty());
+    EXPECT_EQ(scanned->warnings.count, 1);
+    EXPECT_EQ(scanned->glonass_channels, whole->glonass_channels);
+  }
+  std::size_t count = 0;
+  EXPECT_THAT(ScanRinexObservation(folder.Write("none.rnx", ""), nullptr, &count).message(),
+              HasSubstr("none.rnx"));
+  EXPECT_THAT(ScanRinexObservation(folder.File("gone.rnx"), nullptr, &count).message(),
+              HasSubstr("gone.rnx"));
 }
 
 TEST(RinexObservationTest, RealFilesAreReadWhole) {

@@ -267,7 +267,8 @@ TEST(PositionFileTest, IsRtklibsLayout) {
   solution.position_covariance_E = R * Eigen::Vector3d(1, 4, 9).asDiagonal() * R.transpose();
   solution.velocity_E = R * Eigen::Vector3d(0.1, 0.2, 0.3);
   solution.used = 7;
-  const std::string text = FormatPositionFile({solution}, {"program   : test"});
+  std::string text = PositionFileHeader({"program   : test"});
+  AppendPosition(solution, &text);
   EXPECT_THAT(text, testing::StartsWith("% program   : test\n"));
   EXPECT_THAT(
       text, HasSubstr("\n2020/06/25 00:00:00.000   28.647889757   57.295779513    12.3456   5   7   2.0000   "
