@@ -239,21 +239,11 @@ class EpochReader {
   TimeNs last_ns_ = 0;
 };
 
-void WarnOfLeapSeconds(const std::string& path, TimeNs first_ns, ObservationFile* file) {
-  const int expected = LeapSeconds(first_ns);
-  if (file->leap_seconds && *file->leap_seconds != expected) {
-    file->warnings.Add(
-        Status::Input(path + Format(": LEAP SECONDS: found %d, expected %d", *file->leap_seconds, expected)));
-  }
-}
-
 Result<ObservationFile> ParseEpochs(const std::string& path, std::string_view text, const TakeEpoch& take) {
   std::string plain;
   if (IsCompactRinex(text)) {
     Result<std::string> unpacked = DecodeCompactRinex(path, text);
-    if (!unpacked.ok()) {
-      return unpacked.status();
-    }
+    ALIDADE_RETURN_IF_ERROR(unpacked.status());
     plain = *std::move(unpacked);
     text = plain;
   }
@@ -267,7 +257,11 @@ Result<ObservationFile> ParseEpochs(const std::string& path, std::string_view te
   if (!reader.first_ns()) {
     return file.warnings.Nothing(path, "epoch of observations");
   }
-  WarnOfLeapSeconds(path, *reader.first_ns(), &file);
+  const int expected = LeapSeconds(*reader.first_ns());
+  if (file.leap_seconds && *file.leap_seconds != expected) {
+    file.warnings.Add(
+        Status::Input(path + Format(": LEAP SECONDS: found %d, expected %d", *file.leap_seconds, expected)));
+  }
   return file;
 }
 
@@ -298,9 +292,7 @@ Result<ObservationFile> ScanRinexObservation(const std::string& path, const Take
 
 Result<ObservationFile> ReadRinexObservation(const std::string& path) {
   const Result<std::string> text = ReadTextFile(path);
-  if (!text.ok()) {
-    return text.status();
-  }
+  ALIDADE_RETURN_IF_ERROR(text.status());
   return ParseRinexObservation(path, *text);
 }
 
