@@ -94,7 +94,7 @@ double LandmarkCost(std::span<const Pose> T_WC, std::span<const NormalizedObserv
 }
 
 bool SolveLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
-                   const LandmarkOptions& options, Vector3d* landmark) {
+                   const LandmarkOptions& options, Vector3d* landmark, double* least) {
   LandmarkSystem system;
   double cost = Evaluate(T_WC, observations, options, *landmark, &system);
   double damping = 0;
@@ -120,6 +120,9 @@ bool SolveLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObserva
         break;
       }
     }
+  }
+  if (least != nullptr) {
+    *least = cost;
   }
   return std::isfinite(cost) && landmark->allFinite();
 }

@@ -41,9 +41,9 @@ struct LandmarkOptions {
 
 /// Minimises LandmarkCost over (x, y, rho): damped, iteratively re-weighted Gauss-Newton, until a step would
 /// lower the cost by less than 1e-14 of it, so that the cost's derivative through the landmark vanishes.
-/// `landmark` is start and result. False: behind a view at the start, or not finite.
+/// `landmark` is start and result, `least` the cost there. False: behind a view at the start, or not finite.
 bool SolveLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
-                   const LandmarkOptions& options, Eigen::Vector3d* landmark);
+                   const LandmarkOptions& options, Eigen::Vector3d* landmark, double* least = nullptr);
 
 /// The same for a point of the world in front of all views, without kernel and prior: p_W is start and
 /// result. False when it does not stay in front of every view; p_W is then untouched.

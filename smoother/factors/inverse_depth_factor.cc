@@ -1,5 +1,7 @@
 #include "smoother/factors/inverse_depth_factor.h"
 
+#include <algorithm>
+
 #include "core/predicted_observation.h"
 #include "smoother/tracks/anchored_landmark.h"
 
@@ -39,18 +41,29 @@ NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) 
 
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
                                        const WindowCalibration* calibration, const BearingPlane& plane,
-                                       double base_row_px)
-    : base_(base), view_(view), calibration_(calibration), plane_(plane), base_row_px_(base_row_px) {}
+                                       double base_row_px, GeometryCache* cache)
+    : base_(base),
+      view_(view),
+      calibration_(calibration),
+      plane_(plane),
+      base_row_px_(base_row_px),
+      cache_(cache) {
+  if (cache == nullptr) {
+    const int frames = 1 + std::max(base->index, view->frame->index);
+    own_ = std::make_shared<GeometryCache>(*calibration, static_cast<size_t>(frames));
+    cache_ = own_.get();
+  }
+}
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
-  WindowCalibration camera{calibration_->layout, {}};
-  if (!calibration_->At(calibration_->Block(parameters, 3), &camera.mean)) {
+  const WindowCalibration* const camera = cache_->Camera(calibration_->Block(parameters, 3));
+  if (camera == nullptr) {
     return false;
   }
-  const NormalizedObservation observation = Seen(camera, *view_);
-  const FrameGeometry base_frame = MakeGeometry(*base_, UnpackNavState(parameters[0]), camera.mean);
-  const FrameGeometry view_frame = MakeGeometry(*view_->frame, UnpackNavState(parameters[1]), camera.mean);
+  const NormalizedObservation observation = Seen(*camera, *view_);
+  const FrameGeometry& base_frame = cache_->Frame(*base_, parameters[0]);
+  const FrameGeometry& view_frame = cache_->Frame(*view_->frame, parameters[1]);
   FrameGeometry base_row;
   FrameGeometry view_row;
   const FrameGeometry& base = AtRow(base_frame, base_row_px_, &base_row);
@@ -58,13 +71,13 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   AnchoredRows rows;
   const bool in_front = LinearizeAnchoredView(base, view, observation, {}, landmark, &rows,
-                                              tangent_jacobians != nullptr, &camera, plane_);
+                                              tangent_jacobians != nullptr, camera, plane_);
   if (!in_front) {
     rows.residual.setConstant(kBehindSigma);
     rows.anchor.setZero();
     rows.view.setZero();
     rows.landmark.setZero();
-    rows.calibration.setZero(2, camera.size());
+    rows.calibration.setZero(2, camera->size());
   }
   Eigen::Map<Vector2d>{residual} = rows.residual;
   if (tangent_jacobians == nullptr) {
@@ -75,7 +88,7 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   if (tangent_jacobians[2] != nullptr) {
     Eigen::Map<RowMatrix2x3>{tangent_jacobians[2]} = rows.landmark;
   }
-  if (camera.size() > 0 && tangent_jacobians[3] != nullptr) {
+  if (camera->size() > 0 && tangent_jacobians[3] != nullptr) {
     StoreCalibration(rows.calibration, *calibration_, parameters[3], tangent_jacobians[3]);
   }
   return true;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 
 #include "core/landmark_solver.h"
+#include "smoother/factors/geometry_cache.h"
 #include "smoother/manifold/lifted_cost.h"
 #include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
@@ -22,9 +24,11 @@ class InverseDepthFactor {
  public:
   static constexpr int kRows = 2;
 
-  /// All must outlive the factor. `plane` and `base_row_px`: of the base's observation.
+  /// All must outlive the factor. `plane` and `base_row_px`: of the base's observation. `cache`: that it
+  /// shares with other factors; null: its own.
   InverseDepthFactor(const WindowFrame* base, const WindowView* view, const WindowCalibration* calibration,
-                     const BearingPlane& plane = kNormalizedPlane, double base_row_px = 0);
+                     const BearingPlane& plane = kNormalizedPlane, double base_row_px = 0,
+                     GeometryCache* cache = nullptr);
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
@@ -42,6 +46,8 @@ class InverseDepthFactor {
   const WindowCalibration* calibration_;
   BearingPlane plane_;
   double base_row_px_;
+  GeometryCache* cache_;
+  std::shared_ptr<GeometryCache> own_;
 };
 
 /// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Block landmark and,

@@ -29,50 +29,87 @@ PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTra
   }
 }
 
-bool PoseOnlyFactor::Linearize(const double* const* parameters) const {
+const std::vector<WindowView>& PoseOnlyFactor::Views(const WindowTrack& track,
+                                                     std::vector<WindowView>* renormalized) const {
+  if (memo_->camera.layout.intrinsics() < 0) {
+    return track.views;
+  }
+  *renormalized = Renormalized(memo_->camera.mean.camera, track.views);
+  return *renormalized;
+}
+
+bool PoseOnlyFactor::SolveLandmarks(const double* const* parameters) const {
   const double* block = calibration_->Block(parameters, static_cast<size_t>(frames_));
   WindowCalibration camera{calibration_->layout, {}};
   if (!calibration_->At(block, &camera.mean)) {
     return false;
   }
   std::vector<double> point(block, block + calibration_->size());
-  std::vector<FrameGeometry> geometry;
   for (int i = 0; i < frames_; ++i) {
     point.insert(point.end(), parameters[i], parameters[i] + kNavAmbientSize);
-    geometry.push_back(MakeGeometry(window_->frame(i), UnpackNavState(parameters[i]), camera.mean));
   }
-  if (point == memo_->parameters) {
+  Memo& memo = *memo_;
+  if (point == memo.parameters) {
     return true;
   }
-  memo_->parameters = std::move(point);
-  PoseSystem system(frames_, &camera);
-  const bool renormalize = camera.layout.intrinsics() >= 0;
+  memo.parameters = std::move(point);
+  memo.linear = false;
+  memo.camera = camera;
+  memo.geometry.clear();
+  for (int i = 0; i < frames_; ++i) {
+    memo.geometry.push_back(MakeGeometry(window_->frame(i), UnpackNavState(parameters[i]), camera.mean));
+  }
+  memo.landmarks.assign(tracks_.size(), std::nullopt);
+  memo.robust_cost = 0;
   std::vector<WindowView> renormalized;
-  for (const WindowTrack* track : tracks_) {
-    if (renormalize) {
-      renormalized = Renormalized(camera.mean.camera, track->views);
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    const WindowTrack& track = *tracks_[i];
+    Eigen::Vector3d landmark = track.landmark;
+    double cost = 0;
+    if (SolveLandmark(Views(track, &renormalized), memo.geometry, kernel_, kMaxLandmarkIterations, &landmark,
+                      track.depth_prior, &cost)) {
+      memo.landmarks[i] = landmark;
+    } else {
+      cost = kBehindChiSquare;
     }
-    const std::vector<WindowView>& views = renormalize ? renormalized : track->views;
-    Eigen::Vector3d landmark = track->landmark;
-    if (!SolveLandmark(views, geometry, kernel_, kMaxLandmarkIterations, &landmark, track->depth_prior) ||
-        !AddTrack(views, geometry, kernel_, landmark, &memo_->workspace, &system, track->depth_prior)) {
-      system.robust_cost += kBehindChiSquare;
+    memo.robust_cost += cost;
+  }
+  return true;
+}
+
+void PoseOnlyFactor::Linearize() const {
+  Memo& memo = *memo_;
+  PoseSystem system(frames_, &memo.camera);
+  std::vector<WindowView> renormalized;
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    if (memo.landmarks[i]) {  // one whose views do not determine it says nothing of the poses
+      AddTrack(Views(*tracks_[i], &renormalized), memo.geometry, kernel_, *memo.landmarks[i], &memo.workspace,
+               &system, tracks_[i]->depth_prior);
     }
   }
   Eigen::VectorXd rows;
-  SquareRootRows(system.hessian, system.gradient, &memo_->jacobian, &rows);
-  memo_->residual.resize(rows.size() + 1);
-  memo_->residual << rows, std::sqrt(std::max(0.0, system.robust_cost - rows.squaredNorm()));
-  return true;
+  SquareRootRows(system.hessian, system.gradient, &memo.jacobian, &rows);
+  memo.residual.resize(rows.size() + 1);
+  memo.residual << rows, std::sqrt(std::max(0.0, memo.robust_cost - rows.squaredNorm()));
+  memo.linear = true;
 }
 
 bool PoseOnlyFactor::Evaluate(const double* const* parameters, double* residual,
                               double* const* tangent_jacobians) const {
-  if (!Linearize(parameters)) {
+  if (!SolveLandmarks(parameters)) {
     return false;
   }
-  Eigen::Map<Eigen::VectorXd>(residual, rows()) = memo_->residual;
-  for (int i = 0; tangent_jacobians != nullptr && i < frames_; ++i) {
+  Eigen::Map<Eigen::VectorXd> out_residual(residual, rows());
+  if (tangent_jacobians == nullptr) {
+    out_residual.setZero();
+    out_residual[rows() - 1] = std::sqrt(memo_->robust_cost);
+    return true;
+  }
+  if (!memo_->linear) {
+    Linearize();
+  }
+  out_residual = memo_->residual;
+  for (int i = 0; i < frames_; ++i) {
     if (tangent_jacobians[i] != nullptr) {
       using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, kNavTangentSize, Eigen::RowMajor>;
       Eigen::Map<RowMatrix> out(tangent_jacobians[i], rows(), kNavTangentSize);
@@ -80,7 +117,7 @@ bool PoseOnlyFactor::Evaluate(const double* const* parameters, double* residual,
       out.topLeftCorner(memo_->jacobian.rows(), 6) = memo_->jacobian.middleCols<6>(6 * i);
     }
   }
-  if (calibration_->size() > 0 && tangent_jacobians != nullptr && tangent_jacobians[frames_] != nullptr) {
+  if (calibration_->size() > 0 && tangent_jacobians[frames_] != nullptr) {
     using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, CalibrationLayout::kMaxSize, Eigen::RowMajor>;
     Eigen::Map<RowMatrix> out(tangent_jacobians[frames_], rows(), CalibrationLayout::kMaxSize);
     out.setZero();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,7 +24,8 @@ namespace alidade {
 ///
 /// Ceres uses a residual only through r^T r, J^T r and J^T J. All tracks together inform 6F pose coordinates,
 /// so their rows are handed over as the equivalent 6F rows of a square root, and one last row with zero
-/// Jacobian that holds the rest of the cost.
+/// Jacobian that holds the rest of the cost. Where no Jacobian is asked for, as at a trial step, the last row
+/// holds all of it: nothing is linearised for a step that may not be taken.
 class PoseOnlyFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
@@ -39,15 +41,23 @@ class PoseOnlyFactor {
 
  private:
   /// Ceres asks for the residual of a trial step and, if it takes the step, for residual and Jacobian at the
-  /// same point.
+  /// same point. The first gives the landmarks and the cost, the second the rows.
   struct Memo {
     std::vector<double> parameters;
+    WindowCalibration camera;
+    std::vector<FrameGeometry> geometry;
+    std::vector<std::optional<Eigen::Vector3d>> landmarks;  ///< of each track; none behind a view
+    double robust_cost = 0;
+    bool linear = false;  ///< jacobian and residual are of these parameters
     Eigen::MatrixXd jacobian;
     Eigen::VectorXd residual;
     TrackWorkspace workspace;
   };
   /// False when the calibration block is no camera.
-  bool Linearize(const double* const* parameters) const;
+  bool SolveLandmarks(const double* const* parameters) const;
+  void Linearize() const;
+  /// Of a track, as the camera of the memo sees it.
+  const std::vector<WindowView>& Views(const WindowTrack& track, std::vector<WindowView>* renormalized) const;
 
   const Window* window_;
   int frames_;

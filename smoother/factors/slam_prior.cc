@@ -134,8 +134,7 @@ VectorXd SlamPrior::StartingLandmarks() const {
   return landmarks;
 }
 
-bool SlamPrior::Linearize(const Scene& scene, const VectorXd& landmarks, bool with_frames,
-                          Views* views) const {
+bool SlamPrior::See(const Scene& scene, const VectorXd& landmarks, bool with_frames, Views* views) const {
   const std::vector<FrameGeometry>& geometry = scene.geometry;
   const ColumnMap::Range camera = columns_.Calibration();
   views->landmark_hessian.assign(tracks_.size(), Eigen::Matrix3d::Zero());
@@ -201,7 +200,7 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
     return offset + (at - origins_).dot(slope + pull) + views.robust_cost;
   };
   Views views;
-  if (!Linearize(scene, *landmarks, false, &views)) {
+  if (!See(scene, *landmarks, false, &views)) {
     return false;
   }
   VectorXd pull = slope + landmark_gram * (*landmarks - origins_);
@@ -225,7 +224,7 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
     }
     const VectorXd candidate = *landmarks + step;
     Views next;
-    const bool in_front = Linearize(scene, candidate, false, &next);
+    const bool in_front = See(scene, candidate, false, &next);
     const VectorXd next_pull = slope + landmark_gram * (candidate - origins_);
     const double next_cost = in_front ? total(candidate, next_pull, next) : *cost;
     if (in_front && next_cost <= *cost) {
@@ -244,16 +243,23 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
   return std::isfinite(*cost) && landmarks->allFinite();
 }
 
+bool SlamPrior::SolveLandmarks(const WindowPoint& point, VectorXd* landmarks, double* cost) const {
+  return Minimize(Displacement(point), MakeScene(point), landmarks, cost);
+}
+
 bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* reduced) const {
-  const Scene scene = MakeScene(point);
+  return SolveLandmarks(point, landmarks, &reduced->robust_cost) && Linearize(point, *landmarks, reduced);
+}
+
+bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, Reduced* reduced) const {
   const VectorXd xi = Displacement(point);
   Views views;
-  if (!Minimize(xi, scene, landmarks, &reduced->robust_cost) || !Linearize(scene, *landmarks, true, &views)) {
+  if (!See(MakeScene(point), landmarks, true, &views)) {
     return false;
   }
   const Index frames = xi.size();
-  const Index size = landmarks->size();
-  const VectorXd shift = *landmarks - origins_;
+  const Index size = landmarks.size();
+  const VectorXd shift = landmarks - origins_;
   const MatrixXd chained = ChainFrames(point, gram_.leftCols(frames));
   const VectorXd pull =
       gram_.col(frames + size) + gram_.leftCols(frames) * xi + gram_.middleCols(frames, size) * shift;

@@ -49,14 +49,19 @@ class SlamPrior {
 
   /// Landmarks of the tracks, the prior's origins where there is none: where Reduce may start.
   [[nodiscard]] Eigen::VectorXd StartingLandmarks() const;
-  /// `landmarks` (3L) is start and result. False: behind a view, or not finite.
+  /// The landmarks (3L; start and result) that minimise F, and its value. False: behind a view, or not
+  /// finite.
+  bool SolveLandmarks(const WindowPoint& point, Eigen::VectorXd* landmarks, double* cost) const;
+  /// The normal equations at landmarks that SolveLandmarks gave there; false as there.
+  bool Linearize(const WindowPoint& point, const Eigen::VectorXd& landmarks, Reduced* reduced) const;
+  /// Both, one after the other.
   bool Reduce(const WindowPoint& point, Eigen::VectorXd* landmarks, Reduced* reduced) const;
 
  private:
   struct Views;  // what the views say at a point
   struct Scene;  // where the cameras are at a point, and the rays they see
   [[nodiscard]] Scene MakeScene(const WindowPoint& point) const;
-  bool Linearize(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
+  bool See(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
   [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point) const;
   [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Eigen::MatrixXd& columns) const;
   bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,

@@ -27,7 +27,7 @@ SlamPriorFactor::SlamPriorFactor(const SlamPrior* prior, int frames)
   memo_->landmarks = prior->StartingLandmarks();
 }
 
-bool SlamPriorFactor::Linearize(const double* const* parameters) const {
+bool SlamPriorFactor::SolveLandmarks(const double* const* parameters) const {
   std::vector<double> values;
   WindowPoint point;
   point.camera = prior_->calibration().mean;
@@ -47,30 +47,51 @@ bool SlamPriorFactor::Linearize(const double* const* parameters) const {
     return true;
   }
   memo_->parameters = std::move(values);
-  SlamPrior::Reduced reduced;
+  memo_->point = std::move(point);
+  memo_->linear = false;
   Eigen::VectorXd landmarks = memo_->landmarks;
-  if (!prior_->Reduce(point, &landmarks, &reduced)) {
-    memo_->jacobian.setZero(rows() - 1, rows() - 1);
-    memo_->residual.setConstant(rows(), std::sqrt(kBehindCost));
-    return true;
+  memo_->solved = prior_->SolveLandmarks(memo_->point, &landmarks, &memo_->robust_cost);
+  if (memo_->solved) {
+    memo_->landmarks = std::move(landmarks);
+  } else {
+    memo_->robust_cost = kBehindCost;
   }
-  memo_->landmarks = std::move(landmarks);
+  return true;
+}
+
+void SlamPriorFactor::Linearize() const {
+  memo_->linear = true;
+  SlamPrior::Reduced reduced;
+  if (!memo_->solved || !prior_->Linearize(memo_->point, memo_->landmarks, &reduced)) {
+    memo_->jacobian.setZero(rows() - 1, rows() - 1);
+    memo_->residual.setZero(rows());
+    memo_->residual[rows() - 1] = std::sqrt(kBehindCost);
+    return;
+  }
   Eigen::VectorXd root;
   SquareRootRows(reduced.hessian, reduced.gradient, &memo_->jacobian, &root);
   memo_->residual.resize(rows());
-  memo_->residual << root, std::sqrt(std::max(0.0, reduced.robust_cost - root.squaredNorm()));
-  return true;
+  memo_->residual << root, std::sqrt(std::max(0.0, memo_->robust_cost - root.squaredNorm()));
 }
 
 bool SlamPriorFactor::Evaluate(const double* const* parameters, double* residual,
                                double* const* tangent_jacobians) const {
-  if (!Linearize(parameters)) {
+  if (!SolveLandmarks(parameters)) {
     return false;
   }
-  Eigen::Map<Eigen::VectorXd>(residual, rows()) = memo_->residual;
+  Eigen::Map<Eigen::VectorXd> out_residual(residual, rows());
+  if (tangent_jacobians == nullptr) {
+    out_residual.setZero();
+    out_residual[rows() - 1] = std::sqrt(std::max(0.0, memo_->robust_cost));
+    return true;
+  }
+  if (!memo_->linear) {
+    Linearize();
+  }
+  out_residual = memo_->residual;
   const ColumnMap& columns = prior_->columns();
   int frame = 0;
-  for (size_t block = 0; tangent_jacobians != nullptr && block < blocks_.size(); ++block) {
+  for (size_t block = 0; block < blocks_.size(); ++block) {
     ColumnMap::Range from = columns.Frame(0);
     switch (blocks_[block]) {
       case BlockKind::kNavState:

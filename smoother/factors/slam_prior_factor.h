@@ -10,8 +10,8 @@
 namespace alidade {
 
 /// SlamPrior as one factor, handed over as the square root of its normal equations and one last row with the
-/// rest of the cost, as PoseOnlyFactor does. Blocks: nav and bias of the first frame, nav of the others,
-/// clock of the first in an aligned window, calibration where it is estimated.
+/// rest of the cost, as PoseOnlyFactor does (all of it without Jacobians). Blocks: nav and bias of the first
+/// frame, nav of the others, clock of the first in an aligned window, calibration where it is estimated.
 class SlamPriorFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
@@ -26,12 +26,17 @@ class SlamPriorFactor {
  private:
   struct Memo {  // as in PoseOnlyFactor
     std::vector<double> parameters;
+    WindowPoint point;
     Eigen::VectorXd landmarks;
+    double robust_cost = 0;
+    bool solved = false;  ///< the landmarks have a solution
+    bool linear = false;  ///< jacobian and residual are of these parameters
     Eigen::MatrixXd jacobian;
     Eigen::VectorXd residual;
   };
   /// False when the calibration block is no camera.
-  bool Linearize(const double* const* parameters) const;
+  bool SolveLandmarks(const double* const* parameters) const;
+  void Linearize() const;
 
   const SlamPrior* prior_;
   std::vector<BlockKind> blocks_;

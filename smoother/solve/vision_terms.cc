@@ -74,7 +74,10 @@ void PoseOnlyTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
 
 ViewContext::ViewContext(const WindowFrames& frames, const WindowCalibration& camera,
                          const ObservationKernel& of_views)
-    : calibration(&camera), kernel(of_views), loss(MakeLoss(of_views)) {
+    : calibration(&camera),
+      kernel(of_views),
+      loss(MakeLoss(of_views)),
+      cache(std::make_unique<GeometryCache>(camera, frames.size())) {
   geometry.reserve(frames.size());
   for (const std::unique_ptr<WindowFrame>& frame : frames) {
     geometry.push_back(MakeGeometry(*frame, frame->nav_state(), camera.mean));
@@ -121,8 +124,8 @@ void ViewTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
   if (view_ == 0) {
     cost_ = std::make_unique<LiftedCost<BaseBearingFactor>>(BaseBearingFactor(&base, calibration));
   } else {
-    cost_ = std::make_unique<LiftedCost<InverseDepthFactor>>(
-        InverseDepthFactor(base.frame, &view, calibration, track_->plane(), base.observation.row_px));
+    cost_ = std::make_unique<LiftedCost<InverseDepthFactor>>(InverseDepthFactor(
+        base.frame, &view, calibration, track_->plane(), base.observation.row_px, context_->cache.get()));
     parameters.insert(parameters.begin(), {blocks->Nav(base.frame->index), blocks->Nav(view.frame->index)});
   }
   if (parameters.size() < cost_->parameter_block_sizes().size()) {

@@ -45,6 +45,7 @@ struct ViewContext {
   ObservationKernel kernel;
   std::unique_ptr<ceres::LossFunction> loss;  ///< of the kernel
   std::vector<FrameGeometry> geometry;        ///< of every frame, at the present states
+  std::unique_ptr<GeometryCache> cache;       ///< likewise, at the solver's
 };
 
 /// One view of a track with an explicit landmark. In Ceres the landmark's coordinates move with the base

@@ -3,8 +3,13 @@
 #include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
+
+#include "core/blas.h"
 
 namespace alidade {
 namespace {
@@ -19,18 +24,42 @@ constexpr double kTrustRadius = 1e3;
 // Rejected steps allowed for each accepted one: they cost an evaluation without Jacobians at most.
 constexpr int kRejectedSteps = 3;
 
-/// Ends the solve after a number of accepted steps.
+// The cost is half a squared Mahalanobis distance of all states of the window together. A solve ends once
+// that of the minimum is expected to be below this; no single state is then further away in its own
+// deviations.
+constexpr double kRemainingSigma = 0.1;
+// Least mismatch between the cost and its model that a step is credited with: directions in which the model
+// promises too much and too little cancel in the ratio of the two.
+constexpr double kLeastMismatch = 0.05;
+
+/// Ends the solve after a number of accepted steps, or once a step has left so little to gain that the next
+/// one is not worth its evaluation.
 class AcceptedSteps final : public ceres::IterationCallback {
  public:
   explicit AcceptedSteps(int most) : most_(most) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    accepted_ += summary.iteration > 0 && summary.step_is_successful ? 1 : 0;
-    return accepted_ >= most_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    if (summary.iteration == 0 || !summary.step_is_successful) {
+      return ceres::SOLVER_CONTINUE;
+    }
+    ++accepted_;
+    const bool near =
+        Remaining(summary.cost_change, summary.relative_decrease) < 0.5 * kRemainingSigma * kRemainingSigma;
+    return near || accepted_ >= most_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
   [[nodiscard]] int accepted() const { return accepted_; }
 
  private:
+  /// By how much the cost still lies above its minimum, after a step that lowered it by `decrease`, `ratio`
+  /// times what the model promised. On a parabola whose curvature is a times the model's, a step leaves (1 -
+  /// a)^2 of what there was, and ratio = 2 - a.
+  static double Remaining(double decrease, double ratio) {
+    const double curvature = 2 - ratio;
+    const double mismatch = std::max(std::abs(1 - curvature), kLeastMismatch);
+    return curvature > 0 ? decrease * mismatch * mismatch / (ratio * curvature)
+                         : std::numeric_limits<double>::infinity();
+  }
+
   int most_;
   int accepted_ = 0;
 };
@@ -49,9 +78,10 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBloc
   solver.parameter_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-12;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
+  solver.dense_linear_algebra_library_type = ceres::LAPACK;
   // First group: blocks no factor couples with one another. Landmarks where they are explicit; else every
   // second bias, which makes Ceres form the normal equations block by block and leaves the dense
-  // factorisation fewer columns.
+  // factorisation fewer columns. Not the first one: the prior couples it with every frame.
   const bool explicit_landmarks =
       config.landmark == SmootherLandmark::kInverseDepth && blocks->landmarks() > 0;
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -61,7 +91,7 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBloc
   for (int i = 0; i < blocks->frames(); ++i) {
     solver.linear_solver_ordering->AddElementToGroup(blocks->Nav(i), 1);
     solver.linear_solver_ordering->AddElementToGroup(blocks->Bias(i),
-                                                     !explicit_landmarks && i % 2 == 0 ? 0 : 1);
+                                                     !explicit_landmarks && i % 2 == 1 ? 0 : 1);
     if (blocks->has_clocks()) {
       solver.linear_solver_ordering->AddElementToGroup(blocks->Clock(i), 1);
     }
@@ -82,6 +112,7 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
   for (const std::unique_ptr<WindowTerm>& term : terms) {
     term->AddTo(&blocks, problem.get());
   }
+  UseOneThreadPerBlasCall();
   ceres::Solver::Summary summary;
   ceres::Solver::Options options = SolverOptions(config, &blocks);
   AcceptedSteps steps(config.max_iterations);

@@ -25,9 +25,9 @@ struct CameraViews {
 
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                    const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,
-                   const DepthPrior& prior) {
+                   const DepthPrior& prior, double* least) {
   const CameraViews cameras(views, geometry);
-  return SolveLandmark(cameras.T_WC, cameras.observations, {max_iterations, kernel, prior}, landmark);
+  return SolveLandmark(cameras.T_WC, cameras.observations, {max_iterations, kernel, prior}, landmark, least);
 }
 
 double TrackChiSquare(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,

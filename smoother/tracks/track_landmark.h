@@ -11,10 +11,10 @@ namespace alidade {
 
 // The landmark of a track, the poses held fixed.
 
-/// Landmark of the track with the poses held fixed (core/landmark_solver.h).
+/// Landmark of the track with the poses held fixed (core/landmark_solver.h), and its cost.
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                    const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,
-                   const DepthPrior& prior = {});
+                   const DepthPrior& prior = {}, double* least = nullptr);
 
 /// Sum of whitened squared residuals (no kernel) at the landmark; infinite when behind a view.
 [[nodiscard]] double TrackChiSquare(std::span<const WindowView> views,

@@ -240,6 +240,8 @@ TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
       const Eigen::MatrixXd numeric = test::NumericJacobian(f, TangentSizeOf(point), 1e-5);
       EXPECT_EQ(CompareJacobians((jacobian.transpose() * residual).transpose(), numeric, 1e-5), "")
           << ToString(convention) << " seed " << seed;
+      const double cost_alone = Residual(cost, point).squaredNorm();
+      EXPECT_NEAR(residual.squaredNorm(), cost_alone, 1e-9 * cost_alone) << "with and without Jacobians";
     }
   }
 }

@@ -313,8 +313,9 @@ void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
       SolveWindow(config_of_solve, terms, tracks, &fixture.window, &fixture.calibration);
   ASSERT_TRUE(report.ok()) << report.message();
   const VectorXd error = Local(fixture.calibration.layout, truth, fixture.calibration.mean);
-  EXPECT_LT(error.head<3>().norm(), 1e-4);
-  EXPECT_LT(error.segment<3>(3).norm(), 1e-3);
+  // A solve ends a tenth of a deviation from the minimum.
+  EXPECT_LT(error.head<3>().norm(), 2e-4);
+  EXPECT_LT(error.segment<3>(3).norm(), 2e-3);
   EXPECT_LT(std::abs(error[6]), 1e-4);
 }
 
