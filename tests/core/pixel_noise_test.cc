@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/steps.h"
 
 namespace alidade {
 namespace {
@@ -23,7 +22,7 @@ class Frames {
   explicit Frames(const VisionConfig& config) : noise_(config) {}
 
   double After(double duration_s, double deviation, bool suspect = false) {
-    for (const double t : test::Steps(0, duration_s, kFrameSeconds)) {
+    for (int frame = 0; frame * kFrameSeconds < duration_s; ++frame) {
       const double assumed = noise_.px() / kGivenPx;
       for (int track = 0; track < 100; ++track) {
         noise_.AddTrack(2 * deviation * deviation / (assumed * assumed), 2);
