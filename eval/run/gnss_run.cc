@@ -57,6 +57,7 @@ Result<bool> GnssRun::Take(bool running) {
     status = estimator_.AddGnss(epoch);
   }
   const bool taken = aligned() && running && status.ok();
+  SetComparison(taken ? Compare(epoch.stamp_ns) : std::nullopt);
   feed_.Pop();
   if (aligned() && !running) {
     Skip(tag_ns, "the estimate is lost");
@@ -69,6 +70,19 @@ Result<bool> GnssRun::Take(bool running) {
     CollectResiduals();
   }
   return taken;
+}
+
+std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
+  const AbsoluteCorrection* correction = estimator_.last_correction();
+  const std::optional<SinglePointSolution>& solution = feed_.solution();
+  if (correction == nullptr || !solution) {
+    return std::nullopt;
+  }
+  const AntennaMount mount{enu(), receiver_.p_BA};
+  const Eigen::Matrix3d R_NE = enu().R_EN.transpose();
+  const Eigen::Vector3d left_E = solution->position_E - mount.Position(correction->nav, nullptr);
+  return AbsoluteComparison{stamp_ns, correction->change, correction->covariance, R_NE * left_E,
+                            R_NE * solution->position_covariance_E * R_NE.transpose()};
 }
 
 void GnssRun::CollectResiduals() {

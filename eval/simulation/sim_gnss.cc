@@ -291,7 +291,7 @@ Status AddSimulatedGnss(const SimulatorConfig& config, const ContinuousTrajector
   log->catalog = catalog;
   log->approximate_position_E = receiver.enu().origin_E;
   dataset->gnss = std::move(log);
-  dataset->rig.gnss = {gnss.lever_arm_m, gnss.time_offset_s, receiver.enu().origin_E};
+  dataset->rig.gnss = {gnss.lever_arm_m, gnss.time_offset_s, receiver.enu().origin_E, true};
   return Status::Ok();
 }
 
