@@ -43,7 +43,7 @@ struct Contradiction {
 class AbsoluteMonitor {
  public:
   /// Chosen on simulated multipath and real receivers (docs/faults.md).
-  static constexpr double kMaxSigmas = 6;
+  static constexpr double kMaxSigmas = 5;
   static constexpr int kLeastRun = 4;
   static constexpr double kLeastRunS = 2;
   static constexpr std::array<double, 4> kWindowsS = {8, 16, 32, 64};

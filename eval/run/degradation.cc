@@ -38,15 +38,17 @@ void Degradation::OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison
   absolute_.Add(comparison);
 }
 
+const char* Degradation::AbsoluteName() const {
+  return absolute_sensor_ == Sensor::kGnss ? "GNSS contradicts" : "position fixes contradict";
+}
+
 std::string Degradation::AgainstSensors(const char* by) const {
   const std::optional<Contradiction>& found = absolute_.contradiction();
   if (!found) {
     return {};
   }
-  return Format("%s %s %s: %.1f m (%.1f sigma) from where they lead within %.0f s",
-                absolute_sensor_ == Sensor::kGnss ? "GNSS" : PluralNameOf(absolute_sensor_),
-                absolute_sensor_ == Sensor::kGnss ? "contradicts" : "contradict", by, found->distance_m,
-                found->sigmas, found->window_s);
+  return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s",
+                AbsoluteName(), by, found->distance_m, found->sigmas, found->window_s);
 }
 
 std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics) {
@@ -87,7 +89,8 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   const bool doubted = doubt != nullptr && doubt->sigmas >= kMaxDoubtSigmas;
   if (doubted && doubt->pose_sigmas >= kMaxPoseSigmas) {
     return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",
-                  doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas);
+                  doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas) +
+           (absolute_.sigmas() > kHintSigmas ? std::string("; or ") + AbsoluteName() + " vision and IMU" : "");
   }
   if (innovations) {
     const std::string cause =

@@ -30,6 +30,8 @@ class Degradation {
   /// does no harm (core/calibration_watch.h).
   static constexpr double kMaxDoubtSigmas = 5;
   static constexpr double kMaxPoseSigmas = 2;
+  /// A pull of GNSS looks like a wrong parameter before its own monitor is sure: so much of it is mentioned.
+  static constexpr double kHintSigmas = 2.5;
 
   /// A measured position beside the estimate, in order of time.
   void OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison);
@@ -59,6 +61,8 @@ class Degradation {
   }
 
  private:
+  /// Who contradicts.
+  [[nodiscard]] const char* AbsoluteName() const;
   /// The mean of kInnovationsS where it is larger than chance makes it, else nothing.
   std::optional<double> LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics);
 

@@ -1,5 +1,6 @@
 #include "eval/run/gnss_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -72,6 +73,21 @@ Result<bool> GnssRun::Take(bool running) {
   return taken;
 }
 
+/// Variance of the whitened residuals of a solution over what its covariance holds, at most one. Orbits, clocks
+/// and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are better.
+static double ScatterShare(const SinglePointSolution& solution) {
+  constexpr int kLeastFreedom = 8;  // fewer residuals do not tell
+  constexpr double kLeast = 0.04;
+  double squares = 0;
+  for (const SatelliteResidual& satellite : solution.satellites) {
+    const double whitened = satellite.residual_m / satellite.deviation_m;
+    squares += satellite.used ? whitened * whitened : 0;
+  }
+  const int freedom = solution.used - 3 - kGnssSystems;
+  return freedom < kLeastFreedom ? 1
+                                 : std::clamp(squares / freedom / (solution.scale * solution.scale), kLeast, 1.0);
+}
+
 std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
   const AbsoluteCorrection* correction = estimator_.last_correction();
   const std::optional<SinglePointSolution>& solution = feed_.solution();
@@ -82,7 +98,8 @@ std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
   const Eigen::Matrix3d R_NE = enu().R_EN.transpose();
   const Eigen::Vector3d left_E = solution->position_E - mount.Position(correction->nav, nullptr);
   return AbsoluteComparison{stamp_ns, correction->change, correction->covariance, R_NE * left_E,
-                            R_NE * solution->position_covariance_E * R_NE.transpose()};
+                            ScatterShare(*solution) * R_NE * solution->position_covariance_E *
+                                R_NE.transpose()};
 }
 
 void GnssRun::CollectResiduals() {
