@@ -115,12 +115,12 @@ class FilterEstimator : public Estimator {
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
   std::optional<AbsoluteCorrection> absolute_;  ///< the last one
-  bool aligned_ = false;               ///< W stands as Align turned it
-  DueTracks due_ = DueTracks::kUsual;  ///< in this frame
-  int serial_ = 0;                     ///< of the newest frame
-  int first_serial_ = 1;               ///< of the first frame after the initialisation
-  TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
-  MeasuredTurn last_turn_;             ///< at the state's stamp
+  bool aligned_ = false;                        ///< W stands as Align turned it
+  DueTracks due_ = DueTracks::kUsual;           ///< in this frame
+  int serial_ = 0;                              ///< of the newest frame
+  int first_serial_ = 1;                        ///< of the first frame after the initialisation
+  TimeNs frame_stamp_ns_ = INT64_MIN;           ///< IMU time of the last frame
+  MeasuredTurn last_turn_;                      ///< at the state's stamp
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

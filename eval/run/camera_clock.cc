@@ -84,14 +84,15 @@ std::optional<double> CameraClock::Misfit(const TrackFrame& a, const TrackFrame&
   return Median(std::move(squares)) / kMedianOfChiSquare;
 }
 
-std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_ns, const Vector3d& gyro_bias) {
+std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_ns,
+                                            const Vector3d& gyro_bias) {
   constexpr std::size_t kRemembered = 15;
   std::optional<TimeNs> jump;
   const std::optional<TimeNs> period = Period();
   const TimeNs step_ns = last_ ? imu_ns - last_->imu_ns : 0;
   const double step_s = SecondsBetween(0, step_ns);
-  if (!step_ && period && step_s > kLeastStepS && step_s < kMostStepS &&
-      static_cast<double>(step_ns) > kLeastPeriods * static_cast<double>(*period)) {
+  if (!step_ && period && step_s > kLeastStepS &&
+      step_s<kMostStepS&& static_cast<double>(step_ns)> kLeastPeriods * static_cast<double>(*period)) {
     step_ = Step{*last_, step_ns - *period, imu_ns + SecondsToNs(kDoubtS)};
   } else if (step_ns > 0) {
     steps_.push_back(step_ns);
@@ -106,9 +107,9 @@ std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_
     };
     const std::optional<double> as_is = misfit(imu_ns);
     const std::optional<double> jumped = misfit(imu_ns - step_->excess_ns);
-    if (!as_is || imu_ns > step_->end_ns || (*as_is < kFits && *jumped > kContrast * *as_is)) {
+    if (!as_is || imu_ns > step_->end_ns || (*as_is<kFits&& * jumped> kContrast * *as_is)) {
       step_.reset();
-    } else if (*jumped < kFits && *as_is > kContrast * std::max(1.0, *jumped)) {
+    } else if (*jumped<kFits&& * as_is> kContrast * std::max(1.0, *jumped)) {
       jump = step_->excess_ns;
       imu_ns -= *jump;
       step_.reset();

@@ -47,8 +47,8 @@ std::string Degradation::AgainstSensors(const char* by) const {
   if (!found) {
     return {};
   }
-  return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s",
-                AbsoluteName(), by, found->distance_m, found->sigmas, found->window_s);
+  return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s", AbsoluteName(), by,
+                found->distance_m, found->sigmas, found->window_s);
 }
 
 std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics) {
@@ -90,7 +90,8 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   if (doubted && doubt->pose_sigmas >= kMaxPoseSigmas) {
     return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",
                   doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas) +
-           (absolute_.sigmas() > kHintSigmas ? std::string("; or ") + AbsoluteName() + " vision and IMU" : "");
+           (absolute_.sigmas() > kHintSigmas ? std::string("; or ") + AbsoluteName() + " vision and IMU"
+                                             : "");
   }
   if (innovations) {
     const std::string cause =

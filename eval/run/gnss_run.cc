@@ -73,8 +73,9 @@ Result<bool> GnssRun::Take(bool running) {
   return taken;
 }
 
-/// Variance of the whitened residuals of a solution over what its covariance holds, at most one. Orbits, clocks
-/// and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are better.
+/// Variance of the whitened residuals of a solution over what its covariance holds, at most one. Orbits,
+/// clocks and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are
+/// better.
 static double ScatterShare(const SinglePointSolution& solution) {
   constexpr int kLeastFreedom = 8;  // fewer residuals do not tell
   constexpr double kLeast = 0.04;
@@ -84,8 +85,9 @@ static double ScatterShare(const SinglePointSolution& solution) {
     squares += satellite.used ? whitened * whitened : 0;
   }
   const int freedom = solution.used - 3 - kGnssSystems;
-  return freedom < kLeastFreedom ? 1
-                                 : std::clamp(squares / freedom / (solution.scale * solution.scale), kLeast, 1.0);
+  return freedom < kLeastFreedom
+             ? 1
+             : std::clamp(squares / freedom / (solution.scale * solution.scale), kLeast, 1.0);
 }
 
 std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
@@ -97,9 +99,9 @@ std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
   const AntennaMount mount{enu(), receiver_.p_BA};
   const Eigen::Matrix3d R_NE = enu().R_EN.transpose();
   const Eigen::Vector3d left_E = solution->position_E - mount.Position(correction->nav, nullptr);
-  return AbsoluteComparison{stamp_ns, correction->change, correction->covariance, R_NE * left_E,
-                            ScatterShare(*solution) * R_NE * solution->position_covariance_E *
-                                R_NE.transpose()};
+  return AbsoluteComparison{
+      stamp_ns, correction->change, correction->covariance, R_NE * left_E,
+      ScatterShare(*solution) * R_NE * solution->position_covariance_E * R_NE.transpose()};
 }
 
 void GnssRun::CollectResiduals() {

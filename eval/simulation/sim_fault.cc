@@ -83,14 +83,13 @@ void Freeze(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* f
   }
 }
 
-void Drop(const std::function<bool(TimeNs)>& fails, double rate, std::uint64_t seed, const std::string& camera,
-          std::vector<TrackFrame>* frames) {
+void Drop(const std::function<bool(TimeNs)>& fails, double rate, std::uint64_t seed,
+          const std::string& camera, std::vector<TrackFrame>* frames) {
   RandomStream random(seed, "fault/frame_drops" + camera);
-  frames->erase(std::remove_if(frames->begin(), frames->end(),
-                               [&](const TrackFrame& frame) {
-                                 return fails(frame.stamp_ns) && random.Chance(rate);
-                               }),
-                frames->end());
+  frames->erase(
+      std::remove_if(frames->begin(), frames->end(),
+                     [&](const TrackFrame& frame) { return fails(frame.stamp_ns) && random.Chance(rate); }),
+      frames->end());
 }
 
 void Silence(const std::function<bool(TimeNs)>& fails, std::vector<ImuSample>* imu) {

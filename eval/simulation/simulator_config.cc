@@ -175,8 +175,9 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);
   visitor.Real({"fault_drop_rate", "-", "share of the frames that frame_drops takes away, one by one"},
                &config->fault_drop_rate, 0, 1);
-  visitor.Real({"fault_clock_jump_s", "s", "camera_clock: added to the stamps from the start of the fault on"},
-               &config->fault_clock_jump_s, -100, 100);
+  visitor.Real(
+      {"fault_clock_jump_s", "s", "camera_clock: added to the stamps from the start of the fault on"},
+      &config->fault_clock_jump_s, -100, 100);
   visitor.Real({"fault_ramp_mps", "m/s",
                 "gnss_ramp and gnss_ramp_no_rates: speed of the pull, in a random horizontal direction; "
                 "afterwards it stays"},

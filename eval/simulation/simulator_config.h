@@ -35,11 +35,11 @@ enum class SimFaultKind {
   kImu,       ///< the IMU tells noise
   kTracks,    ///< the tracks of a frame exchange their ids at random
   kBlackoutAndImu,
-  kFrozen,      ///< every frame repeats the first one of the fault
-  kImuGap,      ///< the IMU is silent
-  kGyroSpike,   ///< one sample
-  kAccelSpike,  ///< one sample
-  kFrameDrops,  ///< some frames are missing
+  kFrozen,           ///< every frame repeats the first one of the fault
+  kImuGap,           ///< the IMU is silent
+  kGyroSpike,        ///< one sample
+  kAccelSpike,       ///< one sample
+  kFrameDrops,       ///< some frames are missing
   kCameraClock,      ///< the stamps of all later frames are off
   kGnssRamp,         ///< GNSS and position fixes are pulled off ever farther, range rates with them
   kGnssRampNoRates,  ///< the same with true range rates

@@ -14,9 +14,8 @@ namespace {
 
 /// At the measurement, which the IMU leads to from the frame.
 NavState AtMeasurement(const ImuLink& link, const NavEstimate& state, const Eigen::Vector3d& gravity_W) {
-  return link.preintegration
-             ? CarryState(*link.preintegration, state.nav, state.bias, gravity_W, nullptr)
-             : state.nav;
+  return link.preintegration ? CarryState(*link.preintegration, state.nav, state.bias, gravity_W, nullptr)
+                             : state.nav;
 }
 
 }  // namespace

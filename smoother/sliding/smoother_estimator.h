@@ -135,8 +135,8 @@ class SmootherEstimator final : public Estimator {
   ClockState latest_clock_;
   NewestUpdate newest_update_;                  ///< where measurements are watched
   std::optional<AbsoluteCorrection> absolute_;  ///< the last one
-  WindowInformation window_information_;  ///< at the last solve
-  bool has_frames_ = false;               ///< a camera has been heard of
+  WindowInformation window_information_;        ///< at the last solve
+  bool has_frames_ = false;                     ///< a camera has been heard of
   FrameStatistics statistics_;
   std::vector<ImuSample> interval_;
   bool initialized_ = false;

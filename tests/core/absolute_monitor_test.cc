@@ -12,8 +12,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDriftM = 0.01;     ///< of vision and IMU between two measurements, each axis
-constexpr double kMeasuredM = 0.7;   ///< deviation of a measured position
+constexpr double kDriftM = 0.01;    ///< of vision and IMU between two measurements, each axis
+constexpr double kMeasuredM = 0.7;  ///< deviation of a measured position
 constexpr double kPeriodS = 0.1;
 
 /// A scalar Kalman filter of a random walk for each axis, the estimate of which follows measurements of the

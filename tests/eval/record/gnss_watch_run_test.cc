@@ -89,9 +89,10 @@ TEST_P(GnssWatchRunTest, NamesALeverArmThatIsOffByHalfAMetre) {
     scene.calibration_antenna_error_m = 0.5;
     const RunResult result = Run(scene);
     EXPECT_EQ(result.records.back().status, "degraded");
-    EXPECT_THAT(result.records.back().reason,
-                HasSubstr(sensor == Absolute::kGnss ? "the lever arm of the GNSS antenna is not as given"
-                                                    : "the lever arm of the position sensor is not as given"));
+    EXPECT_THAT(
+        result.records.back().reason,
+        HasSubstr(sensor == Absolute::kGnss ? "the lever arm of the GNSS antenna is not as given"
+                                            : "the lever arm of the position sensor is not as given"));
   }
 }
 
@@ -111,9 +112,8 @@ TEST_P(GnssWatchRunTest, TellsAPull) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBackEnds, GnssWatchRunTest,
-                         testing::Values(Backend::kFilter, Backend::kSmoother), [](const auto& of) {
-                           return of.param == Backend::kFilter ? "filter" : "smoother";
-                         });
+                         testing::Values(Backend::kFilter, Backend::kSmoother),
+                         [](const auto& of) { return of.param == Backend::kFilter ? "filter" : "smoother"; });
 
 }  // namespace
 }  // namespace alidade
