@@ -7,6 +7,26 @@
 #include "core/format.h"
 
 namespace alidade {
+namespace {
+
+/// Variance of the whitened residuals of a solution over what its covariance holds, at most one. Orbits,
+/// clocks and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are
+/// better.
+double ScatterShare(const SinglePointSolution& solution) {
+  constexpr int kLeastFreedom = 8;  // fewer residuals do not tell
+  constexpr double kLeast = 0.04;
+  double squares = 0;
+  for (const SatelliteResidual& satellite : solution.satellites) {
+    const double whitened = satellite.residual_m / satellite.deviation_m;
+    squares += satellite.used ? whitened * whitened : 0;
+  }
+  const int freedom = solution.used - 3 - kGnssSystems;
+  return freedom < kLeastFreedom
+             ? 1
+             : std::clamp(squares / freedom / (solution.scale * solution.scale), kLeast, 1.0);
+}
+
+}  // namespace
 
 GnssRun::GnssRun(const EstimatorConfig& config, const RigCalibration& rig, const GnssSetup& setup,
                  double lateness_s, Estimator* estimator, std::vector<SessionEvent>* events)
@@ -71,23 +91,6 @@ Result<bool> GnssRun::Take(bool running) {
     CollectResiduals();
   }
   return taken;
-}
-
-/// Variance of the whitened residuals of a solution over what its covariance holds, at most one. Orbits,
-/// clocks and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are
-/// better.
-static double ScatterShare(const SinglePointSolution& solution) {
-  constexpr int kLeastFreedom = 8;  // fewer residuals do not tell
-  constexpr double kLeast = 0.04;
-  double squares = 0;
-  for (const SatelliteResidual& satellite : solution.satellites) {
-    const double whitened = satellite.residual_m / satellite.deviation_m;
-    squares += satellite.used ? whitened * whitened : 0;
-  }
-  const int freedom = solution.used - 3 - kGnssSystems;
-  return freedom < kLeastFreedom
-             ? 1
-             : std::clamp(squares / freedom / (solution.scale * solution.scale), kLeast, 1.0);
 }
 
 std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
