@@ -207,13 +207,6 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
   return TrackOutcome::kReady;
 }
 
-void FeatureUpdate::TraceNewestObservation(const Track& track) {
-  if (tracing_) {
-    traces_.push_back(
-        {blocks_.back().first, 2, track.id, {track.views.back().serial}, Eigen::Matrix2d::Identity()});
-  }
-}
-
 void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
                                 const Eigen::Vector3d& p_W) {
   if (filter_.track_memory == TrackMemoryPolicy::kNone) {

@@ -59,7 +59,12 @@ class FeatureUpdate {
     int rows = 0;
   };
   /// The trace of the block just added, when it holds the two whitened rows of a track's newest observation.
-  void TraceNewestObservation(const Track& track);
+  void TraceNewestObservation(const Track& track) {
+    if (tracing_) {
+      traces_.push_back(
+          {blocks_.back().first, 2, track.id, {track.views.back().serial}, Eigen::Matrix2d::Identity()});
+    }
+  }
   /// Appends `rows` zero rows, for the caller to fill, and an empty successor.
   Block AddBlock(int rows);
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }

@@ -7,24 +7,6 @@
 #include "core/format.h"
 
 namespace alidade {
-namespace {
-
-/// What a message between frames says of itself: what a smoother's solve says of vision is not its own.
-FrameStatistics BetweenFrames(const FrameStatistics& all) {
-  FrameStatistics epoch;
-  epoch.satellites_used = all.satellites_used;
-  epoch.satellites_gated = all.satellites_gated;
-  epoch.gnss_nis = all.gnss_nis;
-  epoch.gnss_nis_dof = all.gnss_nis_dof;
-  epoch.clock_jump = all.clock_jump;
-  epoch.sensors = all.sensors;
-  epoch.propagate_ms = all.propagate_ms;
-  epoch.update_ms = all.update_ms;
-  return epoch;
-}
-
-}  // namespace
-
 EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration& rig,
                              const SessionOptions& options, Estimator* estimator,
                              std::vector<SessionEvent>* events)

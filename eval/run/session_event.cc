@@ -58,4 +58,17 @@ std::string Describe(const SessionEvent& event) {
   return std::visit(Describer(), event);
 }
 
+FrameStatistics BetweenFrames(const FrameStatistics& all) {
+  FrameStatistics epoch;
+  epoch.satellites_used = all.satellites_used;
+  epoch.satellites_gated = all.satellites_gated;
+  epoch.gnss_nis = all.gnss_nis;
+  epoch.gnss_nis_dof = all.gnss_nis_dof;
+  epoch.clock_jump = all.clock_jump;
+  epoch.sensors = all.sensors;
+  epoch.propagate_ms = all.propagate_ms;
+  epoch.update_ms = all.update_ms;
+  return epoch;
+}
+
 }  // namespace alidade

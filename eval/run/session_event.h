@@ -34,6 +34,9 @@ struct StateEvent {
   double backend_ms = 0;  ///< wall time for this message and the IMU samples before it
 };
 
+/// What a message between frames says of itself: what a smoother's solve says of vision is not its own.
+[[nodiscard]] FrameStatistics BetweenFrames(const FrameStatistics& all);
+
 /// Most of the newest frame's tracks contradict the state (FrameStatistics::suspect); follows its StateEvent.
 struct SuspectEvent {
   TimeNs stamp_ns = 0;  ///< of the state

@@ -2,11 +2,11 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <memory>
 
 #include "core/format.h"
 #include "core/regular_file.h"
@@ -22,29 +22,54 @@ bool IsBlank(char c) {
 
 }  // namespace
 
-Result<std::string> ReadTextFile(const std::string& path) {
+void TextStream::Close::operator()(void* file) const {
+  gzclose(static_cast<gzFile>(file));
+}
+
+TextStream::TextStream(std::string path, void* file) : path_(std::move(path)), file_(file) {}
+
+Result<TextStream> TextStream::Open(const std::string& path) {
   ALIDADE_RETURN_IF_ERROR(RegularFileSize(path).status());
   errno = 0;
   // zlib passes a file that is not gzip through unchanged.
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
-  if (file == nullptr) {
+  TextStream stream(path, gzopen(path.c_str(), "rb"));
+  if (stream.file_ == nullptr) {
     return Status::Input(path + ": cannot be read: " + std::strerror(errno));
   }
+  return stream;
+}
+
+bool TextStream::Read(std::string* text) {
+  constexpr std::size_t kPart = std::size_t{1} << 17;
+  const gzFile file = static_cast<gzFile>(file_.get());
+  const std::size_t before = text->size();
+  text->resize(before + kPart);
+  errno = 0;
+  const int count = gzread(file, text->data() + before, kPart);
+  text->resize(before + static_cast<std::size_t>(std::max(count, 0)));
+  if (count > 0) {
+    return true;
+  }
+  int code = Z_OK;
+  const char* reason = gzerror(file, &code);
+  // gzread() gives what there is of a torn gzip file and tells it at the end only.
+  if (count < 0 || code == Z_BUF_ERROR) {
+    status_ =
+        Status::Input(path_ + ": cannot be unpacked: " + (code == Z_ERRNO ? std::strerror(errno) : reason));
+  }
+  return false;
+}
+
+Result<std::string> ReadTextFile(const std::string& path) {
+  Result<TextStream> stream = TextStream::Open(path);
+  ALIDADE_RETURN_IF_ERROR(stream.status());
   std::string content;
-  std::vector<char> buffer(std::size_t{1} << 17);
-  int count = 0;
-  while ((count = gzread(file.get(), buffer.data(), static_cast<unsigned>(buffer.size()))) > 0) {
-    content.append(buffer.data(), static_cast<std::size_t>(count));
+  while (stream->Read(&content)) {
     if (content.size() > kMaxTextBytes) {
       return Status::Input(path + Format(": holds more than %zu MiB of text", kMaxTextBytes >> 20));
     }
   }
-  int code = Z_OK;
-  const char* reason = gzerror(file.get(), &code);
-  // gzread() gives what there is of a torn gzip file and tells it at the end only.
-  if (count < 0 || code == Z_BUF_ERROR) {
-    return Status::Input(path + ": cannot be unpacked: " + (code == Z_ERRNO ? std::strerror(errno) : reason));
-  }
+  ALIDADE_RETURN_IF_ERROR(stream->status());
   return content;
 }
 
@@ -54,10 +79,35 @@ LineReader::LineReader(std::string path, std::string_view text) : path_(std::mov
   }
 }
 
+LineReader::LineReader(std::string path, TextStream* stream, std::string begin)
+    : LineReader(std::move(path), begin) {
+  stream_ = stream;
+  part_ = std::move(begin);
+  text_ = part_;
+}
+
+void LineReader::Refill() {
+  position_ = std::min(position_, text_.size());  // one beyond after a line without an end
+  std::size_t searched = position_;
+  while (text_.find('\n', searched) == std::string_view::npos && text_.size() - position_ < kMaxLine) {
+    part_.erase(0, position_);
+    position_ = 0;
+    searched = part_.size();
+    const bool more = stream_->Read(&part_);
+    text_ = part_;
+    if (!more) {
+      return;
+    }
+  }
+}
+
 bool LineReader::Next() {
   if (put_back_) {
     put_back_ = false;
     return true;
+  }
+  if (stream_ != nullptr) {
+    Refill();
   }
   if (position_ >= text_.size()) {
     line_ = {};

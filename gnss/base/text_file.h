@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,20 +15,49 @@ namespace alidade {
 /// A file may not unpack to more than this [bytes].
 inline constexpr std::size_t kMaxTextBytes = std::size_t{1} << 29;
 
-/// The content of a plain or gzip file. Errors: missing, a folder, torn or corrupt gzip, beyond
-/// kMaxTextBytes.
+/// A plain or gzip file, read part by part.
+class TextStream {
+ public:
+  /// Errors (kInput): missing, a folder.
+  static Result<TextStream> Open(const std::string& path);
+
+  /// Appends the next part; false at the end, and when the rest cannot be read.
+  bool Read(std::string* text);
+  /// Whether all that was read was whole. kInput: torn or corrupt gzip.
+  [[nodiscard]] const Status& status() const { return status_; }
+
+ private:
+  struct Close {
+    void operator()(void* file) const;
+  };
+  TextStream(std::string path, void* file);
+
+  std::string path_;
+  std::unique_ptr<void, Close> file_;  ///< zlib's gzFile
+  Status status_ = Status::Ok();
+};
+
+/// The content of a plain or gzip file. Errors: TextStream's, beyond kMaxTextBytes.
 Result<std::string> ReadTextFile(const std::string& path);
 
-/// Walks the lines of a text held elsewhere; LF and CRLF ends, and trailing NULs and blanks, are not part of
-/// a line.
+/// Walks the lines of a text; LF and CRLF ends, and trailing NULs and blanks, are not part of a line.
 class LineReader {
  public:
+  /// A line of a stream that is longer is cut into several [bytes].
+  static constexpr std::size_t kMaxLine = std::size_t{1} << 20;
+
+  /// A text held elsewhere.
   LineReader(std::string path, std::string_view text);
+  /// A stream, of which a part at a time is held. `begin`: what was read of it already.
+  LineReader(std::string path, TextStream* stream, std::string begin);
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
 
   /// Moves to the next line; false at the end.
   bool Next();
   /// The next line again at the following call of Next().
   void PutBack() { put_back_ = true; }
+  /// Valid until the next call of Next().
   [[nodiscard]] std::string_view line() const { return line_; }
   /// The line without blanks at its end.
   [[nodiscard]] std::string_view trimmed() const;
@@ -37,8 +67,13 @@ class LineReader {
   [[nodiscard]] Status Fault(const std::string& message) const;
 
  private:
+  /// Reads on until the stream's next line is whole in text_.
+  void Refill();
+
   std::string path_;
-  std::string_view text_;
+  TextStream* stream_ = nullptr;
+  std::string part_;       ///< of the stream
+  std::string_view text_;  ///< part_, where there is a stream
   std::string_view line_;
   std::size_t position_ = 0;
   int number_ = 0;

@@ -21,8 +21,9 @@ Result<ObservationFile> ReadRinexObservation(const std::string& path);
 /// The same from memory; `path` is used in messages.
 Result<ObservationFile> ParseRinexObservation(const std::string& path, std::string_view text);
 
-/// The same epoch by epoch, for a file of any length (MappedText): `take` gets each, and the result holds
-/// none; it may be empty, to look at the file alone. `epochs` becomes their number. Errors: as above.
+/// The same epoch by epoch, for a file of any length, of which a part at a time is held (Compact RINEX: all
+/// of it): `take` gets each, and the result holds none; it may be empty, to look at the file alone. `epochs`
+/// becomes their number. Errors: as above.
 Result<ObservationFile> ScanRinexObservation(const std::string& path,
                                              const std::function<void(ObservationEpoch)>& take,
                                              std::size_t* epochs);

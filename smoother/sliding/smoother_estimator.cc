@@ -15,20 +15,7 @@
 #include "smoother/solve/window_solver.h"
 
 namespace alidade {
-namespace {
-
-/// SLAM features that have views in the window.
-std::vector<WindowTrack*> FeaturesInSight(Window* window) {
-  std::vector<WindowTrack*> features;
-  for (auto& [id, track] : window->tracks()) {
-    if (track.anchor != nullptr && !track.views.empty()) {
-      features.push_back(&track);
-    }
-  }
-  return features;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const RigCalibration& rig) {
   return std::make_unique<SmootherEstimator>(config, rig);
@@ -256,7 +243,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
-  const std::vector<WindowTrack*> features = FeaturesInSight(&window_);
+  const std::vector<WindowTrack*> features = FeaturesInSight();
   std::vector<WindowTrack*> gated = *tracks;
   gated.insert(gated.end(), features.begin(), features.end());
   if (GateTracks(Geometry(), gated) && slam != nullptr) {
@@ -265,29 +252,19 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (gnss_.aligned()) {
     gnss_.Gate(&window_, &statistics_);
   }
-  std::vector<const WindowTrack*> used;
-  std::copy_if(tracks->begin(), tracks->end(), std::back_inserter(used),
-               [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
-  auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
-  statistics_.features_used = vision->system().tracks + static_cast<int>(FeaturesInSight(&window_).size());
-  statistics_.nis = vision->system().chi2;
-  statistics_.nis_dof = vision->system().dof;
-  terms.push_back(std::move(vision));
+  AddJudgedVision(*tracks, &terms);
   return UpdateLatest(terms);
 }
 
-Status SmootherEstimator::TakeLandmarks(const SlamPriorTerm& slam) {
-  const Eigen::VectorXd* landmarks = slam.Landmarks();
-  if (landmarks == nullptr) {
-    return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) + " s have no solution");
-  }
-  const std::span<const WindowTrack* const> tracks = slam.slam().tracks();
-  for (size_t i = 0; i < tracks.size(); ++i) {
-    if (tracks[i] != nullptr) {
-      window_.tracks().at(tracks[i]->id).landmark = landmarks->segment<3>(3 * static_cast<Eigen::Index>(i));
-    }
-  }
-  return Status::Ok();
+void SmootherEstimator::AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) {
+  std::vector<const WindowTrack*> used;
+  std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
+               [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
+  auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
+  statistics_.features_used = vision->system().tracks + static_cast<int>(FeaturesInSight().size());
+  statistics_.nis = vision->system().chi2;
+  statistics_.nis_dof = vision->system().dof;
+  terms->push_back(std::move(vision));
 }
 
 Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {

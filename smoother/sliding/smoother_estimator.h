@@ -89,6 +89,10 @@ class SmootherEstimator final : public Estimator {
                               WindowTerms* terms) const;
   /// Landmarks of the prior at the states just solved for.
   Status TakeLandmarks(const SlamPriorTerm& slam);
+  /// SLAM features that have views in the window.
+  [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
+  /// What the tracks say once the gates have judged their views: appended, and counted.
+  void AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   bool PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track);

@@ -130,4 +130,28 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   return Status::Ok();
 }
 
+std::vector<WindowTrack*> SmootherEstimator::FeaturesInSight() {
+  std::vector<WindowTrack*> features;
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.anchor != nullptr && !track.views.empty()) {
+      features.push_back(&track);
+    }
+  }
+  return features;
+}
+
+Status SmootherEstimator::TakeLandmarks(const SlamPriorTerm& slam) {
+  const Eigen::VectorXd* landmarks = slam.Landmarks();
+  if (landmarks == nullptr) {
+    return Lost("smoother: landmarks at " + FormatSeconds(window_.newest().stamp_ns) + " s have no solution");
+  }
+  const std::span<const WindowTrack* const> tracks = slam.slam().tracks();
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i] != nullptr) {
+      window_.tracks().at(tracks[i]->id).landmark = landmarks->segment<3>(3 * static_cast<Eigen::Index>(i));
+    }
+  }
+  return Status::Ok();
+}
+
 }  // namespace alidade

@@ -24,10 +24,6 @@ constexpr double kTrustRadius = 1e3;
 // Rejected steps allowed for each accepted one: they cost an evaluation without Jacobians at most.
 constexpr int kRejectedSteps = 3;
 
-// The cost is half a squared Mahalanobis distance of all states of the window together. A solve ends once
-// that of the minimum is expected to be below this; no single state is then further away in its own
-// deviations.
-constexpr double kRemainingSigma = 0.1;
 // Least mismatch between the cost and its model that a step is credited with: directions in which the model
 // promises too much and too little cancel in the ratio of the two.
 constexpr double kLeastMismatch = 0.05;
@@ -36,15 +32,15 @@ constexpr double kLeastMismatch = 0.05;
 /// one is not worth its evaluation.
 class AcceptedSteps final : public ceres::IterationCallback {
  public:
-  explicit AcceptedSteps(int most) : most_(most) {}
+  AcceptedSteps(int most, double remaining_sigma)
+      : most_(most), remaining_cost_(0.5 * remaining_sigma * remaining_sigma) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (summary.iteration == 0 || !summary.step_is_successful) {
       return ceres::SOLVER_CONTINUE;
     }
     ++accepted_;
-    const bool near =
-        Remaining(summary.cost_change, summary.relative_decrease) < 0.5 * kRemainingSigma * kRemainingSigma;
+    const bool near = Remaining(summary.cost_change, summary.relative_decrease) < remaining_cost_;
     return near || accepted_ >= most_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
   [[nodiscard]] int accepted() const { return accepted_; }
@@ -61,6 +57,7 @@ class AcceptedSteps final : public ceres::IterationCallback {
   }
 
   int most_;
+  double remaining_cost_;
   int accepted_ = 0;
 };
 
@@ -106,7 +103,7 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBloc
 
 Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
-                                      WindowCalibration* calibration) {
+                                      WindowCalibration* calibration, double remaining_sigma) {
   ParameterBlocks blocks(config.error, window->frames(), tracks, *calibration);
   const std::unique_ptr<ceres::Problem> problem = blocks.MakeProblem();
   for (const std::unique_ptr<WindowTerm>& term : terms) {
@@ -115,7 +112,7 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
   UseOneThreadPerBlasCall();
   ceres::Solver::Summary summary;
   ceres::Solver::Options options = SolverOptions(config, &blocks);
-  AcceptedSteps steps(config.max_iterations);
+  AcceptedSteps steps(config.max_iterations, remaining_sigma);
   options.callbacks.push_back(&steps);
   ceres::Solve(options, problem.get(), &summary);
   if (summary.termination_type == ceres::FAILURE || !blocks.IsFinite()) {

@@ -14,12 +14,19 @@ struct WindowSolveReport {
   double final_cost = 0;
 };
 
+/// The cost is half a squared Mahalanobis distance of all states of the window together. A solve ends once
+/// that of the minimum is expected to be below this; no single state is then further away in its own
+/// deviations.
+inline constexpr double kRemainingSigma = 0.1;
+
 /// Least squares over all frames of the window with Ceres: `terms`, the landmarks of `tracks` among their
 /// unknowns, and the calibration. All are updated in place; with pose-only landmarks those of the tracks are
-/// left for SolveLandmark. One thread and no time limit: equal input, equal bits. Errors (kDiverged): the
-/// solver failed, or a state is not finite; the window is then as before.
+/// left for SolveLandmark. `remaining_sigma`: see kRemainingSigma; 0 goes on until the cost stands still. One
+/// thread and no time limit: equal input, equal bits. Errors (kDiverged): the solver failed, or a state is
+/// not finite; the window is then as before.
 Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
-                                      WindowCalibration* calibration);
+                                      WindowCalibration* calibration,
+                                      double remaining_sigma = kRemainingSigma);
 
 }  // namespace alidade

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <filesystem>
+
 #include "core/format.h"
 #include "tests/gnss/formats/rinex_text.h"
 #include "tests/support/shared_data.h"
@@ -207,14 +209,18 @@ TEST(RinexObservationTest, Version2EventsAndDamage) {
   EXPECT_EQ(file.warnings.count, 1);
 }
 
-// GIVEN a file, plain, as gzip and cut to nothing WHEN it is scanned THEN the epochs, the header and the
-// warnings are those of reading it whole.
+// GIVEN a file of several parts, plain, as gzip, torn and cut to nothing WHEN it is scanned THEN the epochs,
+// the header and the warnings are those of reading it whole, and a torn one is refused.
 TEST(RinexObservationTest, ScanningGivesTheSameEpochs) {
   const test::TemporaryFolder folder;
   std::string text = kHeader3;
-  for (int second = 0; second < 60; ++second) {
-    text += Format("> 2020 06 25 00 00 %02d.0000000  0  1\n", second) + Satellite("G07", 2.1e7 + second);
+  constexpr std::size_t kEpochs = 7200;
+  for (std::size_t second = 0; second < kEpochs; ++second) {
+    text += Format("> 2020 06 25 %02zu %02zu %02zu.0000000  0  1\n", second / 3600, second / 60 % 60,
+                   second % 60) +
+            Satellite("G07", 2.1e7 + static_cast<double>(second));
   }
+  ASSERT_GT(text.size(), std::size_t{3} << 17);
   text += "> 2020 06 25 00 00 30.0000000  0  1\n" + Satellite("G07", 2.1e7);  // earlier
   const std::string plain = folder.Write("plain.rnx", text);
   const std::string gzip = folder.File("gzip.rnx.gz");
@@ -223,15 +229,15 @@ TEST(RinexObservationTest, ScanningGivesTheSameEpochs) {
   gzclose(file);
   const Result<ObservationFile> whole = ReadRinexObservation(plain);
   ASSERT_TRUE(whole.ok()) << whole.message();
-  ASSERT_EQ(whole->epochs.size(), 60u);
+  ASSERT_EQ(whole->epochs.size(), kEpochs);
   for (const std::string& path : {plain, gzip}) {
     std::vector<ObservationEpoch> epochs;
     std::size_t count = 0;
     const Result<ObservationFile> scanned = ScanRinexObservation(
         path, [&epochs](ObservationEpoch epoch) { epochs.push_back(std::move(epoch)); }, &count);
     ASSERT_TRUE(scanned.ok()) << scanned.message();
-    EXPECT_EQ(count, 60u);
-    ASSERT_EQ(epochs.size(), 60u);
+    EXPECT_EQ(count, kEpochs);
+    ASSERT_EQ(epochs.size(), kEpochs);
     for (std::size_t i = 0; i < epochs.size(); ++i) {
       EXPECT_EQ(epochs[i].stamp_ns, whole->epochs[i].stamp_ns);
       EXPECT_EQ(Only(epochs[i].satellites.at(0)).pseudorange_m, 2.1e7 + static_cast<double>(i));
@@ -241,6 +247,14 @@ TEST(RinexObservationTest, ScanningGivesTheSameEpochs) {
     EXPECT_EQ(scanned->glonass_channels, whole->glonass_channels);
   }
   std::size_t count = 0;
+  std::filesystem::resize_file(gzip, std::filesystem::file_size(gzip) / 2);
+  EXPECT_THAT(ScanRinexObservation(gzip, nullptr, &count).message(),
+              HasSubstr("gzip.rnx.gz: cannot be unpacked"));
+  // A line without an end takes no more memory than a part of it.
+  const std::string endless = folder.Write("endless.rnx", text + std::string(5 * LineReader::kMaxLine, 'x'));
+  const Result<ObservationFile> scanned = ScanRinexObservation(endless, nullptr, &count);
+  ASSERT_TRUE(scanned.ok()) << scanned.message();
+  EXPECT_EQ(count, kEpochs);
   EXPECT_THAT(ScanRinexObservation(folder.Write("none.rnx", ""), nullptr, &count).message(),
               HasSubstr("none.rnx"));
   EXPECT_THAT(ScanRinexObservation(folder.File("gone.rnx"), nullptr, &count).message(),

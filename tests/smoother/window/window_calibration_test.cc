@@ -309,13 +309,19 @@ void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
         fixture.window, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), fixture.calibration,
         kernel));
   }
-  const Result<WindowSolveReport> report =
-      SolveWindow(config_of_solve, terms, tracks, &fixture.window, &fixture.calibration);
+  const auto solve = [&](double remaining_sigma) {
+    return SolveWindow(config_of_solve, terms, tracks, &fixture.window, &fixture.calibration,
+                       remaining_sigma);
+  };
+  const Result<WindowSolveReport> near = solve(kRemainingSigma);
+  ASSERT_TRUE(near.ok()) << near.message();
+  const Result<WindowSolveReport> report = solve(0);
   ASSERT_TRUE(report.ok()) << report.message();
+  EXPECT_GT(near->initial_cost, 1);
+  EXPECT_LT(near->final_cost - report->final_cost, 0.5 * kRemainingSigma * kRemainingSigma);
   const VectorXd error = Local(fixture.calibration.layout, truth, fixture.calibration.mean);
-  // A solve ends a tenth of a deviation from the minimum.
-  EXPECT_LT(error.head<3>().norm(), 2e-4);
-  EXPECT_LT(error.segment<3>(3).norm(), 2e-3);
+  EXPECT_LT(error.head<3>().norm(), 1e-4);
+  EXPECT_LT(error.segment<3>(3).norm(), 1e-3);
   EXPECT_LT(std::abs(error[6]), 1e-4);
 }
 
