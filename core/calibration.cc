@@ -50,7 +50,16 @@ double ReadOutSpan(const CameraCalibration& camera) {
              : 0;
 }
 
-CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera) {
+WatchedAntenna AntennaToWatch(bool gnss_enabled, bool fixes_enabled, const RigCalibration& rig) {
+  if (gnss_enabled && rig.gnss.is_present) {
+    return WatchedAntenna::kGnss;
+  }
+  return fixes_enabled && rig.fixes.size() == 1 ? WatchedAntenna::kFix : WatchedAntenna::kNone;
+}
+
+CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera,
+                                     WatchedAntenna antenna)
+    : antenna_(config.watched() ? antenna : WatchedAntenna::kNone) {
   const auto take = [this](bool wanted, int size, int* first) {
     *first = wanted ? size_ : -1;
     size_ += wanted ? size : 0;
@@ -63,6 +72,7 @@ CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const Came
   take(config.time_offset || watched, 1, &time_offset_);
   take(config.line_delay, 1, &line_delay_);
   take(config.intrinsics || watched, intrinsics_size_, &intrinsics_);
+  take(antenna_ != WatchedAntenna::kNone, 3, &lever_arm_);
 }
 
 VectorXd WatchedDeviations(const CalibrationLayout& layout) {
@@ -71,6 +81,7 @@ VectorXd WatchedDeviations(const CalibrationLayout& layout) {
   constexpr double kTranslationM = 1e-6;
   constexpr double kTimeS = 1e-7;
   constexpr double kPixels = 5e-5;
+  constexpr double kLeverArmM = 1e-5;  // GNSS tells centimetres of it, fixes of a real-time base millimetres
   VectorXd deviations = VectorXd::Constant(layout.size(), kPixels);
   if (layout.extrinsics() >= 0) {
     deviations.segment<3>(layout.extrinsics()).setConstant(kRotationRad);
@@ -79,11 +90,15 @@ VectorXd WatchedDeviations(const CalibrationLayout& layout) {
   if (layout.time_offset() >= 0) {
     deviations[layout.time_offset()] = kTimeS;
   }
+  if (layout.lever_arm() >= 0) {
+    deviations.segment<3>(layout.lever_arm()).setConstant(kLeverArmM);
+  }
   return deviations;
 }
 
-CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const CameraCalibration& given) {
-  CalibrationEstimate estimate{CalibrationLayout(config, given.camera), given, {}};
+CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const CameraCalibration& given,
+                                       WatchedAntenna antenna) {
+  CalibrationEstimate estimate{CalibrationLayout(config, given.camera, antenna), given, {}};
   const CalibrationLayout& layout = estimate.layout;
   if (layout.line_delay() >= 0) {
     estimate.mean.line_delay_s = given.line_delay_s.value_or(0);
@@ -146,7 +161,7 @@ bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const VectorXd>& 
 
 VectorXd Local(const CalibrationLayout& layout, const CameraCalibration& estimate,
                const CameraCalibration& truth) {
-  VectorXd error(layout.size());
+  VectorXd error = VectorXd::Zero(layout.size());  // a lever arm is watched alone, and stays as given
   if (layout.extrinsics() >= 0) {
     error.segment<3>(layout.extrinsics()) =
         so3::Log(estimate.T_BC.rotation.transpose() * truth.T_BC.rotation);

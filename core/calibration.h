@@ -27,6 +27,13 @@ struct CameraCalibration {
 /// 0 where all rows are exposed at once.
 [[nodiscard]] double ReadOutSpan(const CameraCalibration& camera);
 
+/// The point on the body whose lever arm p_BA is tested along with a watched camera.
+enum class WatchedAntenna { kNone, kGnss, kFix };
+
+/// That of the sequence's GNSS receiver, else that of its only position sensor, where the configuration uses
+/// them.
+[[nodiscard]] WatchedAntenna AntennaToWatch(bool gnss_enabled, bool fixes_enabled, const RigCalibration& rig);
+
 /// Which coordinates the error of a CameraCalibration has, and where. In this order, each group only when its
 /// key is on:
 ///
@@ -34,6 +41,7 @@ struct CameraCalibration {
 ///   time offset  additive                                                1, s
 ///   line delay   additive                                                1, s
 ///   intrinsics   fu fv cu cv, then the lens coefficients, additive       4 + CoefficientCount, px and 1
+///   lever arm    additive to p_BA of an antenna; of a watched one        3, m
 ///
 /// These coordinates are the same in every error convention of the state.
 class CalibrationLayout {
@@ -41,7 +49,8 @@ class CalibrationLayout {
   static constexpr int kMaxSize = 16;
 
   CalibrationLayout() = default;
-  CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera);
+  CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera,
+                    WatchedAntenna antenna = WatchedAntenna::kNone);
 
   [[nodiscard]] int size() const { return size_; }
   /// First coordinate of a group, -1 when it is not estimated.
@@ -50,6 +59,10 @@ class CalibrationLayout {
   [[nodiscard]] int line_delay() const { return line_delay_; }
   [[nodiscard]] int intrinsics() const { return intrinsics_; }
   [[nodiscard]] int intrinsics_size() const { return intrinsics_size_; }
+  /// The last three coordinates, or -1.
+  [[nodiscard]] int lever_arm() const { return lever_arm_; }
+  /// Whose lever arm it is.
+  [[nodiscard]] WatchedAntenna antenna() const { return antenna_; }
 
  private:
   int size_ = 0;
@@ -58,6 +71,8 @@ class CalibrationLayout {
   int line_delay_ = -1;
   int intrinsics_ = -1;
   int intrinsics_size_ = 0;
+  int lever_arm_ = -1;
+  WatchedAntenna antenna_ = WatchedAntenna::kNone;
 };
 
 /// A calibration and what is known about its error.
@@ -79,7 +94,8 @@ struct CalibrationEstimate {
 
 /// The given calibration with the configured trust in it.
 [[nodiscard]] CalibrationEstimate InitialCalibration(const CalibrationConfig& config,
-                                                     const CameraCalibration& given);
+                                                     const CameraCalibration& given,
+                                                     WatchedAntenna antenna = WatchedAntenna::kNone);
 
 /// Moves a calibration by `error`. False, with `calibration` untouched, when that is no camera any more or
 /// not finite.

@@ -15,8 +15,9 @@ void CalibrationConfig::Describe(ConfigVisitor& visitor) {
   visitor.Boolean({"intrinsics", "-", "estimate focal lengths, principal point and lens coefficients"},
                   &intrinsics);
   visitor.Boolean({"watch", "-",
-                   "test the given camera while none of it is estimated: extrinsics, time offset, focal "
-                   "lengths and principal point; what does not hold makes the status degraded"},
+                   "test the given camera while none of it is estimated (extrinsics, time offset, focal "
+                   "lengths, principal point), the lever arm of GNSS or of a position sensor, and their "
+                   "positions against vision and IMU; what does not hold makes the status degraded"},
                   &watch);
   visitor.Real({"rotation_std_rad", "rad",
                 "prior standard deviation of the given rotation of T_BC, each axis; 2 degrees"},

@@ -57,6 +57,10 @@ struct FixMeasurement {
   PositionFixModel model;
   Eigen::Matrix3d sqrt_information = Eigen::Matrix3d::Identity();  ///< lower triangular
 
+  /// d (whitened residual) / d p_BA, 3x3.
+  [[nodiscard]] Eigen::Matrix3d LeverArmJacobian(const NavState& state) const {
+    return sqrt_information * state.R_WB;
+  }
   /// Whitened.
   void Evaluate(const NavState& state, Residual* residual, Jacobian* jacobian) const;
   /// Multiplies the information by the square of `root`.

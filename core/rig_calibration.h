@@ -18,6 +18,7 @@ struct GnssReceiver {
   /// Origin of the ENU frame of the sequence's truth, ECEF [m], used for the estimates too. Empty: the first
   /// solution is the origin.
   std::optional<Eigen::Vector3d> anchor_E;
+  bool is_present = false;  ///< the sequence has raw GNSS
 };
 
 /// What is known about the rig before a run; constant unless an estimator calibrates online.

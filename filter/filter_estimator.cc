@@ -18,7 +18,8 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       gravity_W_(GravityInWorld(config.imu.gravity_mps2)),
       gate_(config.vision.gate_probability),
       state_(config.filter.error, config.filter.first_estimates,
-             InitialCalibration(config.calibration, GivenCamera(rig_, config.vision)),
+             InitialCalibration(config.calibration, GivenCamera(rig_, config.vision),
+                                AntennaToWatch(config.gnss.enabled, config.fix.enabled, rig)),
              {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled}),
       update_(config.filter, config.vision, config.filter.window + 1, state_.layout().size()),
       slam_(config.filter, config.filter.window + 1),
@@ -47,6 +48,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   measurements_.Reset();
   pixel_noise_.Reset();
   aligned_ = false;
+  absolute_.reset();
   rest_.Clear();
   imu_.DropBefore(initial.stamp_ns, read_out_span_s_);
   frame_stamp_ns_ = INT64_MIN;

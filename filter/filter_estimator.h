@@ -31,6 +31,9 @@ class FilterEstimator : public Estimator {
   Status AddGnss(const GnssEpoch& epoch) override;
   Status AddMeasurement(const Measurement& measurement) override;
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
+  [[nodiscard]] const AbsoluteCorrection* last_correction() const override {
+    return absolute_ ? &*absolute_ : nullptr;
+  }
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
   [[nodiscard]] NavEstimate Latest() const override { return state_.Estimate(); }
   [[nodiscard]] std::optional<CalibrationEstimate> LatestCalibration() const override;
@@ -53,7 +56,9 @@ class FilterEstimator : public Estimator {
   /// The same for a measurement between frames; `what` names it in messages. kDiverged: not aligned.
   Status BeginMeasurement(const char* what, TimeNs stamp_ns);
   /// Corrects the state unless `finite` is false; kDiverged when the state is lost.
-  Status EndMeasurement(const char* what, TimeNs stamp_ns, bool finite);
+  /// The estimate, where what measurements do to it is of interest.
+  [[nodiscard]] NavEstimate EstimateIfWatched() const;
+  Status EndMeasurement(const char* what, TimeNs stamp_ns, const NavEstimate& before, bool finite);
   /// Index of the clone to marginalise after this frame, or -1 while the window is not full.
   [[nodiscard]] int ChooseLeavingClone() const;
   /// True when the track's views are to be used in this frame.
@@ -110,11 +115,12 @@ class FilterEstimator : public Estimator {
   FilterObserver* observer_ = nullptr;
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer
   bool initialized_ = false;
-  bool aligned_ = false;               ///< W stands as Align turned it
-  DueTracks due_ = DueTracks::kUsual;  ///< in this frame
-  int serial_ = 0;                     ///< of the newest frame
-  int first_serial_ = 1;               ///< of the first frame after the initialisation
-  TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
+  std::optional<AbsoluteCorrection> absolute_;  ///< the last one
+  bool aligned_ = false;                        ///< W stands as Align turned it
+  DueTracks due_ = DueTracks::kUsual;           ///< in this frame
+  int serial_ = 0;                              ///< of the newest frame
+  int first_serial_ = 1;                        ///< of the first frame after the initialisation
+  TimeNs frame_stamp_ns_ = INT64_MIN;           ///< IMU time of the last frame
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

@@ -44,7 +44,12 @@ Status FilterEstimator::BeginMeasurement(const char* what, TimeNs stamp_ns) {
   return Status::Ok();
 }
 
-Status FilterEstimator::EndMeasurement(const char* what, TimeNs stamp_ns, bool finite) {
+NavEstimate FilterEstimator::EstimateIfWatched() const {
+  return config_.calibration.watch ? state_.Estimate() : NavEstimate();
+}
+
+Status FilterEstimator::EndMeasurement(const char* what, TimeNs stamp_ns, const NavEstimate& before,
+                                       bool finite) {
   if (finite) {
     Correct();
   }
@@ -52,6 +57,9 @@ Status FilterEstimator::EndMeasurement(const char* what, TimeNs stamp_ns, bool f
     initialized_ = false;
     return Status::Diverged(std::string("filter: state is not finite after the ") + what + " at " +
                             FormatSeconds(stamp_ns) + " s");
+  }
+  if (config_.calibration.watch) {
+    absolute_ = CorrectionBetween(before, state_.Estimate());
   }
   return Status::Ok();
 }
@@ -63,8 +71,9 @@ Status FilterEstimator::AddGnss(const GnssEpoch& epoch) {
   ALIDADE_RETURN_IF_ERROR(BeginMeasurement("GNSS epoch", epoch.stamp_ns));
   const Stopwatch stopwatch;
   const Eigen::Vector3d gyro_radps = TurnAround(imu_.samples(), state_.stamp_ns(), 0).gyro_radps;
+  const NavEstimate before = EstimateIfWatched();
   const bool finite = gnss_.Apply(epoch, gyro_radps, &state_, Correction(), &statistics_);
-  Status status = EndMeasurement("GNSS epoch", epoch.stamp_ns, finite);
+  Status status = EndMeasurement("GNSS epoch", epoch.stamp_ns, before, finite);
   statistics_.update_ms = stopwatch.ElapsedMs();
   return status;
 }
@@ -76,8 +85,9 @@ Status FilterEstimator::AddMeasurement(const Measurement& measurement) {
   const TimeNs stamp_ns = StampOf(measurement);
   ALIDADE_RETURN_IF_ERROR(BeginMeasurement(what, stamp_ns));
   const Stopwatch stopwatch;
+  const NavEstimate before = EstimateIfWatched();
   const bool finite = measurements_.Apply(*whitened, &state_, Correction(), &statistics_);
-  Status status = EndMeasurement(what, stamp_ns, finite);
+  Status status = EndMeasurement(what, stamp_ns, before, finite);
   statistics_.update_ms = stopwatch.ElapsedMs();
   return status;
 }

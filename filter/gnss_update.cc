@@ -86,8 +86,9 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
   Weigh(*state, statistics);
   const double discarded = Compress();
   NotifyObserver(*state);
-  if (!state->covariance().UpdateByBlock(state->ClockOffset(), jacobian_, innovation_, correction,
-                                         &statistics->gnss_nis)) {
+  if (!state->covariance().UpdateByBlock(state->ClockOffset(), jacobian_.leftCols<kSeen>(), innovation_,
+                                         correction, &statistics->gnss_nis,
+                                         jacobian_.rightCols(jacobian_.cols() - kSeen))) {
     return false;
   }
   statistics->gnss_nis += discarded;
@@ -97,7 +98,8 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
 
 void GnssUpdate::FillRows(const FilterState& state) {
   const auto count = static_cast<Eigen::Index>(rows_.size());
-  jacobian_.resize(count, kSeen);
+  const bool antenna = state.layout().antenna() == WatchedAntenna::kGnss;
+  jacobian_.resize(count, kSeen + (antenna ? 3 : 0));
   innovation_.resize(count);
   const NavState& point = state.first_estimates() ? state.nav_first() : state.nav();
   const Matrix15d chart = ImuChartJacobian(state.convention(), point);
@@ -105,16 +107,20 @@ void GnssUpdate::FillRows(const FilterState& state) {
     const GnssRow& row = rows_[static_cast<std::size_t>(i)];
     jacobian_.block<1, kClock>(i, 0) = row.ClockJacobian() / row.deviation;
     jacobian_.block<1, kCore>(i, kClock).noalias() = row.jacobian * chart / row.deviation;
+    if (antenna) {
+      jacobian_.rightCols<3>().row(i) = row.lever_arm / row.deviation;
+    }
     innovation_[i] = -row.residual / row.deviation;
   }
 }
 
 void GnssUpdate::Weigh(const FilterState& state, FrameStatistics* statistics) {
   nis_.resize(rows_.size());
-  const Eigen::MatrixXd predicted = jacobian_ * state.covariance().Block(state.ClockOffset(), kSeen);
+  const Eigen::MatrixXd predicted =
+      jacobian_.leftCols<kSeen>() * state.covariance().Block(state.ClockOffset(), kSeen);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    nis_[i] = innovation_[k] * innovation_[k] / (1 + predicted.row(k).dot(jacobian_.row(k)));
+    nis_[i] = innovation_[k] * innovation_[k] / (1 + predicted.row(k).dot(jacobian_.row(k).head<kSeen>()));
   }
   const GnssWeights result = WeighRows(config_, gate_threshold_, nis_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -133,12 +139,13 @@ void GnssUpdate::Weigh(const FilterState& state, FrameStatistics* statistics) {
 }
 
 double GnssUpdate::Compress() {
-  if (jacobian_.rows() <= kSeen) {
+  const Eigen::Index columns = jacobian_.cols();
+  if (jacobian_.rows() <= columns) {
     return 0;
   }
   jacobian_ = UpperTriangle(jacobian_, &innovation_);
-  const double discarded = innovation_.tail(innovation_.size() - kSeen).squaredNorm();
-  innovation_.conservativeResize(kSeen);
+  const double discarded = innovation_.tail(innovation_.size() - columns).squaredNorm();
+  innovation_.conservativeResize(columns);
   return discarded;
 }
 
@@ -147,7 +154,8 @@ void GnssUpdate::NotifyObserver(const FilterState& state) const {
     return;
   }
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(jacobian_.rows(), state.covariance().dimension());
-  rows.middleCols(state.ClockOffset(), kSeen) = jacobian_;
+  rows.middleCols<kSeen>(state.ClockOffset()) = jacobian_.leftCols<kSeen>();
+  rows.rightCols(jacobian_.cols() - kSeen) = jacobian_.rightCols(jacobian_.cols() - kSeen);
   observer_->OnUpdate(state, {std::move(rows), innovation_, {}, RowSource::kGnss});
 }
 

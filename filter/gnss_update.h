@@ -62,7 +62,8 @@ class GnssUpdate {
   EpochMeasurements located_;
   std::vector<GnssRow> rows_;
   std::vector<double> nis_;
-  Eigen::MatrixXd jacobian_;  ///< over clock and core, which is all that an epoch sees
+  /// Over clock and core, and the lever arm of a watched antenna, which is all that an epoch sees.
+  Eigen::MatrixXd jacobian_;
   Eigen::VectorXd innovation_;
 };
 

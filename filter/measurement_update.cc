@@ -12,6 +12,7 @@ template <typename Kind>
 struct CoreRows {
   typename Kind::Residual innovation;
   typename Kind::Jacobian jacobian;
+  Eigen::Matrix<double, Kind::kRows, Eigen::Dynamic, 0, Kind::kRows, 3> lever_arm;  ///< of a watched antenna
 };
 
 template <typename Kind>
@@ -23,6 +24,12 @@ CoreRows<Kind> Linearize(const Kind& measurement, const FilterState& state) {
   const NavState& point = state.first_estimates() ? state.nav_first() : state.nav();
   measurement.Evaluate(point, &residual, &rows.jacobian);
   rows.jacobian *= ImuChartJacobian(state.convention(), point);
+  rows.lever_arm.resize(Kind::kRows, 0);
+  if constexpr (std::is_same_v<Kind, FixMeasurement>) {
+    if (state.layout().antenna() == WatchedAntenna::kFix) {
+      rows.lever_arm = measurement.LeverArmJacobian(point);
+    }
+  }
   return rows;
 }
 
@@ -56,13 +63,14 @@ bool MeasurementUpdate::Apply(const WhitenedMeasurement& measurement, FilterStat
         }
         rows.jacobian *= std::sqrt(weight);
         rows.innovation *= std::sqrt(weight);
+        rows.lever_arm *= std::sqrt(weight);
         ++counts.used;
         counts.nis_dof = Kind::kRows;
         if (observer_ != nullptr) {
           observer_->OnUpdate(*state, OverTheWholeError(*state, rows.jacobian, rows.innovation));
         }
         return state->covariance().UpdateByBlock(state->CoreOffset(), rows.jacobian, rows.innovation,
-                                                 correction, &counts.nis);
+                                                 correction, &counts.nis, rows.lever_arm);
       },
       measurement);
 }

@@ -83,10 +83,11 @@ class SquareRootCovariance {
   /// Kalman update with unit-noise rows that see the errors [first, first + rows.cols()) alone, as Prepare
   /// and Apply. The work grows with their number times dimension() squared: for rows much fewer than the
   /// error. False when a row is not finite (nothing is changed), or when S and the rows are too
-  /// far apart in size for double precision (S is spent).
+  /// far apart in size for double precision (S is spent). `constants`: the same rows over the last
+  /// constants.cols() errors, where they see these too.
   bool UpdateByBlock(int first, const Eigen::Ref<const Eigen::MatrixXd>& rows,
                      const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> correction,
-                     double* nis);
+                     double* nis, const Eigen::Ref<const Eigen::MatrixXd>& constants = Eigen::MatrixXd());
 
   [[nodiscard]] int dimension() const { return dimension_; }
   /// Rows before the core block.

@@ -107,7 +107,7 @@ MatrixXd SquareRootCovariance::Block(int first, int size) const {
 
 bool SquareRootCovariance::UpdateByBlock(int first, const Eigen::Ref<const MatrixXd>& rows,
                                          const Eigen::Ref<const VectorXd>& y, Eigen::Ref<VectorXd> correction,
-                                         double* nis) {
+                                         double* nis, const Eigen::Ref<const MatrixXd>& constants) {
   CHECK(first >= 0 && first + rows.cols() <= dimension_);
   const int count = static_cast<int>(rows.rows());
   const int active = dimension_ - first;
@@ -115,6 +115,10 @@ bool SquareRootCovariance::UpdateByBlock(int first, const Eigen::Ref<const Matri
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, active, static_cast<int>(rows.cols()), 1.0,
               rows.data(), static_cast<int>(rows.outerStride()), Data(first, first), capacity(), 0.0,
               a.data(), count);
+  if (constants.cols() > 0) {
+    const Index size = constants.cols();
+    a.rightCols(size).noalias() += constants * factor().bottomRightCorner(size, size);
+  }
   if (!a.allFinite() || !y.allFinite()) {
     return false;
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/absolute_correction.h"
 #include "core/calibration.h"
 #include "core/clock_state.h"
 #include "core/estimator/measurement.h"
@@ -90,6 +91,8 @@ class Estimator {
   virtual Status AddMeasurement(const Measurement& measurement);
   /// Receiver clock after the last epoch; nothing before Align.
   [[nodiscard]] virtual std::optional<ClockState> LatestClock() const { return std::nullopt; }
+  /// What the last epoch or measurement did to the estimate, where calibration.watch asks for it; null: none.
+  [[nodiscard]] virtual const AbsoluteCorrection* last_correction() const { return nullptr; }
   /// What became of the last epoch's satellites; null before Align.
   [[nodiscard]] virtual const GnssResiduals* last_gnss() const { return nullptr; }
 

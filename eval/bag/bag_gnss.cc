@@ -166,6 +166,7 @@ Status BagGnss::Assemble(BagContext* bag) {
       return Status::Input(bag->path + ": " + bag->topics["range"] + ": " + tags.message());
     }
     bag->dataset.gnss = std::move(log);
+    bag->dataset.rig.gnss.is_present = true;
   }
   AssembleTruth(bag);
   return Status::Ok();

@@ -185,6 +185,7 @@ Status ReadGnssFolder(const std::string& mav, const DatasetStorage& /*storage*/,
   }
   dataset->gnss = std::move(log);
   dataset->rig.gnss = sensor->receiver;
+  dataset->rig.gnss.is_present = true;
   return Status::Ok();
 }
 

@@ -33,6 +33,24 @@ bool Degradation::IsFrozen(const TrackFrame& frame) {
   return frozen_;
 }
 
+void Degradation::OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison) {
+  absolute_sensor_ = sensor;
+  absolute_.Add(comparison);
+}
+
+const char* Degradation::AbsoluteName() const {
+  return absolute_sensor_ == Sensor::kGnss ? "GNSS contradicts" : "position fixes contradict";
+}
+
+std::string Degradation::AgainstSensors(const char* by) const {
+  const std::optional<Contradiction>& found = absolute_.contradiction();
+  if (!found) {
+    return {};
+  }
+  return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s", AbsoluteName(), by,
+                found->distance_m, found->sigmas, found->window_s);
+}
+
 std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics) {
   const double kept = dof_ > 0 ? std::exp(-SecondsBetween(weighed_ns_, imu_ns) / kInnovationsS) : 0;
   weighed_ns_ = imu_ns;
@@ -49,6 +67,12 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   if (statistics.tracks_in > 0 || sighted_ns_ == INT64_MIN) {
     sighted_ns_ = imu_ns;
   }
+  if (jump_until_ns_ == INT64_MAX) {
+    jump_until_ns_ = imu_ns + SecondsToNs(kSettlingS);
+  }
+  if (imu_ns < jump_until_ns_) {
+    return Format("the camera's clock jumped by %.3f s, which is taken off its stamps", jump_s_);
+  }
   if (frozen_) {
     return "the image did not change at all";
   }
@@ -59,10 +83,15 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   if (silent_until_ns_ != INT64_MIN && SecondsBetween(silent_until_ns_, imu_ns) < kSettlingS) {
     return Format("the IMU was silent for %.2f s", silence_s_);
   }
+  if (std::string reason = AgainstSensors("vision and IMU"); !reason.empty()) {
+    return reason;
+  }
   const bool doubted = doubt != nullptr && doubt->sigmas >= kMaxDoubtSigmas;
   if (doubted && doubt->pose_sigmas >= kMaxPoseSigmas) {
     return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",
-                  doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas);
+                  doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas) +
+           (absolute_.sigmas() > kHintSigmas ? std::string("; or ") + AbsoluteName() + " vision and IMU"
+                                             : "");
   }
   if (innovations) {
     const std::string cause =

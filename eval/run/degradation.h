@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/absolute_monitor.h"
 #include "core/calibration_watch.h"
 #include "core/estimator/estimator.h"
 #include "core/track_frame.h"
@@ -29,7 +30,18 @@ class Degradation {
   /// does no harm (core/calibration_watch.h).
   static constexpr double kMaxDoubtSigmas = 5;
   static constexpr double kMaxPoseSigmas = 2;
+  /// A pull of GNSS looks like a wrong parameter before its own monitor is sure: so much of it is mentioned.
+  static constexpr double kHintSigmas = 2.5;
 
+  /// A measured position beside the estimate, in order of time.
+  void OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison);
+  /// Why measured positions contradict the rest, which is `by`; empty: they do not.
+  [[nodiscard]] std::string AgainstSensors(const char* by) const;
+  /// The camera's clock has jumped before the next frame.
+  void OnCameraJump(double jump_s) {
+    jump_s_ = jump_s;
+    jump_until_ns_ = INT64_MAX;
+  }
   /// Every sample that is delivered, in order.
   void OnImu(TimeNs stamp_ns);
   /// Whether the frame shows what the one before showed: every track of both, at least kMinFrozen, on the
@@ -45,15 +57,22 @@ class Degradation {
   void Reset() {
     sighted_ns_ = INT64_MIN;
     nis_ = dof_ = 0;
+    absolute_.Reset();
   }
 
  private:
+  /// Who contradicts.
+  [[nodiscard]] const char* AbsoluteName() const;
   /// The mean of kInnovationsS where it is larger than chance makes it, else nothing.
   std::optional<double> LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics);
 
+  AbsoluteMonitor absolute_;
+  Sensor absolute_sensor_ = Sensor::kGnss;
   TimeNs last_imu_ns_ = INT64_MIN;
   TimeNs silent_until_ns_ = INT64_MIN;
   double silence_s_ = 0;
+  TimeNs jump_until_ns_ = INT64_MIN;
+  double jump_s_ = 0;
   TimeNs sighted_ns_ = INT64_MIN;  ///< the last frame with tracks
   std::vector<TrackObservation> shown_;
   bool frozen_ = false;

@@ -98,6 +98,16 @@ void EstimatorLoop::ProcessEpochAlone() {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
     ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
+    WatchSensor(*gnss_);
+    if (const std::string reason = degradation_.AgainstSensors("the IMU"); !reason.empty() && running()) {
+      events_.emplace_back(DegradedEvent{state_ns_, reason});
+    }
+  }
+}
+
+void EstimatorLoop::WatchSensor(const SensorRun& sensor) {
+  if (sensor.comparison()) {
+    degradation_.OnAbsolute(sensor.sensor(), *sensor.comparison());
   }
 }
 
@@ -114,6 +124,7 @@ void EstimatorLoop::ProcessMessage(SensorRun* sensor) {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
     ReportState(sensor->sensor(), stamp_ns, 0, stopwatch);
+    WatchSensor(*sensor);
   }
   TrimImu();
 }

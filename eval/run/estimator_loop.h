@@ -41,6 +41,8 @@ class EstimatorLoop {
   /// How far beyond a frame: with a rolling shutter until its last row, once the estimator runs.
   [[nodiscard]] TimeNs FrameLead() const { return running() ? read_out_span_ns_ : 0; }
 
+  /// The stamps of the camera had jumped, and were taken back.
+  void TellCameraJump(double jump_s) { degradation_.OnCameraJump(jump_s); }
   /// The IMU that there is reaches the message; what it lacks is the estimator's to refuse.
   void ProcessFrame(const TrackFrame& frame);
   /// The next one of gnss().
@@ -62,6 +64,8 @@ class EstimatorLoop {
 
   void ProcessTracks(const TrackFrame& frame, const Stopwatch& stopwatch);
   void ProcessEpochAlone();
+  /// A message of the sensor was taken.
+  void WatchSensor(const SensorRun& sensor);
   /// Samples up to the first one at or after `stamp_ns`.
   void DeliverImu(TimeNs stamp_ns);
   void AddImu(const ImuSample& sample);

@@ -11,6 +11,7 @@ FixRun::FixRun(const EstimatorConfig& config, const RigCalibration& rig, double 
                Estimator* estimator, std::vector<SessionEvent>* events)
     : MeasurementRun(Sensor::kFix, lateness_s, events),
       estimator_(*estimator),
+      sensors_(rig.fixes),
       feed_(rig, with_gnss),
       aligner_(config.fix, rig.fixes, feed_.enu()),
       with_gnss_(with_gnss) {}
@@ -66,11 +67,22 @@ Result<bool> FixRun::Take(bool running) {
     return false;
   }
   const Status status = estimator_.AddMeasurement(fix);
+  SetComparison(status.ok() ? Compare(fix) : std::nullopt);
   if (status.code() == StatusCode::kInput) {
     Skip(stamp_ns, status.message());
     return false;
   }
   return status.ok() ? Result<bool>(true) : status;
+}
+
+std::optional<AbsoluteComparison> FixRun::Compare(const PositionFix& fix) const {
+  const AbsoluteCorrection* correction = estimator_.last_correction();
+  if (correction == nullptr) {
+    return std::nullopt;
+  }
+  const PositionFixModel model{sensors_[static_cast<std::size_t>(fix.sensor)].p_BA, fix.p_A};
+  return AbsoluteComparison{fix.stamp_ns, correction->change, correction->covariance,
+                            fix.p_A - model.Predict(correction->nav), fix.covariance};
 }
 
 Result<std::optional<GnssAlignment>> FixRun::Align(TimeNs stamp_ns) {

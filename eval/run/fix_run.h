@@ -34,7 +34,10 @@ class FixRun final : public MeasurementRun {
   Status Realign() override;
 
  private:
+  [[nodiscard]] std::optional<AbsoluteComparison> Compare(const PositionFix& fix) const;
+
   Estimator& estimator_;
+  const std::vector<FixSensor>& sensors_;
   FixFeed feed_;
   FixAligner aligner_;
   const bool with_gnss_;

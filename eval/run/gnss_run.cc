@@ -1,11 +1,32 @@
 #include "eval/run/gnss_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/format.h"
 
 namespace alidade {
+namespace {
+
+/// Variance of the whitened residuals of a solution over what its covariance holds, at most one. Orbits,
+/// clocks and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are
+/// better.
+double ScatterShare(const SinglePointSolution& solution) {
+  constexpr int kLeastFreedom = 8;  // fewer residuals do not tell
+  constexpr double kLeast = 0.04;
+  double squares = 0;
+  for (const SatelliteResidual& satellite : solution.satellites) {
+    const double whitened = satellite.residual_m / satellite.deviation_m;
+    squares += satellite.used ? whitened * whitened : 0;
+  }
+  const int freedom = solution.used - 3 - kGnssSystems;
+  return freedom < kLeastFreedom
+             ? 1
+             : std::clamp(squares / freedom / (solution.scale * solution.scale), kLeast, 1.0);
+}
+
+}  // namespace
 
 GnssRun::GnssRun(const EstimatorConfig& config, const RigCalibration& rig, const GnssSetup& setup,
                  double lateness_s, Estimator* estimator, std::vector<SessionEvent>* events)
@@ -57,6 +78,7 @@ Result<bool> GnssRun::Take(bool running) {
     status = estimator_.AddGnss(epoch);
   }
   const bool taken = aligned() && running && status.ok();
+  SetComparison(taken ? Compare(epoch.stamp_ns) : std::nullopt);
   feed_.Pop();
   if (aligned() && !running) {
     Skip(tag_ns, "the estimate is lost");
@@ -69,6 +91,20 @@ Result<bool> GnssRun::Take(bool running) {
     CollectResiduals();
   }
   return taken;
+}
+
+std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
+  const AbsoluteCorrection* correction = estimator_.last_correction();
+  const std::optional<SinglePointSolution>& solution = feed_.solution();
+  if (correction == nullptr || !solution) {
+    return std::nullopt;
+  }
+  const AntennaMount mount{enu(), receiver_.p_BA};
+  const Eigen::Matrix3d R_NE = enu().R_EN.transpose();
+  const Eigen::Vector3d left_E = solution->position_E - mount.Position(correction->nav, nullptr);
+  return AbsoluteComparison{
+      stamp_ns, correction->change, correction->covariance, R_NE * left_E,
+      ScatterShare(*solution) * R_NE * solution->position_covariance_E * R_NE.transpose()};
 }
 
 void GnssRun::CollectResiduals() {

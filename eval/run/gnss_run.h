@@ -53,6 +53,8 @@ class GnssRun final : public SensorRun {
   Status AlignAtStart(const GnssInertialStart::Start& start);
 
  private:
+  /// The epoch's single-point solution beside the estimate.
+  [[nodiscard]] std::optional<AbsoluteComparison> Compare(TimeNs stamp_ns) const;
   void ReportWaiting(TimeNs stamp_ns);
   void ReportAligned(const GnssAlignment& alignment, TimeNs stamp_ns, double yaw_std_rad);
 

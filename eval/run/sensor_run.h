@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/absolute_monitor.h"
 #include "core/estimator/estimator.h"
 #include "eval/run/session_event.h"
 #include "gnss/alignment/alignment.h"
@@ -34,6 +35,9 @@ class SensorRun {
   /// aligned. True when the estimator took it. A Status: the estimator is lost (kDiverged) or takes none of
   /// this sensor (kConfig).
   virtual Result<bool> Take(bool running) = 0;
+  /// The message that Take took last beside the estimate that it corrected; nothing where that is not
+  /// watched, or the message is no position.
+  [[nodiscard]] const std::optional<AbsoluteComparison>& comparison() const { return comparison_; }
 
  protected:
   /// `events` must outlive the object.
@@ -41,6 +45,7 @@ class SensorRun {
       : sensor_(sensor), lateness_s_(lateness_s), events_(*events) {}
 
   [[nodiscard]] std::vector<SessionEvent>& events() { return events_; }
+  void SetComparison(const std::optional<AbsoluteComparison>& comparison) { comparison_ = comparison; }
   /// A message with this stamp was not used.
   void Skip(TimeNs stamp_ns, std::string reason) {
     events_.emplace_back(SkippedEvent{sensor_, stamp_ns, std::move(reason)});
@@ -54,6 +59,7 @@ class SensorRun {
   const Sensor sensor_;
   const double lateness_s_;
   std::vector<SessionEvent>& events_;
+  std::optional<AbsoluteComparison> comparison_;
 };
 
 /// A SensorRun of one of SensorEntries.

@@ -32,6 +32,7 @@ Session::Session(const EstimatorConfig& config, const RigCalibration& rig, Sessi
       rig_(rig),
       options_(std::move(options)),
       loop_(config_, rig_, options_, estimator, &events_),
+      camera_clock_(rig_, config_.vision.pixel_noise_px),
       frame_offset_ns_(loop_.ImuTime(0)) {}
 
 void Session::AddImu(const ImuSample& sample) {
@@ -52,6 +53,7 @@ void Session::AddImu(const ImuSample& sample) {
     case ImuStream::Arrival::kTaken:
       break;
   }
+  camera_clock_.AddImu(sample);
   Process();
 }
 
@@ -59,6 +61,7 @@ void Session::AddFrame(TrackFrame frame) {
   if (failed()) {
     return;
   }
+  frame.stamp_ns -= camera_jump_ns_;
   const TimeNs stamp_ns = frame.stamp_ns;
   if (!options_.camera) {
     Skip(Sensor::kCamera, stamp_ns, "the session is one without a camera");
@@ -205,10 +208,29 @@ void Session::ProcessNext(SensorRun* sensor) {
 }
 
 void Session::ProcessNextFrame() {
-  const TrackFrame frame = std::move(frames_.extract(frames_.begin()).mapped());
+  TrackFrame frame = std::move(frames_.extract(frames_.begin()).mapped());
+  const Eigen::Vector3d gyro_bias =
+      running() ? loop_.estimator().Latest().bias.gyro : Eigen::Vector3d::Zero();
+  if (const std::optional<TimeNs> jump_ns =
+          camera_clock_.FindJump(frame, frame.stamp_ns + frame_offset_ns_, gyro_bias)) {
+    TakeBackJump(*jump_ns, &frame);
+  }
   last_frame_ns_ = frame.stamp_ns;
   loop_.ProcessFrame(frame);
   frame_offset_ns_ = loop_.ImuTime(frame.stamp_ns) - frame.stamp_ns;
+}
+
+void Session::TakeBackJump(TimeNs jump_ns, TrackFrame* frame) {
+  camera_jump_ns_ += jump_ns;
+  frame->stamp_ns -= jump_ns;
+  std::map<TimeNs, TrackFrame> waiting;
+  for (auto& [stamp_ns, later] : frames_) {
+    later.stamp_ns -= jump_ns;
+    waiting.emplace(stamp_ns - jump_ns, std::move(later));
+  }
+  frames_ = std::move(waiting);
+  processed_ns_ = running() ? loop_.state_ns() : processed_ns_ - jump_ns;
+  loop_.TellCameraJump(SecondsBetween(0, jump_ns));
 }
 
 void Session::ProcessNextEpoch() {

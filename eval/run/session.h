@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "eval/run/camera_clock.h"
 #include "eval/run/estimator_loop.h"
 #include "eval/run/session_event.h"
 #include "eval/run/session_options.h"
@@ -70,7 +71,7 @@ class Session {
   [[nodiscard]] Result<NewestState> Newest();
 
   /// IMU time of a camera stamp, as far as the time offset is known now.
-  [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const { return loop_.ImuTime(camera_ns); }
+  [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const { return loop_.ImuTime(camera_ns - camera_jump_ns_); }
   [[nodiscard]] bool running() const { return loop_.running(); }
   /// After a FailedEvent; messages are then ignored.
   [[nodiscard]] bool failed() const { return loop_.failed(); }
@@ -95,6 +96,8 @@ class Session {
   [[nodiscard]] TimeNs Watermark();
   void ProcessNext(SensorRun* sensor);
   void ProcessNextFrame();
+  /// The camera's clock has jumped: this frame and all that wait lie earlier by `jump_ns`.
+  void TakeBackJump(TimeNs jump_ns, TrackFrame* frame);
   void ProcessNextEpoch();
   void Skip(Sensor sensor, TimeNs stamp_ns, std::string reason);
   void RefuseLate(Sensor sensor, TimeNs stamp_ns, TimeNs by_ns);
@@ -105,7 +108,9 @@ class Session {
   std::unique_ptr<Estimator> own_estimator_;
   std::vector<SessionEvent> events_;
   EstimatorLoop loop_;
-  std::map<TimeNs, TrackFrame> frames_;  ///< waiting, by camera stamp
+  CameraClock camera_clock_;
+  TimeNs camera_jump_ns_ = 0;            ///< by which the camera's stamps are off
+  std::map<TimeNs, TrackFrame> frames_;  ///< waiting, by camera stamp less the jump
   TimeNs frame_offset_ns_;               ///< IMU time less camera time after the last frame
   TimeNs last_frame_ns_ = INT64_MIN;     ///< camera stamp of the last processed frame
   TimeNs processed_ns_ = INT64_MIN;      ///< IMU time up to which messages were processed

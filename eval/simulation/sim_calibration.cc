@@ -17,6 +17,14 @@ Result<RigCalibration> MiscalibratedRig(const SimulatorConfig& config, const Rig
   wrong.T_BC.rotation = rig.T_BC.rotation * so3::Exp(config.calibration_rotation_error_rad * axis);
   wrong.T_BC.translation += config.calibration_translation_error_m * direction;
   wrong.camera_time_offset_s += config.calibration_time_error_s * sign();
+  // A stream of its own: the errors of a camera are as without an antenna.
+  const Eigen::Vector3d antenna_error =
+      config.calibration_antenna_error_m *
+      RandomStream(seed, "calibration_error/antenna").Normal3().normalized();
+  wrong.gnss.p_BA += antenna_error;
+  for (FixSensor& sensor : wrong.fixes) {
+    sensor.p_BA += antenna_error;
+  }
   Eigen::Vector4d intrinsics = rig.camera.intrinsics();
   for (int i = 0; i < 4; ++i) {
     intrinsics[i] +=

@@ -83,6 +83,15 @@ void Freeze(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* f
   }
 }
 
+void Drop(const std::function<bool(TimeNs)>& fails, double rate, std::uint64_t seed,
+          const std::string& camera, std::vector<TrackFrame>* frames) {
+  RandomStream random(seed, "fault/frame_drops" + camera);
+  frames->erase(
+      std::remove_if(frames->begin(), frames->end(),
+                     [&](const TrackFrame& frame) { return fails(frame.stamp_ns) && random.Chance(rate); }),
+      frames->end());
+}
+
 void Silence(const std::function<bool(TimeNs)>& fails, std::vector<ImuSample>* imu) {
   imu->erase(std::remove_if(imu->begin(), imu->end(),
                             [&](const ImuSample& sample) { return fails(sample.stamp_ns); }),
@@ -111,9 +120,9 @@ void AddSpike(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, bool
 }
 
 /// Of the tracks of one camera; `camera` names its stream, empty for the first one.
-void ApplyToTracks(SimFaultKind fault, std::uint64_t seed, const std::string& camera,
+void ApplyToTracks(const SimulatorConfig& config, std::uint64_t seed, const std::string& camera,
                    const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
-  switch (fault) {
+  switch (config.fault) {
     case SimFaultKind::kBlackout:
     case SimFaultKind::kBlackoutAndImu:
       BlackOut(fails, frames);
@@ -123,6 +132,9 @@ void ApplyToTracks(SimFaultKind fault, std::uint64_t seed, const std::string& ca
       break;
     case SimFaultKind::kFrozen:
       Freeze(fails, frames);
+      break;
+    case SimFaultKind::kFrameDrops:
+      Drop(fails, config.fault_drop_rate, seed, camera, frames);
       break;
     default:
       break;
@@ -200,16 +212,34 @@ Eigen::Vector2d FaultSource::AnyPixel(int landmark, int frame, int width_px, int
   return {u, v};
 }
 
+SimPull::SimPull(const SimulatorConfig& config, std::uint64_t seed)
+    : start_s_(config.fault_start_s), duration_s_(config.fault_duration_s) {
+  pulls_ = config.fault == SimFaultKind::kGnssRamp || config.fault == SimFaultKind::kGnssRampNoRates;
+  moves_rates_ = config.fault == SimFaultKind::kGnssRamp;
+  const double heading = RandomStream(seed, "fault/gnss").Uniform(0, 2 * std::numbers::pi);
+  velocity_W_mps_ = config.fault_ramp_mps * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0);
+}
+
+Eigen::Vector3d SimPull::At(double time_s) const {
+  return pulls_ ? Eigen::Vector3d(std::clamp(time_s - start_s_, 0.0, duration_s_) * velocity_W_mps_)
+                : Eigen::Vector3d::Zero();
+}
+
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
   const TimeNs begin_ns = start_ns + SecondsToNs(config.fault_start_s);
   const TimeNs end_ns = begin_ns + SecondsToNs(config.fault_duration_s);
   const auto fails = [=](TimeNs stamp_ns) { return stamp_ns >= begin_ns && stamp_ns < end_ns; };
-  ApplyToTracks(config.fault, seed, "", fails, &dataset->tracks);
+  ApplyToTracks(config, seed, "", fails, &dataset->tracks);
   for (std::size_t i = 0; i < dataset->extra_cameras.size(); ++i) {
-    ApplyToTracks(config.fault, seed, "/cam" + std::to_string(i + 1), fails,
-                  &dataset->extra_cameras[i].frames);
+    ApplyToTracks(config, seed, "/cam" + std::to_string(i + 1), fails, &dataset->extra_cameras[i].frames);
   }
   ApplyToImu(config.fault, seed, fails, &dataset->imu);
+  if (config.fault == SimFaultKind::kCameraClock) {
+    const TimeNs jump_ns = SecondsToNs(config.fault_clock_jump_s);
+    for (TrackFrame& frame : dataset->tracks) {
+      frame.stamp_ns += frame.stamp_ns >= begin_ns ? jump_ns : 0;
+    }
+  }
 }
 
 }  // namespace alidade

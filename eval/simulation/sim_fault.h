@@ -49,12 +49,34 @@ class FaultSource {
   std::string camera_;
 };
 
+/// How far the position that GNSS and position fixes tell is pulled off the truth, as by a spoofer: at
+/// fault_ramp_mps in a horizontal direction that the seed draws, from fault_start_s on for fault_duration_s,
+/// and from then on it stays.
+class SimPull {
+ public:
+  SimPull(const SimulatorConfig& config, std::uint64_t seed);
+
+  /// [m], in the world frame; `time_s` of the sequence.
+  [[nodiscard]] Eigen::Vector3d At(double time_s) const;
+  /// Whether range rates are those of the pulled antenna.
+  [[nodiscard]] bool moves_rates() const { return moves_rates_; }
+
+ private:
+  double start_s_;
+  double duration_s_;
+  bool pulls_;
+  bool moves_rates_;
+  Eigen::Vector3d velocity_W_mps_;
+};
+
 /// Applies the fault SimulatorConfig::fault, over [fault_start_s, fault_start_s + fault_duration_s) from
 /// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. imu: rates and
 /// specific forces are uniform in +-3 rad/s and +-30 m/s^2. tracks: a frame's ids are shuffled, anew in every
 /// frame. frozen: frames show what the first one of the fault showed. imu_gap: no samples. gyro_spike,
 /// accel_spike: 30 rad/s or 490 m/s^2 (50 g) in a random direction are added to one sample, drawn from those
-/// of the fault.
+/// of the fault. frame_drops: each frame is missing with probability fault_drop_rate. camera_clock: stamps of
+/// the first camera's frames have fault_clock_jump_s more from the start of the fault on. The faults of GNSS
+/// are a matter of SimPull.
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset);
 
 }  // namespace alidade

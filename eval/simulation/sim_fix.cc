@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "eval/simulation/sim_fault.h"
 
 namespace alidade {
 
@@ -15,6 +16,7 @@ void AddSimulatedFixes(const SimulatorConfig& config, const ContinuousTrajectory
   if (fix_config.rate_hz <= 0) {
     return;
   }
+  const SimPull pull(config, seed);
   RandomStream noise(seed, "fix.noise");
   RandomStream wrong(seed, "fix.wrong");
   FixSensor sensor{fix_config.lever_arm_m, fix_config.time_offset_s, std::nullopt};
@@ -45,7 +47,7 @@ void AddSimulatedFixes(const SimulatorConfig& config, const ContinuousTrajectory
     if (is_out) {
       continue;
     }
-    Vector3d p_WA = nav.p_WB + nav.R_WB * sensor.p_BA + error_W;
+    Vector3d p_WA = nav.p_WB + nav.R_WB * sensor.p_BA + error_W + pull.At(time_s);
     if (is_wrong) {
       p_WA += size_m * Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0);
     }

@@ -9,6 +9,7 @@
 #include "core/numbers.h"
 #include "core/random.h"
 #include "eval/simulation/sim_constellation.h"
+#include "eval/simulation/sim_fault.h"
 #include "eval/simulation/sim_imu.h"
 #include "eval/simulation/sim_signal_path.h"
 #include "gnss/base/constants.h"
@@ -43,8 +44,9 @@ std::pair<SignalCode, SignalCode> SignalsOf(GnssSystem system) {
 class Receiver {
  public:
   Receiver(const SimGnssConfig& config, const ContinuousTrajectory& trajectory, TimeNs start_ns,
-           std::uint64_t seed, std::shared_ptr<const SatelliteCatalog> catalog)
+           const SimPull& pull, std::uint64_t seed, std::shared_ptr<const SatelliteCatalog> catalog)
       : config_(config),
+        pull_(pull),
         trajectory_(trajectory),
         start_gpst_ns_(start_ns - SecondsToNs(config.time_offset_s)),
         catalog_(std::move(catalog)),
@@ -103,9 +105,10 @@ class Receiver {
     double range_m = 0;  ///< with both clocks and the satellite's delays, noise-free
   };
 
-  [[nodiscard]] Vector3d AntennaAt(double time_s) const {
+  /// Where the antenna seems to be.
+  [[nodiscard]] Vector3d AntennaAt(double time_s, const Vector3d& pull_W) const {
     const NavState nav = trajectory_.At(time_s).nav;
-    return enu_.ToEcef(nav.p_WB + nav.R_WB * config_.lever_arm_m);
+    return enu_.ToEcef(nav.p_WB + nav.R_WB * config_.lever_arm_m + pull_W);
   }
 
   [[nodiscard]] std::optional<int> Channel(SatelliteId id) const {
@@ -207,7 +210,8 @@ class Receiver {
     SimSignalPath& path = paths_.at(id);
     const double code_noise = path.Noise();
     const double rate_noise = path.Noise();
-    const std::optional<Sight> now = Look(id, signal, tag_ns, clock_.bias_m(), AntennaAt(time_s));
+    const Vector3d pull_W = pull_.At(time_s);
+    const std::optional<Sight> now = Look(id, signal, tag_ns, clock_.bias_m(), AntennaAt(time_s, pull_W));
     if (!now || now->direction.elevation_rad < config_.elevation_mask_deg * kRadiansPerDegree) {
       return std::nullopt;
     }
@@ -215,10 +219,13 @@ class Receiver {
     constexpr TimeNs kStepNs = 5'000'000;
     const double step_s = SecondsBetween(0, kStepNs);
     const double shift_m = clock_.drift_mps() * step_s;
-    const auto late =
-        Look(id, signal, tag_ns + kStepNs, clock_.bias_m() + shift_m, AntennaAt(time_s + step_s));
-    const auto early =
-        Look(id, signal, tag_ns - kStepNs, clock_.bias_m() - shift_m, AntennaAt(time_s - step_s));
+    const auto look_after = [&](int steps) {
+      const double then_s = time_s + steps * step_s;
+      return Look(id, signal, tag_ns + steps * kStepNs, clock_.bias_m() + steps * shift_m,
+                  AntennaAt(then_s, pull_.moves_rates() ? pull_.At(then_s) : pull_W));
+    };
+    const auto late = look_after(1);
+    const auto early = look_after(-1);
     if (!late || !early) {
       return std::nullopt;
     }
@@ -238,6 +245,7 @@ class Receiver {
   }
 
   const SimGnssConfig& config_;
+  SimPull pull_;
   const ContinuousTrajectory& trajectory_;
   TimeNs start_gpst_ns_;
   std::shared_ptr<const SatelliteCatalog> catalog_;
@@ -268,7 +276,7 @@ Status AddSimulatedGnss(const SimulatorConfig& config, const ContinuousTrajector
     navigation = *std::move(read);
   }
   const auto catalog = std::make_shared<const SatelliteCatalog>(std::move(navigation));
-  Receiver receiver(gnss, trajectory, start_ns, seed, catalog);
+  Receiver receiver(gnss, trajectory, start_ns, SimPull(config, seed), seed, catalog);
   auto log = std::make_shared<GnssLog>();
   log->epochs = receiver.Run();
   if (std::all_of(log->epochs.begin(), log->epochs.end(),
@@ -283,7 +291,7 @@ Status AddSimulatedGnss(const SimulatorConfig& config, const ContinuousTrajector
   log->catalog = catalog;
   log->approximate_position_E = receiver.enu().origin_E;
   dataset->gnss = std::move(log);
-  dataset->rig.gnss = {gnss.lever_arm_m, gnss.time_offset_s, receiver.enu().origin_E};
+  dataset->rig.gnss = {gnss.lever_arm_m, gnss.time_offset_s, receiver.enu().origin_E, true};
   return Status::Ok();
 }
 

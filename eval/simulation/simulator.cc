@@ -34,7 +34,8 @@ Result<Simulation> MakeMotion(const SimulatorConfig& config, unsigned seed) {
 [[nodiscard]] bool IsMiscalibrated(const SimulatorConfig& config) {
   return config.calibration_rotation_error_rad != 0 || config.calibration_translation_error_m != 0 ||
          config.calibration_time_error_s != 0 || config.calibration_line_delay_error_s != 0 ||
-         config.calibration_focal_error_px != 0 || config.calibration_center_error_px != 0;
+         config.calibration_focal_error_px != 0 || config.calibration_center_error_px != 0 ||
+         config.calibration_antenna_error_m != 0;
 }
 
 /// What really happens, well calibrated and without failures.

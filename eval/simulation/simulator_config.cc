@@ -129,23 +129,7 @@ void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
                &config->outlier_speed_mps, 0, 100);
 }
 
-void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
-  visitor.Enumeration(
-      {"fault", "-",
-       "simulated failure of camera, IMU or track ids, to test divergence and re-initialisation"},
-      &config->fault,
-      {{"none", SimFaultKind::kNone},
-       {"blackout", SimFaultKind::kBlackout},
-       {"imu", SimFaultKind::kImu},
-       {"tracks", SimFaultKind::kTracks},
-       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu},
-       {"frozen", SimFaultKind::kFrozen},
-       {"imu_gap", SimFaultKind::kImuGap},
-       {"gyro_spike", SimFaultKind::kGyroSpike},
-       {"accel_spike", SimFaultKind::kAccelSpike}});
-  visitor.Real({"fault_start_s", "s", "start of the fault after the first IMU sample"},
-               &config->fault_start_s, 0, 1e5);
-  visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);
+void DescribeMiscalibration(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"calibration_rotation_error_rad", "rad",
                 "rotation error of the given T_BC about a random axis; for online calibration"},
                &config->calibration_rotation_error_rad, 0, 1);
@@ -162,6 +146,43 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"calibration_center_error_px", "px",
                 "error of each coordinate of the given principal point, random sign"},
                &config->calibration_center_error_px, 0, 1000);
+  visitor.Real({"calibration_antenna_error_m", "m",
+                "error of the given lever arm of the GNSS antenna and of the position sensor, in a random "
+                "direction"},
+               &config->calibration_antenna_error_m, 0, 100);
+}
+
+void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
+  visitor.Enumeration(
+      {"fault", "-",
+       "simulated failure of camera, IMU, track ids or GNSS, to test what is told and what is recovered"},
+      &config->fault,
+      {{"none", SimFaultKind::kNone},
+       {"blackout", SimFaultKind::kBlackout},
+       {"imu", SimFaultKind::kImu},
+       {"tracks", SimFaultKind::kTracks},
+       {"blackout_and_imu", SimFaultKind::kBlackoutAndImu},
+       {"frozen", SimFaultKind::kFrozen},
+       {"imu_gap", SimFaultKind::kImuGap},
+       {"gyro_spike", SimFaultKind::kGyroSpike},
+       {"accel_spike", SimFaultKind::kAccelSpike},
+       {"frame_drops", SimFaultKind::kFrameDrops},
+       {"camera_clock", SimFaultKind::kCameraClock},
+       {"gnss_ramp", SimFaultKind::kGnssRamp},
+       {"gnss_ramp_no_rates", SimFaultKind::kGnssRampNoRates}});
+  visitor.Real({"fault_start_s", "s", "start of the fault after the first IMU sample"},
+               &config->fault_start_s, 0, 1e5);
+  visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);
+  visitor.Real({"fault_drop_rate", "-", "share of the frames that frame_drops takes away, one by one"},
+               &config->fault_drop_rate, 0, 1);
+  visitor.Real(
+      {"fault_clock_jump_s", "s", "camera_clock: added to the stamps from the start of the fault on"},
+      &config->fault_clock_jump_s, -100, 100);
+  visitor.Real({"fault_ramp_mps", "m/s",
+                "gnss_ramp and gnss_ramp_no_rates: speed of the pull, in a random horizontal direction; "
+                "afterwards it stays"},
+               &config->fault_ramp_mps, 0, 100);
+  DescribeMiscalibration(config, visitor);
 }
 
 void DescribeLandmarks(SimulatorConfig* config, ConfigVisitor& visitor) {

@@ -35,10 +35,14 @@ enum class SimFaultKind {
   kImu,       ///< the IMU tells noise
   kTracks,    ///< the tracks of a frame exchange their ids at random
   kBlackoutAndImu,
-  kFrozen,      ///< every frame repeats the first one of the fault
-  kImuGap,      ///< the IMU is silent
-  kGyroSpike,   ///< one sample
-  kAccelSpike,  ///< one sample
+  kFrozen,           ///< every frame repeats the first one of the fault
+  kImuGap,           ///< the IMU is silent
+  kGyroSpike,        ///< one sample
+  kAccelSpike,       ///< one sample
+  kFrameDrops,       ///< some frames are missing
+  kCameraClock,      ///< the stamps of all later frames are off
+  kGnssRamp,         ///< GNSS and position fixes are pulled off ever farther, range rates with them
+  kGnssRampNoRates,  ///< the same with true range rates
 };
 /// Whether single observations or whole tracks are wrong. Drift, moving and mixed outliers always affect
 /// whole tracks.
@@ -91,6 +95,9 @@ struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   SimFaultKind fault = SimFaultKind::kNone;
   double fault_start_s = 20;  ///< after the first IMU sample
   double fault_duration_s = 3;
+  double fault_drop_rate = 0.1;   ///< of frame_drops
+  double fault_clock_jump_s = 1;  ///< of camera_clock
+  double fault_ramp_mps = 0.5;    ///< of gnss_ramp and gnss_ramp_no_rates
 
   /// By how much the calibration that the estimators are given is wrong (eval/simulation/sim_calibration.h).
   double calibration_rotation_error_rad = 0;
@@ -99,6 +106,7 @@ struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   double calibration_line_delay_error_s = 0;
   double calibration_focal_error_px = 0;
   double calibration_center_error_px = 0;
+  double calibration_antenna_error_m = 0;
 
   SimLandmarkLayout landmark_layout = SimLandmarkLayout::kShell;
   double landmark_min_distance_m = 2;                        ///< of every landmark to the path

@@ -30,6 +30,8 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
   const Eigen::Vector3d antenna_E = mount.Position(point.nav, &position_jacobian);
   const Eigen::Vector3d velocity_E =
       mount.Velocity(point.nav, point.bias, point.gyro_radps, &velocity_jacobian);
+  const Eigen::Matrix3d position_by_arm = mount.PositionByLeverArm(point.nav);
+  const Eigen::Matrix3d velocity_by_arm = mount.VelocityByLeverArm(point.nav, point.bias, point.gyro_radps);
   const double mask = config.corrections.elevation_mask_deg * M_PI / 180;
   std::vector<GnssRow> rows;
   std::vector<GnssRow> rates;
@@ -51,6 +53,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     if (config.pseudorange) {
       row.deviation = satellite.deviation_m;
       row.jacobian.noalias() = line * position_jacobian;
+      row.lever_arm.noalias() = line * position_by_arm;
       rows.push_back(row);
     }
     if (config.doppler && m.range_rate_mps) {
@@ -60,6 +63,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
       RangeRateModel::Of(m).Evaluate(antenna_E, velocity_E, point.clock[ClockState::kDrift], &row.residual,
                                      &line, &by_velocity);
       row.jacobian.noalias() = line * position_jacobian + by_velocity * velocity_jacobian;
+      row.lever_arm.noalias() = line * position_by_arm + by_velocity * velocity_by_arm;
       satellite.range_rate_residual_mps = row.residual;
       rates.push_back(row);
     }

@@ -18,6 +18,7 @@ struct GnssRow {
   double residual = 0;  ///< predicted - measured [m] or [m/s]
   double deviation = 1;
   GnssJacobian jacobian;  ///< over (phi, dp, dv, dbg, dba)
+  RowVector3d lever_arm;  ///< d residual / d p_BA
 
   /// d residual / d clock state.
   [[nodiscard]] Eigen::Matrix<double, 1, 6> ClockJacobian() const;

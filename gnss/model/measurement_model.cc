@@ -60,6 +60,15 @@ void RangeRateModel::Evaluate(const Vector3d& antenna_E, const Vector3d& velocit
   }
 }
 
+Eigen::Matrix3d AntennaMount::PositionByLeverArm(const NavState& state) const {
+  return enu.R_EN * state.R_WB;
+}
+
+Eigen::Matrix3d AntennaMount::VelocityByLeverArm(const NavState& state, const ImuBias& bias,
+                                                 const Vector3d& gyro_radps) const {
+  return enu.R_EN * state.R_WB * Skew(Vector3d(gyro_radps - bias.gyro));
+}
+
 Vector3d AntennaMount::Position(const NavState& state, Eigen::Matrix<double, 3, 15>* jacobian) const {
   if (jacobian != nullptr) {
     jacobian->setZero();

@@ -55,6 +55,10 @@ struct AntennaMount {
   EnuFrame enu;
   Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();
 
+  /// d Position / d p_BA and d Velocity / d p_BA, 3x3 each.
+  [[nodiscard]] Eigen::Matrix3d PositionByLeverArm(const NavState& state) const;
+  [[nodiscard]] Eigen::Matrix3d VelocityByLeverArm(const NavState& state, const ImuBias& bias,
+                                                   const Eigen::Vector3d& gyro_radps) const;
   /// Antenna position in ECEF [m]. `jacobian`: 3x15 over (phi, dp, dv, dbg, dba), may be null.
   [[nodiscard]] Eigen::Vector3d Position(const NavState& state, Eigen::Matrix<double, 3, 15>* jacobian) const;
   /// Antenna velocity in ECEF axes [m/s]; gyro_radps is the measured rate at the stamp.

@@ -32,6 +32,7 @@ FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const Frame
   FrameEpochRows result;
   result.frame.setZero(count, 15);
   result.clock.setZero(count, 6);
+  result.lever_arm.setZero(count, 3);
   result.residual.setZero(count);
   for (Index i = 0; i < count; ++i) {
     const GnssRow& row = rows[static_cast<std::size_t>(i)];
@@ -46,6 +47,7 @@ FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const Frame
     result.frame.row(i).noalias() = residual.slope / row.deviation * (row.jacobian * carry);
     result.clock.row(i) = residual.slope / row.deviation * row.ClockJacobian();
     result.clock(i, ClockState::kDrift) += dt_s * result.clock(i, ClockState::kClock);
+    result.lever_arm.row(i) = residual.slope / row.deviation * row.lever_arm;
   }
   return result;
 }
@@ -71,6 +73,9 @@ bool GnssEpochFactor::Evaluate(const double* const* parameters, double* residual
   }
   if (tangent_jacobians[2] != nullptr) {
     Eigen::Map<RowMatrixX6>(tangent_jacobians[2], rows_, 6) = rows.clock;
+  }
+  if (sees_calibration() && tangent_jacobians[3] != nullptr) {
+    PutLeverArm(*layout_, rows.lever_arm, tangent_jacobians[3]);
   }
   return true;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "core/calibration.h"
 #include "gnss/model/epoch_rows.h"
 #include "gnss/model/receiver_clock.h"
 #include "smoother/manifold/lifted_cost.h"
@@ -23,6 +24,7 @@ struct GnssFactorContext {
 struct FrameEpochRows {
   Eigen::Matrix<double, Eigen::Dynamic, 15> frame;
   Eigen::Matrix<double, Eigen::Dynamic, 6> clock;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> lever_arm;
   Eigen::VectorXd residual;
 };
 /// `robust`: the kernel acts, as a residual whose square is the kernel's cost.
@@ -31,26 +33,35 @@ struct FrameEpochRows {
                                                  const Vector6d& clock, bool robust,
                                                  GnssResiduals* residuals);
 
-/// An epoch as a factor over blocks nav, bias and clock of its frame.
+/// An epoch as a factor over blocks nav, bias and clock of its frame, and the calibration where that has the
+/// antenna's lever arm.
 class GnssEpochFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
 
-  /// Both must outlive the factor; `rows` is what LinearizeFrameEpoch gives for them.
-  GnssEpochFactor(const GnssFactorContext* context, const FrameEpoch* epoch, double dt_s, int rows)
-      : context_(context), epoch_(epoch), dt_s_(dt_s), rows_(rows) {}
+  /// All must outlive the factor; `rows` is what LinearizeFrameEpoch gives for them. `layout`: of a watched
+  /// calibration, else null.
+  GnssEpochFactor(const GnssFactorContext* context, const FrameEpoch* epoch, double dt_s, int rows,
+                  const CalibrationLayout* layout = nullptr)
+      : context_(context), epoch_(epoch), dt_s_(dt_s), rows_(rows), layout_(layout) {}
 
   [[nodiscard]] int rows() const { return rows_; }
-  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const {
+    return std::span(kBlocks).first(sees_calibration() ? 4 : 3);
+  }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:
-  static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
-                                                       BlockKind::kClock};
+  static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
+                                                       BlockKind::kClock, BlockKind::kCalibration};
+  [[nodiscard]] bool sees_calibration() const {
+    return layout_ != nullptr && layout_->antenna() == WatchedAntenna::kGnss;
+  }
   const GnssFactorContext* context_;
   const FrameEpoch* epoch_;
   double dt_s_;
   int rows_;
+  const CalibrationLayout* layout_;
 };
 
 /// The clock's process between two frames, whitened: residual = root (c_j - phi c_i).

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <type_traits>
 #include <variant>
 
 #include "core/imu_propagation.h"
@@ -10,19 +11,22 @@
 
 namespace alidade {
 
-/// A measurement between frames as a factor over blocks nav and bias of its frame. `Kind`: the alternative of
-/// WhitenedMeasurement that it is.
+/// A measurement between frames as a factor over blocks nav and bias of its frame, and the calibration where
+/// that has its lever arm. `Kind`: the alternative of WhitenedMeasurement that it is.
 template <typename Kind>
 class MeasurementFactor {
  public:
   static constexpr int kRows = Kind::kRows;
 
-  /// `measurement` must outlive the factor.
-  MeasurementFactor(const FrameMeasurement* measurement, const Eigen::Vector3d& gravity_W)
-      : measurement_(measurement), gravity_W_(gravity_W) {}
+  /// All must outlive the factor. `layout`: of a watched calibration, else null.
+  MeasurementFactor(const FrameMeasurement* measurement, const Eigen::Vector3d& gravity_W,
+                    const CalibrationLayout* layout = nullptr)
+      : measurement_(measurement), gravity_W_(gravity_W), layout_(layout) {}
 
   [[nodiscard]] int rows() const { return kRows; }
-  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
+  [[nodiscard]] std::span<const BlockKind> blocks() const {
+    return std::span(kBlocks).first(sees_calibration() ? 3 : 2);
+  }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const {
     NavState nav = UnpackNavState(parameters[0]);
     Matrix15d carry = Matrix15d::Identity();
@@ -42,13 +46,25 @@ class MeasurementFactor {
       Eigen::Map<Eigen::Matrix<double, kRows, 6, Eigen::RowMajor>>{tangent_jacobians[1]} =
           jacobian.template rightCols<6>();
     }
+    if constexpr (kHasLeverArm) {
+      if (sees_calibration() && tangent_jacobians != nullptr && tangent_jacobians[2] != nullptr) {
+        PutLeverArm(*layout_, std::get<Kind>(measurement_->measurement).LeverArmJacobian(nav),
+                    tangent_jacobians[2]);
+      }
+    }
     return true;
   }
 
  private:
-  static constexpr std::array<BlockKind, 2> kBlocks = {BlockKind::kNavState, BlockKind::kBias};
+  static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
+                                                       BlockKind::kCalibration};
+  static constexpr bool kHasLeverArm = std::is_same_v<Kind, FixMeasurement>;
+  [[nodiscard]] bool sees_calibration() const {
+    return kHasLeverArm && layout_ != nullptr && layout_->antenna() == WatchedAntenna::kFix;
+  }
   const FrameMeasurement* measurement_;
   Eigen::Vector3d gravity_W_;
+  const CalibrationLayout* layout_;
 };
 
 }  // namespace alidade

@@ -40,6 +40,15 @@ enum class BlockKind {
   return kind == BlockKind::kNavState ? kNavTangentSize : AmbientSize(kind);
 }
 
+/// Writes rows over a lever arm, rows x 3, into the row-major tangent Jacobian of a calibration's block.
+inline void PutLeverArm(const CalibrationLayout& layout, const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                        double* tangent_jacobian) {
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, CalibrationLayout::kMaxSize, Eigen::RowMajor>;
+  Eigen::Map<Jacobian> jacobian(tangent_jacobian, rows.rows(), CalibrationLayout::kMaxSize);
+  jacobian.setZero();
+  jacobian.middleCols<3>(layout.lever_arm()) = rows;
+}
+
 /// Makes a Ceres cost function of a factor. A Factor has
 ///
 ///   static constexpr int kRows;                      rows, or Eigen::Dynamic

@@ -35,6 +35,7 @@ class GnssWindow {
   /// time.
   void Gate(Window* window, FrameStatistics* statistics);
 
+  [[nodiscard]] double gate_threshold() const { return gate_threshold_; }
   [[nodiscard]] const GnssResiduals& residuals() const { return residuals_; }
   [[nodiscard]] bool jumped() const { return jumped_; }
 

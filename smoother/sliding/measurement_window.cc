@@ -25,7 +25,7 @@ double MeasurementWindow::Judge(const Kind& measurement, Sensor sensor, const Na
   return weight;
 }
 
-void MeasurementWindow::Attach(const WhitenedMeasurement& measurement, const NavEstimate& predicted,
+bool MeasurementWindow::Attach(const WhitenedMeasurement& measurement, const NavEstimate& predicted,
                                std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame,
                                FrameStatistics* statistics) {
   const Sensor sensor = SensorOf(measurement);
@@ -33,13 +33,14 @@ void MeasurementWindow::Attach(const WhitenedMeasurement& measurement, const Nav
       [&](const auto& kind) { return Judge(kind, sensor, predicted, &statistics->sensors[sensor]); },
       measurement);
   if (!(weight > 0)) {
-    return;
+    return false;
   }
   FrameMeasurement attached;
   attached.measurement = measurement;
   attached.ScaleSqrtInformation(std::sqrt(weight));
   attached.Set(std::move(imu), frame->imu_bias(), noise);
   frame->measurements.push_back(std::move(attached));
+  return true;
 }
 
 }  // namespace alidade

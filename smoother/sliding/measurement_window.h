@@ -18,8 +18,8 @@ class MeasurementWindow {
   void Reset() { gates_.Reset(); }
 
   /// Hangs the measurement on the frame, unless the gate refuses it; `imu` leads there from the frame,
-  /// `predicted` is the estimate at its time.
-  void Attach(const WhitenedMeasurement& measurement, const NavEstimate& predicted,
+  /// `predicted` is the estimate at its time. False: refused.
+  bool Attach(const WhitenedMeasurement& measurement, const NavEstimate& predicted,
               std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame,
               FrameStatistics* statistics);
 

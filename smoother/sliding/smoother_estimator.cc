@@ -34,7 +34,8 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       rest_(config.vision, config.init, rig_.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
-      given_(InitialCalibration(config.calibration, GivenCamera(rig_, config.vision))),
+      given_(InitialCalibration(config.calibration, GivenCamera(rig_, config.vision),
+                                AntennaToWatch(config.gnss.enabled, config.fix.enabled, rig))),
       calibration_{given_.layout, given_.mean},
       fixed_{{}, given_.mean} {}
 
@@ -69,6 +70,8 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
   imu_.DropBefore(initial.stamp_ns);
   rest_.Clear();
   latest_ = initial;
+  absolute_.reset();
+  newest_update_.Begin(latest_, latest_clock_, Eigen::Matrix<double, 6, 15>::Zero());
   statistics_ = {};
   initialized_ = true;
   return Status::Ok();
@@ -217,7 +220,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   const LinearPrior conditional = watched ? WithoutCalibration(prior_) : LinearPrior();
   WindowTerms terms;
   SlamPriorTerm* slam = SetPriorTerm(watched ? conditional : prior_, solved, &terms);
-  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), window_.size(), &terms);
+  if (const Status status = AddSensorTerms(Sensors(solved), window_.frames(), window_.size(), &terms);
       !status.ok()) {
     return Lost(status.message());
   }
@@ -239,6 +242,11 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   }
   if (watched) {
     slam = SetPriorTerm(prior_, calibration_, &terms);
+    if (calibration_.layout.lever_arm() >= 0) {  // of which the sensors' terms have rows
+      terms.resize(1);
+      ALIDADE_RETURN_IF_ERROR(
+          AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), &terms));
+    }
   }
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
@@ -281,6 +289,9 @@ Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {
   }
   latest_.covariance = known.covariance;
   latest_clock_.covariance = known.clock_covariance;
+  if (config_.calibration.watch) {
+    newest_update_.Begin(latest_, latest_clock_, known.clock_state_covariance);
+  }
   calibration_deviations_ = known.calibration_deviations;
   if (given_.watched) {
     calibration_error_ = std::move(known.calibration_error);

@@ -12,6 +12,7 @@
 #include "core/robust.h"
 #include "smoother/sliding/gnss_window.h"
 #include "smoother/sliding/measurement_window.h"
+#include "smoother/sliding/newest_update.h"
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/window_system.h"
@@ -50,6 +51,9 @@ class SmootherEstimator final : public Estimator {
   Status AddMeasurement(const Measurement& measurement) override;
   [[nodiscard]] std::optional<ClockState> LatestClock() const override;
   [[nodiscard]] const GnssResiduals* last_gnss() const override;
+  [[nodiscard]] const AbsoluteCorrection* last_correction() const override {
+    return absolute_ ? &*absolute_ : nullptr;
+  }
   [[nodiscard]] NavEstimate Latest() const override { return latest_; }
   [[nodiscard]] bool initialized() const override { return initialized_; }
   [[nodiscard]] const FrameStatistics& last_statistics() const override { return statistics_; }
@@ -83,7 +87,9 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool DepthIsKnown(const std::vector<FrameGeometry>& geometry, const WindowTrack& track) const;
   [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
                                                       size_t free);
-  [[nodiscard]] SensorContext Sensors() const { return {gravity_W_, gnss_.context()}; }
+  [[nodiscard]] SensorContext Sensors(const WindowCalibration& calibration) const {
+    return {gravity_W_, gnss_.context(), &calibration};
+  }
   /// The prior, first of a window's terms. Returns it where it has landmarks, else null.
   SlamPriorTerm* SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
                               WindowTerms* terms) const;
@@ -102,6 +108,8 @@ class SmootherEstimator final : public Estimator {
   /// True when a SLAM feature was refused.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
   Status UpdateLatest(const WindowTerms& terms);
+  /// Brings newest_update_ to the newest frame, which was made for a measurement.
+  Status CarryNewestUpdate();
   [[nodiscard]] Status Lost(const std::string& message);
 
   // Two views already constrain the poses (2N-3 = 1 row), for explicit and for pose-only landmarks alike.
@@ -130,8 +138,10 @@ class SmootherEstimator final : public Estimator {
   Eigen::MatrixXd calibration_state_covariance_;  ///< likewise
   NavEstimate latest_;
   ClockState latest_clock_;
-  WindowInformation window_information_;  ///< at the last solve
-  bool has_frames_ = false;               ///< a camera has been heard of
+  NewestUpdate newest_update_;                  ///< where measurements are watched
+  std::optional<AbsoluteCorrection> absolute_;  ///< the last one
+  WindowInformation window_information_;        ///< at the last solve
+  bool has_frames_ = false;                     ///< a camera has been heard of
   FrameStatistics statistics_;
   std::vector<ImuSample> interval_;
   bool initialized_ = false;

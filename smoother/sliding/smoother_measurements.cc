@@ -20,6 +20,7 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   if (alignment.clock) {
     gnss_.Align(alignment, &window_.newest(), &prior_);
     latest_clock_ = FreshClock(config_.gnss, window_.newest().clock_state());
+    newest_update_.Begin(latest_, latest_clock_, Eigen::Matrix<double, 6, 15>::Zero());
   }
   if (given_.watched) {
     AddCalibrationPrior(given_,
@@ -70,8 +71,16 @@ Status SmootherEstimator::AddGnss(const GnssEpoch& epoch) {
   const Stopwatch stopwatch;
   Result<Hook> hook = ReachMeasurement("GNSS epoch", epoch.stamp_ns, config_.gnss.max_interpolation_s);
   ALIDADE_RETURN_IF_ERROR(hook.status());
-  gnss_.Attach(epoch, std::move(hook->imu), noise_, &window_.newest());
+  const bool attached = gnss_.Attach(epoch, std::move(hook->imu), noise_, &window_.newest());
   statistics_.clock_jump = gnss_.jumped();
+  if (config_.calibration.watch && attached) {
+    if (hook->own_state) {
+      ALIDADE_RETURN_IF_ERROR(CarryNewestUpdate());
+    }
+    const WindowFrame& newest = window_.newest();
+    absolute_ = newest_update_.Add(*gnss_.context(), gnss_.gate_threshold(), newest.epochs.back(),
+                                   newest.epochs.back().SecondsAfter(newest.stamp_ns));
+  }
   ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
   statistics_.update_ms = stopwatch.ElapsedMs();
   return Status::Ok();
@@ -92,9 +101,35 @@ Status SmootherEstimator::AddMeasurement(const Measurement& measurement) {
       return Lost("smoother: " + status.message());
     }
   }
-  measurements_.Attach(*whitened, predicted, std::move(hook->imu), noise_, &window_.newest(), &statistics_);
+  const bool attached = measurements_.Attach(*whitened, predicted, std::move(hook->imu), noise_,
+                                             &window_.newest(), &statistics_);
+  if (config_.calibration.watch) {
+    absolute_ = AbsoluteCorrection{predicted.nav};  // what a refused one does
+    if (hook->own_state) {
+      ALIDADE_RETURN_IF_ERROR(CarryNewestUpdate());
+    }
+    if (attached) {
+      absolute_ = newest_update_.Add(window_.newest().measurements.back(), gravity_W_);
+    }
+  }
   ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
   statistics_.update_ms = stopwatch.ElapsedMs();
+  return Status::Ok();
+}
+
+Status SmootherEstimator::CarryNewestUpdate() {
+  NavEstimate later = latest_;
+  if (const Status status = PropagateEstimate(interval_, noise_, gravity_W_, &later); !status.ok()) {
+    return Lost("smoother: " + status.message());
+  }
+  ClockState clock = latest_clock_;
+  if (window_.newest().clock) {
+    const ClockTransition step =
+        PropagateClock(config_.gnss, SecondsBetween(latest_.stamp_ns, later.stamp_ns));
+    clock.mean = window_.newest().clock_state();
+    clock.covariance = step.phi * clock.covariance * step.phi.transpose() + step.q;
+  }
+  newest_update_.Carry(later, clock);
   return Status::Ok();
 }
 

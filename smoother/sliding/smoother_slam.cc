@@ -105,7 +105,8 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(leaving), calibration_, kernel_);
   const std::vector<const WindowTrack*> gone = vision->used();
   WindowTerms terms;
-  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), 2, &terms); !status.ok()) {
+  if (const Status status = AddSensorTerms(Sensors(calibration_), window_.frames(), 2, &terms);
+      !status.ok()) {
     return Lost(status.message());
   }
   terms.insert(terms.begin() + 1, std::move(vision));

@@ -19,27 +19,41 @@ Status AddImuTerm(const SensorContext& context, const WindowFrame& from, const W
   return Status::Ok();
 }
 
+const CalibrationLayout* LayoutOf(const SensorContext& context) {
+  return context.calibration == nullptr ? nullptr : &context.calibration->layout;
+}
+
 void AddMeasurementTerms(const SensorContext& context, const WindowFrame& frame, WindowTerms* terms) {
   for (const FrameMeasurement& attached : frame.measurements) {
     std::visit(
         [&](const auto& kind) {
           using Factor = MeasurementFactor<std::decay_t<decltype(kind)>>;
-          terms->push_back(
-              MakeTerm(Factor(&attached, context.gravity_W), {NavBlock(frame), BiasBlock(frame)}));
+          const Factor factor(&attached, context.gravity_W, LayoutOf(context));
+          std::vector<TermBlock> blocks = {NavBlock(frame), BiasBlock(frame)};
+          if (factor.blocks().size() > blocks.size()) {
+            blocks.push_back(CalibrationBlock(*context.calibration));
+          }
+          terms->push_back(MakeTerm(factor, std::move(blocks)));
         },
         attached.measurement);
   }
 }
 
-void AddEpochTerms(const GnssFactorContext& gnss, const WindowFrame& frame, WindowTerms* terms) {
+void AddEpochTerms(const SensorContext& context, const WindowFrame& frame, WindowTerms* terms) {
+  const GnssFactorContext& gnss = *context.gnss;
   GnssResiduals ignored;
   for (const FrameEpoch& epoch : frame.epochs) {
     const double dt_s = epoch.SecondsAfter(frame.stamp_ns);
     const FrameEpochRows rows = LinearizeFrameEpoch(gnss, epoch, dt_s, frame.nav_state(), frame.imu_bias(),
                                                     frame.clock_state(), true, &ignored);
     if (rows.residual.size() > 0) {
-      const GnssEpochFactor factor(&gnss, &epoch, dt_s, static_cast<int>(rows.residual.size()));
-      terms->push_back(MakeTerm(factor, {NavBlock(frame), BiasBlock(frame), ClockBlock(frame)}));
+      const GnssEpochFactor factor(&gnss, &epoch, dt_s, static_cast<int>(rows.residual.size()),
+                                   LayoutOf(context));
+      std::vector<TermBlock> blocks = {NavBlock(frame), BiasBlock(frame), ClockBlock(frame)};
+      if (factor.blocks().size() > blocks.size()) {
+        blocks.push_back(CalibrationBlock(*context.calibration));
+      }
+      terms->push_back(MakeTerm(factor, std::move(blocks)));
     }
   }
 }
@@ -67,7 +81,7 @@ Status AddSensorTerms(const SensorContext& context, const WindowFrames& frames, 
     AddMeasurementTerms(context, frame(i), terms);
   }
   for (int i = 0; context.gnss != nullptr && i < count; ++i) {
-    AddEpochTerms(*context.gnss, frame(i), terms);
+    AddEpochTerms(context, frame(i), terms);
     if (i + 1 < count) {
       AddClockTerm(*context.gnss, frame(i), frame(i + 1), terms);
     }

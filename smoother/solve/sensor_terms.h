@@ -8,7 +8,8 @@ namespace alidade {
 /// What the sensors' terms need besides the frames.
 struct SensorContext {
   Eigen::Vector3d gravity_W = Eigen::Vector3d::Zero();
-  const GnssFactorContext* gnss = nullptr;  ///< of an aligned window
+  const GnssFactorContext* gnss = nullptr;         ///< of an aligned window
+  const WindowCalibration* calibration = nullptr;  ///< of which terms may have rows
 };
 
 /// Appends what every sensor but the camera says about the first `count` frames: IMU between them, rest,

@@ -80,6 +80,7 @@ bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, Newe
   const ColumnMap::Range clock = columns.Clock(frames.back()->index);
   if (clock.size > 0) {
     newest->clock_covariance = covariance(clock);
+    newest->clock_state_covariance = root(clock) * root(state).transpose();
   }
   newest->window = {columns, elimination.factor()};
   newest->calibration_deviations = inverse.topRows(columns.Calibration().size).rowwise().norm();

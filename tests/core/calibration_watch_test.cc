@@ -141,6 +141,28 @@ TEST(CalibrationWatchTest, WithoutDataNothingIsDoubted) {
   EXPECT_EQ(doubt.pose_sigmas, 0);
 }
 
+TEST(CalibrationWatchTest, TheLeverArmOfAnAntennaThatIsInUseComesLast) {
+  RigCalibration rig;
+  EXPECT_EQ(AntennaToWatch(true, true, rig), WatchedAntenna::kNone);
+  rig.fixes.resize(1);
+  EXPECT_EQ(AntennaToWatch(true, true, rig), WatchedAntenna::kFix);
+  EXPECT_EQ(AntennaToWatch(true, false, rig), WatchedAntenna::kNone);
+  rig.gnss.is_present = true;
+  EXPECT_EQ(AntennaToWatch(true, true, rig), WatchedAntenna::kGnss);
+  CalibrationEstimate watched = InitialCalibration(Watching(), CameraCalibration(), WatchedAntenna::kGnss);
+  ASSERT_EQ(watched.layout.size(), 14);
+  EXPECT_EQ(watched.layout.lever_arm(), 11);
+  EXPECT_EQ(InitialCalibration({}, CameraCalibration(), WatchedAntenna::kGnss).layout.size(), 0);
+  // 10 sigma of the second axis, half a metre, with 1e4 of information.
+  const double precision = 1 / (watched.deviations[12] * watched.deviations[12]) + 400;
+  watched.deviations[12] = 1 / std::sqrt(precision);
+  watched.error[12] = 0.5 * 400 / precision;
+  const CalibrationDoubt doubt = FindCalibrationDoubt(watched, Matrix15d::Identity());
+  EXPECT_STREQ(doubt.parameter, "the lever arm of the GNSS antenna");
+  EXPECT_NEAR(doubt.sigmas, 10, 0.01);
+  EXPECT_NEAR(doubt.error, -0.5, 1e-3);
+}
+
 TEST(CalibrationWatchTest, WhatIsEstimatedIsNotWatched) {
   CalibrationConfig config = Watching();
   config.time_offset = true;

@@ -103,5 +103,20 @@ TEST(PositionFixTest, GIVEN_a_configuration_THEN_the_gate_is_its_quantile_of_thr
   EXPECT_DOUBLE_EQ(gate.Weigh(1.25 * threshold), 0.8);
 }
 
+TEST(PositionFixTest, GIVEN_a_lever_arm_THEN_its_rows_are_the_differences) {
+  const Matrix3d covariance = Vector3d(4, 1, 9).asDiagonal();
+  NavState state;
+  state.R_WB = so3::Exp(Vector3d(0.3, -0.8, 0.5));
+  FixMeasurement measurement =
+      *MakeFixMeasurement({}, Vector3d(0.1, 0.2, 0.3), {0, 0, Vector3d::Ones(), covariance});
+  const Matrix3d rows = measurement.LeverArmJacobian(state);
+  Vector3d before;
+  Vector3d after;
+  measurement.Evaluate(state, &before, nullptr);
+  measurement.model.p_BA += Vector3d(0.5, -1, 2);
+  measurement.Evaluate(state, &after, nullptr);
+  EXPECT_LT((after - before - rows * Vector3d(0.5, -1, 2)).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace alidade

@@ -117,13 +117,15 @@ class SquareRootCovarianceTest : public ::testing::Test {
     EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
   }
 
-  /// `count` rows that see the errors [first, first + size) alone.
-  void UpdateByBlock(int first, int size, int count) {
+  /// `count` rows that see the errors [first, first + size) and the last `constants` alone.
+  void UpdateByBlock(int first, int size, int count, int constants = 0) {
     const Eigen::Index n = dense_.rows();
     const MatrixXd rows = RandomMatrix(&random_, count, size);
     const VectorXd y = RandomMatrix(&random_, count, 1);
     MatrixXd h = MatrixXd::Zero(count, n);
     h.middleCols(first, size) = rows;
+    const MatrixXd behind = RandomMatrix(&random_, count, constants);
+    h.rightCols(constants) = behind;
     const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(count, count);
     const MatrixXd gain = s.ldlt().solve(h * dense_).transpose();
     EXPECT_LT((root_.Block(first, size) - dense_.block(first, first, size, size)).norm(),
@@ -132,7 +134,7 @@ class SquareRootCovarianceTest : public ::testing::Test {
     dense_ = rest * dense_ * rest.transpose() + gain * gain.transpose();
     VectorXd correction(n);
     double nis = 0;
-    ASSERT_TRUE(root_.UpdateByBlock(first, rows, y, correction, &nis));
+    ASSERT_TRUE(root_.UpdateByBlock(first, rows, y, correction, &nis, behind));
     EXPECT_NEAR(nis, y.dot(s.ldlt().solve(y)), 1e-9 * nis);
     EXPECT_LT((correction - gain * y).norm(), 1e-10 * correction.norm());
   }
@@ -216,6 +218,8 @@ TEST_F(SquareRootCovarianceTest, UpdateByBlockIsTheKalmanUpdate) {
     UpdateByBlock(leading_, 15, count);
     ExpectEqual();
     UpdateByBlock(root_.dimension() - 6, 6, count);
+    ExpectEqual();
+    UpdateByBlock(leading_, 15, count, 3);
     ExpectEqual();
   }
 }

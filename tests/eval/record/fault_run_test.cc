@@ -103,6 +103,23 @@ TEST_P(FaultRunTest, ABlackoutIsToldAtOnce) {
   ExpectToldAtOnce(Run(SimFaultKind::kBlackout, 2), 2.2);
 }
 
+// GIVEN a camera whose clock jumps, THEN the jump is told and taken off its stamps, and no frame is lost.
+TEST_P(FaultRunTest, AJumpOfTheCamerasClockIsTakenOffItsStamps) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  const Faulty run = Run(SimFaultKind::kCameraClock, 1);
+  ExpectToldAtOnce(run, 1);
+  EXPECT_EQ(run.result.records.size(), clean.result.records.size());
+  EXPECT_LT(run.rmse_m, 1.2 * clean.rmse_m + 0.003);
+}
+
+TEST_P(FaultRunTest, MissingFramesCostLittle) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  const Faulty run = Run(SimFaultKind::kFrameDrops, 1000);
+  EXPECT_LT(run.result.records.size(), clean.result.records.size());
+  EXPECT_EQ(run.SecondsAfterTheFault("ok").size(), run.result.records.size());
+  EXPECT_LT(run.rmse_m, 1.3 * clean.rmse_m + 0.01);
+}
+
 INSTANTIATE_TEST_SUITE_P(BothBackEnds, FaultRunTest, testing::Values(Backend::kFilter, Backend::kSmoother),
                          [](const auto& of) { return of.param == Backend::kFilter ? "filter" : "smoother"; });
 

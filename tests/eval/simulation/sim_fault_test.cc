@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "eval/simulation/simulator.h"
 #include "tests/eval/simulation/sim_scene.h"
 
 namespace alidade {
@@ -212,6 +213,43 @@ TEST(SimFaultTest, UniformObservationsComeAtTheirRate) {
     }
   }
   EXPECT_NEAR(far / count, 0.1, 4 * std::sqrt(0.09 / count));
+}
+
+TEST(SimFaultTest, APullGrowsHorizontallyAndThenStays) {
+  SimulatorConfig config;
+  config.fault = SimFaultKind::kGnssRamp;
+  config.fault_start_s = 20;
+  config.fault_duration_s = 10;
+  const SimPull pull(config, kSeed);
+  EXPECT_TRUE(pull.moves_rates());
+  EXPECT_EQ(pull.At(20).norm(), 0);
+  EXPECT_NEAR(pull.At(24).norm(), 2, 1e-12);
+  EXPECT_NEAR(pull.At(50).norm(), 5, 1e-12);
+  EXPECT_EQ(pull.At(50).z(), 0);
+  config.fault = SimFaultKind::kBlackout;
+  EXPECT_EQ(SimPull(config, kSeed).At(50).norm(), 0);
+}
+
+TEST(SimFaultTest, MissingFramesAndAClockThatJumpedLeaveTheOthersAlone) {
+  SimulatorConfig config = MinuteConfig();
+  config.duration_s = 40;
+  const Result<Dataset> clean = Simulate(config, kSeed);
+  config.fault = SimFaultKind::kFrameDrops;
+  config.fault_start_s = 0;
+  config.fault_duration_s = 1e4;
+  const Result<Dataset> dropped = Simulate(config, kSeed);
+  config.fault = SimFaultKind::kCameraClock;
+  config.fault_start_s = 20;
+  const Result<Dataset> jumped = Simulate(config, kSeed);
+  const auto frames = static_cast<double>(clean->tracks.size());
+  EXPECT_NEAR(1 - static_cast<double>(dropped->tracks.size()) / frames, 0.1, 0.06);
+  ASSERT_EQ(jumped->tracks.size(), clean->tracks.size());
+  const TimeNs start_ns = clean->imu.front().stamp_ns;
+  for (std::size_t i = 0; i < clean->tracks.size(); ++i) {
+    const TimeNs stamp_ns = clean->tracks[i].stamp_ns;
+    const bool later = SecondsBetween(start_ns, stamp_ns) >= 20;
+    EXPECT_EQ(jumped->tracks[i].stamp_ns, stamp_ns + (later ? SecondsToNs(1) : 0));
+  }
 }
 
 }  // namespace

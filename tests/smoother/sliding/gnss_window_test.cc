@@ -38,6 +38,24 @@ TEST(GnssEpochFactorTest, JacobiansAgainstDifferences) {
   }
 }
 
+// The rows over the lever arm of a watched antenna.
+TEST(GnssEpochFactorTest, LeverArmAgainstDifferences) {
+  GnssFixture fixture(3);
+  const WindowFrame& frame = fixture.window.frame(1);
+  FrameEpoch epoch = frame.epochs[0];
+  epoch.gyro_radps = Vector3d(0.3, -0.5, 0.8);
+  GnssResiduals residuals;
+  const auto rows = [&](const Eigen::VectorXd& error) {
+    GnssFactorContext context = fixture.context;
+    context.mount.p_BA += error;
+    return LinearizeFrameEpoch(context, epoch, 0.03, frame.nav_state(), frame.imu_bias(), frame.clock_state(),
+                               true, &residuals);
+  };
+  const auto residual = [&](const Eigen::VectorXd& error) -> Eigen::VectorXd { return rows(error).residual; };
+  const FrameEpochRows at = rows(Vector3d::Zero());
+  EXPECT_EQ(CompareJacobians(MatrixXd(at.lever_arm), NumericJacobian(residual, 3, 1e-2), 1e-4), "");
+}
+
 TEST(ClockFactorTest, ZeroOnItsProcess) {
   const ClockStep step(GnssTestConfig(), 0.5, false);
   Vector6d from;

@@ -1,0 +1,122 @@
+#include "eval/run/camera_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/lie.h"
+#include "core/median.h"
+#include "frontend/initialization/epipolar_ray.h"
+
+namespace alidade {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+void CameraClock::AddImu(const ImuSample& sample) {
+  if (!imu_.empty() && sample.stamp_ns <= imu_.back().stamp_ns) {
+    return;
+  }
+  imu_.push_back(sample);
+  while (SecondsBetween(imu_.front().stamp_ns, sample.stamp_ns) > 1.5 * kMostStepS) {
+    imu_.pop_front();
+  }
+}
+
+std::optional<TimeNs> CameraClock::Period() const {
+  constexpr std::size_t kLeast = 5;
+  if (steps_.size() < kLeast) {
+    return std::nullopt;
+  }
+  std::vector<TimeNs> steps(steps_.begin(), steps_.end());
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+Matrix3d CameraClock::Turn(TimeNs a_ns, TimeNs b_ns, const Vector3d& bias) const {
+  Matrix3d turn = Matrix3d::Identity();
+  for (std::size_t i = 0; i + 1 < imu_.size(); ++i) {
+    const TimeNs begin_ns = std::max(a_ns, imu_[i].stamp_ns);
+    const TimeNs end_ns = std::min(b_ns, imu_[i + 1].stamp_ns);
+    if (begin_ns < end_ns) {
+      const Vector3d rate = 0.5 * (imu_[i].gyro + imu_[i + 1].gyro) - bias;
+      turn = turn * so3::Exp(Vector3d(SecondsBetween(begin_ns, end_ns) * rate));
+    }
+  }
+  return turn;
+}
+
+std::optional<double> CameraClock::Misfit(const TrackFrame& a, const TrackFrame& b,
+                                          const Matrix3d& R_ab) const {
+  const CameraModel& camera = rig_.camera;
+  const double sigma = std::sqrt(2.0) * pixel_noise_px_ / camera.mean_focal_px();
+  const Matrix3d R_BC = rig_.T_BC.rotation;
+  std::vector<EpipolarRay> rays;
+  auto seen = a.observations.begin();
+  for (const TrackObservation& now : b.observations) {
+    while (seen != a.observations.end() && seen->track_id < now.track_id) {
+      ++seen;
+    }
+    if (seen == a.observations.end() || seen->track_id != now.track_id) {
+      continue;
+    }
+    Vector3d ray_a;
+    Vector3d ray_b;
+    if (camera.Bearing(seen->pixel, &ray_a) && camera.Bearing(now.pixel, &ray_b)) {
+      EpipolarRay ray{R_BC * ray_a, R_ab * (R_BC * ray_b), {}, sigma};
+      ray.normal = ray.ray_i.cross(ray.ray_j);
+      rays.push_back(ray);
+    }
+  }
+  if (static_cast<int>(rays.size()) < kLeastTracks) {
+    return std::nullopt;
+  }
+  constexpr double kKernelSigma = 2;
+  constexpr double kMedianOfChiSquare = 0.455;
+  std::vector<double> weights;
+  const Vector3d direction = TranslationDirection(rays, kKernelSigma, &weights);
+  std::vector<double> squares;
+  for (const EpipolarRay& ray : rays) {
+    const double distance = direction.dot(ray.normal);
+    squares.push_back(distance * distance / EpipolarVariance(ray, direction));
+  }
+  return Median(std::move(squares)) / kMedianOfChiSquare;
+}
+
+std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_ns,
+                                            const Vector3d& gyro_bias) {
+  constexpr std::size_t kRemembered = 15;
+  std::optional<TimeNs> jump;
+  const std::optional<TimeNs> period = Period();
+  const TimeNs step_ns = last_ ? imu_ns - last_->imu_ns : 0;
+  const double step_s = SecondsBetween(0, step_ns);
+  if (!step_ && period && step_s > kLeastStepS &&
+      step_s<kMostStepS&& static_cast<double>(step_ns)> kLeastPeriods * static_cast<double>(*period)) {
+    step_ = Step{*last_, step_ns - *period, imu_ns + SecondsToNs(kDoubtS)};
+  } else if (step_ns > 0) {
+    steps_.push_back(step_ns);
+  }
+  while (steps_.size() > kRemembered) {
+    steps_.pop_front();
+  }
+  if (step_) {
+    const TimeNs before_ns = step_->before.imu_ns;
+    const auto misfit = [&](TimeNs until_ns) {
+      return Misfit(step_->before.frame, frame, Turn(before_ns, until_ns, gyro_bias));
+    };
+    const std::optional<double> as_is = misfit(imu_ns);
+    const std::optional<double> jumped = misfit(imu_ns - step_->excess_ns);
+    if (!as_is || imu_ns > step_->end_ns || (*as_is<kFits&& * jumped> kContrast * *as_is)) {
+      step_.reset();
+    } else if (*jumped<kFits&& * as_is> kContrast * std::max(1.0, *jumped)) {
+      jump = step_->excess_ns;
+      imu_ns -= *jump;
+      step_.reset();
+    }
+  }
+  last_ = Seen{frame, imu_ns};
+  return jump;
+}
+
+}  // namespace alidade

@@ -1,0 +1,119 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "eval/simulation/simulator.h"
+#include "eval/simulation/simulator_config.h"
+#include "tests/eval/record/estimator_runs.h"
+
+// What calibration.watch tells of GNSS and position fixes, with both back ends.
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kFaultS = 20;
+constexpr unsigned kSeed = 961;
+
+enum class Absolute { kGnss, kFixes };
+
+SimulatorConfig Scene(Absolute sensor) {
+  SimulatorConfig config;
+  config.start_time_s = 1700000000;
+  config.duration_s = 45;
+  config.length_m = 60;
+  config.width_m = 30;
+  config.height_m = 3;
+  config.path_m = 180;
+  config.landmark_count = 2000;
+  config.landmark_max_distance_m = 20;
+  config.max_features = 60;
+  config.fault_start_s = kFaultS;
+  config.fault_duration_s = 1000;
+  if (sensor == Absolute::kGnss) {
+    config.gnss.rate_hz = 5;
+  } else {
+    config.fix.rate_hz = 5;
+    config.fix.std_m = 0.5;
+  }
+  return config;
+}
+
+class GnssWatchRunTest : public testing::TestWithParam<Backend> {
+ protected:
+  static RunResult Run(const SimulatorConfig& simulation) {
+    const Result<Dataset> dataset = Simulate(simulation, kSeed);
+    EXPECT_TRUE(dataset.ok()) << dataset.message();
+    EstimatorConfig config = test::CarryingEstimator(GetParam());
+    config.filter.window = 12;
+    config.smoother.landmark = SmootherLandmark::kPoseOnly;
+    config.calibration.watch = true;
+    config.gnss.enabled = simulation.gnss.rate_hz > 0;
+    config.gnss.model_std_scale = 0;
+    config.gnss.pseudorange_std_m = 0.5;
+    config.fix.enabled = simulation.fix.rate_hz > 0;
+    RunOptions options;
+    options.truth = &*dataset->truth;
+    options.seed = kSeed;
+    const RunResult result = RunEstimator(
+        config, {dataset->rig, dataset->imu, dataset->tracks, {}, dataset->gnss, dataset->fixes}, options);
+    EXPECT_TRUE(result.status.ok()) << result.status.message();
+    return result;
+  }
+
+  /// Seconds after the start of the run at which the first record has this in its reason; -1: none has.
+  static double FirstTold(const RunResult& result, const char* what) {
+    for (const RunRecord& record : result.records) {
+      if (record.reason.find(what) != std::string::npos) {
+        return SecondsBetween(result.records.front().estimate.stamp_ns, record.estimate.stamp_ns);
+      }
+    }
+    return -1;
+  }
+};
+
+TEST_P(GnssWatchRunTest, SaysNothingOfGnssThatIsAsGiven) {
+  for (const Absolute sensor : {Absolute::kGnss, Absolute::kFixes}) {
+    const RunResult result = Run(Scene(sensor));
+    for (const RunRecord& record : result.records) {
+      ASSERT_NE(record.status, "degraded") << record.reason;
+    }
+  }
+}
+
+TEST_P(GnssWatchRunTest, NamesALeverArmThatIsOffByHalfAMetre) {
+  for (const Absolute sensor : {Absolute::kGnss, Absolute::kFixes}) {
+    SimulatorConfig scene = Scene(sensor);
+    scene.calibration_antenna_error_m = 0.5;
+    const RunResult result = Run(scene);
+    EXPECT_EQ(result.records.back().status, "degraded");
+    EXPECT_THAT(
+        result.records.back().reason,
+        HasSubstr(sensor == Absolute::kGnss ? "the lever arm of the GNSS antenna is not as given"
+                                            : "the lever arm of the position sensor is not as given"));
+  }
+}
+
+// GIVEN positions pulled off at 0.5 m/s, THEN it is told before 10 m that they contradict vision and IMU.
+TEST_P(GnssWatchRunTest, TellsAPull) {
+  SimulatorConfig with_rates = Scene(Absolute::kGnss);
+  with_rates.fault = SimFaultKind::kGnssRamp;
+  SimulatorConfig without = Scene(Absolute::kGnss);
+  without.fault = SimFaultKind::kGnssRampNoRates;
+  SimulatorConfig fixes = Scene(Absolute::kFixes);
+  fixes.fault = SimFaultKind::kGnssRamp;
+  for (const SimulatorConfig& scene : {with_rates, without, fixes}) {
+    const double told_s = FirstTold(Run(scene), "contradict");
+    EXPECT_GT(told_s, kFaultS);
+    EXPECT_LT(told_s, kFaultS + 20);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BothBackEnds, GnssWatchRunTest,
+                         testing::Values(Backend::kFilter, Backend::kSmoother),
+                         [](const auto& of) { return of.param == Backend::kFilter ? "filter" : "smoother"; });
+
+}  // namespace
+}  // namespace alidade
