@@ -90,9 +90,10 @@ std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_
   std::optional<TimeNs> jump;
   const std::optional<TimeNs> period = Period();
   const TimeNs step_ns = last_ ? imu_ns - last_->imu_ns : 0;
-  const double step_s = SecondsBetween(0, step_ns);
-  if (!step_ && period && step_s > kLeastStepS &&
-      step_s<kMostStepS&& static_cast<double>(step_ns)> kLeastPeriods * static_cast<double>(*period)) {
+  const bool opens = !step_ && period && SecondsBetween(0, step_ns) > kLeastStepS &&
+                     SecondsBetween(0, step_ns) < kMostStepS &&
+                     SecondsBetween(0, step_ns) > kLeastPeriods * SecondsBetween(0, *period);
+  if (opens) {
     step_ = Step{*last_, step_ns - *period, imu_ns + SecondsToNs(kDoubtS)};
   } else if (step_ns > 0) {
     steps_.push_back(step_ns);
@@ -107,11 +108,14 @@ std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_
     };
     const std::optional<double> as_is = misfit(imu_ns);
     const std::optional<double> jumped = misfit(imu_ns - step_->excess_ns);
-    if (!as_is || imu_ns > step_->end_ns || (*as_is<kFits&& * jumped> kContrast * *as_is)) {
-      step_.reset();
-    } else if (*jumped<kFits&& * as_is> kContrast * std::max(1.0, *jumped)) {
+    const bool stamps_hold = as_is && jumped && *jumped > kContrast * *as_is && *as_is < kFits;
+    const bool stamps_jumped =
+        as_is && jumped && *as_is > kContrast * std::max(1.0, *jumped) && *jumped < kFits;
+    if (stamps_jumped) {
       jump = step_->excess_ns;
       imu_ns -= *jump;
+    }
+    if (stamps_jumped || stamps_hold || !as_is || imu_ns > step_->end_ns) {
       step_.reset();
     }
   }
