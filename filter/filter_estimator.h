@@ -55,9 +55,9 @@ class FilterEstimator : public Estimator {
   Status PropagateTo(TimeNs stamp_ns);
   /// The same for a measurement between frames; `what` names it in messages. kDiverged: not aligned.
   Status BeginMeasurement(const char* what, TimeNs stamp_ns);
-  /// Corrects the state unless `finite` is false; kDiverged when the state is lost.
   /// The estimate, where what measurements do to it is of interest.
   [[nodiscard]] NavEstimate EstimateIfWatched() const;
+  /// Corrects the state unless `finite` is false; kDiverged when the state is lost.
   Status EndMeasurement(const char* what, TimeNs stamp_ns, const NavEstimate& before, bool finite);
   /// Index of the clone to marginalise after this frame, or -1 while the window is not full.
   [[nodiscard]] int ChooseLeavingClone() const;

@@ -105,12 +105,6 @@ void EstimatorLoop::ProcessEpochAlone() {
   }
 }
 
-void EstimatorLoop::WatchSensor(const SensorRun& sensor) {
-  if (sensor.comparison()) {
-    degradation_.OnAbsolute(sensor.sensor(), *sensor.comparison());
-  }
-}
-
 void EstimatorLoop::ProcessMessage(SensorRun* sensor) {
   const Stopwatch stopwatch;
   const TimeNs stamp_ns = *sensor->NextImuTime();

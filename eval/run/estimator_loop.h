@@ -65,7 +65,11 @@ class EstimatorLoop {
   void ProcessTracks(const TrackFrame& frame, const Stopwatch& stopwatch);
   void ProcessEpochAlone();
   /// A message of the sensor was taken.
-  void WatchSensor(const SensorRun& sensor);
+  void WatchSensor(const SensorRun& sensor) {
+    if (sensor.comparison()) {
+      degradation_.OnAbsolute(sensor.sensor(), *sensor.comparison());
+    }
+  }
   /// Samples up to the first one at or after `stamp_ns`.
   void DeliverImu(TimeNs stamp_ns);
   void AddImu(const ImuSample& sample);

@@ -194,21 +194,6 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   }
 }
 
-SlamPriorTerm* SmootherEstimator::SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
-                                               WindowTerms* terms) const {
-  if (terms->empty()) {
-    terms->emplace_back();
-  }
-  if (prior.landmarks.empty()) {
-    terms->front() = MakePriorTerm(prior, calibration);
-    return nullptr;
-  }
-  auto slam = std::make_unique<SlamPriorTerm>(prior, window_, calibration, kernel_);
-  SlamPriorTerm* const made = slam.get();
-  terms->front() = std::move(slam);
-  return made;
-}
-
 Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   for (int i = 1; i < window_.size(); ++i) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));

@@ -37,6 +37,21 @@ bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geome
 
 }  // namespace
 
+SlamPriorTerm* SmootherEstimator::SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
+                                               WindowTerms* terms) const {
+  if (terms->empty()) {
+    terms->emplace_back();
+  }
+  if (prior.landmarks.empty()) {
+    terms->front() = MakePriorTerm(prior, calibration);
+    return nullptr;
+  }
+  auto slam = std::make_unique<SlamPriorTerm>(prior, window_, calibration, kernel_);
+  SlamPriorTerm* const made = slam.get();
+  terms->front() = std::move(slam);
+  return made;
+}
+
 std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<FrameGeometry>& geometry) {
   std::vector<WindowTrack*> staying;
   for (const LinearPrior::Landmark& landmark : prior_.landmarks) {

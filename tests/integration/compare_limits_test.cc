@@ -69,7 +69,7 @@ TEST_F(CompareLimits, ACellThatTakesAllMemoryIsEnded) {
             kShort + "}, {config: " + Source("configs/datasets/figure8_short.yaml") +
                 ", name: long, set: {duration_s: 2000, path_m: 2600}}");
   const std::string limit = "--cell-memory-limit-mib=250 ";
-  const auto expect_told = [this](const std::string& text) {
+  const auto expect_told = [](const std::string& text) {
     for (const char* cell : {"theirs/short/1", "po_invio_multi/long/1"}) {
       EXPECT_THAT(text, HasSubstr(std::string(cell) +
                                   ": failed, took more than 250 MiB of memory (--cell-memory-limit-mib)"));

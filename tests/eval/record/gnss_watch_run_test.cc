@@ -51,8 +51,8 @@ class GnssWatchRunTest : public testing::TestWithParam<Backend> {
     config.smoother.landmark = SmootherLandmark::kPoseOnly;
     config.calibration.watch = true;
     config.gnss.enabled = simulation.gnss.rate_hz > 0;
-    config.gnss.model_std_scale = 0;
-    config.gnss.pseudorange_std_m = 0.5;
+    config.gnss.corrections.model_std_scale = 0;
+    config.gnss.corrections.pseudorange_std_m = 0.5;
     config.fix.enabled = simulation.fix.rate_hz > 0;
     RunOptions options;
     options.truth = &*dataset->truth;
