@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "core/visual_observation.h"
@@ -239,6 +240,10 @@ GreyImage HallRenderer::Render(const Shot& shot) const {
     for (const ViewTile& tile : band.tiles) {
       RenderTile(tile, views, &candidates, &sums);
     }
+  }
+  if (shot.blur_px > 0) {
+    cv::Mat light(height_px_, width_px_, CV_32FC1, sums.data());
+    cv::GaussianBlur(light, light, cv::Size(), shot.blur_px, shot.blur_px, cv::BORDER_REPLICATE);
   }
   const double scale = shot.light * config_.brightness / config_.samples;
   return sensor_.Expose(sums, scale, shot.exposure.gain, shot.frame);

@@ -22,6 +22,7 @@ struct Shot {
   double middle_s = 0;                      ///< hall time of the middle of the middle row's exposure
   Exposure exposure;
   double light = 1;         ///< factor on the light of the scene, exposure time included
+  double blur_px = 0;       ///< deviation of a Gaussian that blurs what reaches the sensor
   std::uint64_t frame = 0;  ///< noise depends on it and the seed alone
 };
 

@@ -53,6 +53,7 @@ RenderedSequence::RenderedSequence(const SimulatorConfig& config, const Simulati
       motion_start_ns_(simulation.motion_start_ns),
       rig_(simulation.dataset.rig),
       stamps_(simulation.dataset.camera_stamps),
+      fault_(config, simulation.dataset.imu.front().stamp_ns, stamps_),
       renderer_(rig_.camera, config_, rig_.line_delay_s, std::move(hall), seed) {
   SimulatorConfig keys = config;
   fingerprint_ = ConfigToYaml([&keys](ConfigVisitor& visitor) { keys.Describe(visitor); }, false) +
@@ -113,13 +114,15 @@ Shot RenderedSequence::ShotOf(std::size_t index) const {
   shot.exposure = {.time_s = config_.exposure_s, .gain = config_.gain};
   shot.light = LightAt(shot.middle_s);
   shot.frame = index;
+  fault_.Apply(stamps_[index], &shot);
   return shot;
 }
 
 GreyImage RenderedSequence::Frame(std::size_t index) const {
-  Shot shot = ShotOf(index);
+  const std::size_t shown = fault_.Shown(index);
+  Shot shot = ShotOf(shown);
   if (!exposures_.empty()) {
-    shot.exposure = exposures_[index];
+    shot.exposure = exposures_[shown];
     shot.light *= shot.exposure.time_s / config_.exposure_s;
   }
   return renderer_.Render(shot);

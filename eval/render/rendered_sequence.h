@@ -5,6 +5,7 @@
 
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/render/hall_renderer.h"
+#include "eval/render/image_fault.h"
 #include "eval/simulation/simulation.h"
 #include "eval/simulation/simulator_config.h"
 
@@ -12,7 +13,7 @@ namespace alidade {
 
 /// What the camera of a simulated sequence sees: one image a camera stamp, of the hall around its path. The
 /// exposure's middle is the stamp plus the camera's time offset; with a rolling shutter, that of the middle
-/// row.
+/// row. A fault of the camera (eval/render/image_fault.h) acts on them.
 class RenderedSequence {
  public:
   /// Errors: those of MakeHall.
@@ -47,6 +48,7 @@ class RenderedSequence {
   TimeNs motion_start_ns_;
   RigCalibration rig_;
   std::vector<TimeNs> stamps_;
+  ImageFault fault_;
   HallRenderer renderer_;
   std::vector<Exposure> exposures_;
 };

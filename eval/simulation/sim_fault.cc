@@ -83,13 +83,12 @@ void Freeze(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* f
   }
 }
 
+/// Of the frames or images at these stamps, in their order.
+template <typename Item, typename StampOf>
 void Drop(const std::function<bool(TimeNs)>& fails, double rate, std::uint64_t seed,
-          const std::string& camera, std::vector<TrackFrame>* frames) {
+          const std::string& camera, const StampOf& stamp_of, std::vector<Item>* items) {
   RandomStream random(seed, "fault/frame_drops" + camera);
-  frames->erase(
-      std::remove_if(frames->begin(), frames->end(),
-                     [&](const TrackFrame& frame) { return fails(frame.stamp_ns) && random.Chance(rate); }),
-      frames->end());
+  std::erase_if(*items, [&](const Item& item) { return fails(stamp_of(item)) && random.Chance(rate); });
 }
 
 void Silence(const std::function<bool(TimeNs)>& fails, std::vector<ImuSample>* imu) {
@@ -134,7 +133,9 @@ void ApplyToTracks(const SimulatorConfig& config, std::uint64_t seed, const std:
       Freeze(fails, frames);
       break;
     case SimFaultKind::kFrameDrops:
-      Drop(fails, config.fault_drop_rate, seed, camera, frames);
+      Drop(
+          fails, config.fault_drop_rate, seed, camera, [](const TrackFrame& frame) { return frame.stamp_ns; },
+          frames);
       break;
     default:
       break;
@@ -225,19 +226,25 @@ Eigen::Vector3d SimPull::At(double time_s) const {
                 : Eigen::Vector3d::Zero();
 }
 
+FaultSpan::FaultSpan(const SimulatorConfig& config, TimeNs start_ns)
+    : begin_ns(start_ns + SecondsToNs(config.fault_start_s)),
+      end_ns(begin_ns + SecondsToNs(config.fault_duration_s)) {}
+
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
-  const TimeNs begin_ns = start_ns + SecondsToNs(config.fault_start_s);
-  const TimeNs end_ns = begin_ns + SecondsToNs(config.fault_duration_s);
-  const auto fails = [=](TimeNs stamp_ns) { return stamp_ns >= begin_ns && stamp_ns < end_ns; };
+  const FaultSpan span(config, start_ns);
+  const auto fails = [=](TimeNs stamp_ns) { return span.Contains(stamp_ns); };
   ApplyToTracks(config, seed, "", fails, &dataset->tracks);
   for (std::size_t i = 0; i < dataset->extra_cameras.size(); ++i) {
     ApplyToTracks(config, seed, "/cam" + std::to_string(i + 1), fails, &dataset->extra_cameras[i].frames);
   }
   ApplyToImu(config.fault, seed, fails, &dataset->imu);
+  if (config.fault == SimFaultKind::kFrameDrops) {
+    Drop(fails, config.fault_drop_rate, seed, "", std::identity(), &dataset->camera_stamps);
+  }
   if (config.fault == SimFaultKind::kCameraClock) {
     const TimeNs jump_ns = SecondsToNs(config.fault_clock_jump_s);
     for (TrackFrame& frame : dataset->tracks) {
-      frame.stamp_ns += frame.stamp_ns >= begin_ns ? jump_ns : 0;
+      frame.stamp_ns += frame.stamp_ns >= span.begin_ns ? jump_ns : 0;
     }
   }
 }

@@ -169,7 +169,9 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
        {"frame_drops", SimFaultKind::kFrameDrops},
        {"camera_clock", SimFaultKind::kCameraClock},
        {"gnss_ramp", SimFaultKind::kGnssRamp},
-       {"gnss_ramp_no_rates", SimFaultKind::kGnssRampNoRates}});
+       {"gnss_ramp_no_rates", SimFaultKind::kGnssRampNoRates},
+       {"glare", SimFaultKind::kGlare},
+       {"blur", SimFaultKind::kBlur}});
   visitor.Real({"fault_start_s", "s", "start of the fault after the first IMU sample"},
                &config->fault_start_s, 0, 1e5);
   visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);
@@ -182,6 +184,9 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
                 "gnss_ramp and gnss_ramp_no_rates: speed of the pull, in a random horizontal direction; "
                 "afterwards it stays"},
                &config->fault_ramp_mps, 0, 100);
+  visitor.Real(
+      {"fault_blur_px", "px", "blur: standard deviation of the Gaussian that blurs a rendered image"},
+      &config->fault_blur_px, 0.1, 100);
   DescribeMiscalibration(config, visitor);
 }
 

@@ -43,6 +43,8 @@ enum class SimFaultKind {
   kCameraClock,      ///< the stamps of all later frames are off
   kGnssRamp,         ///< GNSS and position fixes are pulled off ever farther, range rates with them
   kGnssRampNoRates,  ///< the same with true range rates
+  kGlare,            ///< rendered images: more light than the sensor holds
+  kBlur,             ///< rendered images: out of focus
 };
 /// Whether single observations or whole tracks are wrong. Drift, moving and mixed outliers always affect
 /// whole tracks.
@@ -98,6 +100,7 @@ struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   double fault_drop_rate = 0.1;   ///< of frame_drops
   double fault_clock_jump_s = 1;  ///< of camera_clock
   double fault_ramp_mps = 0.5;    ///< of gnss_ramp and gnss_ramp_no_rates
+  double fault_blur_px = 6;       ///< of blur
 
   /// By how much the calibration that the estimators are given is wrong (eval/simulation/sim_calibration.h).
   double calibration_rotation_error_rad = 0;

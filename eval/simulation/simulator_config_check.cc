@@ -53,6 +53,19 @@ Status ValidateMotion(const SimulatorConfig& config) {
   return Status::Ok();
 }
 
+Status ValidateFault(const SimulatorConfig& config) {
+  const SimFaultKind fault = config.fault;
+  if (config.render.enabled && (fault == SimFaultKind::kTracks || fault == SimFaultKind::kCameraClock)) {
+    return Status::Config(
+        "fault: tracks and camera_clock are faults of simulated tracks; expected "
+        "render.enabled: false");
+  }
+  if (!config.render.enabled && (fault == SimFaultKind::kGlare || fault == SimFaultKind::kBlur)) {
+    return Status::Config("fault: glare and blur are faults of images; expected render.enabled: true");
+  }
+  return Status::Ok();
+}
+
 }  // namespace
 
 Status SimulatorConfig::Validate() const {
@@ -83,6 +96,7 @@ Status SimulatorConfig::Validate() const {
                                  camera_lever_arm_m.norm(), "shorter than landmark_min_distance_m"));
   ALIDADE_RETURN_IF_ERROR(
       Expect(!render.enabled || camera_count == 1, "camera_count", camera_count, "1 with render.enabled"));
+  ALIDADE_RETURN_IF_ERROR(ValidateFault(*this));
   ALIDADE_RETURN_IF_ERROR(render.Validate());
   for (int i = CoefficientCount(distortion); i < 4; ++i) {
     ALIDADE_RETURN_IF_ERROR(
