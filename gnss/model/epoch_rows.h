@@ -17,8 +17,8 @@ struct GnssRow {
   int bias_index = -1;  ///< of the system in ClockState, -1: none; of a pseudorange
   double residual = 0;  ///< predicted - measured [m] or [m/s]
   double deviation = 1;
-  GnssJacobian jacobian;  ///< over (phi, dp, dv, dbg, dba)
-  RowVector3d lever_arm;  ///< d residual / d p_BA
+  GnssJacobian jacobian;                        ///< over (phi, dp, dv, dbg, dba)
+  RowVector3d lever_arm = RowVector3d::Zero();  ///< d residual / d p_BA
 
   /// d residual / d clock state.
   [[nodiscard]] Eigen::Matrix<double, 1, 6> ClockJacobian() const;
