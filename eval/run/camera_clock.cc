@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/lie.h"
 #include "core/median.h"
 #include "frontend/initialization/epipolar_ray.h"
 
@@ -14,12 +13,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 void CameraClock::AddImu(const ImuSample& sample) {
-  if (!imu_.empty() && sample.stamp_ns <= imu_.back().stamp_ns) {
-    return;
-  }
-  imu_.push_back(sample);
-  while (SecondsBetween(imu_.front().stamp_ns, sample.stamp_ns) > 1.5 * kMostStepS) {
-    imu_.pop_front();
+  if (gyro_.Add(sample)) {
+    gyro_.DropBefore(sample.stamp_ns - SecondsToNs(1.5 * kMostStepS));
   }
 }
 
@@ -28,23 +23,7 @@ std::optional<TimeNs> CameraClock::Period() const {
   if (steps_.size() < kLeast) {
     return std::nullopt;
   }
-  std::vector<TimeNs> steps(steps_.begin(), steps_.end());
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
-Matrix3d CameraClock::Turn(TimeNs a_ns, TimeNs b_ns, const Vector3d& bias) const {
-  Matrix3d turn = Matrix3d::Identity();
-  for (std::size_t i = 0; i + 1 < imu_.size(); ++i) {
-    const TimeNs begin_ns = std::max(a_ns, imu_[i].stamp_ns);
-    const TimeNs end_ns = std::min(b_ns, imu_[i + 1].stamp_ns);
-    if (begin_ns < end_ns) {
-      const Vector3d rate = 0.5 * (imu_[i].gyro + imu_[i + 1].gyro) - bias;
-      turn = turn * so3::Exp(Vector3d(SecondsBetween(begin_ns, end_ns) * rate));
-    }
-  }
-  return turn;
+  return static_cast<TimeNs>(Median({steps_.begin(), steps_.end()}));
 }
 
 std::optional<double> CameraClock::Misfit(const TrackFrame& a, const TrackFrame& b,
@@ -104,7 +83,8 @@ std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_
   if (step_) {
     const TimeNs before_ns = step_->before.imu_ns;
     const auto misfit = [&](TimeNs until_ns) {
-      return Misfit(step_->before.frame, frame, Turn(before_ns, until_ns, gyro_bias));
+      const std::optional<Matrix3d> turn = gyro_.Between(before_ns, until_ns, gyro_bias);
+      return turn ? Misfit(step_->before.frame, frame, *turn) : std::nullopt;
     };
     const std::optional<double> as_is = misfit(imu_ns);
     const std::optional<double> jumped = misfit(imu_ns - step_->excess_ns);

@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "core/imu_sample.h"
+#include "core/gyro_rotation.h"
 #include "core/rig_calibration.h"
 #include "core/track_frame.h"
 
@@ -36,7 +36,7 @@ class CameraClock {
   CameraClock(const RigCalibration& rig, double pixel_noise_px)
       : rig_(rig), pixel_noise_px_(pixel_noise_px) {}
 
-  /// Every sample that comes, in order.
+  /// Every sample that comes; one out of order is ignored.
   void AddImu(const ImuSample& sample);
   /// A frame that the IMU reaches at `imu_ns`, the time of its stamp; every one, in order. By how much the
   /// stamps have jumped [ns], if this frame tells; it and later frames lie that much earlier.
@@ -55,16 +55,14 @@ class CameraClock {
 
   /// Of the usual steps.
   [[nodiscard]] std::optional<TimeNs> Period() const;
-  /// What the gyroscope says: R_ab = R_a^T R_b of the body.
-  [[nodiscard]] Eigen::Matrix3d Turn(TimeNs a_ns, TimeNs b_ns, const Eigen::Vector3d& bias) const;
-  /// Median squared distance of the common tracks to the epipolar plane, in its variance, with this turn;
-  /// nothing with too few tracks.
+  /// Median squared distance of the common tracks to the epipolar plane, in its variance, when the body
+  /// turned by R_ab between the frames; nothing with too few tracks.
   [[nodiscard]] std::optional<double> Misfit(const TrackFrame& a, const TrackFrame& b,
                                              const Eigen::Matrix3d& R_ab) const;
 
   const RigCalibration& rig_;
   const double pixel_noise_px_;
-  std::deque<ImuSample> imu_;
+  GyroRotation gyro_;
   std::deque<TimeNs> steps_;
   std::optional<Seen> last_;
   std::optional<Step> step_;  ///< in doubt

@@ -15,8 +15,6 @@
 #include "smoother/solve/window_solver.h"
 
 namespace alidade {
-namespace {}  // namespace
-
 std::unique_ptr<Estimator> MakeSmoother(const EstimatorConfig& config, const RigCalibration& rig) {
   return std::make_unique<SmootherEstimator>(config, rig);
 }
@@ -227,11 +225,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   }
   if (watched) {
     slam = SetPriorTerm(prior_, calibration_, &terms);
-    if (calibration_.layout.lever_arm() >= 0) {  // of which the sensors' terms have rows
-      terms.resize(1);
-      ALIDADE_RETURN_IF_ERROR(
-          AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), &terms));
-    }
+    ALIDADE_RETURN_IF_ERROR(AddLeverArmRows(&terms));
   }
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
@@ -247,6 +241,14 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   }
   AddJudgedVision(*tracks, &terms);
   return UpdateLatest(terms);
+}
+
+Status SmootherEstimator::AddLeverArmRows(WindowTerms* terms) const {
+  if (calibration_.layout.lever_arm() < 0) {
+    return Status::Ok();
+  }
+  terms->resize(1);
+  return AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), terms);
 }
 
 void SmootherEstimator::AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) {

@@ -6,154 +6,15 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/random.h"
+#include "tests/filter/square_root_fixture.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-MatrixXd RandomMatrix(RandomStream* random, Eigen::Index rows, Eigen::Index cols) {
-  MatrixXd m(rows, cols);
-  for (Eigen::Index i = 0; i < m.size(); ++i) {
-    m.data()[i] = random->Normal();
-  }
-  return m;
-}
-
-/// A dense covariance that is put through the same operations as the factor.
-class SquareRootCovarianceTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const MatrixXd a = RandomMatrix(&random_, 15, 15);
-    dense_ = a * a.transpose() + 0.1 * MatrixXd::Identity(15, 15);
-    ASSERT_TRUE(root_.Reset(dense_).ok());
-  }
-
-  void Propagate() {
-    const MatrixXd phi = MatrixXd::Identity(15, 15) + 0.1 * RandomMatrix(&random_, 15, 15);
-    const MatrixXd b = 0.1 * RandomMatrix(&random_, 15, 15);
-    MatrixXd f = MatrixXd::Identity(dense_.rows(), dense_.rows());
-    f.block(leading_, leading_, 15, 15) = phi;
-    dense_ = f * dense_ * f.transpose();
-    dense_.block(leading_, leading_, 15, 15) += b * b.transpose();
-    root_.Propagate(phi, b);
-  }
-
-  void Clone() {
-    const Eigen::Index n = dense_.rows();
-    const Eigen::Index head = leading_ + 15;
-    MatrixXd j = MatrixXd::Zero(n + 6, n);
-    j.topLeftCorner(head, head).setIdentity();
-    j.block(head, leading_, 6, 6).setIdentity();
-    j.bottomRightCorner(n - head, n - head).setIdentity();
-    dense_ = j * dense_ * j.transpose();
-    root_.CloneCore(0, 6);
-  }
-
-  /// f = gain x + root n.
-  void AddLeading() {
-    const Eigen::Index n = dense_.rows();
-    const MatrixXd gain = RandomMatrix(&random_, 3, n - leading_);
-    const Eigen::Matrix3d root = RandomMatrix(&random_, 3, 3).triangularView<Eigen::Upper>();
-    MatrixXd j = MatrixXd::Zero(n + 3, n);
-    j.topRightCorner(3, n - leading_) = gain;
-    j.bottomRows(n).setIdentity();
-    dense_ = j * dense_ * j.transpose();
-    dense_.topLeftCorner(3, 3) += root * root.transpose();
-    root_.AddLeading(root, gain);
-    leading_ += 3;
-  }
-
-  void AddToLeading(int target, int source) {
-    const Eigen::Index n = dense_.rows();
-    const Eigen::Matrix3d m = RandomMatrix(&random_, 3, 3);
-    MatrixXd j = MatrixXd::Identity(n, n);
-    j.block(target, source, 3, 3) = m;
-    dense_ = j * dense_ * j.transpose();
-    root_.AddToLeading(target, m, source);
-  }
-
-  void Remove(int first, int size = 6) {
-    const Eigen::Index n = dense_.rows();
-    MatrixXd keep = MatrixXd::Zero(n - size, n);
-    keep.topLeftCorner(first, first).setIdentity();
-    keep.bottomRightCorner(n - size - first, n - size - first).setIdentity();
-    dense_ = keep * dense_ * keep.transpose();
-    root_.Remove(first, size);
-    leading_ -= first < leading_ ? size : 0;
-  }
-
-  /// 40 rows that do not see the first `unseen` errors, and `sparse` rows with three entries each.
-  void Update(int unseen = 0, int sparse = 0) {
-    const Eigen::Index n = dense_.rows();
-    const Eigen::Index rows = 40 + sparse;
-    MatrixXd h = RandomMatrix(&random_, rows, n);
-    h.leftCols(unseen).setZero();
-    for (Eigen::Index row = 40; row < rows; ++row) {
-      const Eigen::Index landmark = row % n;
-      h.row(row).setZero();
-      h(row, landmark) = random_.Normal();
-      h(row, n - 6) = random_.Normal();
-      h(row, n - 1) = random_.Normal();
-    }
-    VectorXd y = RandomMatrix(&random_, rows, 1);
-    const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(rows, rows);
-    const MatrixXd gain = s.ldlt().solve(h * dense_).transpose();
-    const VectorXd expected = gain * y;
-    const double nis = y.dot(s.ldlt().solve(y));
-    const MatrixXd rest = MatrixXd::Identity(n, n) - gain * h;
-    dense_ = rest * dense_ * rest.transpose() + gain * gain.transpose();
-    const PreparedRows prepared = root_.Prepare(h, y, sparse > 0 ? 40 : -1);
-    for (const auto& [first, count] : {std::pair{0, 40}, std::pair{3, 2}, std::pair{7, 5}}) {
-      const VectorXd part = y.segment(first, count);
-      const double block_nis = part.dot(s.block(first, first, count, count).ldlt().solve(part));
-      EXPECT_NEAR(root_.NormalizedInnovationSquared(prepared, first, count), block_nis, 1e-9 * block_nis);
-    }
-    VectorXd correction(root_.dimension());
-    double measured = 0;
-    ASSERT_TRUE(root_.Apply(prepared, correction, &measured));
-    EXPECT_NEAR(measured, nis, 1e-9 * nis);
-    EXPECT_LT((correction - expected).norm(), 1e-10 * expected.norm());
-  }
-
-  /// `count` rows that see the errors [first, first + size) and the last `constants` alone.
-  void UpdateByBlock(int first, int size, int count, int constants = 0) {
-    const Eigen::Index n = dense_.rows();
-    const MatrixXd rows = RandomMatrix(&random_, count, size);
-    const VectorXd y = RandomMatrix(&random_, count, 1);
-    MatrixXd h = MatrixXd::Zero(count, n);
-    h.middleCols(first, size) = rows;
-    const MatrixXd behind = RandomMatrix(&random_, count, constants);
-    h.rightCols(constants) = behind;
-    const MatrixXd s = h * dense_ * h.transpose() + MatrixXd::Identity(count, count);
-    const MatrixXd gain = s.ldlt().solve(h * dense_).transpose();
-    EXPECT_LT((root_.Block(first, size) - dense_.block(first, first, size, size)).norm(),
-              1e-10 * dense_.norm());
-    const MatrixXd rest = MatrixXd::Identity(n, n) - gain * h;
-    dense_ = rest * dense_ * rest.transpose() + gain * gain.transpose();
-    VectorXd correction(n);
-    double nis = 0;
-    ASSERT_TRUE(root_.UpdateByBlock(first, rows, y, correction, &nis, behind));
-    EXPECT_NEAR(nis, y.dot(s.ldlt().solve(y)), 1e-9 * nis);
-    EXPECT_LT((correction - gain * y).norm(), 1e-10 * correction.norm());
-  }
-
-  void ExpectEqual() {
-    ASSERT_EQ(root_.dimension(), dense_.rows());
-    const double scale = std::max(1.0, dense_.norm());
-    EXPECT_LT((root_.Covariance() - dense_).norm(), 1e-10 * scale);
-    EXPECT_EQ(root_.leading(), leading_);
-    EXPECT_LT((root_.CoreCovariance() - dense_.block(leading_, leading_, 15, 15)).norm(), 1e-10 * scale);
-    const MatrixXd below = root_.factor().triangularView<Eigen::StrictlyLower>();
-    EXPECT_EQ(below.norm(), 0.0);
-  }
-
-  RandomStream random_{1, "square root covariance"};
-  MatrixXd dense_;
-  int leading_ = 0;
-  SquareRootCovariance root_{15 + 6 * 8 + 3 * 4, 3 * 4};
-};
+using test::RandomMatrix;
+using test::SquareRootCovarianceTest;
 
 TEST_F(SquareRootCovarianceTest, FollowsTheDenseCovarianceThroughAWindow) {
   for (int frame = 0; frame < 25; ++frame) {

@@ -39,13 +39,6 @@ void ExpectRowsOfCeres(const WindowTerms& terms, const WindowFrames& frames,
   }
 }
 
-Matrix15d SomeCovariance() {
-  Vector15d deviations;
-  deviations << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.1),
-      Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.05);
-  return deviations.cwiseAbs2().asDiagonal();
-}
-
 // GIVEN a window of every sensor, THEN the rows of each term are those that Ceres has of it, and both are the
 // derivatives of its residual, in every error convention.
 TEST(WindowTermTest, RowsOfTheSensorsAreThoseOfCeresAndNumeric) {
@@ -82,7 +75,7 @@ TEST(WindowTermTest, RowsOfAPriorWithClockAndCalibrationAreThoseOfCeresAndNumeri
     const CalibrationEstimate estimate = CalibrateWindow(&fixture);
     fixture.calibration = {estimate.layout, estimate.mean};
     LinearPrior prior;
-    ASSERT_TRUE(MakeInitialPrior(made_in, fixture.window.frame(0), SomeCovariance(), &prior));
+    ASSERT_TRUE(MakeInitialPrior(made_in, fixture.window.frame(0), test::SomeCovariance(), &prior));
     GnssWindow gnss(fixture.context.config, {}, fixture.gravity_W);
     GnssAlignment alignment;
     alignment.enu = fixture.context.mount.enu;
@@ -104,8 +97,8 @@ TEST(WindowTermTest, RowsOfAPriorWithClockAndCalibrationAreThoseOfCeresAndNumeri
 TEST(WindowTermTest, TheBatchTakesGnssTermsAsTheWindowDoes) {
   GnssFixture fixture(6);
   LinearPrior prior;
-  ASSERT_TRUE(
-      MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0), SomeCovariance(), &prior));
+  ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0),
+                               test::SomeCovariance(), &prior));
   GnssWindow gnss(fixture.context.config, {}, fixture.gravity_W);
   GnssAlignment alignment;
   alignment.enu = fixture.context.mount.enu;

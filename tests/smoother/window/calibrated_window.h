@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "smoother/solve/vision_terms.h"
 #include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
 #include "tests/smoother/window/window_fixture.h"
@@ -35,6 +36,39 @@ inline CalibrationEstimate CalibrateWindow(WindowFixture* fixture) {
   }
   return InitialCalibration(
       config, {*camera, fixture->T_BC, 0.004, fixture->seen_view == FixtureView::kAhead ? 1e-4 : 0.0});
+}
+
+/// A window seen by a camera whose calibration is estimated.
+struct CalibratedWindow : WindowFixture {
+  explicit CalibratedWindow(unsigned seed, double noise_sigma = 1.0, int frames = 4, int landmarks = 12,
+                            FixtureView seen = FixtureView::kAhead)
+      : WindowFixture(seed, frames, landmarks, noise_sigma, seen) {
+    estimate = CalibrateWindow(this);
+    calibration = {estimate.layout, estimate.mean};
+  }
+
+  [[nodiscard]] PoseSystem Vision(int first_base, int last_base) const {
+    const std::vector<FrameGeometry> geometry = MakeGeometry(window, calibration.mean);
+    PoseSystem system(window.size(), &calibration);
+    TrackWorkspace workspace;
+    for (const WindowTrack* track : tracks()) {
+      const int base = track->views.front().frame->index;
+      if (base >= first_base && base <= last_base) {
+        EXPECT_TRUE(AddTrack(track->views, geometry, {}, track->landmark, &workspace, &system));
+      }
+    }
+    return system;
+  }
+
+  CalibrationEstimate estimate;
+};
+
+/// Of an initial state.
+inline Matrix15d SomeCovariance() {
+  Vector15d deviations;
+  deviations << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.1),
+      Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.05);
+  return deviations.cwiseAbs2().asDiagonal();
 }
 
 }  // namespace alidade::test

@@ -4,12 +4,9 @@
 
 #include <cmath>
 
-#include "core/reprojection.h"
 #include "smoother/factors/inverse_depth_factor.h"
 #include "smoother/factors/pose_only_factor.h"
 #include "smoother/factors/prior_factor.h"
-#include "smoother/solve/vision_terms.h"
-#include "smoother/solve/window_solver.h"
 #include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/calibrated_window.h"
 #include "tests/support/jacobian_checker.h"
@@ -19,41 +16,10 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using test::WindowFixture;
+using test::CalibratedWindow;
+using test::SomeCovariance;
 
 constexpr int kBlock = CalibrationLayout::kMaxSize;
-
-/// A window seen by a camera whose calibration is estimated.
-struct CalibratedWindow : WindowFixture {
-  explicit CalibratedWindow(unsigned seed, double noise_sigma = 1.0, int frames = 4, int landmarks = 12,
-                            test::FixtureView seen = test::FixtureView::kAhead)
-      : WindowFixture(seed, frames, landmarks, noise_sigma, seen) {
-    estimate = test::CalibrateWindow(this);
-    calibration = {estimate.layout, estimate.mean};
-  }
-
-  [[nodiscard]] PoseSystem Vision(int first_base, int last_base) const {
-    const std::vector<FrameGeometry> geometry = MakeGeometry(window, calibration.mean);
-    PoseSystem system(window.size(), &calibration);
-    TrackWorkspace workspace;
-    for (const WindowTrack* track : tracks()) {
-      const int base = track->views.front().frame->index;
-      if (base >= first_base && base <= last_base) {
-        EXPECT_TRUE(AddTrack(track->views, geometry, {}, track->landmark, &workspace, &system));
-      }
-    }
-    return system;
-  }
-
-  CalibrationEstimate estimate;
-};
-
-Matrix15d SomeCovariance() {
-  Vector15d deviations;
-  deviations << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.1),
-      Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.05);
-  return deviations.cwiseAbs2().asDiagonal();
-}
 
 /// The gradient J^T r of a factor over poses (canonical chart) and calibration block at a point.
 VectorXd Gradient(const PoseOnlyFactor& factor, const std::vector<VectorXd>& blocks, double* cost) {
@@ -238,101 +204,6 @@ TEST(WindowCalibrationTest, InverseDepthRowsAgainstDifferences) {
     EXPECT_EQ(test::CompareJacobians(analytic.middleCols<4>(first), numeric.middleCols<4>(first), 1e-6), "");
     EXPECT_GT(numeric.middleCols<4>(first).norm(), 0.1);
   }
-}
-
-/// GIVEN exact data and a camera that is given wrong and hardly trusted, WHEN the window is solved, THEN the
-/// right one is found.
-void ExpectRecovery(SmootherLandmark landmark, bool slam_features) {
-  CalibratedWindow fixture(21, 0.0, 8, 40);
-  CalibrationConfig config;
-  config.extrinsics = config.time_offset = true;
-  config.rotation_std_rad = config.translation_std_m = config.time_offset_std_s = 1e4;
-  fixture.estimate = InitialCalibration(config, fixture.estimate.mean);
-  fixture.calibration.layout = fixture.estimate.layout;
-  const CameraCalibration truth = fixture.calibration.mean;
-  const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, truth);
-  for (auto& [id, track] : fixture.window.tracks()) {
-    for (WindowView& view : track.views) {
-      FrameGeometry base_row, view_row;
-      const AnchoredPointInCamera seen(AtRow(geometry, track.views.front(), &base_row).T_WC,
-                                       AtRow(geometry, view, &view_row).T_WC, track.landmark);
-      view.observation.z = seen.q.hnormalized();
-    }
-  }
-  LinearPrior prior;
-  ASSERT_TRUE(
-      MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0), SomeCovariance(), &prior));
-  AddCalibrationPrior(fixture.estimate, &prior);
-  if (slam_features) {
-    SlamChange change;
-    for (auto& [id, track] : fixture.window.tracks()) {
-      AnchorChange moved;
-      FrameGeometry row;
-      if (track.views.front().frame->index == 0 &&
-          ChangeAnchor(AtRow(geometry, track.views.front(), &row), geometry.back(), track.landmark, &moved)) {
-        track.landmark = moved.to;
-        track.anchor = &fixture.window.newest();
-        change.after.push_back(&track);
-      }
-    }
-    prior = test::Marginalize(fixture.window, prior, PoseSystem(fixture.window.size(), &fixture.calibration),
-                              {fixture.gravity_W}, change);
-    fixture.window.RemoveOldest();
-    ASSERT_GT(prior.landmarks.size(), 10u);
-  }
-  VectorXd wrong(7);
-  wrong << 0.02, -0.02, 0.02, 0.01, -0.01, 0.015, 0.01;
-  ASSERT_TRUE(Retract(fixture.calibration.layout, wrong, &fixture.calibration.mean));
-  SmootherConfig config_of_solve;
-  config_of_solve.landmark = landmark;
-  config_of_solve.max_iterations = 50;
-  std::vector<WindowTrack*> tracks;
-  for (auto& [id, track] : fixture.window.tracks()) {
-    if (track.anchor == nullptr) {
-      tracks.push_back(&track);
-    }
-  }
-  WindowTerms terms;
-  terms.push_back(MakePriorTerm(prior, fixture.calibration));
-  if (slam_features) {
-    terms.front() =
-        std::make_unique<SlamPriorTerm>(prior, fixture.window, fixture.calibration, ObservationKernel{});
-  }
-  ASSERT_TRUE(
-      AddSensorTerms({fixture.gravity_W}, fixture.window.frames(), fixture.window.size(), &terms).ok());
-  const VisionConfig vision;
-  const ObservationKernel kernel{vision.robust_kernel, vision.robust_scale_sigma};
-  if (landmark == SmootherLandmark::kInverseDepth) {
-    AddTrackTerms(fixture.window.frames(), tracks, fixture.calibration, kernel, &terms);
-  } else {
-    terms.push_back(std::make_unique<PoseOnlyTerm>(
-        fixture.window, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), fixture.calibration,
-        kernel));
-  }
-  const auto solve = [&](double remaining_sigma) {
-    return SolveWindow(config_of_solve, terms, tracks, &fixture.window, &fixture.calibration,
-                       remaining_sigma);
-  };
-  const Result<WindowSolveReport> near = solve(kRemainingSigma);
-  ASSERT_TRUE(near.ok()) << near.message();
-  const Result<WindowSolveReport> report = solve(0);
-  ASSERT_TRUE(report.ok()) << report.message();
-  EXPECT_GT(near->initial_cost, 1);
-  EXPECT_LT(near->final_cost - report->final_cost, 0.5 * kRemainingSigma * kRemainingSigma);
-  const VectorXd error = Local(fixture.calibration.layout, truth, fixture.calibration.mean);
-  EXPECT_LT(error.head<3>().norm(), 1e-4);
-  EXPECT_LT(error.segment<3>(3).norm(), 1e-3);
-  EXPECT_LT(std::abs(error[6]), 1e-4);
-}
-
-TEST(WindowCalibrationTest, PoseOnlyLandmarksRecoverTheCamera) {
-  ExpectRecovery(SmootherLandmark::kPoseOnly, false);
-}
-TEST(WindowCalibrationTest, InverseDepthsRecoverTheCamera) {
-  ExpectRecovery(SmootherLandmark::kInverseDepth, false);
-}
-TEST(WindowCalibrationTest, FeaturesOfThePriorRecoverTheCamera) {
-  ExpectRecovery(SmootherLandmark::kPoseOnly, true);
 }
 
 }  // namespace

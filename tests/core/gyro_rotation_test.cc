@@ -1,4 +1,4 @@
-#include "frontend/tracking/gyro_rotation.h"
+#include "core/gyro_rotation.h"
 
 #include <gtest/gtest.h>
 
@@ -60,6 +60,27 @@ TEST(GyroRotation, SaysNothingAcrossAGap) {
   gyro.Add(Sample(60 * kMs, Vector3d::Zero()));
   EXPECT_FALSE(gyro.Between(0, 70 * kMs).has_value()) << "60 ms without a sample";
   EXPECT_FALSE(gyro.Between(70 * kMs, 70 * kMs).has_value());
+}
+
+TEST(GyroRotation, ABiasIsTakenOffTheRate) {
+  GyroRotation gyro;
+  const Vector3d rate(0.3, -0.1, 0.2);
+  const Vector3d bias(0.02, 0.05, -0.04);
+  for (int i = 0; i <= 10; ++i) {
+    gyro.Add(Sample(i * 5 * kMs, rate + bias));
+  }
+  EXPECT_TRUE(gyro.Between(0, 50 * kMs, bias)->isApprox(so3::Exp(0.05 * rate), 1e-12));
+}
+
+TEST(GyroRotation, WhatIsDroppedChangesNoLaterRotation) {
+  GyroRotation gyro;
+  for (int i = 0; i <= 20; ++i) {
+    gyro.Add(Sample(i * 10 * kMs, Vector3d(0.1 * i, 1, -0.2 * i)));
+  }
+  const Matrix3d before = gyro.Between(113 * kMs, 180 * kMs).value();
+  gyro.DropBefore(113 * kMs);
+  EXPECT_EQ(gyro.Between(113 * kMs, 180 * kMs).value(), before);
+  EXPECT_FALSE(gyro.Between(30 * kMs, 180 * kMs).has_value());
 }
 
 TEST(GyroRotation, IgnoresDisorderAndNotANumber) {

@@ -1,7 +1,8 @@
-#include "frontend/tracking/gyro_rotation.h"
+#include "core/gyro_rotation.h"
 
 #include <algorithm>
 
+#include "core/imu_buffer.h"
 #include "core/lie.h"
 
 namespace alidade {
@@ -45,24 +46,24 @@ Vector3d GyroRotation::RateAt(TimeNs t_ns) const {
   if (after == samples_.end()) {
     return samples_.back().gyro;
   }
-  const auto before = after - 1;
-  const double fraction =
-      SecondsBetween(before->stamp_ns, t_ns) / SecondsBetween(before->stamp_ns, after->stamp_ns);
-  return (1 - fraction) * before->gyro + fraction * after->gyro;
+  return Interpolate(*(after - 1), *after, t_ns).gyro;
 }
 
-std::optional<Matrix3d> GyroRotation::Between(TimeNs t0_ns, TimeNs t1_ns) {
+void GyroRotation::DropBefore(TimeNs t0_ns) {
   // The last sample at or before t0 is kept: the rate at t0 is interpolated from it.
   while (samples_.size() >= 2 && samples_[1].stamp_ns <= t0_ns) {
     samples_.pop_front();
   }
+}
+
+std::optional<Matrix3d> GyroRotation::Between(TimeNs t0_ns, TimeNs t1_ns, const Vector3d& bias) const {
   if (t1_ns <= t0_ns || !Covers(t0_ns, t1_ns)) {
     return std::nullopt;
   }
   Matrix3d R_B0B = Matrix3d::Identity();
   TimeNs from_ns = t0_ns;
   const auto advance = [&](TimeNs to_ns) {
-    const Vector3d mean_rate = 0.5 * (RateAt(from_ns) + RateAt(to_ns));
+    const Vector3d mean_rate = 0.5 * (RateAt(from_ns) + RateAt(to_ns)) - bias;
     R_B0B = R_B0B * so3::Exp(mean_rate * SecondsBetween(from_ns, to_ns));
     from_ns = to_ns;
   };

@@ -8,17 +8,19 @@
 
 namespace alidade {
 
-/// Rotation between two image stamps from gyroscope samples, biases neglected (0.1 rad/s over 50 ms is 5
-/// mrad: a good start for a search, not a measurement).
+/// Rotation of the body between two times from gyroscope samples.
 class GyroRotation {
  public:
   /// False, and ignored: a stamp that does not increase, or an angular rate that is not finite.
   bool Add(const ImuSample& sample);
 
-  /// R_B0B1: p_B0 = R_B0B1 p_B1 between IMU times t0 < t1, rate linear between samples and held beyond the
-  /// last one. Samples before t0 are forgotten. Empty when samples leave more than kMaxGapS of [t0, t1]
-  /// uncovered in one piece.
-  std::optional<Eigen::Matrix3d> Between(TimeNs t0_ns, TimeNs t1_ns);
+  /// R_B0B1: p_B0 = R_B0B1 p_B1 between IMU times t0 < t1, rate less `bias` [rad/s] linear between samples
+  /// and held beyond the last one. Empty when samples leave more than kMaxGapS of [t0, t1] uncovered in one
+  /// piece.
+  [[nodiscard]] std::optional<Eigen::Matrix3d> Between(
+      TimeNs t0_ns, TimeNs t1_ns, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero()) const;
+  /// Forgets what rotations from t0 on do not need.
+  void DropBefore(TimeNs t0_ns);
 
   /// Longest stretch without a sample over which the rate is interpolated or held.
   static constexpr double kMaxGapS = 0.05;
