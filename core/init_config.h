@@ -23,9 +23,9 @@ struct InitConfig {
   double static_max_accel_std_mps2 = 0.3;
   double static_max_parallax_px = 1.0;
   // In motion.
-  double dynamic_window_s = 2.0;
+  double dynamic_window_s = 1.6;
   int dynamic_min_frames = 6;
-  double dynamic_min_parallax_px = 20.0;
+  double dynamic_min_parallax_px = 5.0;
   double max_wait_s = 30.0;
 
   void Describe(ConfigVisitor& visitor);

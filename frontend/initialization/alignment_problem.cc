@@ -1,6 +1,5 @@
 #include "frontend/initialization/alignment_problem.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -169,19 +168,25 @@ void AlignmentProblem::AddTrack(size_t t) {
   }
 }
 
+Eigen::Matrix<double, 15, 30> AlignmentProblem::InertialJacobian(size_t k, Vector15d* residual) const {
+  Matrix15d jacobian_i;
+  Matrix15d jacobian_j;
+  PreintegrationModel{&preintegrations_[k], gravity_W_}.Evaluate(
+      current_.states[k], current_.biases[k], current_.states[k + 1], current_.biases[k + 1], residual,
+      &jacobian_i, &jacobian_j);
+  *residual = (sqrt_information_[k] * *residual).eval();
+  Eigen::Matrix<double, 15, 30> jacobian;
+  jacobian << sqrt_information_[k] * jacobian_i, sqrt_information_[k] * jacobian_j;
+  return jacobian;
+}
+
 void AlignmentProblem::AddInertial() {
   for (size_t k = 0; k < preintegrations_.size(); ++k) {
     Vector15d residual;
-    Matrix15d jacobian_i;
-    Matrix15d jacobian_j;
-    PreintegrationModel{&preintegrations_[k], gravity_W_}.Evaluate(
-        current_.states[k], current_.biases[k], current_.states[k + 1], current_.biases[k + 1], &residual,
-        &jacobian_i, &jacobian_j);
-    Eigen::Matrix<double, 15, 30> jacobian;
-    jacobian << sqrt_information_[k] * jacobian_i, sqrt_information_[k] * jacobian_j;
+    const Eigen::Matrix<double, 15, 30> jacobian = InertialJacobian(k, &residual);
     const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
     information_.block<30, 30>(at, at) += jacobian.transpose() * jacobian;
-    gradient_.segment<30>(at) += jacobian.transpose() * (sqrt_information_[k] * residual);
+    gradient_.segment<30>(at) += jacobian.transpose() * residual;
   }
 }
 

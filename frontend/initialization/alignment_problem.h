@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
@@ -35,7 +36,10 @@ class AlignmentProblem {
   /// Deviation of s in p_i - p_newest -> (1 + s) (p_i - p_newest). After Linearize.
   bool RelativeScaleStd(double* deviation) const;
   [[nodiscard]] double ReprojectionChi2() const;
-  [[nodiscard]] double InertialChi2() const;
+  /// Of the preintegrations' residuals, a degree of freedom that the fit leaves them: their rows less the
+  /// trace of their share in the information, most of which the states take up. False when singular. After
+  /// Linearize.
+  bool InertialChi2(double* chi2) const;
 
   [[nodiscard]] int active_tracks() const;
   [[nodiscard]] const std::vector<NavState>& states() const { return current_.states; }
@@ -63,8 +67,11 @@ class AlignmentProblem {
   [[nodiscard]] double InertialCost(const Variables& variables) const;
   [[nodiscard]] double PriorCost(const Variables& variables) const;
   void AddTrack(size_t track);
+  /// Whitened, over (state k, state k + 1), 15 columns each.
+  Eigen::Matrix<double, 15, 30> InertialJacobian(size_t k, Vector15d* residual) const;
   void AddInertial();
   void AddPriors();
+  [[nodiscard]] Eigen::LLT<Eigen::MatrixXd> FactorWithGauge() const;
 
   std::vector<SharedTrack> tracks_;
   const std::vector<Preintegration>& preintegrations_;

@@ -112,7 +112,8 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
   // Worse residuals than announced: the pixel noise was set too low.
   const double variance_factor = std::max(1.0, refined.reprojection_chi2);
   if (!problem.NewestCovariance(variance_factor, &refined.newest.covariance) ||
-      !problem.RelativeScaleStd(&refined.relative_scale_std)) {
+      !problem.RelativeScaleStd(&refined.relative_scale_std) ||
+      !problem.InertialChi2(&refined.inertial_chi2)) {
     return Status::Diverged("moving: the window's information is singular");
   }
   refined.relative_scale_std *= std::sqrt(variance_factor);
@@ -120,7 +121,6 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
   refined.newest.stamp_ns = window.stamps_ns.back();
   refined.newest.nav = problem.states().back();
   refined.newest.bias = problem.biases().back();
-  refined.inertial_chi2 = problem.InertialChi2();
   refined.bias_prior_sigma = problem.biases().front().accel.norm() / settings.accel_bias_std_mps2;
   ApplyGauge(&refined);
   return refined;

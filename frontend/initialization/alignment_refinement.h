@@ -14,7 +14,7 @@ struct RefinedAlignment {
   double relative_scale_std = 0;  ///< standard deviation of the window's size over its size
   double reprojection_chi2 =
       0;                     ///< a degree of freedom of the accepted tracks; 1 when the pixel noise is right
-  double inertial_chi2 = 0;  ///< a degree of freedom
+  double inertial_chi2 = 0;  ///< a degree of freedom left by the fit
   double bias_prior_sigma = 0;  ///< |b_a| in deviations of its prior
   int tracks = 0;               ///< accepted
   int rejected_tracks = 0;

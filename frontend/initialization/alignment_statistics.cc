@@ -1,6 +1,5 @@
 // What the alignment problem says about its solution: covariance, scale, fit.
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "core/dense_solvers.h"
@@ -29,6 +28,12 @@ bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covar
   return covariance->allFinite();
 }
 
+Eigen::LLT<Eigen::MatrixXd> AlignmentProblem::FactorWithGauge() const {
+  Eigen::MatrixXd full = information_;
+  full.bottomRightCorner<15, 15>() += gauge_;
+  return Eigen::LLT<Eigen::MatrixXd>(full);
+}
+
 bool AlignmentProblem::RelativeScaleStd(double* deviation) const {
   const Eigen::Index size = information_.rows();
   Eigen::VectorXd functional = Eigen::VectorXd::Zero(size);
@@ -43,9 +48,7 @@ bool AlignmentProblem::RelativeScaleStd(double* deviation) const {
     return false;
   }
   functional /= extent;
-  Eigen::MatrixXd full = information_;
-  full.bottomRightCorner<15, 15>() += gauge_;
-  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  const Eigen::LLT<Eigen::MatrixXd> factor = FactorWithGauge();
   if (factor.info() != Eigen::Success) {
     return false;
   }
@@ -69,8 +72,22 @@ double AlignmentProblem::ReprojectionChi2() const {
   return dof > 0 ? sum / dof : 0;
 }
 
-double AlignmentProblem::InertialChi2() const {
-  return InertialCost(current_) / (15.0 * static_cast<double>(preintegrations_.size()));
+bool AlignmentProblem::InertialChi2(double* chi2) const {
+  const Eigen::LLT<Eigen::MatrixXd> factor = FactorWithGauge();
+  if (factor.info() != Eigen::Success) {
+    return false;
+  }
+  const Eigen::Index rows = 15 * static_cast<Eigen::Index>(preintegrations_.size());
+  Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(information_.rows(), rows);
+  for (size_t k = 0; k < preintegrations_.size(); ++k) {
+    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
+    Vector15d residual;
+    transposed.block<30, 15>(at, at) = InertialJacobian(k, &residual).transpose();
+  }
+  factor.matrixL().solveInPlace(transposed);
+  const double freedom = static_cast<double>(rows) - transposed.squaredNorm();
+  *chi2 = InertialCost(current_) / freedom;
+  return freedom > 0;
 }
 
 }  // namespace alidade

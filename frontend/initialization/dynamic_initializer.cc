@@ -100,9 +100,9 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   const ImuNoise noise = NoiseInMotion(window, rig.imu_noise);
   std::vector<Preintegration> preintegrations = PreintegrateWindow(window, ImuBias(), noise);
   const GyroAlignment gyro = AlignGyro(window, preintegrations, rig);
-  if (gyro.median_parallax_px < limits.min_parallax_px) {
-    return Status::Diverged(
-        Format("moving: parallax %.1f px of %.1f", gyro.median_parallax_px, limits.min_parallax_px));
+  if (gyro.median_parallax_px < config.init.dynamic_min_parallax_px) {
+    return Status::Diverged(Format("moving: parallax %.1f px of %.1f", gyro.median_parallax_px,
+                                   config.init.dynamic_min_parallax_px));
   }
   const ImuBias bias{gyro.gyro_bias, *accel_bias};
   preintegrations = PreintegrateWindow(window, bias, noise);

@@ -21,9 +21,8 @@ struct DynamicSolution {
 
 /// What a solution must meet at this point of the search.
 struct DynamicLimits {
-  double scale_std = 0;        ///< relative standard deviation of the scale, at most
-  double min_parallax_px = 0;  ///< median rotation-compensated motion over the window
-  double longest_s = 0;        ///< of the window
+  double scale_std = 0;  ///< relative standard deviation of the scale, at most
+  double longest_s = 0;  ///< of the window
 };
 
 /// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),

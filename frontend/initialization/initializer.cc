@@ -1,7 +1,7 @@
 #include "frontend/initialization/initializer.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <span>
@@ -21,17 +21,15 @@ namespace {
 
 // An attempt in motion costs a tenth of a second: not on every frame.
 constexpr double kAttemptEveryS = 0.25;
-// A sharp scale is worth a short wait; later a rough one has to do. Length of the search in windows
-// (init.dynamic_window_s), relative deviation of the scale, share of init.dynamic_min_parallax_px: slow
-// motion makes up by its length for what it lacks in parallax.
-struct SearchStage {
-  double windows, scale_std, parallax_share;
-};
-constexpr std::array<SearchStage, 3> kSearch = {{{1.0, 0.008, 1.0}, {2.0, 0.012, 0.5}, {2.5, 0.12, 0.25}}};
+// A rough scale is told as such, and the back end goes on with the data that the initialiser would have
+// waited for. Deviations above the first are worth a wait of half a window (init.dynamic_window_s).
+constexpr double kFirstScaleStd = 0.05;
+constexpr double kLastScaleStd = 0.12;
+constexpr double kWindowsToLast = 1.5;
 // Length of the data that an attempt uses, in windows. Motion that is slow for its size tells its scale only
 // over a long time; but tracks that live shortly do not reach over it. So attempts take turns.
-constexpr double kUsualWindows = 2.5;
-constexpr double kLongestWindows = 8;
+constexpr double kUsualWindows = 3;
+constexpr double kLongestWindows = 10;
 
 /// Longest silence inside the samples; an interpolated gap would pass for rest.
 double LongestStep(const std::vector<ImuSample>& samples) {
@@ -148,20 +146,12 @@ Result<NavEstimate> Initializer::Implementation::TryStatic(RestAssessment* asses
   return estimate;
 }
 
-/// Loosens as the search drags on: linear between the stages.
+/// The scale's limit loosens with the length of the search.
 DynamicLimits Initializer::Implementation::Limits() const {
   const double windows =
       SecondsBetween(first_stamp_ns, frames.back().stamp_ns) / config.init.dynamic_window_s;
-  size_t next = 1;
-  while (next + 1 < kSearch.size() && windows > kSearch[next].windows) {
-    ++next;
-  }
-  const SearchStage& from = kSearch[next - 1];
-  const SearchStage& to = kSearch[next];
-  const double share = std::clamp((windows - from.windows) / (to.windows - from.windows), 0.0, 1.0);
-  return {from.scale_std + share * (to.scale_std - from.scale_std),
-          config.init.dynamic_min_parallax_px *
-              (from.parallax_share + share * (to.parallax_share - from.parallax_share)),
+  const double share = std::clamp((windows - 1) / (kWindowsToLast - 1), 0.0, 1.0);
+  return {std::lerp(kFirstScaleStd, kLastScaleStd, share),
           config.init.dynamic_window_s * (next_is_long ? kLongestWindows : kUsualWindows)};
 }
 
