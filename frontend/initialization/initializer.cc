@@ -21,11 +21,6 @@ namespace {
 
 // An attempt in motion costs a tenth of a second: not on every frame.
 constexpr double kAttemptEveryS = 0.25;
-// A rough scale is told as such, and the back end goes on with the data that the initialiser would have
-// waited for. Deviations above the first are worth a wait of half a window (init.dynamic_window_s).
-constexpr double kFirstScaleStd = 0.05;
-constexpr double kLastScaleStd = 0.12;
-constexpr double kWindowsToLast = 1.5;
 // Length of the data that an attempt uses, in windows. Motion that is slow for its size tells its scale only
 // over a long time; but tracks that live shortly do not reach over it. So attempts take turns.
 constexpr double kUsualWindows = 3;
@@ -45,15 +40,17 @@ double LongestStep(const std::vector<ImuSample>& samples) {
 struct Initializer::Implementation {
   EstimatorConfig config;
   RigCalibration rig;
+  ScaleDemand demand;
   ImuBuffer imu;
   std::deque<TrackFrame> frames;  // stamps are IMU time
   std::string method;
   std::string report;
   InitializerWindow window;
 
-  Implementation(const EstimatorConfig& config_in, const RigCalibration& rig_in)
+  Implementation(const EstimatorConfig& config_in, const RigCalibration& rig_in, const ScaleDemand& demand_in)
       : config(config_in),
         rig(OnPlane(rig_in, config_in.vision.observation_plane)),
+        demand(demand_in),
         imu(config_in.imu.max_gap_s) {
     // The sheet's noise, trusted as far as the configuration says: the same numbers as in the back ends.
     rig.imu_noise = config.imu.Scaled(rig.imu_noise);
@@ -150,8 +147,9 @@ Result<NavEstimate> Initializer::Implementation::TryStatic(RestAssessment* asses
 DynamicLimits Initializer::Implementation::Limits() const {
   const double windows =
       SecondsBetween(first_stamp_ns, frames.back().stamp_ns) / config.init.dynamic_window_s;
-  const double share = std::clamp((windows - 1) / (kWindowsToLast - 1), 0.0, 1.0);
-  return {std::lerp(kFirstScaleStd, kLastScaleStd, share),
+  const double share = std::clamp(
+      (windows - demand.windows_of_first) / (demand.windows_to_last - demand.windows_of_first), 0.0, 1.0);
+  return {demand.first * std::pow(demand.last / demand.first, share),
           config.init.dynamic_window_s * (next_is_long ? kLongestWindows : kUsualWindows)};
 }
 
@@ -174,8 +172,8 @@ Result<NavEstimate> Initializer::Implementation::TryDynamic() {
   return solution->estimate;
 }
 
-Initializer::Initializer(const EstimatorConfig& config, const RigCalibration& rig)
-    : implementation_(std::make_unique<Implementation>(config, rig)) {}
+Initializer::Initializer(const EstimatorConfig& config, const RigCalibration& rig, const ScaleDemand& demand)
+    : implementation_(std::make_unique<Implementation>(config, rig, demand)) {}
 Initializer::~Initializer() = default;
 
 const std::string& Initializer::method() const {

@@ -12,18 +12,29 @@
 
 namespace alidade {
 
+/// Largest relative deviation of the scale with which a start in motion is accepted, by the length of the
+/// search in windows (init.dynamic_window_s): `first` up to `windows_of_first`, `last` from `windows_to_last`
+/// on, log-linear between. A rough scale is told as such, and the back end goes on with the data that the
+/// initialiser would have waited for. Deviations above `first` are worth a wait of half a window.
+struct ScaleDemand {
+  double first = 0.05;
+  double windows_of_first = 1;
+  double last = 0.12;
+  double windows_to_last = 1.5;
+};
+
 /// Finds the first state from IMU and tracks alone; shared by both back ends.
 ///
 /// Static (static_initializer.h): at rest by IMU spread and image motion; gravity gives roll and pitch, the
 /// gyroscope's mean its bias. Dynamic (dynamic_initializer.h): gyroscope bias from epipolar geometry,
 /// velocity and gravity in closed form, maximum likelihood over the window; accepted once the scale is known
-/// to 0.8 %, or, as the search drags on, to 12 %. Auto: static at rest, else dynamic; a rest that is too
+/// as well as ScaleDemand asks. Auto: static at rest, else dynamic; a rest that is too
 /// short yet is waited for. World: z up, yaw 0 and position 0 at the returned state. Attempts in motion are
 /// made four times a second of data; between them AddFrame repeats the last reason. The caller gives up after
 /// init.max_wait_s. imu.noise_scale and imu.random_walk_scale are applied here: pass the rig as read.
 class Initializer {
  public:
-  Initializer(const EstimatorConfig& config, const RigCalibration& rig);
+  Initializer(const EstimatorConfig& config, const RigCalibration& rig, const ScaleDemand& demand = {});
   ~Initializer();
   Initializer(const Initializer&) = delete;
   Initializer& operator=(const Initializer&) = delete;
