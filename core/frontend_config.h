@@ -14,9 +14,9 @@ struct FrontendConfig {
   double corner_threshold = 6.0;
   int pyramid_levels = 3;
   int window_px = 15;
-  int template_px = 13;
+  int template_px = 21;
   double min_correlation = 0.8;
-  double ransac_threshold_px = 1.0;
+  double ransac_threshold_px = 1.5;
   double forward_backward_px = 0.0;
   bool equalize = false;
   bool imu_prediction = true;

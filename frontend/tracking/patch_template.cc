@@ -21,23 +21,16 @@ constexpr float kMinDeviationGrey = 1;
 constexpr float kDamping = 1e-3F;
 constexpr float kMaxGrowth = 1.5F;
 
-/// Scales to zero mean and unit variance; false when it is flat.
-bool Normalize(std::vector<float>* grey) {
+/// Scales to zero mean and unit variance; returns the deviation before, 0 when the patch is flat.
+float Normalize(Eigen::VectorXf* grey) {
   const auto count = static_cast<float>(grey->size());
-  float sum = 0, squares = 0;
-  for (const float value : *grey) {
-    sum += value;
-    squares += value * value;
-  }
-  const float mean = sum / count;
-  const float deviation = std::sqrt(std::max(0.0F, squares / count - mean * mean));
+  grey->array() -= grey->sum() / count;
+  const float deviation = std::sqrt(grey->squaredNorm() / count);
   if (deviation < kMinDeviationGrey) {
-    return false;
+    return 0;
   }
-  for (float& value : *grey) {
-    value = (value - mean) / deviation;
-  }
-  return true;
+  *grey /= deviation;
+  return deviation;
 }
 
 bool Inside(const cv::Mat& image, const Vector2f& pixel) {
@@ -69,50 +62,36 @@ PatchTemplate::PatchTemplate(const cv::Mat& image, const Vector2f& centre, int s
   const int left = static_cast<int>(std::lround(centre.x())) - side_px / 2;
   const int top = static_cast<int>(std::lround(centre.y())) - side_px / 2;
   corner_ = Vector2f(static_cast<float>(left), static_cast<float>(top)) - centre;
-  std::vector<float> grey;
-  std::vector<Vector2f> slope;
-  float deviation = 0;
+  const Eigen::Index count = Eigen::Index{side_px} * side_px;
+  Eigen::VectorXf grey(count);
+  jacobian_.resize(count, 6);
+  Eigen::Index i = 0;
   for (int y = top; y < top + side_px; ++y) {
     const unsigned char* row = image.ptr(y);
-    for (int x = left; x < left + side_px; ++x) {
-      grey.push_back(row[x]);
-      slope.emplace_back(0.5F * static_cast<float>(row[x + 1] - row[x - 1]),
-                         0.5F * static_cast<float>(image.ptr(y + 1)[x] - image.ptr(y - 1)[x]));
+    for (int x = left; x < left + side_px; ++x, ++i) {
+      grey[i] = row[x];
+      const Vector2f slope(0.5F * static_cast<float>(row[x + 1] - row[x - 1]),
+                           0.5F * static_cast<float>(image.ptr(y + 1)[x] - image.ptr(y - 1)[x]));
+      const Vector2f at = Vector2f(static_cast<float>(x), static_cast<float>(y)) - centre;
+      jacobian_.row(i) << slope.x(), slope.y(), slope.x() * at.x(), slope.x() * at.y(), slope.y() * at.x(),
+          slope.y() * at.y();
     }
   }
-  const std::vector<float> raw = grey;
-  if (!Normalize(&grey)) {
+  const float deviation = Normalize(&grey);
+  if (!(deviation > 0)) {
     return;
   }
-  for (std::size_t i = 1; i < grey.size() && deviation == 0; ++i) {
-    deviation = grey[i] != grey[0] ? (raw[i] - raw[0]) / (grey[i] - grey[0]) : 0;
-  }
-  for (Vector2f& derivative : slope) {
-    derivative /= deviation;
-  }
   grey_ = std::move(grey);
-  slope_ = std::move(slope);
-
-  Matrix6f hessian = Matrix6f::Zero();
-  Vector6f sum = Vector6f::Zero();
-  std::size_t i = 0;
-  for (int row = 0; row < side_px_; ++row) {
-    for (int column = 0; column < side_px_; ++column, ++i) {
-      const Vector2f x = corner_ + Vector2f(static_cast<float>(column), static_cast<float>(row));
-      Vector6f steepest;
-      steepest << slope_[i], slope_[i].x() * x, slope_[i].y() * x;
-      hessian += steepest * steepest.transpose();
-      share_ += grey_[i] * steepest;
-      sum += steepest;
-    }
-  }
-  const auto count = static_cast<float>(grey_.size());
-  hessian -= (share_ * share_.transpose() + sum * sum.transpose()) / count;
+  jacobian_ /= deviation;
+  // Gain and offset projected out: a column's share of the template and of a constant.
+  jacobian_.rowwise() -= jacobian_.colwise().mean().eval();
+  jacobian_ -= grey_ * (grey_.transpose() * jacobian_ / static_cast<float>(count)).eval();
+  Matrix6f hessian = jacobian_.transpose() * jacobian_;
   hessian.diagonal() *= 1 + kDamping;
   inverse_ = hessian.ldlt().solve(Matrix6f::Identity());
 }
 
-bool PatchTemplate::Sample(const cv::Mat& image, const TemplateMatch& match, std::vector<float>* grey) const {
+bool PatchTemplate::Sample(const cv::Mat& image, const TemplateMatch& match, Eigen::VectorXf* grey) const {
   const Vector2f right = match.affine.col(0);
   const Vector2f down = match.affine.col(1);
   const Vector2f start = match.centre + match.affine * corner_;
@@ -121,38 +100,15 @@ bool PatchTemplate::Sample(const cv::Mat& image, const TemplateMatch& match, std
       !Inside(image, start + last * (right + down))) {
     return false;
   }
-  grey->clear();
+  float* out = grey->data();
   for (int row = 0; row < side_px_; ++row) {
     const Vector2f line = start + static_cast<float>(row) * down;
     for (int column = 0; column < side_px_; ++column) {
       const auto along = static_cast<float>(column);
-      grey->push_back(Bilinear(image, line.x() + along * right.x(), line.y() + along * right.y()));
+      *out++ = Bilinear(image, line.x() + along * right.x(), line.y() + along * right.y());
     }
   }
   return true;
-}
-
-PatchTemplate::Vector6f PatchTemplate::Gradient(const std::vector<float>& grey, float correlation) const {
-  float across = 0, upright = 0, xx = 0, xy = 0, yx = 0, yy = 0;
-  std::size_t i = 0;
-  for (int row = 0; row < side_px_; ++row) {
-    const float y = corner_.y() + static_cast<float>(row);
-    for (int column = 0; column < side_px_; ++column, ++i) {
-      const float x = corner_.x() + static_cast<float>(column);
-      const float error = grey[i] - grey_[i];
-      const float horizontal = error * slope_[i].x();
-      const float vertical = error * slope_[i].y();
-      across += horizontal;
-      upright += vertical;
-      xx += horizontal * x;
-      xy += horizontal * y;
-      yx += vertical * x;
-      yy += vertical * y;
-    }
-  }
-  Vector6f gradient;
-  gradient << across, upright, xx, xy, yx, yy;
-  return gradient - share_ * (correlation - 1);
 }
 
 bool PatchTemplate::Align(const cv::Mat& image, TemplateMatch* match) const {
@@ -160,18 +116,15 @@ bool PatchTemplate::Align(const cv::Mat& image, TemplateMatch* match) const {
     return false;
   }
   TemplateMatch now = *match;
-  std::vector<float> grey;
-  grey.reserve(grey_.size());
+  Eigen::VectorXf grey(grey_.size());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (!Sample(image, now, &grey) || !Normalize(&grey)) {
+    if (!Sample(image, now, &grey) || !(Normalize(&grey) > 0)) {
       return false;
     }
-    float product = 0;
-    for (std::size_t i = 0; i < grey.size(); ++i) {
-      product += grey[i] * grey_[i];
-    }
-    now.correlation = product / static_cast<float>(grey.size());
-    const Vector6f step = inverse_ * Gradient(grey, now.correlation);
+    now.correlation = grey.dot(grey_) / static_cast<float>(grey.size());
+    // The template itself has no share in the Jacobian's columns, so that it need not be subtracted.
+    const Vector6f gradient = jacobian_.transpose() * grey;
+    const Vector6f step = inverse_ * gradient;
     Matrix2f change = Matrix2f::Identity();
     change(0, 0) += step[2];
     change(0, 1) += step[3];

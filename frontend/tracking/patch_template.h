@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
-#include <vector>
 
 namespace alidade {
 
@@ -38,20 +37,18 @@ class PatchTemplate {
   /// Whether the deformation is so large that image detail and template no longer compare.
   [[nodiscard]] static bool IsWornOut(const Eigen::Matrix2f& affine);
 
-  [[nodiscard]] bool empty() const { return grey_.empty(); }
+  [[nodiscard]] bool empty() const { return grey_.size() == 0; }
 
  private:
   using Vector6f = Eigen::Matrix<float, 6, 1>;
   using Matrix6f = Eigen::Matrix<float, 6, 6>;
 
-  bool Sample(const cv::Mat& image, const TemplateMatch& match, std::vector<float>* grey) const;
-  [[nodiscard]] Vector6f Gradient(const std::vector<float>& grey, float correlation) const;
+  bool Sample(const cv::Mat& image, const TemplateMatch& match, Eigen::VectorXf* grey) const;
 
   int side_px_ = 0;
   Eigen::Vector2f corner_ = Eigen::Vector2f::Zero();  ///< first pixel of the patch, from the corner
-  std::vector<float> grey_;                           ///< zero mean, unit variance; row-major
-  std::vector<Eigen::Vector2f> slope_;                ///< its derivatives along x and y
-  Vector6f share_ = Vector6f::Zero();                 ///< of the template in each column of the Jacobian
+  Eigen::VectorXf grey_;                              ///< zero mean, unit variance; row-major
+  Eigen::Matrix<float, Eigen::Dynamic, 6> jacobian_;  ///< s of every pixel
   Matrix6f inverse_ = Matrix6f::Zero();               ///< of H
 };
 
