@@ -37,6 +37,8 @@ void ForbidThreadsInside() {
   std::call_once(once, [] { cv::setNumThreads(1); });
 }
 
+/// In which no track begins: its first template would not fit. Tracks that come closer to the edge live on
+/// without one as long as the window of Lucas-Kanade is inside.
 int BorderPx(const FrontendConfig& config) {
   return std::max(config.window_px / 2, config.template_px > 0 ? config.template_px / 2 + 3 : 0);
 }
@@ -190,8 +192,8 @@ void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, d
   for (size_t i = 0; i < tracks.size(); ++i) {
     BearingPair pair{.first = tracks[i].ray, .second = Vector3d::UnitZ()};
     const Vector2d pixel = ToVector(pixels[i]);
-    alive[i] =
-        alive[i] && rig.camera.InImage(pixel, BorderPx(config)) && PixelRay(rig.camera, pixel, &pair.second);
+    alive[i] = alive[i] && rig.camera.InImage(pixel, config.window_px / 2) &&
+               PixelRay(rig.camera, pixel, &pair.second);
     if (alive[i]) {
       tracks[i].pixel = pixels[i];
       tracks[i].ray = pair.second;
