@@ -86,12 +86,12 @@ struct Walk {
 std::optional<GnssAlignment> Follow(const Walk& walk, double seconds, std::size_t satellites,
                                     GnssAligner* aligner) {
   const Vector3d approximate = walk.enu.ToEcef(Vector3d(200, -300, 50));
-  double next_epoch = 0.537;
+  int epochs = 0;
   for (int i = 0; i * 0.1 < seconds; ++i) {
     const double t = 0.1 * i;
     const Vector3d gyro(0, 0, walk.speed_mps / walk.radius_m);
-    for (; next_epoch < t; next_epoch += 1) {
-      aligner->AddEpoch(walk.Epoch(next_epoch, satellites), approximate);
+    for (; epochs + 0.537 < t; ++epochs) {
+      aligner->AddEpoch(walk.Epoch(epochs + 0.537, satellites), approximate);
     }
     aligner->AddState(kStart + SecondsToNs(t), walk.Local(t), ImuBias(), gyro, walk.VelocityCovariance());
     if (auto alignment = aligner->TryAlign()) {

@@ -46,10 +46,11 @@ struct FixWalk {
 std::optional<GnssAlignment> Follow(const FixWalk& walk, double seconds, FixAligner* aligner) {
   RandomStream noise(walk.seed, "noise");
   RandomStream wrong(walk.seed, "wrong");
-  double next = 0.537;
+  int fixes = 0;
   for (int i = 0; i * 0.1 < seconds; ++i) {
     const double t = 0.1 * i;
-    for (; next < t; next += 1) {
+    for (; fixes + 0.537 < t; ++fixes) {
+      const double next = fixes + 0.537;
       const NavState nav = walk.Global(next);
       Vector3d p_NA = nav.p_WB + nav.R_WB * walk.sensor.p_BA + walk.std_m * noise.Normal3();
       const double size = wrong.Uniform(10, 50);
