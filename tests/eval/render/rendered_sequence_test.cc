@@ -34,7 +34,7 @@ using test::Scene;
 using test::Sharpness;
 using test::SmallConfig;
 
-TEST(RenderedSequence, TrackedCornersFitTheTruthWithinAThirdOfAPixel) {
+TEST(RenderedSequence, TrackedCornersFitTheTruthWithinATenthOfAPixel) {
   const Scene scene = Scene::Make(RenderedConfig());
   const Result<std::vector<TrackFrame>> frames =
       TrackRenderedImages(scene.sequence, scene.dataset(), FrontendConfig(), {.jobs = 2});
@@ -43,8 +43,9 @@ TEST(RenderedSequence, TrackedCornersFitTheTruthWithinAThirdOfAPixel) {
   ASSERT_GT(errors.size(), 100 * (frames->size() - 1)) << "of 150 tracks most live on";
   std::cout << errors.size() << " observations; reprojection error median " << Quantile(errors, 0.5)
             << " px, 90 % " << Quantile(errors, 0.9) << " px, 99 % " << Quantile(errors, 0.99) << " px\n";
-  EXPECT_LT(Quantile(errors, 0.5), 0.3);
-  EXPECT_LT(Quantile(errors, 0.9), 1.0);
+  EXPECT_LT(Quantile(errors, 0.5), 0.1);
+  // Corners between a near and a far surface.
+  EXPECT_LT(Quantile(errors, 0.9), 1.5);
 }
 
 TEST(RenderedSequence, RaysMeetWhatTheHallSays) {
