@@ -307,7 +307,8 @@ TEST(KltTracker, DropsTracksThatLeaveTheImageAndAccountsForEveryTrack) {
     EXPECT_EQ(static_cast<size_t>(statistics.tracked + statistics.detected), frame.observations.size());
     lost += statistics.lost;
     for (const TrackObservation& observation : frame.observations) {
-      EXPECT_TRUE(TestRig().camera.InImage(observation.pixel, FrontendConfig().window_px / 2)) << observation.pixel.transpose();
+      EXPECT_TRUE(TestRig().camera.InImage(observation.pixel, FrontendConfig().window_px / 2))
+          << observation.pixel.transpose();
     }
     EXPECT_GT(frame.frontend_ms, 0);
     before = frame.observations.size();
