@@ -35,6 +35,16 @@ double LongestStep(const std::vector<ImuSample>& samples) {
   return longest_s;
 }
 
+/// Where the last silence of more than `max_gap_s` ends; the first sample where there is none.
+TimeNs EndOfSilence(std::span<const ImuSample> samples, double max_gap_s) {
+  for (size_t i = samples.size(); i-- > 1;) {
+    if (SecondsBetween(samples[i - 1].stamp_ns, samples[i].stamp_ns) > max_gap_s) {
+      return samples[i].stamp_ns;
+    }
+  }
+  return samples.empty() ? INT64_MIN : samples.front().stamp_ns;
+}
+
 }  // namespace
 
 struct Initializer::Implementation {
@@ -70,13 +80,18 @@ struct Initializer::Implementation {
   Result<NavEstimate> TryDynamic();
 };
 
-/// Keeps the longest dynamic window, or as many frames as it needs when they are sparse, and the IMU that
-/// reaches back to them.
+/// Keeps the longest dynamic window since the IMU was silent, or as many frames as it needs when they are
+/// sparse, and the IMU that reaches back to them.
 void Initializer::Implementation::Trim() {
   const TimeNs newest = frames.back().stamp_ns;
   const TimeNs keep_from = newest - SecondsToNs((kLongestWindows + 0.1) * config.init.dynamic_window_s);
   const size_t keep = static_cast<size_t>(config.init.dynamic_min_frames);
   while (frames.size() > keep && frames.front().stamp_ns < keep_from) {
+    frames.pop_front();
+  }
+  // A window that spans a silence is refused: frames before it would only hold up the start.
+  const TimeNs heard_from = EndOfSilence(imu.samples(), config.imu.max_gap_s);
+  while (frames.size() > 1 && frames.front().stamp_ns < heard_from) {
     frames.pop_front();
   }
   const TimeNs static_from = newest - SecondsToNs(config.init.static_window_s);

@@ -202,6 +202,21 @@ TEST(DynamicInitializer, WHEN_the_motion_is_too_small_to_see_THEN_it_refuses_for
   EXPECT_THAT(outcome.message, HasSubstr("parallax"));
 }
 
+TEST(DynamicInitializer, WHEN_the_imu_was_silent_THEN_the_window_begins_after_it) {
+  Dataset dataset = MovingSequence(504, 0);
+  const TimeNs start = dataset.tracks[20].stamp_ns;
+  const TimeNs silent_from = start + SecondsToNs(0.5);
+  const TimeNs silent_to = start + SecondsToNs(1.5);
+  std::erase_if(dataset.imu, [&](const ImuSample& sample) {
+    return sample.stamp_ns > silent_from && sample.stamp_ns < silent_to;
+  });
+  const StartOutcome outcome = StartAt(DynamicConfig(), dataset, start, 6);
+  ASSERT_TRUE(outcome.ok) << outcome.message;
+  EXPECT_GT(outcome.waited_s, 1.5 + 0.95 * InitConfig().dynamic_window_s);
+  EXPECT_LT(outcome.waited_s, 1.5 + 2.5);
+  EXPECT_LT(outcome.nees, 31);
+}
+
 TEST(DynamicInitializer, WHEN_the_imu_does_not_reach_the_frame_THEN_it_says_so) {
   Dataset dataset = MovingSequence(503, 0);
   dataset.imu.resize(dataset.imu.size() / 4);
