@@ -58,6 +58,8 @@ case "$mode" in
       cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DALIDADE_UNITY="$2" \
         -DCMAKE_CXX_COMPILER="$compiler" -DALIDADE_CCACHE=OFF >/dev/null
       ninja -C "$build" -t targets all | sed -n 's/^\(.*cmake_pch.*\.pch\): .*/\1/p' | xargs ninja -C "$build" >&2
+      # Sources that the build makes are part of its groups.
+      ninja -C "$build" -t targets all | sed -n 's/^\([^/].*\.cc\): CUSTOM_COMMAND$/\1/p' | xargs -r ninja -C "$build" >&2
       # Sources that no target of ours compiles, as the drivers of other systems, have no commands.
       translation_units "$build" | xargs -r -P "$(nproc)" -n 1 scripts/tidy_unit.sh "$tool" "$build" "$3"
     }

@@ -127,16 +127,16 @@ std::string WorkerPool::BeyondLimit(const Worker& worker) const {
 Status WorkerPool::Watch() {
   for (auto worker = workers_.begin(); worker != workers_.end();) {
     const auto next = std::next(worker);
-    if (std::string fault = worker->cell ? BeyondLimit(*worker) : std::string(); !fault.empty()) {
+    if (const std::string fault = worker->cell ? BeyondLimit(*worker) : std::string(); !fault.empty()) {
       worker->process.Kill();
-      ALIDADE_RETURN_IF_ERROR(Bury(worker, std::move(fault)));
+      ALIDADE_RETURN_IF_ERROR(Bury(worker, fault));
     }
     worker = next;
   }
   return Status::Ok();
 }
 
-Status WorkerPool::Bury(std::list<Worker>::iterator worker, std::string fault) {
+Status WorkerPool::Bury(std::list<Worker>::iterator worker, const std::string& fault) {
   const std::string how = worker->process.Join();
   const std::optional<size_t> cell = worker->cell;
   const bool ready = worker->ready;

@@ -40,7 +40,7 @@ class WorkerPool {
   Status Listen();
   Status Hear(Worker* worker);
   /// `fault`: why it was killed; empty: it ended by itself.
-  Status Bury(std::list<Worker>::iterator worker, std::string fault);
+  Status Bury(std::list<Worker>::iterator worker, const std::string& fault);
   /// Kills the workers whose cells are beyond a limit.
   Status Watch();
   [[nodiscard]] std::string BeyondLimit(const Worker& worker) const;

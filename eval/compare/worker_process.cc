@@ -41,6 +41,7 @@ Result<WorkerProcess> WorkerProcess::Start(const std::vector<std::string>& words
   posix_spawn_file_actions_adddup2(&files, out[1], STDOUT_FILENO);
   std::vector<std::string> arguments = words;
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& word : arguments) {
     pointers.push_back(word.data());
   }

@@ -35,6 +35,7 @@ std::vector<CellGroup> GroupCells(const Comparison& comparison) {
     group.cells.push_back(&cell);
   }
   std::vector<CellGroup> groups;
+  groups.reserve(by_rank.size());
   for (auto& [rank, group] : by_rank) {
     groups.push_back(std::move(group));
   }

@@ -135,7 +135,7 @@ Status TrackImages(const Dataset& dataset, const FrontendConfig& config, const P
   UnreadableImages unreadable(dataset.images.size());
   PipelineOptions skipping = options;
   skipping.unreadable = [&](const Status& fault) { return unreadable.Add(dataset.path, fault); };
-  const Status status = Track(dataset, stamps, image_of, config, skipping, [&](TrackFrame* frame) {
+  Status status = Track(dataset, stamps, image_of, config, skipping, [&](TrackFrame* frame) {
     frame->frontend_ms += decode_ms;
     return take(frame);
   });

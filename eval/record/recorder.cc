@@ -163,7 +163,7 @@ Status WriteRows(const RunTable& table, const RunResult& result, const AppendTex
     if (text.size() < kBlock) {
       return Status::Ok();
     }
-    const Status status = append(text);
+    Status status = append(text);
     text.clear();
     return status;
   }));

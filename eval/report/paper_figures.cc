@@ -68,6 +68,7 @@ class Sheet {
 
 std::vector<double> Component(const std::vector<Eigen::Vector3d>& vectors, int axis) {
   std::vector<double> values;
+  values.reserve(vectors.size());
   for (const Eigen::Vector3d& vector : vectors) {
     values.push_back(vector(axis));
   }
@@ -163,6 +164,7 @@ std::string RpeFigure(const std::vector<Entry>& entries) {
     }
   }
   std::vector<SvgBoxGroup> list;
+  list.reserve(groups.size());
   for (auto& [distance, group] : groups) {
     list.push_back(std::move(group));
   }

@@ -57,7 +57,7 @@ Status ImageFeed::AddImage(TimeNs stamp_ns, GreyImage image) {
 }
 
 Status ImageFeed::Flush() {
-  const Status status = TrackUntil(INT64_MAX);
+  Status status = TrackUntil(INT64_MAX);
   session_.Flush();
   return status;
 }

@@ -35,6 +35,7 @@ std::vector<StatePair> PairsSince(const RunResult& run, const Trajectory& truth,
 
 std::vector<PositionError> ErrorsOf(const std::vector<StatePair>& pairs, TimeNs start_ns) {
   std::vector<PositionError> errors;
+  errors.reserve(pairs.size());
   for (const StatePair& pair : pairs) {
     errors.push_back({SecondsBetween(start_ns, pair.estimate.stamp_ns),
                       pair.estimate.nav.p_WB - pair.truth.nav.p_WB,

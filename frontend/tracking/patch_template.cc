@@ -53,7 +53,8 @@ float Bilinear(const cv::Mat& image, float x, float y) {
 }  // namespace
 
 bool PatchTemplate::Fits(const cv::Mat& image, const Vector2f& centre, int side_px) {
-  const Vector2f reach = Vector2f::Constant(static_cast<float>(side_px / 2 + 2));
+  const int reach_px = side_px / 2 + 2;
+  const Vector2f reach = Vector2f::Constant(static_cast<float>(reach_px));
   return Inside(image, centre - reach) && Inside(image, centre + reach);
 }
 
