@@ -216,6 +216,7 @@ void KltTracker::Implementation::Spread() {
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return tracks[a].length > tracks[b].length; });
   std::vector<cv::Point2f> preferred;
+  preferred.reserve(order.size());
   for (const size_t i : order) {
     preferred.push_back(tracks[i].pixel);
   }

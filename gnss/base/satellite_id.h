@@ -17,6 +17,7 @@ struct SatelliteId {
   GnssSystem system = GnssSystem::kGps;
   int number = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the 0 of the comparison for a pointer
   friend auto operator<=>(const SatelliteId&, const SatelliteId&) = default;
 };
 

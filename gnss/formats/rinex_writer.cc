@@ -129,7 +129,8 @@ std::string KeplerText(const KeplerEphemeris& e) {
     const TimeNs shift = GpsTimeFromWeek(scale, 0, 0);
     return SecondsBetween(0, (stamp_ns - shift) % kWeekNs);
   };
-  const auto week = static_cast<double>((e.toe_ns - GpsTimeFromWeek(scale, 0, 0)) / kWeekNs);
+  const TimeNs whole_weeks = (e.toe_ns - GpsTimeFromWeek(scale, 0, 0)) / kWeekNs;
+  const auto week = static_cast<double>(whole_weeks);
   const bool two_delays = system == GnssSystem::kGalileo || system == GnssSystem::kBeidou;
   std::string text =
       MessageLabel(e.satellite, scale, e.toc_ns) + Number(e.af0) + Number(e.af1) + Number(e.af2) + "\n";

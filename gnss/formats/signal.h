@@ -13,6 +13,7 @@ struct SignalCode {
   char band = '1';
   char attribute = 'C';
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the 0 of the comparison for a pointer
   friend auto operator<=>(const SignalCode&, const SignalCode&) = default;
 };
 
