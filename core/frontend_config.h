@@ -14,7 +14,7 @@ struct FrontendConfig {
   double corner_threshold = 6.0;
   int pyramid_levels = 3;
   int window_px = 15;
-  int template_px = 21;
+  int template_px = 25;
   double min_correlation = 0.8;
   double ransac_threshold_px = 1.5;
   double forward_backward_px = 0.0;

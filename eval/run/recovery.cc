@@ -1,15 +1,6 @@
 #include "eval/run/recovery.h"
 
 namespace alidade {
-namespace {
-
-// Dead reckoning leaves the yaw of a new start uncertain by up to a radian, and the smoother's prior is
-// linear in it: where a rough scale is corrected afterwards, the velocity turns against its prior and seems
-// to tell the yaw.
-constexpr ScaleDemand kSmootherDemand{
-    .first = 0.01, .windows_of_first = 2.5, .last = 0.12, .windows_to_last = 3.1};
-
-}  // namespace
 
 Recovery::Recovery(const EstimatorConfig& config, const RigCalibration& rig, bool camera)
     : config_(config),
@@ -46,8 +37,11 @@ bool Recovery::GiveUp(TimeNs stamp_ns) {
   EstimatorConfig config = config_;
   // A given state is for the first start alone: once lost, it has to be found.
   config.init.method = config.init.method == InitMethod::kTruth ? InitMethod::kAuto : config.init.method;
-  initializer_ = std::make_unique<Initializer>(
-      config, rig_, config.backend == Backend::kSmoother ? kSmootherDemand : ScaleDemand());
+  // Dead reckoning leaves the yaw of a new start uncertain by up to a radian, and the smoother's prior is
+  // linear in it: where a rough scale is corrected afterwards, the velocity turns against its prior and seems
+  // to tell the yaw.
+  const bool sharp = config.backend == Backend::kSmoother;
+  initializer_ = std::make_unique<Initializer>(config, rig_, sharp ? ScaleDemand::Sharp() : ScaleDemand());
   return true;
 }
 

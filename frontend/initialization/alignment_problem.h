@@ -33,13 +33,12 @@ class AlignmentProblem {
   /// Marginal of the newest state, gauge prior included; the data's part is scaled by `variance_factor`.
   /// False when singular. After Linearize.
   bool NewestCovariance(double variance_factor, Matrix15d* covariance) const;
-  /// Deviation of s in p_i - p_newest -> (1 + s) (p_i - p_newest). After Linearize.
-  bool RelativeScaleStd(double* deviation) const;
+  /// After Linearize; false when the information is singular. `relative_scale_std`: deviation of s in
+  /// p_i - p_newest -> (1 + s) (p_i - p_newest). `inertial_chi2`: of the preintegrations' residuals, a degree
+  /// of freedom that the fit leaves them: their rows less the trace of their share in the information, most
+  /// of which the states take up.
+  bool Judge(double* relative_scale_std, double* inertial_chi2) const;
   [[nodiscard]] double ReprojectionChi2() const;
-  /// Of the preintegrations' residuals, a degree of freedom that the fit leaves them: their rows less the
-  /// trace of their share in the information, most of which the states take up. False when singular. After
-  /// Linearize.
-  bool InertialChi2(double* chi2) const;
 
   [[nodiscard]] int active_tracks() const;
   [[nodiscard]] const std::vector<NavState>& states() const { return current_.states; }
@@ -71,7 +70,8 @@ class AlignmentProblem {
   Eigen::Matrix<double, 15, 30> InertialJacobian(size_t k, Vector15d* residual) const;
   void AddInertial();
   void AddPriors();
-  [[nodiscard]] Eigen::LLT<Eigen::MatrixXd> FactorWithGauge() const;
+  bool RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& factor, double* deviation) const;
+  bool InertialChi2(const Eigen::LLT<Eigen::MatrixXd>& factor, double* chi2) const;
 
   std::vector<SharedTrack> tracks_;
   const std::vector<Preintegration>& preintegrations_;

@@ -112,8 +112,7 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
   // Worse residuals than announced: the pixel noise was set too low.
   const double variance_factor = std::max(1.0, refined.reprojection_chi2);
   if (!problem.NewestCovariance(variance_factor, &refined.newest.covariance) ||
-      !problem.RelativeScaleStd(&refined.relative_scale_std) ||
-      !problem.InertialChi2(&refined.inertial_chi2)) {
+      !problem.Judge(&refined.relative_scale_std, &refined.inertial_chi2)) {
     return Status::Diverged("moving: the window's information is singular");
   }
   refined.relative_scale_std *= std::sqrt(variance_factor);

@@ -28,15 +28,16 @@ bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covar
   return covariance->allFinite();
 }
 
-Eigen::LLT<Eigen::MatrixXd> AlignmentProblem::FactorWithGauge() const {
+bool AlignmentProblem::Judge(double* relative_scale_std, double* inertial_chi2) const {
   Eigen::MatrixXd full = information_;
   full.bottomRightCorner<15, 15>() += gauge_;
-  return Eigen::LLT<Eigen::MatrixXd>(full);
+  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  return factor.info() == Eigen::Success && RelativeScaleStd(factor, relative_scale_std) &&
+         InertialChi2(factor, inertial_chi2);
 }
 
-bool AlignmentProblem::RelativeScaleStd(double* deviation) const {
-  const Eigen::Index size = information_.rows();
-  Eigen::VectorXd functional = Eigen::VectorXd::Zero(size);
+bool AlignmentProblem::RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& factor, double* deviation) const {
+  Eigen::VectorXd functional = Eigen::VectorXd::Zero(information_.rows());
   double extent = 0;
   for (size_t k = 0; k + 1 < current_.states.size(); ++k) {
     const Vector3d arm = current_.states[k].p_WB - current_.states.back().p_WB;
@@ -48,12 +49,24 @@ bool AlignmentProblem::RelativeScaleStd(double* deviation) const {
     return false;
   }
   functional /= extent;
-  const Eigen::LLT<Eigen::MatrixXd> factor = FactorWithGauge();
-  if (factor.info() != Eigen::Success) {
-    return false;
-  }
   *deviation = std::sqrt(functional.dot(factor.solve(functional)));
   return std::isfinite(*deviation);
+}
+
+bool AlignmentProblem::InertialChi2(const Eigen::LLT<Eigen::MatrixXd>& factor, double* chi2) const {
+  const Eigen::Index rows = 15 * static_cast<Eigen::Index>(preintegrations_.size());
+  Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(information_.rows(), rows);
+  double cost = 0;
+  for (size_t k = 0; k < preintegrations_.size(); ++k) {
+    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
+    Vector15d residual;
+    transposed.block<30, 15>(at, at) = InertialJacobian(k, &residual).transpose();
+    cost += residual.squaredNorm();
+  }
+  factor.matrixL().solveInPlace(transposed);
+  const double freedom = static_cast<double>(rows) - transposed.squaredNorm();
+  *chi2 = cost / freedom;
+  return freedom > 0;
 }
 
 double AlignmentProblem::ReprojectionChi2() const {
@@ -70,24 +83,6 @@ double AlignmentProblem::ReprojectionChi2() const {
     }
   }
   return dof > 0 ? sum / dof : 0;
-}
-
-bool AlignmentProblem::InertialChi2(double* chi2) const {
-  const Eigen::LLT<Eigen::MatrixXd> factor = FactorWithGauge();
-  if (factor.info() != Eigen::Success) {
-    return false;
-  }
-  const Eigen::Index rows = 15 * static_cast<Eigen::Index>(preintegrations_.size());
-  Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(information_.rows(), rows);
-  for (size_t k = 0; k < preintegrations_.size(); ++k) {
-    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
-    Vector15d residual;
-    transposed.block<30, 15>(at, at) = InertialJacobian(k, &residual).transpose();
-  }
-  factor.matrixL().solveInPlace(transposed);
-  const double freedom = static_cast<double>(rows) - transposed.squaredNorm();
-  *chi2 = InertialCost(current_) / freedom;
-  return freedom > 0;
 }
 
 }  // namespace alidade

@@ -21,6 +21,9 @@ struct ScaleDemand {
   double windows_of_first = 1;
   double last = 0.12;
   double windows_to_last = 1.5;
+
+  /// For a back end that cannot mend a rough scale well.
+  [[nodiscard]] static ScaleDemand Sharp() { return {0.01, 2.5, 0.12, 3.1}; }
 };
 
 /// Finds the first state from IMU and tracks alone; shared by both back ends.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/bearing_plane.h"
+#include "core/turned_ray.h"
 
 namespace alidade {
 
@@ -14,6 +15,33 @@ std::vector<cv::Point2f> Pixels(const std::vector<FeatureTrack>& tracks) {
     pixels.push_back(track.pixel);
   }
   return pixels;
+}
+
+TrackFrame ToFrame(TimeNs stamp_ns, const std::vector<FeatureTrack>& tracks) {
+  TrackFrame frame;
+  frame.stamp_ns = stamp_ns;
+  frame.observations.reserve(tracks.size());
+  for (const FeatureTrack& track : tracks) {
+    frame.observations.push_back({track.id, ToVector(track.pixel)});
+  }
+  return frame;
+}
+
+std::vector<cv::Point2f> PredictedPixels(const std::vector<FeatureTrack>& tracks,
+                                         const std::optional<Eigen::Matrix3d>& R_C1C0,
+                                         const CameraModel& camera) {
+  std::vector<cv::Point2f> predicted = Pixels(tracks);
+  if (!R_C1C0.has_value()) {
+    return predicted;
+  }
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    Eigen::Vector2d pixel;
+    // A track the rotation takes out of the camera's domain is searched where it was, and lost there.
+    if (camera.Project(TurnedRay(*R_C1C0, tracks[i].ray), &pixel)) {
+      predicted[i] = ToPoint(pixel);
+    }
+  }
+  return predicted;
 }
 
 int Keep(const std::vector<bool>& marked, std::vector<FeatureTrack>* tracks) {

@@ -8,6 +8,7 @@
 
 #include "core/camera_model.h"
 #include "core/frontend_config.h"
+#include "core/track_frame.h"
 #include "frontend/tracking/patch_template.h"
 
 namespace alidade {
@@ -30,6 +31,14 @@ struct FeatureTrack {
 }
 
 [[nodiscard]] std::vector<cv::Point2f> Pixels(const std::vector<FeatureTrack>& tracks);
+
+/// Their observations in the last image, of this stamp.
+[[nodiscard]] TrackFrame ToFrame(TimeNs stamp_ns, const std::vector<FeatureTrack>& tracks);
+
+/// Where the camera's rotation since the last image takes them; where they were without a rotation.
+[[nodiscard]] std::vector<cv::Point2f> PredictedPixels(const std::vector<FeatureTrack>& tracks,
+                                                       const std::optional<Eigen::Matrix3d>& R_C1C0,
+                                                       const CameraModel& camera);
 
 /// Removes the tracks not marked; the others keep their order. Returns how many went.
 int Keep(const std::vector<bool>& marked, std::vector<FeatureTrack>* tracks);

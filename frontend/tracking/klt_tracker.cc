@@ -10,7 +10,6 @@
 
 #include "core/gyro_rotation.h"
 #include "core/stopwatch.h"
-#include "core/turned_ray.h"
 #include "core/visual_observation.h"
 #include "frontend/tracking/corner_grid.h"
 #include "frontend/tracking/epipolar_rejection.h"
@@ -58,7 +57,6 @@ struct KltTracker::Implementation {
                                   int height_px) const;
   /// R_C1C0 from the last image to this one, when the gyroscope covers the time between.
   std::optional<Matrix3d> RotationSinceLast(TimeNs stamp_ns);
-  [[nodiscard]] std::vector<cv::Point2f> Predict(const std::optional<Matrix3d>& R_C1C0) const;
   void Follow(const std::optional<Matrix3d>& R_C1C0, double dt_s);
   /// Improves pixels where Lucas-Kanade found them by the tracks' templates. A track that its template does
   /// not confirm lives on if it can be followed back; then it begins a new template. Returns which are alive.
@@ -74,7 +72,6 @@ struct KltTracker::Implementation {
   void KeepAll(TimeNs stamp_ns);
   /// To the newest of `images`.
   void Advance(TimeNs stamp_ns);
-  [[nodiscard]] TrackFrame Observations(TimeNs stamp_ns) const;
 
   FrontendConfig config;
   RigCalibration rig;
@@ -123,22 +120,6 @@ std::optional<Matrix3d> KltTracker::Implementation::RotationSinceLast(TimeNs sta
   return R_BC.transpose() * R_B0B1->transpose() * R_BC;
 }
 
-std::vector<cv::Point2f> KltTracker::Implementation::Predict(const std::optional<Matrix3d>& R_C1C0) const {
-  std::vector<cv::Point2f> predicted = Pixels(tracks);
-  if (!R_C1C0.has_value()) {
-    return predicted;
-  }
-  for (size_t i = 0; i < tracks.size(); ++i) {
-    const Vector3d bearing = TurnedRay(*R_C1C0, tracks[i].ray);
-    Vector2d pixel;
-    // A track the rotation takes out of the camera's domain is searched where it was, and lost there.
-    if (rig.camera.Project(bearing, &pixel)) {
-      predicted[i] = ToPoint(pixel);
-    }
-  }
-  return predicted;
-}
-
 std::vector<bool> KltTracker::Implementation::Confirm(const std::optional<Matrix3d>& R_C1C0,
                                                       std::vector<bool> alive,
                                                       std::vector<cv::Point2f>* pixels) {
@@ -179,7 +160,7 @@ void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, d
   if (tracks.empty()) {
     return;
   }
-  std::vector<cv::Point2f> pixels = Predict(R_C1C0);
+  std::vector<cv::Point2f> pixels = PredictedPixels(tracks, R_C1C0, rig.camera);
   std::vector<bool> alive = flow.Follow(Pixels(tracks), &pixels);
   if (config.forward_backward_px > 0) {
     const std::vector<bool> followed = alive;
@@ -268,16 +249,6 @@ void KltTracker::Implementation::Detect() {
   }
 }
 
-TrackFrame KltTracker::Implementation::Observations(TimeNs stamp_ns) const {
-  TrackFrame frame;
-  frame.stamp_ns = stamp_ns;
-  frame.observations.reserve(tracks.size());
-  for (const FeatureTrack& track : tracks) {
-    frame.observations.push_back({track.id, ToVector(track.pixel)});
-  }
-  return frame;
-}
-
 KltTracker::KltTracker(const FrontendConfig& config, const RigCalibration& rig)
     : implementation_(std::make_unique<Implementation>(config, rig)) {
   ForbidThreadsInside();
@@ -309,7 +280,7 @@ Result<TrackFrame> KltTracker::Track(TimeNs stamp_ns, const unsigned char* grey,
   }
   tracker.statistics.mean_track_length =
       length_sum / static_cast<double>(std::max<size_t>(1, tracker.tracks.size()));
-  TrackFrame frame = tracker.Observations(stamp_ns);
+  TrackFrame frame = ToFrame(stamp_ns, tracker.tracks);
   frame.frontend_ms = stopwatch.ElapsedMs();
   return frame;
 }

@@ -20,11 +20,26 @@ constexpr float kMinDeviationGrey = 1;
 // Makes H definite where the patch is an edge; changes the steps, not where they end.
 constexpr float kDamping = 1e-3F;
 constexpr float kMaxGrowth = 1.5F;
+// Deviation of the weights. What lies far from the corner often lies at another depth.
+constexpr float kSigmaPerSide = 0.23F;
 
-/// Scales to zero mean and unit variance; returns the deviation before, 0 when the patch is flat.
-float Normalize(Eigen::VectorXf* grey) {
+/// Square roots of a Gaussian's weights over a patch; the weights' mean is one.
+Eigen::VectorXf RootWeights(int side_px) {
+  const float sigma = kSigmaPerSide * static_cast<float>(side_px);
+  const float reach = 0.5F * static_cast<float>(side_px - 1);
+  const Eigen::ArrayXf at = Eigen::ArrayXf::LinSpaced(side_px, -reach, reach);
+  const Eigen::VectorXf along = (-at.square() / (4 * sigma * sigma)).exp();
+  Eigen::MatrixXf both = along * along.transpose();
+  both *= std::sqrt(static_cast<float>(both.size())) / both.norm();
+  return both.reshaped();
+}
+
+/// Scales to zero weighted mean and unit weighted variance, times the weights' roots; returns the deviation
+/// before, 0 when the patch is flat.
+float Normalize(const Eigen::VectorXf& root_weights, Eigen::VectorXf* grey) {
   const auto count = static_cast<float>(grey->size());
-  grey->array() -= grey->sum() / count;
+  grey->array() -= (root_weights.array().square() * grey->array()).sum() / count;
+  grey->array() *= root_weights.array();
   const float deviation = std::sqrt(grey->squaredNorm() / count);
   if (deviation < kMinDeviationGrey) {
     return 0;
@@ -78,14 +93,16 @@ PatchTemplate::PatchTemplate(const cv::Mat& image, const Vector2f& centre, int s
           slope.y() * at.y();
     }
   }
-  const float deviation = Normalize(&grey);
+  root_weights_ = RootWeights(side_px);
+  const float deviation = Normalize(root_weights_, &grey);
   if (!(deviation > 0)) {
     return;
   }
   grey_ = std::move(grey);
+  jacobian_.array().colwise() *= root_weights_.array();
   jacobian_ /= deviation;
   // Gain and offset projected out: a column's share of the template and of a constant.
-  jacobian_.rowwise() -= jacobian_.colwise().mean().eval();
+  jacobian_ -= root_weights_ * (root_weights_.transpose() * jacobian_ / static_cast<float>(count)).eval();
   jacobian_ -= grey_ * (grey_.transpose() * jacobian_ / static_cast<float>(count)).eval();
   Matrix6f hessian = jacobian_.transpose() * jacobian_;
   hessian.diagonal() *= 1 + kDamping;
@@ -119,7 +136,7 @@ bool PatchTemplate::Align(const cv::Mat& image, TemplateMatch* match) const {
   TemplateMatch now = *match;
   Eigen::VectorXf grey(grey_.size());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (!Sample(image, now, &grey) || !(Normalize(&grey) > 0)) {
+    if (!Sample(image, now, &grey) || !(Normalize(root_weights_, &grey) > 0)) {
       return false;
     }
     now.correlation = grey.dot(grey_) / static_cast<float>(grey.size());

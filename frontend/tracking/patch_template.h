@@ -18,10 +18,10 @@ struct TemplateMatch {
 /// (Shi, Tomasi, "Good features to track", 1994).
 ///
 /// Inverse compositional alignment (Baker, Matthews, "Lucas-Kanade 20 years on", 2004) of the zero-mean,
-/// unit-variance patch, gain and offset projected out:
+/// unit-variance patch under Gaussian weights w, gain and offset projected out:
 ///
-///   H = sum s s^T,  b = sum s e,  e = I(c + A x) - T(x),  s = grad T [1 0 x y 0 0; 0 1 0 0 x y] without its
-///   share of T,  (dc, dA) = H^-1 b,  A <- A (I + dA)^-1,  c <- c - A dc
+///   H = sum w s s^T,  b = sum w s e,  e = I(c + A x) - T(x),  s = grad T [1 0 x y 0 0; 0 1 0 0 x y] without
+///   its share of T,  (dc, dA) = H^-1 b,  A <- A (I + dA)^-1,  c <- c - A dc
 class PatchTemplate {
  public:
   PatchTemplate() = default;
@@ -47,7 +47,8 @@ class PatchTemplate {
 
   int side_px_ = 0;
   Eigen::Vector2f corner_ = Eigen::Vector2f::Zero();  ///< first pixel of the patch, from the corner
-  Eigen::VectorXf grey_;                              ///< zero mean, unit variance; row-major
+  Eigen::VectorXf root_weights_;                      ///< of the pixels; row-major, as all below
+  Eigen::VectorXf grey_;                              ///< zero mean, unit variance, times the roots
   Eigen::Matrix<float, Eigen::Dynamic, 6> jacobian_;  ///< s of every pixel
   Matrix6f inverse_ = Matrix6f::Zero();               ///< of H
 };

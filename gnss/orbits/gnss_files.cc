@@ -18,11 +18,12 @@ Result<std::shared_ptr<const SatelliteCatalog>> LoadSatelliteCatalog(const GnssF
     navigation.Merge(*std::move(data));
   }
   PreciseProducts products;
-  const auto add = [&products](Result<PreciseProducts> more) {
-    if (more.ok()) {
-      products.Merge(*std::move(more));
+  const auto add = [&products](Result<PreciseProducts>&& more) {
+    if (!more.ok()) {
+      return more.status();
     }
-    return more.status();
+    products.Merge(*std::move(more));
+    return Status::Ok();
   };
   for (const std::string& path : files.orbits) {
     ALIDADE_RETURN_IF_ERROR(add(ReadSp3(path)));

@@ -42,6 +42,7 @@ double RobustScale(const std::vector<double>& whitened, int unknowns) {
     return 1;
   }
   std::vector<double> magnitudes;
+  magnitudes.reserve(whitened.size());
   for (const double value : whitened) {
     magnitudes.push_back(std::abs(value));
   }

@@ -23,7 +23,7 @@ SinglePointSolver::SinglePointSolver(MeasurementBuilder builder, SinglePointOpti
     : builder_(std::move(builder)),
       options_(options),
       gate_(options.gate_probability, 1),
-      last_E_(initial_E) {}
+      last_E_(std::move(initial_E)) {}
 
 double SinglePointSolver::ElevationMask() const {
   return builder_.options().elevation_mask_deg * M_PI / 180;

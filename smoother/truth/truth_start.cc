@@ -81,6 +81,7 @@ Agreement Agree(const std::vector<Turn>& turns, const std::vector<bool>& used, c
   }
   agreement.gyro_bias /= duration_s;
   std::vector<double> errors;
+  errors.reserve(turns.size());
   for (const Turn& turn : turns) {
     errors.push_back((turn.body - R_BM * turn.marker - agreement.gyro_bias * turn.duration_s).norm());
   }
@@ -90,6 +91,7 @@ Agreement Agree(const std::vector<Turn>& turns, const std::vector<bool>& used, c
 
 Agreement BestAgreement(const std::vector<Turn>& turns) {
   std::vector<double> mismatch;
+  mismatch.reserve(turns.size());
   for (const Turn& turn : turns) {
     mismatch.push_back(std::abs(turn.body.norm() - turn.marker.norm()));
   }

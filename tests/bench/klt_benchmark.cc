@@ -31,6 +31,7 @@ void BM_TrackFrame(benchmark::State& state) {
   const test::Wall wall(rig.camera, 3.0);
   const std::vector<Pose> poses = SwayingPoses();
   std::vector<std::vector<unsigned char>> images;
+  images.reserve(poses.size());
   for (const Pose& pose : poses) {
     images.push_back(wall.Image(pose));
   }

@@ -199,7 +199,8 @@ TEST(CameraModelTest, RadialDomainEndsWhereTheMapTurnsBack) {
 }
 
 TEST(CameraModelTest, BadCalibrationsAreNamed) {
-  const auto message = [](DistortionModel model, Vector4d intrinsics, std::vector<double> k, int width) {
+  const auto message = [](DistortionModel model, const Vector4d& intrinsics, const std::vector<double>& k,
+                          int width) {
     return CameraModel::Create(model, intrinsics, k, width, 480).message();
   };
   EXPECT_NE(message(DistortionModel::kNone, {-1, 1, 0, 0}, {}, 640).find("intrinsics"), std::string::npos);

@@ -14,6 +14,7 @@ constexpr double kGravity = 9.81;
 inline std::vector<ImuSample> RandomSamples(RandomStates* random, int count, double rate_hz,
                                             double max_rate = 1.5) {
   std::vector<ImuSample> samples;
+  samples.reserve(static_cast<size_t>(count));
   const Eigen::Vector3d omega = random->Vector(max_rate);
   for (int i = 0; i < count; ++i) {
     samples.push_back({SecondsToNs(i / rate_hz), omega + random->Vector(0.3),

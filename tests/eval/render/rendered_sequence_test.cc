@@ -45,7 +45,7 @@ TEST(RenderedSequence, TrackedCornersFitTheTruthWithinATenthOfAPixel) {
             << " px, 90 % " << Quantile(errors, 0.9) << " px, 99 % " << Quantile(errors, 0.99) << " px\n";
   EXPECT_LT(Quantile(errors, 0.5), 0.1);
   // Corners between a near and a far surface.
-  EXPECT_LT(Quantile(errors, 0.9), 1.5);
+  EXPECT_LT(Quantile(errors, 0.9), 1.0);
 }
 
 TEST(RenderedSequence, RaysMeetWhatTheHallSays) {

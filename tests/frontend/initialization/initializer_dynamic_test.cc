@@ -37,7 +37,7 @@ struct Tally {
 };
 
 /// Starts at random times of several sequences.
-Tally StartOften(int sequences, int starts_each, double outlier_rate) {
+Tally StartOften(int sequences, int starts_each, double outlier_rate, const ScaleDemand& demand = {}) {
   Tally tally;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> start_s(0, 11);
@@ -45,7 +45,7 @@ Tally StartOften(int sequences, int starts_each, double outlier_rate) {
     const Dataset dataset = MovingSequence(500 + static_cast<unsigned>(sequence), outlier_rate);
     for (int i = 0; i < starts_each; ++i) {
       const TimeNs start = dataset.tracks.front().stamp_ns + SecondsToNs(start_s(random));
-      const StartOutcome outcome = StartAt(DynamicConfig(), dataset, start, 8);
+      const StartOutcome outcome = StartAt(DynamicConfig(), dataset, start, 8, demand);
       ++tally.starts;
       tally.slowest_ms = std::max(tally.slowest_ms, outcome.slowest_ms);
       if (!outcome.ok) {
@@ -81,6 +81,21 @@ TEST(DynamicInitializer, GIVEN_random_moving_starts_THEN_two_seconds_give_a_scal
   // 11 degrees of freedom: a mean over 20 has a standard deviation of 1.05.
   EXPECT_GT(tally.mean_nees, 7);
   EXPECT_LT(tally.mean_nees, 16);
+}
+
+TEST(DynamicInitializer, GIVEN_the_sharp_demand_THEN_nine_in_ten_have_scale_within_five_percent) {
+  const Tally tally = StartOften(5, 4, 0, ScaleDemand::Sharp());
+  EXPECT_GE(tally.found, 19);
+  EXPECT_GE(tally.within_5_percent, 18);
+  EXPECT_GT(tally.mean_nees, 7);
+  EXPECT_LT(tally.mean_nees, 16);
+}
+
+TEST(DynamicInitializer, GIVEN_ten_percent_outliers_and_the_sharp_demand_THEN_it_still_finds_the_state) {
+  const Tally tally = StartOften(3, 4, 0.1, ScaleDemand::Sharp());
+  EXPECT_GE(tally.found, 11);
+  EXPECT_GE(tally.within_5_percent, 10);
+  EXPECT_LT(tally.mean_nees, 18);
 }
 
 TEST(DynamicInitializer, GIVEN_ten_percent_outliers_THEN_it_still_finds_the_state) {

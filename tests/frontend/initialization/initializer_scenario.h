@@ -70,8 +70,8 @@ inline void Compare(const Initializer& initializer, const Dataset& dataset, Star
 
 /// Feeds the frames from `start_ns` on to a new initializer until it succeeds or `limit_s` have passed.
 inline StartOutcome StartAt(const EstimatorConfig& config, const Dataset& dataset, TimeNs start_ns,
-                            double limit_s) {
-  Initializer initializer(config, dataset.rig);
+                            double limit_s, const ScaleDemand& demand = {}) {
+  Initializer initializer(config, dataset.rig, demand);
   StartOutcome outcome;
   auto sample = std::lower_bound(dataset.imu.begin(), dataset.imu.end(), start_ns - 20'000'000,
                                  [](const ImuSample& s, TimeNs stamp) { return s.stamp_ns < stamp; });

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/frontend_config.h"
 #include "tests/frontend/tracking/synthetic_scene.h"
 
 namespace alidade {
@@ -15,7 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector2f;
 
 constexpr int kSizePx = 120;
-constexpr int kSidePx = 13;
+const int kSidePx = FrontendConfig().template_px;
 const Vector2f kCorner(60.3F, 58.8F);
 
 /// The texture seen through q -> texture(from(q)); gain and offset of its grey values.

@@ -37,11 +37,13 @@ inline NavigationData SyntheticSky(TimeNs stamp_ns) {
     data.kepler[e.satellite].push_back(e);
   };
   for (int k = 0; k < 24; ++k) {
-    add(GnssSystem::kGps, k + 1, 5153.7, 0.96, M_PI / 3 * (k % 6), 2 * M_PI / 4 * (k / 6) + 0.3 * (k % 6));
+    const int in_plane = k / 6;
+    add(GnssSystem::kGps, k + 1, 5153.7, 0.96, M_PI / 3 * (k % 6), 2 * M_PI / 4 * in_plane + 0.3 * (k % 6));
   }
   for (int k = 0; k < 18; ++k) {
+    const int in_plane = k / 3;
     add(GnssSystem::kGalileo, k + 1, 5440.6, 0.98, 2 * M_PI / 3 * (k % 3),
-        2 * M_PI / 6 * (k / 3) + 0.2 * (k % 3));
+        2 * M_PI / 6 * in_plane + 0.2 * (k % 3));
   }
   return data;
 }
