@@ -64,6 +64,23 @@ TEST(PatchTemplate, GainAndOffsetDoNotMatter) {
   EXPECT_GT(dim.correlation, 0.98F);
 }
 
+// GIVEN a corner at the edge of a near surface, WHEN the far one behind it moves otherwise, THEN the corner's
+// own surface decides.
+TEST(PatchTemplate, WhatLiesFarFromTheCornerCountsLittle) {
+  float sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    const Vector2f corner(36.3F + 16 * static_cast<float>(i % 4), 36.8F + 16 * static_cast<float>(i / 4));
+    const PatchTemplate patch(ImageOf(kAsItIs), corner, kSidePx);
+    const cv::Mat parted = ImageOf([&](const Vector2d& u) -> Vector2d {
+      return u.x() < static_cast<double>(corner.x()) + 5 ? u : Vector2d(u.x() + 1, u.y() + 1);
+    });
+    TemplateMatch match{.centre = corner, .affine = Matrix2f::Identity(), .correlation = 0};
+    ASSERT_TRUE(patch.Align(parted, &match));
+    sum += (match.centre - corner).norm();
+  }
+  EXPECT_LT(sum / 16, 0.32F);  // 0.40 without weights
+}
+
 TEST(PatchTemplate, WhatLooksDifferentSeldomCorrelates) {
   const cv::Mat image = ImageOf(kAsItIs);
   const cv::Mat other = ImageOf([](const Vector2d& u) -> Vector2d { return u + Vector2d(3000, 4000); });
