@@ -45,7 +45,7 @@ class Initializer {
   void AddImu(const ImuSample& sample);
   /// The state at this frame, stamped with its IMU time (stamp + time offset), with its covariance (canonical
   /// chart), or kDiverged with the reason why there is none yet ("moving: gyro spread 0.21 rad/s exceeds
-  /// 0.03", "parallax 4.1 px of 20", ...).
+  /// 0.03", "parallax 4.1 px of 5.0", ...).
   Result<NavEstimate> AddFrame(const TrackFrame& frame);
 
   /// "static" or "dynamic", and what was found, once AddFrame has succeeded.
