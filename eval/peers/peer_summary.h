@@ -9,8 +9,7 @@
 namespace alidade {
 
 /// What a driver tells of a run: when, after the first frame, the first pose came and the alignment with
-/// GNSS, and the share of the sequence's time, first to last frame, that rows at most half a second apart
-/// cover.
+/// GNSS, and Completion of the sequence.
 std::string SummaryText(const PeerSequence& sequence, const PeerRun& run,
                         const std::optional<TimeNs>& aligned_ns);
 
