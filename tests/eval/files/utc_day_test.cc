@@ -1,0 +1,34 @@
+#include "eval/files/utc_day.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace alidade {
+namespace {
+
+using std::chrono::system_clock;
+
+// 2026-11-25 23:59:59 UTC.
+constexpr system_clock::time_point kEvening(std::chrono::seconds(1795651199));
+
+TEST(UtcDay, GivenNoSourceDateThenItIsTheDayInUtc) {
+  EXPECT_EQ(*UtcDay(nullptr, kEvening), "2026-11-25");
+  EXPECT_EQ(*UtcDay("", kEvening + std::chrono::seconds(1)), "2026-11-26");
+}
+
+TEST(UtcDay, GivenASourceDateThenItIsThatOne) {
+  EXPECT_EQ(*UtcDay("0", kEvening), "1970-01-01");
+  EXPECT_EQ(*UtcDay("951782400", kEvening), "2000-02-29");
+}
+
+TEST(UtcDay, GivenASourceDateThatIsNoTimeThenItIsRefused) {
+  for (const char* wrong : {"today", "-1", "1.5", "12 ", "253402300800", "99999999999999999999"}) {
+    const Result<std::string> day = UtcDay(wrong, kEvening);
+    EXPECT_EQ(day.code(), StatusCode::kUsage) << wrong;
+    EXPECT_EQ(day.message(),
+              "SOURCE_DATE_EPOCH: found \"" + std::string(wrong) + "\", expected whole seconds since 1970");
+  }
+}
+
+}  // namespace
+}  // namespace alidade
