@@ -1,40 +1,15 @@
 #pragma once
 
-#include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "eval/comparison/cell_group.h"
 #include "eval/comparison/comparison.h"
+#include "eval/comparison/figure.h"
 
 namespace alidade {
-
-/// Which values of a figure are better.
-enum class Ideal {
-  kNone,    ///< no value is better than another (features used, the shared front end's time)
-  kLow,     ///< errors, times
-  kTarget,  ///< nearest to Figure::target: NEES to its degrees of freedom, coverage to the Gaussian share
-};
-
-/// A column of summary.csv that is a number and is averaged over seeds.
-struct Figure {
-  std::string key;    ///< name of the column
-  std::string label;  ///< display name, without the unit
-  std::string unit;   ///< "m", "deg", "ms", "" when dimensionless
-  Ideal ideal = Ideal::kNone;
-  double target = 0;  ///< with Ideal::kTarget
-  int decimals = 3;   ///< in tables
-  /// NaN where the cell has no such value: a failed run, or an external trajectory without covariance or
-  /// times.
-  std::function<double(const CellResult&)> value;
-};
-
-/// The figures of a comparison: the fixed ones, and position and orientation RPE of every distance that
-/// occurs.
-[[nodiscard]] std::vector<Figure> ListFigures(const Comparison& comparison);
 
 /// Mean over the seeds that have the value; NaN when none has.
 struct Statistic {
@@ -82,11 +57,5 @@ struct AggregateRow {
 /// Sequences and row labels in order of first appearance.
 [[nodiscard]] std::vector<std::string> ListSequences(const std::vector<AggregateRow>& rows);
 [[nodiscard]] std::vector<std::string> ListLabels(const std::vector<AggregateRow>& rows);
-
-/// Place of the figure `key` in the list; none when it is not there.
-[[nodiscard]] std::optional<size_t> FindFigure(const std::vector<Figure>& figures, const std::string& key);
-
-/// How far a value is from ideal; smaller is better, NaN without an ideal or a value.
-[[nodiscard]] double Badness(const Figure& figure, double value);
 
 }  // namespace alidade
