@@ -73,6 +73,7 @@ void CellList::AddCells(const Plan& plan, const PlanSequence& sequence, unsigned
     cell.report_file = output + "/scores/" + place + ".cbor";
     cell.result.estimator = estimator.name;
     cell.result.backend = estimator.external() ? "external" : std::string(ToString(config->backend));
+    cell.result.smoothed = estimator.external() ? estimator.smoothed : config->backend == Backend::kBatch;
     cell.result.sequence = sequence.name;
     cell.result.seed = seed;
     cells_.push_back(std::move(cell));

@@ -20,6 +20,7 @@
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/time_left.h"
+#include "eval/files/utc_day.h"
 #include "eval/report/report.h"
 #include "eval/report/tables.h"
 
@@ -62,6 +63,9 @@ class Comparer {
 
  private:
   Status MakeCells() {
+    const Result<std::string> day = UtcDay();
+    ALIDADE_RETURN_IF_ERROR(day.status());
+    provenance_ = {ALIDADE_VERSION, *day, ReadMachine()};
     ALIDADE_RETURN_IF_ERROR(cells_.Make(plan_, options_));
     std::map<std::pair<const PlanEstimator*, const PlanSequence*>, size_t> groups;
     std::vector<size_t> group;
@@ -165,6 +169,7 @@ class Comparer {
     Comparison& comparison = outcome.comparison;
     comparison.title = plan_.title;
     comparison.references = plan_.references;
+    comparison.provenance = provenance_;
     comparison.command = options_.command;
     comparison.baseline = plan_.baseline;
     comparison.notes = NotesOfAbsent();
@@ -227,6 +232,7 @@ class Comparer {
   const Plan& plan_;
   const CompareOptions& options_;
   const Clock::time_point begin_ = Clock::now();
+  Provenance provenance_;
   CellList cells_;
   ShownCells shown_;
   std::map<const CompareInput*, FrontendSummary> frontends_;

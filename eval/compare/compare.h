@@ -18,7 +18,8 @@ struct CompareOutcome {
 /// their own (WorkerPool) or as jobs of Slurm (SlurmRun). Writes cells/<estimator>/<sequence>/<seed>/, the
 /// reports of the cells below scores/, and the tables and the report of eval/comparison/comparison.h. A cell
 /// that fails or whose process dies does not stop the others. Errors: kConfig of an estimator's or a
-/// simulation's configuration, before anything runs; kOutput.
+/// simulation's configuration and kUsage of SOURCE_DATE_EPOCH (eval/files/utc_day.h), before anything runs;
+/// kOutput.
 Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options);
 
 /// The `part` of the cells of a comparison that has begun elsewhere, in options.jobs worker processes; those

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <numeric>
 
 #include "eval/compare/external_cell.h"
+#include "eval/comparison/cell_progress.h"
 #include "eval/comparison/cell_score.h"
 #include "eval/dataset/digest.h"
+#include "eval/metrics/completion.h"
 #include "eval/record/recorder.h"
 #include "eval/record/recorder_reader.h"
 #include "eval/record/run_options.h"
@@ -17,6 +20,27 @@ namespace {
 void Fail(const std::string& message, CompareCell* cell) {
   cell->result.status = "failed";
   cell->result.message = message;
+}
+
+/// Times of a program that ran; without its own they are those of the whole program: it is one process to us.
+void ScoreExternalTimes(const ExternalOutcome& outcome, const std::vector<TrackFrame>& frames,
+                        CellResult* cell) {
+  if (outcome.times) {
+    const ExternalTimes& times = *outcome.times;
+    ScoreTimes(times.frontend_ms, times.backend_ms, cell);
+    double run_ms = 0;
+    for (const std::vector<double>* part : {&times.frontend_ms, &times.backend_ms}) {
+      run_ms = std::accumulate(part->begin(), part->end(), run_ms);
+    }
+    const bool stamped = !times.stamps_ns.empty();
+    ScoreSpeed(CoveredSeconds(stamped ? times.stamps_ns : RowStamps(outcome.trajectory)), 1e-3 * run_ms,
+               cell);
+  } else if (outcome.run) {
+    cell->backend_ms = 1e3 * outcome.run->wall_s / std::max(1, cell->frames);
+    const bool camera = !frames.empty();
+    ScoreSpeed(camera ? SecondsBetween(frames.front().stamp_ns, frames.back().stamp_ns) : 0,
+               outcome.run->wall_s, cell);
+  }
 }
 
 /// A program or trajectories that are not ours. True: the program's earlier output was kept.
@@ -32,15 +56,8 @@ bool RunExternalCell(const Plan& plan, const CompareOptions& options, const Comp
   }
   ScoreTrajectory(truth, outcome->trajectory, plan.MetricsOf(*cell->estimator, *cell->sequence),
                   &cell->result);
-  if (!outcome->run) {
-    return false;
-  }
-  if (outcome->times) {
-    ScoreTimes(outcome->times->frontend_ms, outcome->times->backend_ms, &cell->result);
-  } else {
-    // All of the program: it is one process to us.
-    cell->result.backend_ms = 1e3 * outcome->run->wall_s / std::max(1, cell->result.frames);
-  }
+  ScoreCompletion(RowStamps(outcome->trajectory), data.log.frames, &cell->result);
+  ScoreExternalTimes(*outcome, data.log.frames, &cell->result);
   return outcome->reused;
 }
 
@@ -79,6 +96,7 @@ bool RunOwn(const Plan& plan, const CompareOptions& options, const CompareInput:
   if (written.ok()) {
     ScoreRun(data.truth ? &*data.truth : nullptr, *written, plan.MetricsOf(*cell->estimator, *cell->sequence),
              &cell->result);
+    ScoreProgress(written->records, data.log.frames, &cell->result);
   } else {
     Fail(written.message(), cell);
   }

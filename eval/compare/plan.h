@@ -23,8 +23,9 @@ struct PlanEstimator {
   std::map<std::string, std::string> trajectories;  ///< sequence name -> path; external only
   ExternalCommand command;                          ///< empty text: none; external only
   bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
-  std::vector<std::string> sequences;               ///< only these; empty: all
-  std::optional<Alignment> alignment;               ///< its own instead of the plan's
+  bool smoothed = false;               ///< external only: a row may use data of later than its stamp
+  std::vector<std::string> sequences;  ///< only these; empty: all
+  std::optional<Alignment> alignment;  ///< its own instead of the plan's
   std::optional<double> align_share;
 
   [[nodiscard]] bool external() const { return config.empty(); }

@@ -84,7 +84,14 @@ class PlanParser {
             [&](const Node& n) {
               return reader_.Real(n, "timeout", 1, kMaxTimeoutS, &estimator.command.timeout_s);
             }},
-           {"frame", [&](const Node& n) { return ReadFrame(n, &estimator.camera_frame); }},
+           {"frame",
+            [&](const Node& n) {
+              return reader_.Either(n, "frame", "body", "camera", &estimator.camera_frame);
+            }},
+           {"mode",
+            [&](const Node& n) {
+              return reader_.Either(n, "mode", "causal", "smoothed", &estimator.smoothed);
+            }},
            {"sequences", [&](const Node& n) { return ReadNames(n, &estimator.sequences); }},
            {"align",
             [&](const Node& n) { return ReadAlignment(reader_, n, &estimator.alignment.emplace()); }},
@@ -98,6 +105,11 @@ class PlanParser {
     }
     if (estimator.external() && (estimator.name.empty() || !estimator.settings.empty())) {
       return reader_.Fault(node, "estimators", "`trajectories` or `command` with a `name` and without `set`");
+    }
+    if (!estimator.external() && node.IsMap() && node["mode"]) {
+      return reader_.Fault(
+          node["mode"], "mode",
+          "`trajectories` or `command` beside it: a `config` tells its mode by its back end");
     }
     if (estimator.command.text.empty() && !estimator.command.program.empty()) {
       return reader_.Fault(node, "estimators", "`program` only with `command`");
@@ -124,13 +136,6 @@ class PlanParser {
           reader_.ExistingPath(entry.second, "trajectories." + sequence, false, &(*trajectories)[sequence]));
     }
     return Status::Ok();
-  }
-
-  Status ReadFrame(const Node& node, bool* camera_frame) {
-    std::string word;
-    ALIDADE_RETURN_IF_ERROR(reader_.Text(node, "frame", &word));
-    *camera_frame = word == "camera";
-    return word == "camera" || word == "body" ? Status::Ok() : reader_.Fault(node, "frame", "body or camera");
   }
 
   Status ReadDatasetPath(const Node& node, std::string* path) {

@@ -151,6 +151,15 @@ Status PlanReader::Boolean(const YAML::Node& node, const std::string& name, bool
   return status.ok() ? status : Fault(node, name, status.message());
 }
 
+Status PlanReader::Either(const YAML::Node& node, const std::string& name, const std::string& first,
+                          const std::string& second, bool* value) const {
+  if (!node.IsScalar() || (node.Scalar() != first && node.Scalar() != second)) {
+    return Fault(node, name, first + " or " + second);
+  }
+  *value = node.Scalar() == second;
+  return Status::Ok();
+}
+
 Status PlanReader::AddSeed(const YAML::Node& node, const std::string& name,
                            std::vector<unsigned>* seeds) const {
   long long seed = 0;

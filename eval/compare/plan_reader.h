@@ -40,6 +40,9 @@ class PlanReader {
   Status ExistingPath(const YAML::Node& node, const std::string& name, bool folder, std::string* value) const;
   Status Real(const YAML::Node& node, const std::string& name, double min, double max, double* value) const;
   Status Boolean(const YAML::Node& node, const std::string& name, bool* value) const;
+  /// One of two words; `value`: it is the second.
+  Status Either(const YAML::Node& node, const std::string& name, const std::string& first,
+                const std::string& second, bool* value) const;
   /// A whole number, a sequence of them or a range "1..20"; no duplicates, 1 to 1000 of them.
   Status Seeds(const YAML::Node& node, const std::string& name, std::vector<unsigned>* seeds) const;
   /// A mapping of "a.b: value" to settings "a.b=value".

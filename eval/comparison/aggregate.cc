@@ -37,11 +37,12 @@ AggregateRow AggregateCells(const std::vector<const CellResult*>& cells, const s
     CountStatus(*cell, &row);
     // A cell that failed early may not know its back end.
     row.backend = row.backend.empty() ? cell->backend : row.backend;
+    row.smoothed = row.smoothed || cell->smoothed;
   }
   for (const Figure& figure : figures) {
     std::vector<double> values;
     for (const CellResult* cell : cells) {
-      if (cell->status == "ok") {
+      if (cell->status == "ok" || figure.of_all_runs) {
         values.push_back(figure.value(*cell));
       }
     }
@@ -58,18 +59,15 @@ AggregateRow AggregateCells(const std::vector<const CellResult*>& cells, const s
   return row;
 }
 
-/// An estimate that knows the future is a bound and no rival.
-bool IsBound(const AggregateRow& row) {
-  return row.backend == "batch";
-}
+/// An estimate that knows the future is no rival of those that do not.
 bool IsRival(const AggregateRow& row, int most_ok) {
-  return row.ok == most_ok && !IsBound(row);
+  return row.ok == most_ok && !row.smoothed;
 }
 
 int MostOk(const AggregateRow* begin, const AggregateRow* end) {
   int most_ok = 1;
   for (const AggregateRow* row = begin; row != end; ++row) {
-    most_ok = IsBound(*row) ? most_ok : std::max(most_ok, row->ok);
+    most_ok = row->smoothed ? most_ok : std::max(most_ok, row->ok);
   }
   return most_ok;
 }
@@ -78,17 +76,18 @@ int MostOk(const AggregateRow* begin, const AggregateRow* end) {
 void MarkBest(const std::vector<Figure>& figures, AggregateRow* begin, AggregateRow* end) {
   const int most_ok = MostOk(begin, end);
   for (size_t i = 0; i < figures.size(); ++i) {
+    const auto badness = [&](const AggregateRow& row) {
+      const bool rival = IsRival(row, figures[i].of_all_runs ? row.ok : most_ok);
+      return rival ? Badness(figures[i], row.figures[i].mean) : kNan;
+    };
     double least = std::numeric_limits<double>::infinity();
     int rivals = 0;
     for (const AggregateRow* row = begin; row != end; ++row) {
-      const double badness = Badness(figures[i], row->figures[i].mean);
-      if (IsRival(*row, most_ok) && !std::isnan(badness)) {
-        least = std::min(least, badness);
-        ++rivals;
-      }
+      least = std::fmin(least, badness(*row));
+      rivals += std::isnan(badness(*row)) ? 0 : 1;
     }
     for (AggregateRow* row = begin; row != end && rivals > 1; ++row) {
-      row->best[i] = IsRival(*row, most_ok) && Badness(figures[i], row->figures[i].mean) == least;
+      row->best[i] = badness(*row) == least;
     }
   }
 }

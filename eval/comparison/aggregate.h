@@ -20,11 +20,12 @@ struct Statistic {
 };
 [[nodiscard]] Statistic ComputeStatistic(const std::vector<double>& values);
 
-/// One estimator on one sequence, over its seeds. Only cells with status ok enter the means: a lost run is in
-/// no mean, so every mean must be read together with `ok` of `cells`.
+/// One estimator on one sequence, over its seeds. Only cells with status ok enter the means, but those
+/// of a figure of all runs (Figure::of_all_runs): every mean must be read together with `ok` of `cells`.
 struct AggregateRow {
   std::string estimator;
   std::string backend;
+  bool smoothed = false;
   std::string label;  ///< the estimator's name, with its back end where two back ends share the name
   std::string sequence;
   std::string group;  ///< of the sequence; may be empty
@@ -49,8 +50,9 @@ struct AggregateRow {
 };
 
 /// Rows by sequence, then estimator, both in order of first appearance. `best` is marked among the rows of a
-/// sequence with the most runs that are ok, and only where at least two of them have the value; equal values
-/// are all marked. The batch estimate is a bound and is never marked.
+/// sequence with the most runs that are ok (of a figure of all runs: among all), and only where at least two
+/// of them have the value; equal values are all marked. A smoothed estimate uses later data than the others
+/// and is never marked.
 [[nodiscard]] std::vector<AggregateRow> Aggregate(const Comparison& comparison,
                                                   const std::vector<Figure>& figures);
 

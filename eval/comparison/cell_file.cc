@@ -66,6 +66,7 @@ template <Is<CellResult> T>
 void Fields(T& x, auto&& field) {
   field("estimator", x.estimator);
   field("backend", x.backend);
+  field("smoothed", x.smoothed);
   field("sequence", x.sequence);
   field("seed", x.seed);
   field("status", x.status);
@@ -73,6 +74,7 @@ void Fields(T& x, auto&& field) {
   field("input_digest", x.input_digest);
   field("frames", x.frames);
   field("duration_s", x.duration_s);
+  field("completion", x.completion);
   field("path_m", x.path_m);
   field("rmse_pos_m", x.rmse_pos_m);
   field("rmse_ori_deg", x.rmse_ori_deg);
@@ -91,6 +93,7 @@ void Fields(T& x, auto&& field) {
   field("frontend_ms", x.frontend_ms);
   field("backend_ms", x.backend_ms);
   field("backend_ms_p95", x.backend_ms_p95);
+  field("realtime_factor", x.realtime_factor);
   field("features_per_frame", x.features_per_frame);
   field("propagate_ms", x.propagate_ms);
   field("update_ms", x.update_ms);

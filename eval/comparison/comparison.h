@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/files/machine.h"
 #include "eval/frontend_run/frontend_summary.h"
 #include "eval/metrics/metrics.h"
 
@@ -55,6 +56,8 @@ struct SkyTrack {
 struct CellResult {
   std::string estimator;
   std::string backend;
+  /// Each row may use all data of the sequence, as the batch estimate does; else only those until its stamp.
+  bool smoothed = false;
   std::string sequence;
   unsigned seed = 0;
   std::string status;  ///< ok | diverged | not_initialized | failed: reason in `message`
@@ -62,6 +65,8 @@ struct CellResult {
   std::string input_digest;
   int frames = 0;
   std::optional<double> duration_s;
+  /// Share of the camera's time with an estimate (eval/metrics/completion.h), however the run ended.
+  std::optional<double> completion;
   std::optional<double> path_m;
   std::optional<double> rmse_pos_m, rmse_ori_deg;  ///< unaligned
   std::optional<double> ate_pos_m, ate_ori_deg;
@@ -72,6 +77,9 @@ struct CellResult {
   bool truth_has_covariance = false;  ///< which the first four NEES figures then include
   std::optional<double> frontend_ms;  ///< also unknown where the tracks were read from a file
   std::optional<double> backend_ms, backend_ms_p95;
+  /// Seconds of camera data processed per second of front end and back end; where the tracks were read from a
+  /// file, of the back end alone.
+  std::optional<double> realtime_factor;
   std::optional<double> features_per_frame;
   /// Stages of backend_ms, means a frame; other back-end time belongs to neither.
   std::optional<double> propagate_ms, update_ms;
@@ -96,6 +104,9 @@ struct CellResult {
   std::vector<SkyTrack> sky;  ///< empty without GNSS
 };
 
+/// "causal" or "smoothed", as plans say it.
+[[nodiscard]] std::string ModeWord(bool smoothed);
+
 /// A published figure to print beside the measured ones.
 struct ReferenceFigure {
   std::string source;  ///< "the paper", ...
@@ -104,13 +115,23 @@ struct ReferenceFigure {
   std::map<std::string, double> figures;  ///< column of summary.csv -> value
 };
 
+/// What made a comparison's tables.
+struct Provenance {
+  std::string version;  ///< of Alidade; empty: not recorded
+  std::string date;     ///< in UTC
+  Machine machine;      ///< that wrote the tables; cells of a cluster may have run on others
+};
+
 struct Comparison {
   /// Names of the sequences whose truth has a covariance, which their NEES include; sorted.
   [[nodiscard]] std::vector<std::string> SequencesWithTruthCovariance() const;
+  /// Names of the estimators that are smoothed, in order of first appearance.
+  [[nodiscard]] std::vector<std::string> SmoothedEstimators() const;
 
   std::string title;
   std::vector<CellResult> cells;
   std::vector<ReferenceFigure> references;
+  Provenance provenance = {};
   std::string command;                  ///< command line that repeats it
   std::vector<std::string> notes = {};  ///< printed with the tables, such as sequences that were not run
   std::string shown_note = {};          ///< of a large one: of which cells it has curves

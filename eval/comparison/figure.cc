@@ -34,6 +34,15 @@ Value OfTrajectory(std::optional<double> CellResult::*field) {
       [field](const CellResult& cell) { return HasTrajectory(cell) ? (cell.*field).value_or(kNan) : kNan; };
 }
 
+Value OfRun(std::optional<double> CellResult::*field) {
+  return [field](const CellResult& cell) { return (cell.*field).value_or(kNan); };
+}
+
+/// A run that failed before it had an estimate covered nothing.
+double CompletionOf(const CellResult& cell) {
+  return cell.completion.value_or(cell.status == "failed" ? 0 : kNan);
+}
+
 void AppendRpeFigures(const Comparison& comparison, std::vector<Figure>* figures) {
   std::set<double> distances;
   for (const CellResult& cell : comparison.cells) {
@@ -94,22 +103,22 @@ std::vector<Figure> ListFigures(const Comparison& comparison) {
       figures.push_back({key, label, "", Ideal::kTarget, 3, 2, OfTrajectory(member)});
     }
   }
-  const auto plain = [](std::optional<double> CellResult::*member) {
-    return [member](const CellResult& cell) { return (cell.*member).value_or(kNan); };
-  };
   if (known(&CellResult::calibration_rotation_deg)) {
     figures.push_back({"calibration_rotation_deg", "camera rotation", "deg", Ideal::kLow, 0, 3,
-                       plain(&CellResult::calibration_rotation_deg)});
+                       OfRun(&CellResult::calibration_rotation_deg)});
     figures.push_back({"calibration_translation_m", "camera position", "m", Ideal::kLow, 0, 4,
-                       plain(&CellResult::calibration_translation_m)});
+                       OfRun(&CellResult::calibration_translation_m)});
     figures.push_back({"calibration_time_ms", "time offset", "ms", Ideal::kLow, 0, 3,
-                       plain(&CellResult::calibration_time_ms)});
+                       OfRun(&CellResult::calibration_time_ms)});
   }
   if (std::any_of(comparison.cells.begin(), comparison.cells.end(),
                   [](const CellResult& cell) { return cell.restarts > 0; })) {
     figures.push_back({"restarts", "restarts", "", Ideal::kLow, 0, 1,
                        [](const CellResult& cell) { return static_cast<double>(cell.restarts); }});
   }
+  figures.push_back({"completion", "completed", "", Ideal::kTarget, 1, 3, CompletionOf, true});
+  figures.push_back({"realtime_factor", "x real time", "s/s", Ideal::kNone, 0, 1,
+                     OfTrajectory(&CellResult::realtime_factor)});
   return figures;
 }
 
@@ -121,7 +130,7 @@ double Badness(const Figure& figure, double value) {
       return value;
     case Ideal::kTarget:
       // Shares lie near one: distance. NEES spans decades, and half the ideal is as bad as twice: ratio.
-      return figure.target < 1 ? std::abs(value - figure.target) : std::abs(std::log(value / figure.target));
+      return figure.target <= 1 ? std::abs(value - figure.target) : std::abs(std::log(value / figure.target));
   }
   return kNan;
 }

@@ -46,7 +46,8 @@ std::vector<Block> SplitBySequence(const Comparison& comparison) {
 
 double ValueOf(const Figure& figure, const Runs& runs, unsigned seed) {
   const auto run = runs.find(seed);
-  return run != runs.end() && run->second->status == "ok" ? figure.value(*run->second) : kNan;
+  const bool counts = run != runs.end() && (run->second->status == "ok" || figure.of_all_runs);
+  return counts ? figure.value(*run->second) : kNan;
 }
 
 bool SameInput(const Runs& first, const Runs& second, unsigned seed) {
@@ -224,7 +225,7 @@ double SignTest(int lower, int higher) {
 }
 
 bool IsPaired(const Figure& figure) {
-  return figure.unit != "ms";
+  return figure.unit != "ms" && figure.unit != "s/s";
 }
 
 std::vector<PairedDifference> ComparePairs(const Comparison& comparison, const std::vector<Figure>& figures) {

@@ -7,6 +7,7 @@
 
 #include "core/format.h"
 #include "eval/files/csv_text.h"
+#include "eval/report/label_marks.h"
 
 namespace alidade {
 namespace {
@@ -84,7 +85,8 @@ std::vector<std::string> LabelsOf(const std::vector<const PairedDifference*>& pa
 }
 
 TextTable Matrix(const std::string& sequence, const Figure& figure,
-                 const std::vector<const PairedDifference*>& pairs, const std::string& plus_minus) {
+                 const std::vector<const PairedDifference*>& pairs, const LabelMarks& marks,
+                 const std::string& plus_minus) {
   std::map<std::pair<std::string, std::string>, PairedDifference> by_name;
   for (const PairedDifference* pair : pairs) {
     by_name[{pair->first, pair->second}] = *pair;
@@ -95,9 +97,11 @@ TextTable Matrix(const std::string& sequence, const Figure& figure,
                       sequence + " (row minus column)",
                   {"row is ... than column"},
                   {}};
-  table.header.insert(table.header.end(), labels.begin(), labels.end());
+  for (const std::string& label : labels) {
+    table.header.push_back(marks.Marked(label));
+  }
   for (const std::string& row : labels) {
-    TextRow text{{{row}}};
+    TextRow text{{{marks.Marked(row)}}};
     for (const std::string& column : labels) {
       const auto found = by_name.find({row, column});
       text.cells.push_back(found == by_name.end() ? TextCell{kDash}
@@ -120,6 +124,7 @@ std::vector<TextTable> LayOutPairTables(const Comparison& comparison, const std:
       sequences.push_back(pair.sequence);
     }
   }
+  const LabelMarks marks(comparison);
   std::vector<TextTable> tables;
   for (const std::string& sequence : sequences) {
     for (const std::string& key : comparison.pair_figures) {
@@ -131,7 +136,7 @@ std::vector<TextTable> LayOutPairTables(const Comparison& comparison, const std:
         }
       }
       if (!pairs.empty()) {
-        tables.push_back(Matrix(sequence, figures[*figure], pairs, plus_minus));
+        tables.push_back(Matrix(sequence, figures[*figure], pairs, marks, plus_minus));
       }
     }
   }

@@ -9,6 +9,7 @@
 #include "eval/report/report_assets.h"
 #include "eval/report/report_data.h"
 #include "eval/report/tables_terminal.h"
+#include "eval/report/tables_text.h"
 
 namespace alidade {
 namespace {
@@ -67,13 +68,15 @@ std::string SecurityPolicy() {
 }  // namespace
 
 Status WriteReport(const Comparison& comparison, const std::string& path) {
-  const std::string page = FillTemplate(kReportHtml, {{"POLICY", SecurityPolicy()},
-                                                      {"TITLE", EscapeHtml(comparison.title)},
-                                                      {"CSS", std::string(kReportCss)},
-                                                      {"D3", std::string(kReportD3)},
-                                                      {"DATA", ReportData(comparison)},
-                                                      {"SCRIPT", std::string(kReportScript)},
-                                                      {"TABLE", EscapeHtml(FormatTable(comparison))}});
+  const std::string page =
+      FillTemplate(kReportHtml, {{"POLICY", SecurityPolicy()},
+                                 {"TITLE", EscapeHtml(comparison.title)},
+                                 {"MADE", EscapeHtml(ProvenanceText(comparison.provenance))},
+                                 {"CSS", std::string(kReportCss)},
+                                 {"D3", std::string(kReportD3)},
+                                 {"DATA", ReportData(comparison)},
+                                 {"SCRIPT", std::string(kReportScript)},
+                                 {"TABLE", EscapeHtml(FormatTable(comparison))}});
   return WriteFileAtomically(path, page);
 }
 

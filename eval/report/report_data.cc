@@ -9,12 +9,12 @@
 #include "core/numbers.h"
 #include "eval/comparison/aggregate.h"
 #include "eval/comparison/cell_group.h"
-#include "eval/comparison/efficiency.h"
 #include "eval/comparison/nees_over_time.h"
 #include "eval/comparison/paired.h"
 #include "eval/metrics/nees.h"
 #include "eval/report/heat_map.h"
 #include "eval/report/report_json.h"
+#include "eval/report/report_rows.h"
 #include "eval/report/report_series.h"
 
 namespace alidade {
@@ -65,6 +65,7 @@ Json CellData(const std::string& label, const std::vector<Figure>& figures, cons
                    {"q", RoundedJson(BoxQuantiles(result.pos_errors_m), 4)}});
   }
   return {{"estimator", label},
+          {"mode", ModeWord(cell.smoothed)},
           {"sequence", cell.sequence},
           {"seed", cell.seed},
           {"status", cell.status},
@@ -81,40 +82,6 @@ Json CellData(const std::string& label, const std::vector<Figure>& figures, cons
           {"nis", InnovationJson(cell.innovations)},
           {"gnss_nis", InnovationJson(cell.gnss_innovations)},
           {"rpe", rpe}};
-}
-
-Json FigureData(const Figure& figure) {
-  const char* ideal = figure.ideal == Ideal::kLow      ? "low"
-                      : figure.ideal == Ideal::kTarget ? "target"
-                                                       : "none";
-  return {{"key", figure.key}, {"label", figure.label},   {"unit", figure.unit},
-          {"ideal", ideal},    {"target", figure.target}, {"decimals", figure.decimals}};
-}
-
-Json AggregateData(const AggregateRow& row) {
-  Json means = Json::array();
-  Json errors = Json::array();
-  Json best = Json::array();
-  for (size_t i = 0; i < row.figures.size(); ++i) {
-    means.push_back(RoundedJson(row.figures[i].mean, 6));
-    errors.push_back(RoundedJson(row.figures[i].standard_error, 3));
-    best.push_back(row.best[i] ? 1 : 0);
-  }
-  return {{"estimator", row.label},
-          {"backend", row.backend},
-          {"sequence", row.sequence},
-          {"cells", row.cells},
-          {"ok", row.ok},
-          {"diverged", row.diverged},
-          {"not_initialized", row.not_initialized},
-          {"failed", row.failed},
-          {"nees_verdict", row.nees_verdict},
-          {"nees_inside", RoundedJson(row.nees_inside_share, 4)},
-          {"group", row.group},
-          {"rmse_to_best", RoundedJson({row.rmse_pos_to_best, row.rmse_ori_to_best}, 4)},
-          {"means", means},
-          {"errors", errors},
-          {"best", best}};
 }
 
 /// Of each pair: [sequence, figure, first, second (indices), pairs, lost, difference, half of its interval,
@@ -144,41 +111,6 @@ Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
                     place(labels, pair.second), test.count, pair.only_first + pair.only_second + pair.neither,
                     RoundedJson(test.mean, 4), RoundedJson(0.5 * (test.high - test.low), 3), verdict,
                     RoundedJson(test.p_value, 2), RoundedJson(pair.holm_p_value, 2)});
-  }
-  return list;
-}
-
-/// `ratios`: bound over achieved, orientation and position each, as the page's headings.
-Json EfficiencyData(const Comparison& comparison) {
-  Json list = Json::array();
-  for (const Efficiency& entry : ComputeEfficiency(comparison)) {
-    Json ratios = Json::array();
-    for (const Ratio& ratio : {entry.achieved, entry.smoothed, entry.filtered}) {
-      ratios.push_back(RoundedJson(ratio.ori, 4));
-      ratios.push_back(RoundedJson(ratio.pos, 4));
-    }
-    list.push_back({{"estimator", entry.label},
-                    {"sequence", entry.sequence},
-                    {"pairs", entry.pairs},
-                    {"ratios", ratios}});
-  }
-  return list;
-}
-
-Json FrontendData(const Comparison& comparison) {
-  Json list = Json::array();
-  for (const FrontendSummary& front : comparison.frontends) {
-    list.push_back({{"sequence", front.sequence},
-                    {"seed", front.seed},
-                    {"images", front.images},
-                    {"features", RoundedJson(front.features_per_frame, 4)},
-                    {"mean_length", RoundedJson(front.mean_length, 4)},
-                    {"median_length", RoundedJson(front.median_length, 4)},
-                    {"lost", RoundedJson(100 * front.lost_share, 4)},
-                    {"rejected", RoundedJson(100 * front.rejected_share, 4)},
-                    {"thinned", RoundedJson(100 * front.thinned_share, 4)},
-                    {"mean_ms", RoundedJson(front.mean_ms, 4)},
-                    {"p95_ms", RoundedJson(front.p95_ms, 4)}});
   }
   return list;
 }
@@ -221,6 +153,10 @@ Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures
                 const std::vector<AggregateRow>& rows) {
   Json data = {{"title", comparison.title},
                {"command", comparison.command},
+               {"version", comparison.provenance.version},
+               {"date", comparison.provenance.date},
+               {"machine",
+                {{"cpu", comparison.provenance.machine.cpu}, {"cores", comparison.provenance.machine.cores}}},
                {"shown_note", comparison.shown_note},
                {"not_run", comparison.notes},
                {"truth_covariance", comparison.SequencesWithTruthCovariance()},
@@ -228,15 +164,15 @@ Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures
                {"estimators", ListLabels(rows)}};
   data["figures"] = Json::array();
   for (const Figure& figure : figures) {
-    data["figures"].push_back(FigureData(figure));
+    data["figures"].push_back(FigureJson(figure));
   }
   data["aggregate"] = Json::array();
   for (const AggregateRow& row : rows) {
-    data["aggregate"].push_back(AggregateData(row));
+    data["aggregate"].push_back(AggregateJson(row));
   }
   data["pairs"] = PairData(comparison, figures, rows);
-  data["efficiency"] = EfficiencyData(comparison);
-  data["frontends"] = FrontendData(comparison);
+  data["efficiency"] = EfficiencyJson(comparison);
+  data["frontends"] = FrontendJson(comparison);
   data["references"] = Json::array();
   for (const ReferenceFigure& reference : comparison.references) {
     data["references"].push_back({{"source", reference.source},

@@ -9,6 +9,7 @@
 #include "core/format.h"
 #include "eval/report/efficiency_tables.h"
 #include "eval/report/heat_map.h"
+#include "eval/report/label_marks.h"
 #include "eval/report/pair_tables.h"
 
 namespace alidade {
@@ -99,6 +100,7 @@ std::vector<std::string> SummaryHeadings(const Comparison& comparison) {
 TextTable SequenceTable(const std::string& sequence, const std::vector<AggregateRow>& rows,
                         const Comparison& comparison, const std::vector<Figure>& figures, const Ties& ties,
                         const std::string& plus_minus) {
+  const LabelMarks marks(comparison);
   TextTable table{sequence, {"estimator", "runs ok"}, {}};
   for (const Figure& figure : figures) {
     table.header.push_back(Heading(figure));
@@ -109,7 +111,7 @@ TextTable SequenceTable(const std::string& sequence, const std::vector<Aggregate
     if (row.sequence != sequence) {
       continue;
     }
-    TextRow text{{{row.label}, {RunsText(row)}}};
+    TextRow text{{{marks.Marked(row.label)}, {RunsText(row)}}};
     for (size_t i = 0; i < figures.size(); ++i) {
       text.cells.push_back(
           {FormatStatistic(row.figures[i], figures[i].decimals, plus_minus) + ties.MarkOf(row, i),
@@ -171,11 +173,12 @@ TextTable OverviewTable(size_t index, const std::vector<AggregateRow>& rows, con
                         const std::vector<Figure>& figures, const Ties& ties, const std::string& plus_minus) {
   const Figure& figure = figures[index];
   const std::vector<std::string> sequences = ListSequences(rows);
+  const LabelMarks marks(comparison);
   TextTable table{"Overview: " + Heading(figure), {"estimator"}, {}};
   table.header.insert(table.header.end(), sequences.begin(), sequences.end());
   table.header.emplace_back("mean");
   for (const std::string& label : ListLabels(rows)) {
-    TextRow text{{{label}}};
+    TextRow text{{{marks.Marked(label)}}};
     double sum = 0;
     for (const std::string& sequence : sequences) {
       TextCell cell{kDash};
@@ -238,6 +241,9 @@ std::vector<TextTable> LayOutTables(const Comparison& comparison, const std::str
   }
   for (const HeatMap& map : MakeHeatMaps(rows, figures)) {
     tables.push_back(HeatTable(map));
+    for (std::string& heading : tables.back().header) {
+      heading = LabelMarks(comparison).Marked(heading);
+    }
   }
   for (const std::string& sequence : sequences) {
     tables.push_back(SequenceTable(sequence, rows, comparison, figures, ties, plus_minus));

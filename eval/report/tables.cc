@@ -26,7 +26,8 @@ std::string SummaryCsv(const Comparison& comparison, const std::vector<Figure>& 
       header.push_back("align");
     }
   }
-  header.push_back("message");
+  header.emplace_back("mode");
+  header.emplace_back("message");
   std::string text = JoinCsv(header);
   for (const CellResult& cell : comparison.cells) {
     std::vector<std::string> fields = {CsvText(cell.estimator),
@@ -44,6 +45,7 @@ std::string SummaryCsv(const Comparison& comparison, const std::vector<Figure>& 
         fields.push_back(CsvText(cell.align));
       }
     }
+    fields.push_back(ModeWord(cell.smoothed));
     fields.push_back(CsvText(cell.message));
     text += JoinCsv(fields);
   }
@@ -63,7 +65,7 @@ std::string AggregateCsv(const Comparison& comparison, const std::vector<Figure>
     header.push_back(std::string(nees) + "_band_high");
   }
   for (const char* more : {"nees_verdict", "nees_inside_share", "rmse_pos_ratio", "rmse_ori_ratio",
-                           "rmse_pos_to_best", "rmse_ori_to_best", "group"}) {
+                           "rmse_pos_to_best", "rmse_ori_to_best", "group", "mode"}) {
     header.emplace_back(more);
   }
   std::string text = JoinCsv(header);
@@ -87,6 +89,7 @@ std::string AggregateCsv(const Comparison& comparison, const std::vector<Figure>
       fields.push_back(CsvNumber(value));
     }
     fields.push_back(CsvText(row.group));
+    fields.push_back(ModeWord(row.smoothed));
     text += JoinCsv(fields);
   }
   return text;

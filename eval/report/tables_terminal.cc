@@ -1,6 +1,7 @@
 #include "eval/report/tables_terminal.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "eval/report/pair_tables.h"
 #include "eval/report/table_layout.h"
@@ -57,16 +58,19 @@ std::string TerminalTable(const TextTable& table) {
   return text;
 }
 
+/// Columns whose headings begin so are in the files alone.
+constexpr const char* kDropped[] = {
+    "RPE",       "front end", "back end p95",   "NEES pos.", "NEES ori.",    "NEES vel.",
+    "NEES gyro", "NEES acc",  "alarms inside ", "features",  "NEES in band", "x real time"};
+
 /// A terminal is narrow: the columns one reads first; the files have them all.
 TextTable KeepColumns(const TextTable& table) {
   TextTable kept{table.title, {}, {}};
   std::vector<size_t> columns;
   for (size_t i = 0; i < table.header.size(); ++i) {
     const std::string& heading = table.header[i];
-    const bool drop = heading.starts_with("RPE") || heading.starts_with("front end") ||
-                      heading.starts_with("back end p95") || heading.starts_with("NEES pos.") ||
-                      heading.starts_with("NEES ori.") || heading.starts_with("features") ||
-                      heading.starts_with("NEES in band");
+    const bool drop = std::any_of(std::begin(kDropped), std::end(kDropped),
+                                  [&heading](const char* start) { return heading.starts_with(start); });
     if (!drop) {
       columns.push_back(i);
       kept.header.push_back(heading);
@@ -93,8 +97,8 @@ std::string FormatTable(const Comparison& comparison) {
     }
   }
   text += "Means over ok runs \u00b1 standard error; * best of the column (NEES: nearest to 6, 3).\n";
-  if (const std::string remark = TruthCovarianceRemark(comparison); !remark.empty()) {
-    text += remark + "\n";
+  for (const std::string& remark : {TruthCovarianceRemark(comparison), SmoothedRemark(comparison)}) {
+    text += remark.empty() ? "" : remark + "\n";
   }
   for (const std::string& line : LostRuns(comparison)) {
     text += line + "\n";

@@ -89,8 +89,17 @@ std::string LatexTable(const TextTable& table) {
 }
 
 const char* const kReading =
-    "Means over the runs that ended ok, with the standard error of the mean where there are several. RMSE is "
-    "unaligned; the alignment of ATE is in summary.csv. The best value of a column is bold (NEES: nearest to "
+    "Means over the runs that ended ok, with the standard error of the mean where there are several. "
+    "Completed: "
+    "share of the camera's time with an estimate, over all runs. x real time: seconds of camera data per "
+    "second "
+    "of front end and back end, of the back end alone where the tracks were read from a file. RMSE is "
+    "unaligned. ATE: error after alignment to the truth, which summary.csv names (posyaw: in position and "
+    "yaw "
+    "about gravity). RPE: error of the relative motion over stretches of that length of the path. NEES: "
+    "squared "
+    "error in units of the covariance that the estimator claims. The best value of a column is bold (NEES: "
+    "nearest to "
     "its degrees of freedom, 6, 3 and 3), among the estimators with the most runs ok; \u2248 marks values "
     "whose paired difference to it is not significant. Published figures are in italics. NEES in band: share "
     "of the instants at which the NEES averaged over the runs is in its 95 % chi-square band; the verdict "
@@ -126,11 +135,28 @@ std::string TruthCovarianceRemark(const Comparison& comparison) {
                              names + ").";
 }
 
+std::string SmoothedRemark(const Comparison& comparison) {
+  std::string names;
+  for (const std::string& name : comparison.SmoothedEstimators()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names.empty() ? ""
+                       : "Smoothed: uses later data (" + names +
+                             "), which the others do not have: a causal estimator's row uses data until its "
+                             "stamp. A smoothed estimator is never marked as best.";
+}
+
+std::string ProvenanceText(const Provenance& provenance) {
+  return provenance.version.empty() ? ""
+                                    : "Alidade " + provenance.version + ", " + provenance.date +
+                                          " (UTC), on " + ToString(provenance.machine);
+}
+
 std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables) {
   std::string text = "# ";
   text += EscapeMarkdown(comparison.title) + "\n\n" + kReading + "\n";
-  if (const std::string remark = TruthCovarianceRemark(comparison); !remark.empty()) {
-    text += "\n" + EscapeMarkdown(remark) + "\n";
+  for (const std::string& remark : {TruthCovarianceRemark(comparison), SmoothedRemark(comparison)}) {
+    text += remark.empty() ? "" : "\n" + EscapeMarkdown(remark) + "\n";
   }
   for (const TextTable& table : tables) {
     text += "\n";
@@ -146,14 +172,17 @@ std::string MarkdownText(const Comparison& comparison, const std::vector<TextTab
   for (const std::string& note : comparison.notes) {
     text += "- " + EscapeMarkdown(note) + "\n";
   }
+  const std::string made = ProvenanceText(comparison.provenance);
+  text += made.empty() ? "" : "\nMade with " + EscapeMarkdown(made) + ".\n";
   return comparison.command.empty() ? text : text + "\nRepeat with:\n\n    " + comparison.command + "\n";
 }
 
 std::string LatexText(const Comparison& comparison, const std::vector<TextTable>& tables) {
   std::string text =
       "% Needs \\usepackage{booktabs}.\n% " + EscapeLatex(comparison.title) + "\n% " + kReading + "\n";
-  if (const std::string remark = TruthCovarianceRemark(comparison); !remark.empty()) {
-    text += "% " + EscapeLatex(remark) + "\n";
+  for (const std::string& remark : {TruthCovarianceRemark(comparison), SmoothedRemark(comparison),
+                                    ProvenanceText(comparison.provenance)}) {
+    text += remark.empty() ? "" : "% " + EscapeLatex(remark) + "\n";
   }
   for (const TextTable& table : tables) {
     text += "\n";

@@ -14,6 +14,12 @@ namespace alidade {
 /// A sentence on the sequences whose NEES include the covariance of the truth; empty when there are none.
 [[nodiscard]] std::string TruthCovarianceRemark(const Comparison& comparison);
 
+/// A sentence on the estimators that are smoothed; empty when there are none.
+[[nodiscard]] std::string SmoothedRemark(const Comparison& comparison);
+
+/// "Alidade 0.1.0, 2026-11-25 (UTC), on <CPU> (4 logical cores)"; empty when it is not recorded.
+[[nodiscard]] std::string ProvenanceText(const Provenance& provenance);
+
 /// tables.md: GitHub tables; the best of a column in bold, published figures in italics. Names are escaped.
 [[nodiscard]] std::string MarkdownText(const Comparison& comparison, const std::vector<TextTable>& tables);
 

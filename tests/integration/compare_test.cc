@@ -22,7 +22,7 @@ std::string WithoutTimes(const std::string& text) {
     size_t column = 0;
     for (std::string field; std::getline(fields, field, ','); ++column) {
       if (result.empty() || keep.size() == column) {
-        keep.push_back(field.find("_ms") == std::string::npos);
+        keep.push_back(field.find("_ms") == std::string::npos && !field.starts_with("realtime_factor"));
       }
       result += keep[column] ? field + "," : "";
     }

@@ -61,9 +61,9 @@ plain() {
   done)
 }
 diff <(plain local) <(plain cluster_run)
-# columns FILE: without those of times, which are named *_ms.
+# columns FILE: without those of times, which are named *_ms and realtime_factor*.
 columns() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) keep[i] = $i !~ /_ms/ } { line = ""; for (i = 1; i <= NF; i++) if (keep[i]) line = line $i ","; print line }' "$1"
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) keep[i] = $i !~ /_ms|^realtime_factor/ } { line = ""; for (i = 1; i <= NF; i++) if (keep[i]) line = line $i ","; print line }' "$1"
 }
 diff <(columns local/summary.csv) <(columns cluster_run/summary.csv)
 echo "200 cells are equal, $requeued jobs were requeued"

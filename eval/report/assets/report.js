@@ -59,7 +59,9 @@
     const align = report.alignment(cells);
     element('sequence-title').textContent = state.sequence || '';
     element('sequence-note').textContent = (ran ? report.digits(ran.duration) + ' s, ' + report.digits(ran.path) + ' m, ' +
-      ran.frames + ' frames. ' : '') + ['rmse_', 'ate_', 'rpe_', 'nees_'].map(function (key) { return report.meaning(key, align); }).join(' ');
+      ran.frames + ' frames. ' : '') + ['rmse_', 'ate_', 'rpe_', 'nees_', 'completion', 'realtime_factor'].map(function (key) {
+        return report.meaning(key, align);
+      }).join(' ');
     element('sequence-table').innerHTML = report.sequenceTable(state.sequence);
     report.drawEfficiency(state.sequence);
     report.drawFrontend(state.sequence);
@@ -108,7 +110,9 @@
     const order = data.estimators.slice().sort(function (a, b) {  // those of the sequence first: the plots show no others
       return here(a) - here(b) || data.estimators.indexOf(a) - data.estimators.indexOf(b);
     });
-    fillChips('chips', order, state.off, function (name) { return report.swatch(report.style(name)) + report.escape(name); });
+    fillChips('chips', order, state.off, function (name) {
+      return report.swatch(report.style(name)) + report.escape(report.marked(name));
+    });
     d3.selectAll('#chips .chip').filter(function () { return here(this.getAttribute('data-name')); }).classed('elsewhere', true)
       .attr('title', 'did not run on ' + state.sequence);
     d3.select('#chips').append('span').attr('class', 'legend').html(report.swatch(report.TRUTH) + 'truth');

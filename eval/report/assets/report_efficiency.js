@@ -9,7 +9,7 @@
     document.getElementById('efficiency-table').innerHTML = '<table><thead><tr><th scope="col">bound / achieved</th><th scope="col">pairs</th>' +
       headings.map(function (heading) { return '<th scope="col">' + heading + '</th>'; }).join('') + '</tr></thead><tbody>' +
       entries.map(function (entry) {
-        return '<tr><th scope="row">' + report.swatch(report.style(entry.estimator)) + report.name(entry.estimator) + '</th><td>' + entry.pairs + '</td>' +
+        return '<tr><th scope="row">' + report.swatch(report.style(entry.estimator)) + report.name(report.marked(entry.estimator)) + '</th><td>' + entry.pairs + '</td>' +
           entry.ratios.map(function (ratio) { return '<td>' + report.format(ratio, 2) + '</td>'; }).join('') + '</tr>';
       }).join('') + '</tbody></table>';
   };

@@ -25,7 +25,7 @@
       '<p class="heat-legend">' + map.legend.map(function (step) {
         return '<span style="background:' + step[0] + ';color:' + step[1] + '">' + escape(step[2]) + '</span>';
       }).join('') + '</p><div class="table-scroll" tabindex="0" role="region" aria-label="' + escape(map.title) + '"><table class="heat"><thead><tr><th scope="col"></th>' +
-      columns.map(function (i) { return '<th scope="col">' + report.name(map.labels[i]) + '</th>'; }).join('') +
+      columns.map(function (i) { return '<th scope="col">' + report.name(report.marked(map.labels[i])) + '</th>'; }).join('') +
       '</tr></thead><tbody>' + heatRows(map, columns) + '</tbody></table></div></figure>';
   }
 

@@ -34,13 +34,13 @@
   function badness(figure, value) {
     if (value === null || value === undefined || figure.ideal === 'none') { return Infinity; }
     if (figure.ideal === 'low') { return value; }
-    return figure.target < 1 ? Math.abs(value - figure.target) : Math.abs(Math.log(value / figure.target));
+    return figure.target <= 1 ? Math.abs(value - figure.target) : Math.abs(Math.log(value / figure.target));
   }
 
-  // Names of the best of `entries` [{name, value, lost, backend}]: among those that lost the fewest runs, where at least two
-  // have a value. The batch estimate is a bound and no rival.
+  // Names of the best of `entries` [{name, value, lost}]: among those that lost the fewest runs, where at least two
+  // have a value. A smoothed estimate uses later data and is no rival.
   report.best = function (entries, figure) {
-    const open = entries.filter(function (entry) { return entry.backend !== 'batch'; });
+    const open = entries.filter(function (entry) { return !report.smoothed(entry.name); });
     const fewest = d3.min(open, function (entry) { return entry.lost; });
     const rivals = open.filter(function (entry) { return entry.lost === fewest && isFinite(badness(figure, entry.value)); });
     const least = d3.min(rivals, function (entry) { return badness(figure, entry.value); });

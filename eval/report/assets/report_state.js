@@ -9,6 +9,12 @@
   const state = { sequence: null, seed: null, figure: null, against: BEST, off: {}, skip: {} };
   report.state = state;
 
+  const smoothed = d3.set(data.aggregate.filter(function (row) { return row.mode === 'smoothed'; }).map(function (row) { return row.estimator; }));
+  // Whether an estimator uses data of later than its rows.
+  report.smoothed = function (estimator) { return smoothed.has(estimator); };
+
+  report.marked = function (estimator) { return estimator + (report.smoothed(estimator) ? ' (smoothed)' : ''); };
+
   report.shownEstimators = function () { return data.estimators.filter(function (name) { return !state.off[name]; }); };
   report.shownSequences = function () { return data.sequences.filter(function (name) { return !state.skip[name]; }); };
   // What the cells' ATE and trajectories are aligned by: one word, or each with its estimators.

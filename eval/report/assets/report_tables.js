@@ -16,11 +16,14 @@
     return reasons.filter(function (r) { return row[r[0]] > 0; }).map(function (r) { return r[1]; }).join(', ');
   }
 
+  // Whether a row has means of figure `i`: no run need have ended ok for those of all runs.
+  function hasMean(row, i) { return row && (row.ok > 0 || data.figures[i].all_runs); }
+
   // Mean, standard error below it, and how many runs are behind it when some were lost.
   function statistic(row, i, best, extra) {
     const figure = data.figures[i];
     if (!row) { return '<td>\u2013</td>'; }
-    if (row.ok === 0) { return '<td class="bad">' + failure(row) + '<span class="sub bad">0 of ' + row.cells + ' ok</span></td>'; }
+    if (!hasMean(row, i)) { return '<td class="bad">' + failure(row) + '<span class="sub bad">0 of ' + row.cells + ' ok</span></td>'; }
     let html = report.format(row.means[i], figure.decimals);
     if (row.errors[i] !== null) { html += '<span class="sub">\u00b1 ' + report.formatError(row.errors[i], row.means[i], figure.decimals) + '</span>'; }
     if (extra && row.ok < row.cells) { html += '<span class="sub bad">' + row.ok + ' of ' + row.cells + ' ok</span>'; }
@@ -28,8 +31,9 @@
   }
 
   function estimatorHead(estimator, backend) {
+    const words = [backend || '', report.smoothed(estimator) ? 'smoothed' : ''].filter(function (word) { return word; });
     return '<th scope="row">' + report.swatch(report.style(estimator)) + report.name(estimator) +
-      (backend ? '<span class="sub">' + escape(backend) + '</span>' : '') + '</th>';
+      (words.length ? '<span class="sub">' + escape(words.join(', ')) + '</span>' : '') + '</th>';
   }
 
   function referencesOf(estimator, sequence, key) {
@@ -38,10 +42,10 @@
     });
   }
 
-  // Mean over the shown sequences, only where the estimator finished every one of them.
+  // Mean over the shown sequences, only where the estimator has every one of them.
   function acrossSequences(estimator, i) {
     const rows = report.shownSequences().map(function (sequence) { return report.aggregate(estimator, sequence); });
-    const complete = rows.every(function (row) { return row && row.ok > 0 && row.means[i] !== null; });
+    const complete = rows.every(function (row) { return hasMean(row, i) && row.means[i] !== null; });
     return complete ? d3.mean(rows, function (row) { return row.means[i]; }) : null;
   }
 
@@ -54,7 +58,7 @@
     const shown = report.shownSequences();
     return report.shownEstimators().map(function (estimator) {
       const lost = d3.sum(data.aggregate, function (row) {
-        return row.estimator === estimator && shown.indexOf(row.sequence) >= 0 ? row.cells - row.ok : 0;
+        return row.estimator === estimator && shown.indexOf(row.sequence) >= 0 && !data.figures[i].all_runs ? row.cells - row.ok : 0;
       });
       return { name: estimator, value: acrossSequences(estimator, i), lost: lost, backend: backendOf(estimator) };
     });
@@ -66,7 +70,7 @@
       .filter(function (row) { return row; });
     const most = d3.max(rows, function (row) { return row.ok; });
     return report.best(rows.map(function (row) {
-      return { name: row.estimator, value: row.means[i], lost: most - row.ok, backend: row.backend };
+      return { name: row.estimator, value: row.means[i], lost: data.figures[i].all_runs ? 0 : most - row.ok };
     }), data.figures[i]);
   }
 
@@ -75,7 +79,7 @@
   function overviewCell(estimator, sequence, i, most, best) {
     const figure = data.figures[i];
     const row = report.aggregate(estimator, sequence);
-    let extra = row && row.ok ? report.testLine(estimator, rivalOf(best), sequence, i) : '';
+    let extra = hasMean(row, i) ? report.testLine(estimator, rivalOf(best), sequence, i) : '';
     extra += referencesOf(estimator, sequence, figure.key).map(function (r) {
       return '<span class="sub"><i>' + escape(r.source) + ' ' + report.format(r.figures[figure.key], figure.decimals) + '</i></span>';
     }).join('');
@@ -143,24 +147,32 @@
     return meaning ? ' ' + meaning : '';
   }
 
+  function smoothedNote() {
+    const names = report.shownEstimators().filter(report.smoothed);
+    return names.length ? ' Smoothed: uses later data (' + names.join(', ') + '), which the others do not have: a causal ' +
+      'estimator\u2019s row uses data until its stamp. A smoothed estimator is never shaded as best.' : '';
+  }
+
   report.overviewNote = function (key) {
     const i = figureIndex(key), figure = data.figures[i];
     const ideal = figure.ideal === 'low' ? 'Lower is better.' : figure.ideal === 'target' ?
       'Ideal is ' + Number(figure.target.toFixed(4)) + '.' : 'No value is better than another.';
     const unit = figure.unit ? ' in ' + figure.unit : '';
-    return figure.label + unit + ', mean over the seeds that ended ok \u00b1 its standard error. ' + ideal + meaningNote(key) +
-      (figure.ideal === 'none' ? '' : ' The best of each column is shaded, among the shown estimators that lost the fewest runs.') +
-      testNote(i) + (data.references.length ? ' Published figures are in italics.' : '');
+    return figure.label + unit + ', mean over ' + (figure.all_runs ? 'all seeds' : 'the seeds that ended ok') + ' \u00b1 its standard error. ' +
+      ideal + meaningNote(key) + (figure.ideal === 'none' ? '' : ' The best of each column is shaded, among the shown estimators' +
+      (figure.all_runs ? '.' : ' that lost the fewest runs.')) + testNote(i) + smoothedNote() + (data.references.length ? ' Published figures are in italics.' : '');
   };
 
   report.sequenceTable = function (sequence) {
-    const isRpe = function (i) { return data.figures[i].key.indexOf('rpe_') === 0 ? 1 : 0; };
+    const align = report.alignment(report.cellsOf(sequence));
+    // How much was completed stands beside the runs that ended ok, the many RPE columns last.
+    const place = function (i) { return data.figures[i].key === 'completion' ? -1 : data.figures[i].key.indexOf('rpe_') === 0 ? 1 : 0; };
     const used = data.figures.map(function (figure, i) { return i; }).filter(function (i) {
       return data.aggregate.some(function (row) { return row.sequence === sequence && row.means[i] !== null; });
-    }).sort(function (a, b) { return isRpe(a) - isRpe(b) || a - b; });  // the many RPE columns last
+    }).sort(function (a, b) { return place(a) - place(b) || a - b; });
     const head = used.map(function (i) {
       const figure = data.figures[i];
-      return '<th scope="col">' + escape(figure.label) + '<span class="unit">' + (escape(figure.unit) || '\u00a0') + '</span></th>';
+      return '<th scope="col" title="' + escape(report.meaning(figure.key, align)) + '">' + escape(figure.label) + '<span class="unit">' + (escape(figure.unit) || '\u00a0') + '</span></th>';
     }).join('');
     const referenceCells = function (matches) {
       return '<td></td>' + used.map(function (i) {
@@ -178,7 +190,7 @@
         (row.ok < row.cells ? '<span class="sub bad">' + failure(row) + '</span>' : '') + '</td>';
       const own = data.references.filter(function (r) { return r.estimator === estimator && r.sequence === sequence; });
       return '<tr>' + estimatorHead(estimator, row.backend) + counts +
-        used.map(function (i) { return row.ok ? statistic(row, i, best[i]) : '<td>\u2013</td>'; }).join('') + '</tr>' +
+        used.map(function (i) { return hasMean(row, i) ? statistic(row, i, best[i]) : '<td>\u2013</td>'; }).join('') + '</tr>' +
         own.map(function (r) {
           return '<tr class="reference"><th scope="row">' + report.name(estimator) + '<span class="sub">' + escape(r.source) + '</span></th>' +
             referenceCells(function (other) { return other === r; }) + '</tr>';

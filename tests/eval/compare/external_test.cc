@@ -122,6 +122,9 @@ TEST(ExternalTimesTest, ColumnsAreFoundByTheirNames) {
   ASSERT_TRUE(times.ok()) << times.message();
   EXPECT_THAT(times->frontend_ms, testing::ElementsAre(2, 4));
   EXPECT_THAT(times->backend_ms, testing::ElementsAre(3, 5));
+  EXPECT_THAT(times->stamps_ns, testing::ElementsAre(1, 2));
+  EXPECT_TRUE(read("frontend_ms,backend_ms\n1,2\n")->stamps_ns.empty());
+  EXPECT_THAT(read("timestamp_ns,frontend_ms,backend_ms\n0.5,1,2\n").message(), HasSubstr("timing.csv:2"));
   EXPECT_THAT(read("timestamp_ns,frontend_ms\n1,2\n").message(), HasSubstr("a column backend_ms"));
   EXPECT_THAT(read("frontend_ms,backend_ms\n1,x\n").message(), HasSubstr("timing.csv:2"));
   EXPECT_THAT(read("frontend_ms,backend_ms\n").message(), HasSubstr("no row"));

@@ -43,7 +43,7 @@ TEST_F(PlanTest, ReadsEveryKey) {
       "  - estimators/a.yaml\n"
       "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}, "
       "sequences: [loud]}\n"
-      "  - {name: other, trajectories: {seq: other.tum}, align: pos, align_share: 0.05}\n"
+      "  - {name: other, trajectories: {seq: other.tum}, align: pos, align_share: 0.05, mode: smoothed}\n"
       "sequences:\n"
       "  - {path: '${data}/seq', seeds: [4, 2]}\n"
       "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
@@ -69,6 +69,8 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_FALSE(plan->estimators[1].RunsOn("sim"));
   EXPECT_TRUE(plan->estimators[2].external());
   EXPECT_FALSE(plan->estimators[2].RunsOn("sim"));
+  EXPECT_TRUE(plan->estimators[2].smoothed);
+  EXPECT_FALSE(plan->estimators[1].smoothed);
   EXPECT_EQ(plan->estimators[2].trajectories.at("seq"), folder_.File("other.tum"));
   EXPECT_THAT(plan->pair_figures, ElementsAre("ate_pos_m"));
   EXPECT_TRUE(plan->pair_across);
@@ -126,6 +128,12 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
       {sequences + "estimators: [estimators/a.yaml, {config: estimators/b.yaml, name: a}]\n", "is taken"},
       {sequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
        "no such sequence; did you mean 'sim'"},
+      {sequences + "estimators:\n  - {name: o, trajectories: {sim: other.tum}, mode: online}\n",
+       "plan.yaml:3:53: mode: found 'online', expected causal or smoothed"},
+      {sequences + "estimators: [{name: o, trajectories: {sim: other.tum}, frame: [body]}]\n",
+       "body or camera"},
+      {sequences + "estimators: [{config: estimators/a.yaml, mode: causal}]\n",
+       "mode: found 'causal', expected `trajectories` or `command` beside it"},
       {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
       {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` only with `config`"},
       {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
@@ -165,7 +173,8 @@ TEST_F(PlanTest, MissingFileIsAConfigurationFault) {
 TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
   const Result<Plan> plan = Read(
       "estimators:\n"
-      "  - {name: theirs, command: 'run {dataset} {output}', result: out.txt, timeout: 60, frame: camera}\n"
+      "  - {name: theirs, command: 'run {dataset} {output}', result: out.txt, timeout: 60, frame: camera, "
+      "mode: causal}\n"
       "sequences:\n  - config: sim.yaml\n");
   ASSERT_TRUE(plan.ok()) << plan.message();
   const PlanEstimator& theirs = plan->estimators.at(0);
@@ -174,6 +183,7 @@ TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
   EXPECT_EQ(theirs.command.result, "out.txt");
   EXPECT_EQ(theirs.command.timeout_s, 60);
   EXPECT_TRUE(theirs.camera_frame);
+  EXPECT_FALSE(theirs.smoothed);
   for (const char* wrong : {"{name: x, command: a, config: estimators/a.yaml}", "{command: a}",
                             "{name: x, command: a, frame: lens}", "{name: x, command: a, set: {b: 1}}",
                             "{config: estimators/a.yaml, program: other.tum}"}) {

@@ -29,6 +29,9 @@ CellReport Report() {
   cell.status = "ok";
   cell.frames = 3;
   cell.rmse_pos_m = kThird;
+  cell.completion = kThird;
+  cell.realtime_factor = 2 * kThird;
+  cell.smoothed = true;
   cell.ate_pos_m = std::numeric_limits<double>::infinity();
   cell.rpe = {{8, 2, kThird, 0.5, {0.1, kThird}}, {16, 0, NAN, NAN, {}}};
   cell.truth_has_covariance = true;
@@ -56,6 +59,9 @@ TEST(CellFile, KeepsEveryBit) {
   const CellResult& cell = read->result;
   EXPECT_EQ(cell.seed, report.result.seed);
   EXPECT_EQ(cell.rmse_pos_m, kThird);
+  EXPECT_EQ(cell.completion, kThird);
+  EXPECT_EQ(cell.realtime_factor, 2 * kThird);
+  EXPECT_TRUE(cell.smoothed);
   EXPECT_TRUE(std::isinf(*cell.ate_pos_m));
   EXPECT_FALSE(cell.ate_ori_deg);
   EXPECT_EQ(cell.rpe[0].pos_errors_m, report.result.rpe[0].pos_errors_m);

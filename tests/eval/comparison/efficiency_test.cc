@@ -16,6 +16,7 @@ CellResult MakeCell(const std::string& estimator, unsigned seed, double ori_deg,
   CellResult cell;
   cell.estimator = estimator;
   cell.backend = estimator == "batch" ? "batch" : "filter";
+  cell.smoothed = estimator == "batch";
   cell.sequence = "walk";
   cell.seed = seed;
   cell.status = "ok";

@@ -18,6 +18,7 @@ CellResult MapCell(const std::string& estimator, const std::string& sequence, un
   CellResult cell;
   cell.estimator = estimator;
   cell.backend = estimator == "batch" ? "batch" : "filter";
+  cell.smoothed = estimator == "batch";
   cell.sequence = sequence;
   cell.seed = seed;
   cell.status = "ok";

@@ -81,6 +81,8 @@ inline CellResult SyntheticCell(const std::string& estimator, const std::string&
   cell.frontend_ms = 4.4;
   cell.backend_ms = backend_ms;
   cell.backend_ms_p95 = 1.7 * backend_ms;
+  cell.completion = 0.98;
+  cell.realtime_factor = 100 / (4.4 + backend_ms);
   cell.features_per_frame = 40;
   cell.propagate_ms = 0.1 * backend_ms;
   cell.update_ms = 0.8 * backend_ms;
