@@ -4,22 +4,15 @@
 
   // spec: stages [{name, colour}], bars [{name, parts [value a stage]}], unit.
   report.barPlot = function (parent, spec) {
-    spec.height = 62 + 16 + 30 * Math.max(1, spec.bars.length);
+    spec.height = 62 + 30 * Math.max(1, spec.bars.length);
     spec.left = 12;
     const plot = draw.frame(parent, spec);
     if (!spec.bars.length) { draw.emptyNotice(plot); return; }
     const total = function (bar) { return d3.sum(bar.parts); };
     const x = d3.scale.linear().domain([0, d3.max(spec.bars, total) || 1]).range([0, plot.inner.width - 64]);
     draw.axis(plot, x, true, x.ticks(Math.max(3, plot.inner.width / 90)));
-    let from = 0;
-    spec.stages.forEach(function (stage) {  // the legend, in one line where it fits
-      const width = 22 + 6.1 * stage.name.length;
-      plot.area.append('rect').attr({ x: from, y: 0, width: 10, height: 10, fill: stage.colour });
-      plot.area.append('text').attr({ x: from + 14, y: 9, 'font-size': 10.5, fill: draw.INK }).text(stage.name);
-      from += width;
-    });
     spec.bars.forEach(function (bar, b) {
-      const top = 18 + 30 * b;
+      const top = 2 + 30 * b;
       plot.area.append('text').attr({ x: 3, y: top + 10, fill: draw.INK, 'font-size': 11 }).text(bar.name);
       let at = 0;
       bar.parts.forEach(function (part, s) {

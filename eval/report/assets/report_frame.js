@@ -32,6 +32,12 @@
       style.colour + '" stroke-width="3"' + (style.dash ? ' stroke-dasharray="' + style.dash + '"' : '') + '/></svg>';
   };
 
+  report.legendHtml = function (legend) {
+    return legend.map(function (entry) {
+      return '<span class="legend">' + report.swatch(entry.style) + report.escape(entry.name) + '</span>';
+    }).join(' ');
+  };
+
   function saveSvg(svg, spec) {
     const copy = svg.cloneNode(true);
     const width = svg.getBoundingClientRect().width, height = svg.getBoundingClientRect().height;
@@ -58,11 +64,12 @@
     setTimeout(function () { URL.revokeObjectURL(link.href); }, 1000);
   }
 
-  // A figure with caption, "save SVG" and an empty plot area; `spec` needs id, title, file, legend, height.
+  // A figure with caption, legend, "save SVG" and an empty plot area; `spec` needs id, title, file, legend, height.
   function frame(parent, spec) {
     const figure = d3.select(parent).append('figure');
     const caption = figure.append('figcaption');
     caption.append('span').text(spec.title);
+    figure.append('p').attr('class', 'plot-legend').html(report.legendHtml(spec.legend));
     const margin = { left: spec.left || 54, right: 12, top: 8, bottom: spec.bottom || 38 };
     const width = Math.max(240, figure.node().getBoundingClientRect().width);
     const height = spec.height;

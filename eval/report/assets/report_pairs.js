@@ -17,9 +17,9 @@
       return shown.some(function (column) { return row !== column && report.pair(row, column, sequence, i); });
     });
     if (!used.length) { return ''; }
-    const head = used.map(function (name) { return '<th scope="col">' + report.name(name) + '</th>'; }).join('');
+    const head = used.map(function (name) { return '<th scope="col">' + report.name(report.marked(name)) + '</th>'; }).join('');
     const rows = used.map(function (row) {
-      return '<tr><th scope="row">' + report.swatch(report.style(row)) + report.name(row) + '</th>' + used.map(function (column) {
+      return '<tr><th scope="row">' + report.swatch(report.style(row)) + report.name(report.marked(row)) + '</th>' + used.map(function (column) {
         const pair = row === column ? null : report.pair(row, column, sequence, i);
         most.count = pair ? Math.max(most.count, pair.count) : most.count;
         return pair ? cell(pair, data.figures[i]) : '<td>\u2013</td>';
@@ -41,7 +41,8 @@
       ', row minus column on the same input and seed, with half of the 95 % interval of the mean (Student\u2019s t' +
       (here ? ', ' + sequence + ', ' + most.count + ' pairs' : '') +
       '). Shaded where the interval excludes zero. p: of the pair alone. Holm: corrected for the number of pairs of the table, so that with probability 95 % none ' +
-      'below 0.05 is by chance. The figure is selected in the overview; pairs.csv has all figures.';
+      'below 0.05 is by chance. The figure is selected in the overview; pairs.csv has all figures. ' +
+      report.meaning(key, report.alignment(data.cells));
     document.getElementById('pairs-table').innerHTML = here + (across ? '<p class="note">Over all ' + data.sequences.length +
       ' sequences, one sample a sequence:</p>' + across : '');
   };

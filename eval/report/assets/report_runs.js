@@ -113,9 +113,6 @@
     const grid = group('Satellites', cell.estimator + ', seed ' + cell.seed + ': directions (zenith in the middle, north up, rings at 0, 30 ' +
       'and 60\u00b0 of elevation, the name where a satellite was last received) and pseudorange residuals, predicted minus measured. Colours: ' +
       seen.map(function (letter) { return systemOf(letter)[0]; }).join(', ') + '.', true);
-    d3.select(grid.parentNode).insert('p', 'div').attr('class', 'legend-line').html(legend.map(function (entry) {
-      return '<span class="legend">' + report.swatch(entry.style) + entry.name + '</span>';
-    }).join(' '));
     const describe = function (line, i) {
       const down = Math.sqrt(line.points[i][0] * line.points[i][0] + line.points[i][1] * line.points[i][1]);
       const azimuth = (Math.atan2(line.points[i][0], line.points[i][1]) * 180 / Math.PI + 360) % 360;

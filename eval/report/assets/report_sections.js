@@ -14,7 +14,7 @@
   // Common fields of a plot's specification.
   report.spec = function (id, title, y, unit, legend, more) {
     const base = { id: id, title: title, x: 'time [s]', y: y, unit: unit, height: 230, file: state.sequence + '_' + id,
-      legend: legend.map(function (entry) { return { name: entry.name, style: entry.style }; }) };
+      legend: legend.map(function (entry) { return { name: report.marked(entry.name), style: entry.style }; }) };
     Object.keys(more).forEach(function (key) { base[key] = more[key]; });
     return base;
   };
@@ -50,7 +50,7 @@
 
   function alignText(entries) {
     const aligned = report.alignment(d3.merge(entries.map(function (entry) { return entry.cells; })));
-    return aligned && aligned !== 'none' ? ', aligned to the truth (' + aligned + ')' : '';
+    return aligned && aligned !== 'none' ? ', aligned to the truth (' + report.alignmentWords(aligned) + ')' : '';
   }
 
   report.drawErrors = function (entries, key, title, unit, titles, names) {
@@ -91,7 +91,8 @@
       const value = allSeeds() ? d3.mean(line.v.filter(function (v) { return v !== null; })) : entries[i].cells[0].figures[nees];
       return { style: line.style, value: value };
     }).filter(function (mean) { return mean.value > 0; });
-    report.timePlot(grid, spec('nees', 'NEES of the pose', 'NEES [\u2013], log scale', '', entries,
+    const legend = entries.concat({ name: '95 % band', style: { colour: '#bcdcc9', dash: null } });
+    report.timePlot(grid, spec('nees', 'NEES of the pose', 'NEES [\u2013], log scale', '', legend,
       { log: true, height: 300, lines: all, means: means, regions: [{ lo: band[0], hi: band[1] }] }));
     const distances = d3.set(d3.merge(entries.map(function (entry) {
       return d3.merge(entry.cells.map(function (cell) { return cell.rpe.map(function (r) { return r.d; }); }));
@@ -130,7 +131,7 @@
       'A consistent filter stays at rounding level (values below 1e\u221212 are drawn there) and at rank 11 of 15; information above it is spurious.');
     const leak = function (id, title, unit, key) {
       report.timePlot(grid, spec(id, title, 'information [' + unit + '], log scale', unit, audited,
-        { log: true, lines: lines(audited, function (series) { return series[key]; }) }));
+        { log: true, left: 68, lines: lines(audited, function (series) { return series[key]; }) }));
     };
     leak('yaw-leak', 'Information about yaw', '1/rad\u00b2', 'yaw_leak');
     leak('position-leak', 'Information about global position', '1/m\u00b2', 'position_leak');

@@ -1,15 +1,19 @@
 // What a figure is, in a sentence, where it stands.
 (function () {
   const ALIGNMENTS = {
-    none: 'none: none',
+    none: 'none: as it is',
     pos: 'pos: in position',
     posyaw: 'posyaw: in position and yaw about gravity, the directions that visual-inertial odometry cannot observe',
     se3: 'se3: in position and orientation, which hides an error in tilt too',
     sim3: 'sim3: in position, orientation and scale, which hides errors in tilt and scale too'
   };
 
-  // An alignment by its name; other texts (several alignments) unchanged.
-  report.alignmentWords = function (align) { return ALIGNMENTS[align] || align; };
+  // An alignment, or several with their estimators, with what each of them is.
+  report.alignmentWords = function (align) {
+    const used = Object.keys(ALIGNMENTS).filter(function (name) { return new RegExp('(^|; )' + name + '( of|:|$)').test(align); });
+    const words = used.map(function (name) { return ALIGNMENTS[name]; }).join('; ');
+    return used.indexOf(align) >= 0 ? words : align + (words ? '; ' + words : '');
+  };
 
   // Empty for figures that name themselves, such as times.
   report.meaning = function (key, align) {
@@ -27,6 +31,14 @@
     }
     if (key.indexOf('rmse_') === 0) {
       return 'RMSE: root mean square of the error of the estimate as it is, without alignment.';
+    }
+    if (key === 'completion') {
+      return 'Completed: share of the time from the first to the last camera frame with an estimate (rows at most 0.5 s apart), of all runs, ' +
+        'also of those that were lost.';
+    }
+    if (key === 'realtime_factor') {
+      return 'x real time: seconds of camera data that a second of front end and back end processes; of the back end alone where the tracks were ' +
+        'read from a file, of the whole program where it tells no times.';
     }
     return '';
   };

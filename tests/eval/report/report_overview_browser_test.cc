@@ -10,6 +10,7 @@ using test::ExpectWhole;
 using test::PageVisit;
 using test::ReadFile;
 using test::ReportInBrowser;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -78,6 +79,85 @@ TEST_F(ReportInBrowser, GivenGnssThenItsInnovationsHaveAPlotOfTheirOwn) {
   EXPECT_THAT(visit.dom, HasSubstr("of GNSS: gvio 0.97, 95.0 %."));
 }
 
+TEST_F(ReportInBrowser, GivenATableThenItIsAtLeastAsWideAsItsPlace) {
+  const PageVisit visit = Open(WithScript(R"(
+    const boxes = Array.from(document.querySelectorAll('.table-scroll')).filter(function (box) { return box.clientWidth > 0; });
+    const narrow = boxes.filter(function (box) { return box.firstElementChild.getBoundingClientRect().width < box.clientWidth - 1; });
+    document.documentElement.setAttribute('data-tables', boxes.length);
+    document.documentElement.setAttribute('data-narrow', narrow.map(function (box) { return box.id || 'map'; }).join(' '));
+  )"));
+  EXPECT_EQ(visit.Mark("tables"), "7");
+  EXPECT_EQ(visit.Mark("narrow"), "");
+}
+
+TEST_F(ReportInBrowser, GivenAPlotThenItHasALegendOfItsOwn) {
+  const PageVisit visit = Open(WithScript(R"(
+    const entries = function (plot) { return plot.closest('figure').querySelectorAll('.plot-legend .legend').length; };
+    const of = function (id) { return entries(document.getElementById('plot-' + id)); };
+    const bare = Array.from(document.querySelectorAll('svg.plot')).filter(function (plot) { return entries(plot) < 3; });
+    document.documentElement.setAttribute('data-bare', bare.map(function (plot) { return plot.id; }).join(' '));
+    document.documentElement.setAttribute('data-legends', [of('top'), of('pos-0'), of('nees'), of('stages')].join(' '));
+  )"));
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("bare"), "");
+  EXPECT_EQ(visit.Mark("legends"), "4 3 4 4")
+      << "with the truth, three estimators, with the band, four stages";
+}
+
+TEST_F(ReportInBrowser, GivenASmoothedEstimatorThenItIsMarkedAndNotTheBest) {
+  Comparison comparison = test::SyntheticComparison(60);
+  for (CellResult& cell : comparison.cells) {
+    if (cell.estimator == "po_invio_multi") {
+      cell.smoothed = true;
+      cell.ate_pos_m = 1e-3;
+    }
+  }
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("smoothed.html")).ok());
+  const PageVisit visit = Open(Probed(ReadFile(folder_.File("smoothed.html")), R"(
+    const row = document.querySelector('#overview-table tbody tr');
+    document.documentElement.setAttribute('data-row', row.querySelector('th').textContent);
+    document.documentElement.setAttribute('data-best', row.querySelectorAll('.best').length);
+    document.documentElement.setAttribute('data-chip', document.querySelector('#chips .chip').textContent);
+    document.documentElement.setAttribute('data-legend', document.querySelector('.plot-legend .legend').textContent);
+    document.documentElement.setAttribute('data-note', document.getElementById('overview-note').textContent);
+  )"));
+  ExpectWhole(visit);
+  EXPECT_EQ(visit.Mark("row"), "po_invio_multifilter, smoothed");
+  EXPECT_EQ(visit.Mark("best"), "0");
+  EXPECT_EQ(visit.Mark("chip"), "po_invio_multi (smoothed)");
+  EXPECT_EQ(visit.Mark("legend"), "po_invio_multi (smoothed)");
+  EXPECT_THAT(visit.Mark("note"), HasSubstr("Smoothed: uses later data (po_invio_multi), which"));
+  const PageVisit causal =
+      Open(WithScript("document.documentElement.setAttribute('data-note', "
+                      "document.getElementById('overview-note').textContent);"));
+  EXPECT_THAT(causal.Mark("note"), AllOf(HasSubstr("ATE"), Not(HasSubstr("Smoothed"))));
+}
+
+TEST_F(ReportInBrowser, GivenAnEstimatorThatLostEveryRunThenItsCompletionIsShownAllTheSame) {
+  Comparison comparison = test::SyntheticComparison(60);
+  for (CellResult& cell : comparison.cells) {
+    if (cell.estimator == "invio_l5") {
+      cell.status = "diverged";
+      cell.completion = cell.seed == 1 ? 0.2 : 0.4;
+    }
+  }
+  ASSERT_TRUE(WriteReport(comparison, folder_.File("lost.html")).ok());
+  const PageVisit visit = Open(Probed(ReadFile(folder_.File("lost.html")), R"(
+    const texts = function (id) {
+      return Array.from(document.querySelectorAll('#' + id + ' tbody tr:nth-child(2) td')).map(function (cell) { return cell.textContent; });
+    };
+    document.documentElement.setAttribute('data-overview', texts('overview-table').join('|'));
+    document.documentElement.setAttribute('data-note', document.getElementById('overview-note').textContent);
+    document.documentElement.setAttribute('data-sequence-note', document.getElementById('sequence-note').textContent);
+  )"),
+                               "#figure=completion");
+  ExpectWhole(visit);
+  EXPECT_THAT(visit.Mark("overview"), HasSubstr("0.300\u00b1 0.1000 of 2 ok"));
+  EXPECT_THAT(visit.Mark("note"), HasSubstr("mean over all seeds"));
+  EXPECT_THAT(visit.Mark("note"), HasSubstr("share of the time from the first to the last camera frame"));
+  EXPECT_THAT(visit.Mark("sequence-note"), HasSubstr("seconds of camera data that a second of front end"));
+}
+
 TEST_F(ReportInBrowser, GivenDifferentAlignmentsThenItSaysWhose) {
   Comparison comparison;
   comparison.title = "mixed";
@@ -89,7 +169,9 @@ TEST_F(ReportInBrowser, GivenDifferentAlignmentsThenItSaysWhose) {
   ASSERT_TRUE(WriteReport(comparison, folder_.File("mixed.html")).ok());
   const PageVisit visit = Open(ReadFile(folder_.File("mixed.html")));
   ExpectWhole(visit);
-  EXPECT_THAT(visit.dom, HasSubstr("none: gvio, gvins_class; posyaw of the first 5 %: pockf"));
+  EXPECT_THAT(visit.dom,
+              HasSubstr("none: gvio, gvins_class; posyaw of the first 5 %: pockf; none: as it is; posyaw: "
+                        "in position and yaw about gravity"));
 }
 
 TEST_F(ReportInBrowser, GivenNamesOfMarkupThenTheyAreTextEverywhere) {
