@@ -25,6 +25,11 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"gate_probability", "-",
                 "chi-square gate: a track is used if its NIS is below this quantile; 1 disables the gate"},
                &gate_probability, 0.5, 1.0);
+  visitor.Enumeration({"gate_noise", "-",
+                       "pixel noise of the gate: that of the weights, or `adaptive`, lowered to what most "
+                       "tracks show, so that tracks which slide are refused"},
+                      &gate_noise,
+                      {{"given", GateNoiseModel::kGiven}, {"adaptive", GateNoiseModel::kAdaptive}});
   visitor.Real({"max_gated_share", "-",
                 "consensus gate: when the gate rejects a larger share of the tracks, the state is suspect "
                 "and all are used, with weights reduced to the gate"},

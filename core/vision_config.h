@@ -11,6 +11,12 @@ enum class PixelNoiseModel {
   kAdaptive,  ///< never less, and more where the innovations say so (core/pixel_noise.h)
 };
 
+/// Which noise the gate of tracks takes.
+enum class GateNoiseModel {
+  kGiven,     ///< that of the weights
+  kAdaptive,  ///< less, where most tracks show less (core/gate_noise.h)
+};
+
 /// On which plane the observations of a track are (core/bearing_plane.h).
 enum class PlaneChoice {
   kLens,        ///< what the lens wants: CameraModel::plane
@@ -26,6 +32,7 @@ struct VisionConfig {
   PlaneChoice observation_plane = PlaneChoice::kLens;
   bool rolling_shutter = true;
   double gate_probability = 0.99;
+  GateNoiseModel gate_noise = GateNoiseModel::kGiven;
   double max_gated_share = 0.5;
   double max_relative_depth_deviation = 0.1;
   double min_depth_m = 0.1;

@@ -31,6 +31,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       imu_(config.imu.max_gap_s),
       read_out_span_s_(ReadOutSpan(state_.calibration())),
       pixel_noise_(config.vision),
+      gate_noise_(config.vision),
       correction_(state_.covariance().capacity()),
       corrected_(state_.covariance().capacity()) {
   appended_.reserve(kUsualTracks);
@@ -47,6 +48,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   gnss_.Reset();
   measurements_.Reset();
   pixel_noise_.Reset();
+  gate_noise_.Reset();
   aligned_ = false;
   absolute_.reset();
   rest_.Clear();
@@ -115,6 +117,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   }
   finite = finite && UpdateWithDueTracks(leaving_serial);
   pixel_noise_.EndFrame(frame_stamp_ns_, statistics_.suspect);
+  gate_noise_.EndFrame(frame_stamp_ns_);
   SlamFeatures::RemoveEnded(serial_, &tracks_, &state_);
   tracks_.RemoveEnded(serial_);
   if (leaving >= 0) {

@@ -4,6 +4,7 @@
 
 #include "core/estimator/estimator.h"
 #include "core/estimator_config.h"
+#include "core/gate_noise.h"
 #include "core/imu_buffer.h"
 #include "core/pixel_noise.h"
 #include "core/rest_detector.h"
@@ -82,6 +83,8 @@ class FilterEstimator : public Estimator {
   /// Normalised innovation squared of every appended track, against the state before the update.
   void MeasureBlocks(const PreparedRows& rows);
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
+  /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
+  bool RefuseBlocks(const PreparedRows& rows);
   void GateBlocks(PreparedRows* rows);
   /// Appends the rows of a track's views, or those its newest view adds to its memory.
   TrackOutcome AppendViews(const Track& track, int leaving_serial);
@@ -111,6 +114,7 @@ class FilterEstimator : public Estimator {
   ImuBuffer imu_;
   double read_out_span_s_;
   PixelNoise pixel_noise_;
+  GateNoise gate_noise_;
   FrameStatistics statistics_;
   FilterObserver* observer_ = nullptr;
   FilterRows observed_;  ///< rows of the update at hand; empty without an observer

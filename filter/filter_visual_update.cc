@@ -159,8 +159,9 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   }
   for (size_t block = 0; block < appended_.size(); ++block) {
     Track& track = tracks[appended_[block]];
+    gate_noise_.AddTrack(block_nis_[block], update_.blocks()[block].rows);
     if (accepted_[block]) {
-      pixel_noise_.AddTrack(block_nis_[block], update_.blocks()[block].rows);
+      pixel_noise_.AddTrack(gate_noise_.variance() * block_nis_[block], update_.blocks()[block].rows);
       update_.Remember(state_, block, weights_[block], block_nis_[block], &track);
     } else if (track.memory.active && ++track.memory.refusals > kMaxRefusals) {
       track.memory.active = false;
@@ -191,25 +192,34 @@ TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial
 void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
   block_nis_.clear();
   for (const FeatureUpdate::Block& block : update_.blocks()) {
-    block_nis_.push_back(state_.covariance().NormalizedInnovationSquared(rows, block.first, block.rows));
+    block_nis_.push_back(state_.covariance().NormalizedInnovationSquared(rows, block.first, block.rows,
+                                                                         gate_noise_.variance()));
   }
 }
 
-void FilterEstimator::GateBlocks(PreparedRows* rows) {
-  MeasureBlocks(*rows);
+bool FilterEstimator::RefuseBlocks(const PreparedRows& rows) {
+  MeasureBlocks(rows);
   accepted_.assign(appended_.size(), true);
-  weights_.assign(appended_.size(), 0);
-  // Of the last linearisation alone.
-  statistics_.features_used = 0;
-  statistics_.features_gated = 0;
-  statistics_.nis_dof = 0;
   int refused = 0;
   for (size_t i = 0; i < appended_.size(); ++i) {
     accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
     refused += accepted_[i] ? 0 : 1;
   }
-  const bool state_is_suspect = StateIsSuspect(refused, static_cast<int>(appended_.size()),
-                                               config_.vision.max_gated_share, kLeastRefusedTracks);
+  return StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
+                        kLeastRefusedTracks);
+}
+
+void FilterEstimator::GateBlocks(PreparedRows* rows) {
+  bool state_is_suspect = RefuseBlocks(*rows);
+  if (state_is_suspect && gate_noise_.lowered()) {
+    gate_noise_.Reset();
+    state_is_suspect = RefuseBlocks(*rows);
+  }
+  weights_.assign(appended_.size(), 0);
+  // Of the last linearisation alone.
+  statistics_.features_used = 0;
+  statistics_.features_gated = 0;
+  statistics_.nis_dof = 0;
   statistics_.suspect = state_is_suspect;
   for (size_t i = 0; i < appended_.size(); ++i) {
     const FeatureUpdate::Block& block = update_.blocks()[i];

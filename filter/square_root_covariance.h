@@ -65,7 +65,8 @@ class SquareRootCovariance {
   [[nodiscard]] PreparedRows Prepare(Eigen::Ref<Eigen::MatrixXd> rows, Eigen::Ref<Eigen::VectorXd> innovation,
                                      int sparse_from = -1);
   /// y^T (A A^T + I)^-1 y of the rows [first, first + count) alone; NaN when one is not finite.
-  [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count);
+  [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count,
+                                                   double noise_variance = 1);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
   /// y, the normalised innovation squared. log_det (nullptr skips): log det(A A^T + I) = log det M, so that
   /// -(nis + log_det + rows log 2 pi) / 2 is the rows' log-likelihood. False, with nothing changed, when a

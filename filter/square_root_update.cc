@@ -70,13 +70,15 @@ void SquareRootCovariance::PrepareSparse(Eigen::Ref<MatrixXd> rows_in_place) {
   }
 }
 
-double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count) {
+double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count,
+                                                         double noise_variance) {
   const auto a = prepared.rows_.middleRows(first, count);
   const auto y = prepared.innovation_.segment(first, count);
   const Index rows = count;
   if (rows == 2) {  // a remembered track or a landmark of the state: too small for BLAS
     const auto pair = prepared.rows_.middleRows<2>(first);
-    const Eigen::Matrix2d variance = pair.lazyProduct(pair.transpose()) + Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d variance =
+        pair.lazyProduct(pair.transpose()) + noise_variance * Eigen::Matrix2d::Identity();
     const Eigen::Vector2d innovation = y;
     return innovation.dot(variance.inverse() * innovation);
   }
@@ -88,7 +90,7 @@ double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& pre
   const int ld = static_cast<int>(gate_.rows());
   cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, dimension_, 1.0, a.data(),
               static_cast<int>(a.outerStride()), 0.0, gate_.data(), ld);
-  gate_.diagonal().head(rows).array() += 1.0;
+  gate_.diagonal().head(rows).array() += noise_variance;
   gated_.head(rows) = y;
   int info = 0;
   LAPACK_dpotrf("L", &n, gate_.data(), &ld, &info);

@@ -29,6 +29,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       imu_(config.imu.max_gap_s),
       read_out_span_s_(ReadOutSpan(GivenCamera(rig_, config.vision))),
       pixel_noise_(config.vision),
+      gate_noise_(config.vision),
       rest_(config.vision, config.init, rig_.camera),
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
@@ -64,6 +65,7 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
   gnss_.Reset();
   measurements_.Reset();
   pixel_noise_.Reset();
+  gate_noise_.Reset();
   aligned_ = false;
   imu_.DropBefore(initial.stamp_ns);
   rest_.Clear();
@@ -111,6 +113,7 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
     ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
   }
   pixel_noise_.EndFrame(window_.newest().stamp_ns, statistics_.suspect);
+  gate_noise_.EndFrame(window_.newest().stamp_ns);
   statistics_.update_ms = stopwatch.ElapsedMs() - statistics_.propagate_ms;
   return Status::Ok();
 }

@@ -5,6 +5,7 @@
 
 #include "core/estimator/estimator.h"
 #include "core/estimator_config.h"
+#include "core/gate_noise.h"
 #include "core/imu_buffer.h"
 #include "core/pixel_noise.h"
 #include "core/rest_detector.h"
@@ -107,6 +108,9 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
+  [[nodiscard]] bool IsSuspect(size_t refused, size_t tracks) const;
+  /// Of a track that the gate accepts: whether its landmark is one, too; false: a SLAM feature was dropped.
+  bool KeepTrack(WindowTrack* track);
   /// True when a SLAM feature was refused.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
   Status UpdateLatest(const WindowTerms& terms);
@@ -127,6 +131,7 @@ class SmootherEstimator final : public Estimator {
   ImuBuffer imu_;
   double read_out_span_s_;
   PixelNoise pixel_noise_;
+  GateNoise gate_noise_;
   RestDetector rest_;
   Window window_;
   GnssWindow gnss_;

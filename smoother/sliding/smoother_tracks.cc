@@ -92,9 +92,28 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   return selected;
 }
 
+bool SmootherEstimator::IsSuspect(size_t refused, size_t tracks) const {
+  return StateIsSuspect(static_cast<int>(refused), static_cast<int>(tracks), config_.vision.max_gated_share,
+                        kLeastRefusedTracks);
+}
+
+bool SmootherEstimator::KeepTrack(WindowTrack* track) {
+  if (track->anchor != nullptr && !DepthInRange(track->landmark)) {
+    ++statistics_.features_degenerate;
+    track->Restart();
+    return false;
+  }
+  if (track->has_landmark && !DepthInRange(track->landmark)) {
+    // It fits, but its depth was none: it falls back on an assumed one.
+    ++statistics_.features_degenerate;
+    track->has_landmark = false;
+  }
+  return true;
+}
+
 bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
                                    const std::vector<WindowTrack*>& tracks) {
-  std::vector<WindowTrack*> refused;
+  std::vector<std::pair<WindowTrack*, double>> refused;  // with chi-square
   bool feature_refused = false;
   for (WindowTrack* track : tracks) {
     if (track->anchor == nullptr && !SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
@@ -104,29 +123,27 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
       continue;
     }
     const double chi_square = TrackChiSquare(*track, geometry);
-    const bool fits = gate_.Accepts(chi_square, track->dof());
-    if (fits) {
+    const double at_gate = chi_square / gate_noise_.variance();
+    gate_noise_.AddTrack(at_gate, track->dof());
+    if (gate_.Accepts(at_gate, track->dof())) {
       pixel_noise_.AddTrack(chi_square, track->dof());
-    }
-    if (!fits) {
-      refused.push_back(track);
-    } else if (track->anchor != nullptr && !DepthInRange(track->landmark)) {
-      ++statistics_.features_degenerate;
-      feature_refused = true;
-      track->Restart();
-    } else if (track->has_landmark && !DepthInRange(track->landmark)) {
-      // It fits, but its depth was none: it falls back on an assumed one.
-      ++statistics_.features_degenerate;
-      track->has_landmark = false;
+      feature_refused = !KeepTrack(track) || feature_refused;
+    } else {
+      refused.emplace_back(track, chi_square);
     }
   }
-  const bool state_is_suspect =
-      StateIsSuspect(static_cast<int>(refused.size()), static_cast<int>(tracks.size()),
-                     config_.vision.max_gated_share, kLeastRefusedTracks);
-  statistics_.suspect = state_is_suspect;
-  for (WindowTrack* track : refused) {
-    if (state_is_suspect) {
-      track->ScaleInformation(gate_.Threshold(track->dof()) / TrackChiSquare(*track, geometry));
+  if (IsSuspect(refused.size(), tracks.size()) && gate_noise_.lowered()) {
+    gate_noise_.Reset();
+    std::erase_if(refused, [&](const auto& entry) {
+      const bool fits = gate_.Accepts(entry.second, entry.first->dof());
+      feature_refused = (fits && !KeepTrack(entry.first)) || feature_refused;
+      return fits;
+    });
+  }
+  statistics_.suspect = IsSuspect(refused.size(), tracks.size());
+  for (const auto& [track, chi_square] : refused) {
+    if (statistics_.suspect) {
+      track->ScaleInformation(gate_.Threshold(track->dof()) / chi_square);
     } else {
       ++statistics_.features_gated;
       feature_refused = feature_refused || track->anchor != nullptr;
