@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
-# Builds the driver of another system, against a checkout of it. Usage: scripts/peers.sh NAME [--source=DIR] [--gnss_comm=DIR] [--build=DIR]
+# Builds the driver of another system, against a checkout of it. Usage: scripts/peers.sh NAME [--source=DIR] [--gnss_comm=DIR | --lie_plusplus=DIR] [--build=DIR]
 #   open_vins    https://github.com/rpng/open_vins                    GPL-3
+#   sqrt_vins    https://github.com/rpng/sqrtVINS                     LGPL-3
 #   vins_mono    https://github.com/HKUST-Aerial-Robotics/VINS-Mono   GPL-3
 #   gvins        https://github.com/HKUST-Aerial-Robotics/GVINS       GPL-3, with https://github.com/HKUST-Aerial-Robotics/gnss_comm, GPL-3
 #   ingvio       https://github.com/ChangwuLiu/InGVIO                 GPL-3
-# Without --source the system is cloned into BUILD/peers/NAME.source, without --gnss_comm that into BUILD/peers/gnss_comm.source. Their code
+#   msceqf       https://github.com/aau-cns/MSCEqF                    Apache-2.0, with https://github.com/aau-cns/Lie-plusplus,
+#                                                                     BSD-2 with conditions
+# Without --source the system is cloned into BUILD/peers/NAME.source, without --gnss_comm or --lie_plusplus those likewise. Their code
 # is no part of Alidade and their licences are their own: a driver that is linked with one may be passed on under that licence alone. The
 # driver becomes BUILD/peers/alidade_NAME (--build: default build).
 # Exit codes: 2 usage; 3 a checkout is not the commit that the driver was written for; 1 anything else.
@@ -12,7 +15,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 
 usage() {
-  sed -n '2,10s/^# //p' "$0" >&2
+  sed -n '2,13s/^# //p' "$0" >&2
   exit 2
 }
 
@@ -20,10 +23,15 @@ usage() {
 name=$1
 shift
 # The commit that the driver was written and measured with.
-needs_gnss_comm=no
+# A library that the system is built with.
+library="" library_url="" library_commit=""
 case "$name" in
   open_vins)
     url=https://github.com/rpng/open_vins commit=69488123ed9362dd44b6f28e7f4680abbff1442b
+    packages=(libboost-filesystem-dev libboost-thread-dev libboost-date-time-dev libopencv-highgui-dev)
+    ;;
+  sqrt_vins)
+    url=https://github.com/rpng/sqrtVINS commit=30fafc89d89cfb896d06fdaa68fbda8545e02e9f
     packages=(libboost-filesystem-dev libboost-thread-dev libboost-date-time-dev libopencv-highgui-dev)
     ;;
   vins_mono)
@@ -33,25 +41,31 @@ case "$name" in
   gvins)
     url=https://github.com/HKUST-Aerial-Robotics/GVINS commit=d2cf40b49c6eb0e6ad3caa4f613713983be3fd74
     packages=(libopencv-highgui-dev)
-    needs_gnss_comm=yes
+    library=gnss_comm library_url=https://github.com/HKUST-Aerial-Robotics/gnss_comm
+    library_commit=a2035fec1cc427bba184d25ff1fde8dcf23c9ce1
     ;;
   ingvio)
     url=https://github.com/ChangwuLiu/InGVIO commit=8e167132f376598a66cf610e59fc027a10ace674
     packages=(libopencv-highgui-dev libsuitesparse-dev)
     ;;
+  msceqf)
+    url=https://github.com/aau-cns/MSCEqF commit=2cb653a5094bbc5d8191b679764439306c82deec
+    packages=(libopencv-highgui-dev libboost-dev libyaml-cpp-dev)
+    library=lie_plusplus library_url=https://github.com/aau-cns/Lie-plusplus
+    library_commit=bea48ea17b6de1397224cfc4d196a8e49eb9250c
+    ;;
   *) usage ;;
 esac
 
-source_folder="" gnss_comm_folder="" build=$root/build
+source_folder="" library_folder="" build=$root/build
 for argument in "$@"; do
   case "$argument" in
     --source=*) source_folder=${argument#*=} ;;
-    --gnss_comm=*) gnss_comm_folder=${argument#*=} ;;
+    --"$library"=?*) library_folder=${argument#*=} ;;
     --build=*) build=${argument#*=} ;;
     *) usage ;;
   esac
 done
-[[ $needs_gnss_comm == yes || -z $gnss_comm_folder ]] || usage
 
 # checkout NAME URL COMMIT FOLDER: prints the folder of a checkout at that commit, cloned where FOLDER is empty.
 checkout() {
@@ -85,10 +99,9 @@ checkout() {
 
 source_folder=$(checkout "$name" "$url" "$commit" "$source_folder")
 options=("-DALIDADE_${name^^}=$source_folder")
-if [[ $needs_gnss_comm == yes ]]; then
-  gnss_comm_folder=$(checkout gnss_comm https://github.com/HKUST-Aerial-Robotics/gnss_comm \
-    a2035fec1cc427bba184d25ff1fde8dcf23c9ce1 "$gnss_comm_folder")
-  options+=("-DALIDADE_GNSS_COMM=$gnss_comm_folder")
+if [[ -n $library ]]; then
+  library_folder=$(checkout "$library" "$library_url" "$library_commit" "$library_folder")
+  options+=("-DALIDADE_${library^^}=$library_folder")
 fi
 
 for package in "${packages[@]}"; do

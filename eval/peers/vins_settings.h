@@ -11,6 +11,7 @@ struct VinsSettings {
   double accel_walk = 4e-5, gyro_walk = 2e-6;     ///< [m/s^3, rad/s^2]
   double gravity_mps2 = 9.81007;
   int max_iterations = 8;
+  bool real_time = false;            ///< wall time may end a solve
   double keyframe_parallax_px = 10;  ///< at a focal length of 460 px
   bool calibrate_extrinsics = false;
   bool calibrate_time_offset = false;

@@ -40,12 +40,14 @@ TEST(PeersScript, GvinsWantsACheckoutOfItsOwnAndOneOfGnssComm) {
   EXPECT_EQ(other.code, 3);
   EXPECT_THAT(other.output, HasSubstr("was written for d2cf40b49c6eb0e6ad3caa4f613713983be3fd74 of gvins"));
   EXPECT_EQ(Peers("ingvio --gnss_comm=" + folder.path()).code, 2) << "it holds a copy of its own";
+  EXPECT_EQ(Peers("gvins --lie_plusplus=" + folder.path()).code, 2) << "it is MSCEqF's";
 }
 
 TEST(PeersScript, HelpNamesTheLicence) {
   const CommandResult result = Peers("no_such_system");
   EXPECT_EQ(result.code, 2);
-  for (const char* name : {"open_vins", "vins_mono", "gvins", "gnss_comm", "ingvio"}) {
+  for (const char* name :
+       {"open_vins", "sqrt_vins", "vins_mono", "gvins", "gnss_comm", "ingvio", "msceqf", "Lie-plusplus"}) {
     EXPECT_THAT(result.output, HasSubstr(name));
   }
   EXPECT_THAT(result.output, HasSubstr("GPL-3"));

@@ -13,16 +13,17 @@ namespace {
 const std::map<std::string, std::string>& Defaults() {
   // "own": what GVINS publishes for its own sensor.
   static const std::map<std::string, std::string> kDefaults = {
-      {"dataset", "required"},    // a folder or a bag
-      {"output", "required"},     // a folder
-      {"input", "auto"},          // tracks | images | auto: tracks where there are some
-      {"gnss", "yes"},            // no: without
-      {"noise_scale", "1"},       // of the sheet's white noise; own: its published noise
-      {"gravity", "9.81"},        // [m/s^2]
-      {"rate", "own"},            // images a second that its tracker hands over, at most [Hz]
-      {"features", "own"},        // of its front end
-      {"iterations", "own"},      // of its solver
-      {"elevation", "own"},       // of satellites, once aligned, at least [deg]
+      {"dataset", "required"},  // a folder or a bag
+      {"output", "required"},   // a folder
+      {"input", "auto"},        // tracks | images | auto: tracks where there are some
+      {"gnss", "yes"},          // no: without
+      {"noise_scale", "1"},     // of the sheet's white noise; own: its published noise
+      {"gravity", "9.81"},      // [m/s^2]
+      {"rate", "own"},          // images a second that its tracker hands over, at most [Hz]
+      {"features", "own"},      // of its front end
+      {"iterations", "own"},    // of its solver
+      {"real_time", "no"},      // yes: its limits of wall time end a solve too; results depend on the machine
+      {"elevation", "own"},     // of satellites, once aligned, at least [deg]
       {"tracked_epochs", "own"},  // of a satellite, before it is used
       {"calibrate", "no"},        // yes: extrinsics and time offset, online
   };
@@ -37,6 +38,7 @@ Status ReadSettings(const PeerFlags& flags, const Dataset& dataset, SystemSettin
   }
   ALIDADE_RETURN_IF_ERROR(flags.Real("gravity", 9, 10, &settings->solver.gravity_mps2));
   ALIDADE_RETURN_IF_ERROR(flags.Whole("iterations", 1, 1000, &settings->solver.max_iterations));
+  ALIDADE_RETURN_IF_ERROR(flags.OneOf("real_time", "yes", "no", &settings->solver.real_time));
   ALIDADE_RETURN_IF_ERROR(flags.OneOf("calibrate", "yes", "no", &settings->solver.calibrate_extrinsics));
   settings->solver.calibrate_time_offset = settings->solver.calibrate_extrinsics;
   ALIDADE_RETURN_IF_ERROR(flags.Real("rate", 1, 1000, &settings->rate_hz));

@@ -2,6 +2,8 @@
 
 #include <estimator.h>
 
+#include "eval/peers/vins/unhurried_solve.h"
+
 namespace alidade::gvins {
 namespace {
 
@@ -24,12 +26,13 @@ void SetGnss(const GnssSettings& settings) {
 Solver::Solver(const RigCalibration& rig, const VinsSettings& settings, const GnssSettings& gnss_settings,
                const PeerGnss& gnss)
     : gnss_(gnss), uses_gnss_(gnss_settings.enabled) {
-  constexpr double kUnknownDepth = 5, kBiasThreshold = 0.1;
+  constexpr double kUnknownDepth = 5, kBiasThreshold = 0.1, kSolveLimitS = 0.04;
   INIT_DEPTH = kUnknownDepth;
   BIAS_ACC_THRESHOLD = BIAS_GYR_THRESHOLD = kBiasThreshold;
   MIN_PARALLAX = settings.keyframe_parallax_px / FOCAL_LENGTH;
   NUM_ITERATIONS = settings.max_iterations;
-  SOLVER_TIME = 1;
+  SOLVER_TIME = kSolveLimitS;
+  vins::SetRealTime(settings.real_time);
   ACC_N = settings.accel_noise;
   ACC_W = settings.accel_walk;
   GYR_N = settings.gyro_noise;

@@ -1,16 +1,17 @@
-// Runs OpenVINS on a sequence: alidade_open_vins --dataset=SEQ --output=DIR [--flag=value ...];
+// Runs OpenVINS or sqrtVINS on a sequence: alidade_open_vins --dataset=SEQ --output=DIR [--flag=value ...];
 // docs/arena.md.
 
 #include <utils/print.h>
 
 #include "eval/peers/open_vins/settings.h"
 #include "eval/peers/open_vins/system.h"
+#include "eval/peers/open_vins/vio_names.h"
 
 namespace alidade::open_vins {
 namespace {
 
 const std::map<std::string, std::string>& Defaults() {
-  // "own": what OpenVINS' file says.
+  // "own": what the system's file says.
   static const std::map<std::string, std::string> kDefaults = {
       {"dataset", "required"},     // a folder or a bag
       {"output", "required"},      // a folder
@@ -37,7 +38,7 @@ Status Execute(const std::vector<std::string>& arguments) {
   const Result<PeerSequence> sequence = ReadPeerSequence(flags->Text("dataset"), flags->Text("input"));
   ALIDADE_RETURN_IF_ERROR(sequence.status());
   ov_core::Printer::setPrintLevel("WARNING");
-  const Result<ov_msckf::VioManagerOptions> options = MakeSettings(*flags, sequence->dataset.rig);
+  const Result<vio::VioManagerOptions> options = MakeSettings(*flags, sequence->dataset.rig);
   ALIDADE_RETURN_IF_ERROR(options.status());
   System system(*options, *sequence);
   bool from_truth = false;
@@ -54,5 +55,5 @@ Status Execute(const std::vector<std::string>& arguments) {
 }  // namespace alidade::open_vins
 
 int main(int argc, char** argv) {
-  return alidade::RunDriver("alidade_open_vins", argc, argv, alidade::open_vins::Execute);
+  return alidade::RunDriver(alidade::open_vins::kProgram, argc, argv, alidade::open_vins::Execute);
 }

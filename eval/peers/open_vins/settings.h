@@ -1,19 +1,18 @@
 #pragma once
 
-#include <core/VioManagerOptions.h>
-
 #include <string>
 
 #include "core/rig_calibration.h"
 #include "core/status.h"
+#include "eval/peers/open_vins/vio_names.h"
 #include "eval/peers/peer_flags.h"
 
 namespace alidade::open_vins {
 
-/// OpenVINS' settings: its own file `config/<--config>/estimator_config.yaml` of the checkout, with one
+/// The system's settings: its own file `config/<--config>/estimator_config.yaml` of the checkout, with one
 /// camera and the calibration of `rig` in place of that file's, without threads, and without limits of time
 /// in its initialisation, so that equal inputs give equal results. Flags that are not "own" replace more of
-/// it. kUsage: an invalid flag; kInput: no such file, or a lens model that OpenVINS has not.
-Result<ov_msckf::VioManagerOptions> MakeSettings(const PeerFlags& flags, const RigCalibration& rig);
+/// it. kUsage: an invalid flag; kInput: no such file, or a lens model that the system has not.
+Result<vio::VioManagerOptions> MakeSettings(const PeerFlags& flags, const RigCalibration& rig);
 
 }  // namespace alidade::open_vins

@@ -10,11 +10,14 @@
 
 #include "core/cpu_time.h"
 #include "eval/peers/open_vins/trackers.h"
+#include "eval/peers/open_vins/vio_names.h"
 
+#ifndef ALIDADE_SQRT_VINS
 // In place of VioManager::retriangulate_active_tracks (linked with --wrap): it serves drawing alone, and
 // would cost as much as the update with eleven clones.
 extern "C" void __wrap__ZN8ov_msckf10VioManager27retriangulate_active_tracksERKN7ov_core10CameraDataE(
     ov_msckf::VioManager*, const ov_core::CameraData&) {}
+#endif
 
 namespace alidade::open_vins {
 namespace {
@@ -23,9 +26,9 @@ constexpr double kClockStart = 1000;
 
 }  // namespace
 
-System::System(ov_msckf::VioManagerOptions options, const PeerSequence& sequence)
+System::System(vio::VioManagerOptions options, const PeerSequence& sequence)
     : VioManager(options), sequence_(sequence) {
-  const Cameras& cameras = state->_cam_intrinsics_cameras;
+  const Cameras& cameras = CamerasOf(*state);
   // Initialiser and zero velocity updates read this database too.
   const std::shared_ptr<ov_core::FeatureDatabase> database = trackFEATS->get_feature_database();
   if (sequence.from_tracks) {
@@ -50,12 +53,21 @@ Status System::StartFromTruth() {
   if (row == truth->points.end()) {
     return Status::Input(sequence_.dataset.path + ": its truth ends before its IMU begins");
   }
-  start_ = TimeOf(row->stamp_ns) - params.calib_camimu_dt;
+  start_ = TimeOf(row->stamp_ns) - static_cast<double>(params.calib_camimu_dt);
   // JPL's global to IMU has the numbers of Hamilton's IMU to global.
   const Eigen::Quaterniond q_WB(row->nav.R_WB);
   Eigen::Matrix<double, 17, 1> initial;
   initial << start_, q_WB.coeffs(), row->nav.p_WB, row->nav.v_WB, row->bias.gyro, row->bias.accel;
   initialize_with_gt(initial);
+#ifdef ALIDADE_SQRT_VINS
+  // It hands over its prior as a matrix where the deviations are asked for, which leaves the biases without
+  // any.
+  VecX deviations = VecX::Constant(state->imu->size(), 0.02F);
+  deviations.head<3>().setConstant(0.017F);
+  deviations.segment<3>(3).setConstant(0.05F);
+  deviations.segment<3>(6).setConstant(0.01F);
+  vio::StateHelper::set_initial_imu_square_root_covariance(state, deviations);
+#endif
   trackFEATS->set_num_features(params.num_pts);
   return Status::Ok();
 }
@@ -91,21 +103,21 @@ Status System::FeedFrame(size_t frame) {
 }
 
 void System::Record(size_t frame, double total_s) {
-  if (!is_initialized_vio || state->_timestamp != TimeOf(sequence_.frames_ns[frame])) {
+  if (!is_initialized_vio || TimestampOf(*state) != TimeOf(sequence_.frames_ns[frame])) {
     return;
   }
-  const std::shared_ptr<ov_type::IMU> imu = state->_imu;
+  ov_type::IMU& imu = ImuOf(*state);
   TrajectoryPoint point;
-  point.stamp_ns = sequence_.frames_ns[frame] + SecondsToNs(state->_calib_dt_CAMtoIMU->value()(0));
-  const Eigen::Vector4d q = imu->quat();
+  point.stamp_ns = sequence_.frames_ns[frame] + SecondsToNs(TimeOffsetOf(*state));
+  const Eigen::Vector4d q = imu.quat().cast<double>();
   point.nav.R_WB = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
-  point.nav.p_WB = imu->pos();
-  point.nav.v_WB = imu->vel();
-  point.bias.gyro = imu->bias_g();
-  point.bias.accel = imu->bias_a();
+  point.nav.p_WB = imu.pos().cast<double>();
+  point.nav.v_WB = imu.vel().cast<double>();
+  point.bias.gyro = imu.bias_g().cast<double>();
+  point.bias.accel = imu.bias_a().cast<double>();
   // Its error R_GI = (1 - [theta]x) R_GI^ is R_WB = R_WB^ Exp(theta): the canonical chart.
   point.covariance =
-      ov_msckf::StateHelper::get_marginal_covariance(state, {imu->pose()}).topLeftCorner<6, 6>();
+      vio::StateHelper::get_marginal_covariance(state, {imu.pose()}).cast<double>().topLeftCorner<6, 6>();
   run_.trajectory.points.push_back(point);
   run_.times.push_back({1e3 * frontend_s_, 1e3 * (total_s - frontend_s_)});
 }
@@ -116,10 +128,10 @@ Result<PeerRun> System::Run() {
   PeerSink sink;
   sink.imu = [this](const ImuSample& sample) {
     const double before = ProcessCpuSeconds();
-    feed_measurement_imu({TimeOf(sample.stamp_ns), sample.gyro, sample.accel});
+    feed_measurement_imu({TimeOf(sample.stamp_ns), sample.gyro.cast<Real>(), sample.accel.cast<Real>()});
     imu_s_ += ProcessCpuSeconds() - before;
   };
-  sink.time_offset_s = [this] { return state->_calib_dt_CAMtoIMU->value()(0); };
+  sink.time_offset_s = [this] { return TimeOffsetOf(*state); };
   sink.frame = [this](size_t frame) { return FeedFrame(frame); };
   ALIDADE_RETURN_IF_ERROR(FeedPeer(sequence_, sink));
   return run_;

@@ -21,6 +21,7 @@ const std::map<std::string, std::string>& Defaults() {
       {"rate", "own"},          // images a second that reach the solver, at most [Hz]
       {"features", "own"},      // of its front end
       {"iterations", "own"},    // of its solver
+      {"real_time", "no"},      // yes: its limits of wall time end a solve too; results depend on the machine
       {"calibrate", "no"},      // yes: extrinsics and time offset, online
   };
   return kDefaults;
@@ -34,6 +35,7 @@ Status ReadSolverSettings(const PeerFlags& flags, const Dataset& dataset, VinsSe
   }
   ALIDADE_RETURN_IF_ERROR(flags.Real("gravity", 9, 10, &settings->gravity_mps2));
   ALIDADE_RETURN_IF_ERROR(flags.Whole("iterations", 1, 1000, &settings->max_iterations));
+  ALIDADE_RETURN_IF_ERROR(flags.OneOf("real_time", "yes", "no", &settings->real_time));
   ALIDADE_RETURN_IF_ERROR(flags.OneOf("calibrate", "yes", "no", &settings->calibrate_extrinsics));
   settings->calibrate_time_offset = settings->calibrate_extrinsics;
   return Status::Ok();
