@@ -18,6 +18,12 @@ struct PeerTimes {
 struct PeerRun {
   Trajectory trajectory;         ///< stamps in IMU time
   std::vector<PeerTimes> times;  ///< of the same frames
+
+  /// Takes a frame's state; `total_s`: of front end and back end [s].
+  void Add(const TrajectoryPoint& point, double frontend_s, double total_s) {
+    trajectory.points.push_back(point);
+    times.push_back({1e3 * frontend_s, 1e3 * (total_s - frontend_s)});
+  }
 };
 
 /// Writes trajectory.csv (EuRoC's columns, as far as the trajectory has them), trajectory_covariance.csv

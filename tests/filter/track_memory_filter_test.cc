@@ -3,6 +3,7 @@
 #include "filter/filter.h"
 #include "filter/filter_estimator.h"
 #include "tests/support/scenario.h"
+#include "tests/support/sliding_tracks.h"
 
 namespace alidade {
 namespace {
@@ -51,13 +52,8 @@ TEST(TrackMemoryFilterTest, MemoryBeyondTheWindowBeatsTheWindowAlone) {
 // GIVEN tracks of little noise, a tenth of which slide over their surface more slowly than the gate sees WHEN
 // they are followed far beyond the window THEN their memories end, and the filter does not trust the slide.
 TEST(TrackMemoryFilterTest, TracksThatSlideBelowTheGateAreNotRemembered) {
-  const Result<SimulatorConfig> sim =
-      LoadSimulatorConfig(ALIDADE_SOURCE_DIR "/configs/datasets/gnss_rendered.yaml",
-                          {"render.enabled=false", "gnss.rate_hz=0", "rest_s=0", "duration_s=60", "path_m=75",
-                           "landmark_layout=room", "landmark_count=600", "max_range_m=60",
-                           "pixel_noise_px=0.05", "outlier_rate=0.1", "outlier_kind=drift", "outlier_px=1"});
-  ASSERT_TRUE(sim.ok()) << sim.message();
-  const Dataset dataset = test::SimulateOrDie(*sim, 4);
+  const Dataset dataset =
+      test::SlidingTracks(4, {"duration_s=60", "path_m=75", "outlier_rate=0.1", "outlier_px=1"});
   EstimatorConfig config;
   config.vision.pixel_noise_px = 0.5;
   config.filter.update = UpdateTiming::kDelayedAll;

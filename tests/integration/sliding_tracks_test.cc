@@ -1,3 +1,5 @@
+#include "tests/support/sliding_tracks.h"
+
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -10,18 +12,6 @@
 
 namespace alidade {
 namespace {
-
-/// Tracks of 0.05 px, of which a quarter slides by some pixels a second, as where a near edge crosses a far
-/// texture.
-Dataset SlidingTracks(unsigned seed) {
-  const Result<SimulatorConfig> sim =
-      LoadSimulatorConfig(ALIDADE_SOURCE_DIR "/configs/datasets/gnss_rendered.yaml",
-                          {"render.enabled=false", "gnss.rate_hz=0", "rest_s=0", "duration_s=30", "path_m=40",
-                           "landmark_layout=room", "landmark_count=600", "max_range_m=60",
-                           "pixel_noise_px=0.05", "outlier_rate=0.25", "outlier_kind=drift", "outlier_px=3"});
-  EXPECT_TRUE(sim.ok()) << sim.message();
-  return test::SimulateOrDie(*sim, seed);
-}
 
 double NeesOf(const Dataset& dataset, unsigned seed, const std::string& preset,
               const std::string& gate_noise) {
@@ -42,7 +32,8 @@ double NeesOf(const Dataset& dataset, unsigned seed, const std::string& preset,
 // and the covariance is too small; a gate at what most tracks show refuses them.
 TEST(SlidingTracks, AGateAtTheNoiseOfMostTracksRefusesThem) {
   constexpr unsigned kSeed = 44;
-  const Dataset dataset = SlidingTracks(kSeed);
+  const Dataset dataset =
+      test::SlidingTracks(kSeed, {"duration_s=30", "path_m=40", "outlier_rate=0.25", "outlier_px=3"});
   for (const std::string preset : {"alidade_filter", "alidade_smoother"}) {
     const double adaptive = NeesOf(dataset, kSeed, preset, "adaptive");
     EXPECT_LT(adaptive, 8) << preset;

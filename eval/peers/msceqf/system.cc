@@ -64,8 +64,7 @@ void System::Record(size_t frame, double total_s) {
   Eigen::Matrix<double, 6, 9> J;
   J << to_body.topRows<3>(), T.R() * to_body.bottomRows<3>();
   point.covariance = J * filter_.covariance().topLeftCorner<9, 9>() * J.transpose();
-  run_.trajectory.points.push_back(point);
-  run_.times.push_back({1e3 * tracker_s, 1e3 * (total_s - tracker_s)});
+  run_.Add(point, tracker_s, total_s);
 }
 
 Result<PeerRun> System::Run() {

@@ -118,8 +118,7 @@ void System::Record(size_t frame, double total_s) {
   // Its error R_GI = (1 - [theta]x) R_GI^ is R_WB = R_WB^ Exp(theta): the canonical chart.
   point.covariance =
       vio::StateHelper::get_marginal_covariance(state, {imu.pose()}).cast<double>().topLeftCorner<6, 6>();
-  run_.trajectory.points.push_back(point);
-  run_.times.push_back({1e3 * frontend_s_, 1e3 * (total_s - frontend_s_)});
+  run_.Add(point, frontend_s_, total_s);
 }
 
 Result<PeerRun> System::Run() {

@@ -3,32 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/lie.h"
 #include "eval/dataset/calibration_import.h"
+#include "tests/eval/peers/peer_rig.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
 
+using test::PeerRig;
 using testing::HasSubstr;
-
-RigCalibration Rig(DistortionModel model) {
-  RigCalibration rig;
-  std::vector<double> coefficients = {-0.28, 0.07, 5e-5, -1e-4};
-  if (model == DistortionModel::kMei) {
-    coefficients.insert(coefficients.begin(), 1.8);
-  }
-  rig.camera =
-      CameraModel::Create(model, Eigen::Vector4d(461.6, 460.3, 363, 248.1), coefficients, 752, 480).value();
-  rig.T_BC = {so3::Exp(Eigen::Vector3d(-1.2, 1.2, -1.2)), Eigen::Vector3d(0.1, -0.05, 0.04)};
-  return rig;
-}
 
 // The format is that of VINS-Mono's family, which our importer reads.
 TEST(IngvioCameraFile, HoldsLensAndExtrinsicsOfTheSheet) {
   const test::TemporaryFolder folder;
   for (const DistortionModel model : {DistortionModel::kRadialTangential, DistortionModel::kMei}) {
-    const RigCalibration rig = Rig(model);
+    const RigCalibration rig = PeerRig(model);
     const Result<std::string> text = IngvioCameraFile(rig, {});
     ASSERT_TRUE(text.ok()) << text.message();
     const Result<ImportedCalibration> read = ImportCalibration({folder.Write("camera.yaml", *text)}, "cam0");
@@ -41,7 +30,8 @@ TEST(IngvioCameraFile, HoldsLensAndExtrinsicsOfTheSheet) {
     EXPECT_THAT(*text, HasSubstr("max_cnt: 150\n"));
     EXPECT_THAT(*text, HasSubstr("image_width: 752\n"));
   }
-  EXPECT_THAT(IngvioCameraFile(Rig(DistortionModel::kEquidistant), {}).message(), HasSubstr("no lens model"));
+  EXPECT_THAT(IngvioCameraFile(PeerRig(DistortionModel::kEquidistant), {}).message(),
+              HasSubstr("no lens model"));
 }
 
 TEST(IngvioFile, HoldsTheSettings) {

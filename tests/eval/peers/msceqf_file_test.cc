@@ -3,33 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/lie.h"
 #include "eval/dataset/calibration_import.h"
+#include "tests/eval/peers/peer_rig.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
 
+using test::PeerRig;
 using testing::HasSubstr;
-
-RigCalibration Rig(DistortionModel model) {
-  RigCalibration rig;
-  std::vector<double> coefficients = {-0.28, 0.07, 5e-5, -1e-4};
-  if (model == DistortionModel::kMei) {
-    coefficients.insert(coefficients.begin(), 1.8);
-  }
-  rig.camera =
-      CameraModel::Create(model, Eigen::Vector4d(461.6, 460.3, 363, 248.1), coefficients, 752, 480).value();
-  rig.T_BC = {so3::Exp(Eigen::Vector3d(-1.2, 1.2, -1.2)), Eigen::Vector3d(0.1, -0.05, 0.04)};
-  rig.camera_time_offset_s = -0.0125;
-  return rig;
-}
 
 // The camera's keys are those of Kalibr's chain, which our importer reads below a camera's name.
 TEST(MsceqfFile, HoldsLensExtrinsicsAndTimeOffsetOfTheSheet) {
   const test::TemporaryFolder folder;
   for (const DistortionModel model : {DistortionModel::kRadialTangential, DistortionModel::kEquidistant}) {
-    const RigCalibration rig = Rig(model);
+    const RigCalibration rig = PeerRig(model);
     const Result<std::string> text = MsceqfFile(rig, {});
     ASSERT_TRUE(text.ok()) << text.message();
     std::string chain = "cam0:\n  camera_model: pinhole\n";
@@ -47,7 +35,7 @@ TEST(MsceqfFile, HoldsLensExtrinsicsAndTimeOffsetOfTheSheet) {
     EXPECT_THAT(*text, HasSubstr("timeshift_cam_imu: -0.0125"));
     EXPECT_THAT(*text, HasSubstr("resolution: [752, 480]\n"));
   }
-  EXPECT_THAT(MsceqfFile(Rig(DistortionModel::kMei), {}).message(), HasSubstr("no lens model"));
+  EXPECT_THAT(MsceqfFile(PeerRig(DistortionModel::kMei), {}).message(), HasSubstr("no lens model"));
 }
 
 TEST(MsceqfFile, HoldsTheSettings) {
@@ -55,7 +43,7 @@ TEST(MsceqfFile, HoldsTheSettings) {
   settings.gyro_noise = 0.001;
   settings.clones = 20;
   settings.extrinsics_std = 0.5;
-  const Result<std::string> text = MsceqfFile(Rig(DistortionModel::kRadialTangential), settings);
+  const Result<std::string> text = MsceqfFile(PeerRig(DistortionModel::kRadialTangential), settings);
   ASSERT_TRUE(text.ok()) << text.message();
   EXPECT_THAT(*text, HasSubstr("gyroscope_noise_density: 0.001"));
   EXPECT_THAT(*text, HasSubstr("num_clones: 20\n"));
