@@ -18,6 +18,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMinCommonTracks = 12;
+constexpr double kBiasDeviations = 3;
+
+bool TurnMayBeBias(const Vector3d& mean_gyro_radps, const NavEstimate& estimate) {
+  const Vector3d bias_std_radps = estimate.covariance.diagonal().segment<3>(9).cwiseSqrt();
+  return ((mean_gyro_radps - estimate.bias.gyro).array().abs() <= kBiasDeviations * bias_std_radps.array())
+      .all();
+}
 
 }  // namespace
 
@@ -52,9 +59,9 @@ void RestDetector::Turn(const Vector3d& gyro_bias_radps) {
   turned_ns_ = imu_.empty() ? INT64_MIN : imu_.back().stamp_ns;
 }
 
-RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Vector3d& gyro_bias_radps,
+RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const NavEstimate& estimate,
                                    const Matrix3d& R_BC) {
-  Turn(gyro_bias_radps);
+  Turn(estimate.bias.gyro);
   if (frame_count_ == frames_.size()) {
     frames_.emplace_back();
   }
@@ -80,12 +87,25 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const Vector3d& gyro
   // Under a constant force, as at a turning point, the camera passes the same place twice, with a calm IMU:
   // the ends of the window alone would not tell.
   const OrientedFrame& middle = frames_[frame_count_ / 2];
-  const auto flow_is_zero = [&](const OrientedFrame& since) {
+  const auto since_both = [&](const auto& flow_is_zero) {
+    return flow_is_zero(before) && (frame_count_ == 2 || flow_is_zero(middle));
+  };
+  const auto turned_flow_is_zero = [&](const OrientedFrame& since) {
     return FlowIsZero(since.frame, frame, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC);
   };
-  verdict.no_translation = flow_is_zero(before) && (frame_count_ == 2 || flow_is_zero(middle));
-  verdict.no_rotation = verdict.no_translation && imu.gyro_std_radps < init_.static_max_gyro_std_radps &&
-                        FlowIsZero(before.frame, frame, Matrix3d::Identity());
+  const auto raw_flow_is_zero = [&](const OrientedFrame& since) {
+    return FlowIsZero(since.frame, frame, Matrix3d::Identity());
+  };
+  verdict.no_translation = since_both(turned_flow_is_zero);
+  if (imu.gyro_std_radps >= init_.static_max_gyro_std_radps) {
+    return verdict;
+  }
+  if (verdict.no_translation) {
+    verdict.no_rotation = raw_flow_is_zero(before);
+  } else if (TurnMayBeBias(imu.mean_gyro, estimate) && since_both(raw_flow_is_zero)) {
+    verdict.no_translation = true;
+    verdict.no_rotation = true;
+  }
   return verdict;
 }
 

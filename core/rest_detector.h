@@ -7,6 +7,7 @@
 #include "core/camera_model.h"
 #include "core/imu_sample.h"
 #include "core/init_config.h"
+#include "core/navigation_state.h"
 #include "core/track_frame.h"
 #include "core/vision_config.h"
 
@@ -32,8 +33,10 @@ struct RestRates {
 /// rig's turn by the gyroscope, fitted by shift, zoom and roll over the common tracks, stays below
 /// VisionConfig::rest_max_flow_px at the image's corner, and the specific force spreads less than
 /// rest_max_accel_std_mps2. No rotation: so does the flow as it is, and the angular rate spreads less than
-/// InitConfig allows. Neglected: motion so slow or scenery so far that it moves tracks by less than the limit
-/// in the window.
+/// InitConfig allows. While the bias is not known well enough to tell whether the rig turns (the mean rate is
+/// within three of its deviations), a calm gyroscope and the flow as it is decide both. Neglected: motion so
+/// slow or scenery so far that it moves tracks by less than the limit in the window, and a turn that hides a
+/// translation.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);
@@ -42,9 +45,8 @@ class RestDetector {
   void AddImu(std::span<const ImuSample> samples);
   /// Verdict on the window that ends with this frame, at whose IMU time the samples end. The gyroscope and
   /// not the estimate tells the turn: at rest corrections of the estimated attitude would look like motion.
-  /// R_BC: camera to body.
-  RestVerdict AddFrame(const TrackFrame& frame, const Eigen::Vector3d& gyro_bias_radps,
-                       const Eigen::Matrix3d& R_BC);
+  /// estimate: a recent one; its gyroscope bias is used, with its covariance. R_BC: camera to body.
+  RestVerdict AddFrame(const TrackFrame& frame, const NavEstimate& estimate, const Eigen::Matrix3d& R_BC);
   void Clear();
 
   /// Over the present window.

@@ -111,7 +111,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
   bool finite = true;
   if (config_.vision.rest_updates) {
-    const RestVerdict rest = rest_.AddFrame(frame, state_.bias().gyro, state_.calibration().T_BC.rotation);
+    const RestVerdict rest = rest_.AddFrame(frame, state_.Estimate(), state_.calibration().T_BC.rotation);
     statistics_.at_rest = rest.no_translation;
     finite = UpdateAtRest(rest);
   }

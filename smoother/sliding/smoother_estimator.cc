@@ -188,7 +188,7 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
     return;
   }
   WindowFrame& newest = window_.newest();
-  const RestVerdict verdict = rest_.AddFrame(frame, newest.imu_bias().gyro, camera().T_BC.rotation);
+  const RestVerdict verdict = rest_.AddFrame(frame, latest_, camera().T_BC.rotation);
   statistics_.at_rest = verdict.no_translation;
   if (verdict.no_translation) {
     newest.rest = MakeRestMeasurement(verdict, rest_.Rates(), camera().T_BC.translation, config_.vision);

@@ -21,12 +21,13 @@ class RestDetectorTest : public ::testing::Test {
       landmarks_.push_back(
           Vector3d(random_.Uniform(-3, 3), random_.Uniform(-1.8, 1.8), random_.Uniform(3, 5)));
     }
+    TellBias(0, 1e-4);
   }
 
-  /// Verdict after one second of motion at the given velocity and camera turn rate (about y); `spread` shakes
-  /// the IMU.
+  /// Verdict after one second of motion at the given velocity and camera turn rate (about y); accel_spread
+  /// shakes the IMU.
   RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread,
-                             double bias = 0.01, const Vector3d& acceleration = Vector3d::Zero()) {
+                             const Vector3d& acceleration = Vector3d::Zero()) {
     RestDetector detector(VisionConfig(), InitConfig(), camera_);
     RestVerdict verdict;
     for (int k = 0; k <= 20; ++k) {
@@ -35,7 +36,7 @@ class RestDetectorTest : public ::testing::Test {
       for (int i = 0; i <= 10 && k > 0; ++i) {
         const Vector3d shake = accel_spread * random_.Normal3();
         imu.push_back({SecondsToNs(t - 0.05 + 0.005 * i),
-                       Vector3d(0, turn_rate + bias, 0) + 0.003 * random_.Normal3(),
+                       Vector3d(0, turn_rate + 0.01, 0) + 0.003 * random_.Normal3(),
                        Vector3d(0, 0, 9.81) + acceleration + shake});
       }
       detector.AddImu(imu);
@@ -51,15 +52,22 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      verdict = detector.AddFrame(frame, Vector3d(0, bias, 0), Matrix3d::Identity());
+      verdict = detector.AddFrame(frame, bias_, Matrix3d::Identity());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
   }
 
+  /// The bias of 0.01 rad/s about y is told as this much larger, with this deviation.
+  void TellBias(double error_radps, double std_radps) {
+    bias_.bias.gyro.y() = 0.01 + error_radps;
+    bias_.covariance.diagonal().segment<3>(9).setConstant(std_radps * std_radps);
+  }
+
   RandomStream random_{1, "rest detector"};
   CameraModel camera_;
   std::vector<Vector3d> landmarks_;
+  NavEstimate bias_;
   Vector3d mean_gyro_;
 };
 
@@ -89,12 +97,34 @@ TEST_F(RestDetectorTest, ShakingIsNotRest) {
 // GIVEN a camera that is thrown up and caught at the same place, pushed evenly all the while, WHEN the ends
 // of the window show the same image, THEN it is not at rest.
 TEST_F(RestDetectorTest, ATurningPointIsNotRest) {
-  EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 0.1, 0.01, Vector3d(0, 4, 0)).no_translation);
+  EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 0.1, Vector3d(0, 4, 0)).no_translation);
+}
+
+// GIVEN a bias that is off by two of its deviations, which turns the image by 2 px in the window, WHEN the
+// rig stands still, THEN that is rest.
+TEST_F(RestDetectorTest, ABiasThatIsNotKnownYetHidesNoRest) {
+  TellBias(0.01, 0.005);
+  const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0, 0.1);
+  EXPECT_TRUE(verdict.no_translation);
+  EXPECT_TRUE(verdict.no_rotation);
+}
+
+// GIVEN the same with a bias that is known, WHEN the image stands still, THEN the rig moves with the turn.
+TEST_F(RestDetectorTest, AStillImageWhileTheRigIsKnownToTurnIsNoRest) {
+  TellBias(0.01, 1e-4);
+  EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 0.1).no_translation);
+}
+
+TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
+  TellBias(0.01, 0.005);
+  for (const Vector3d& velocity : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0, 0, 0.2)}) {
+    EXPECT_FALSE(AfterOneSecond(velocity, 0, 0.01).no_translation) << velocity.transpose();
+  }
 }
 
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {
   RestDetector detector(VisionConfig(), InitConfig(), camera_);
-  EXPECT_FALSE(detector.AddFrame({}, Vector3d::Zero(), Matrix3d::Identity()).no_translation);
+  EXPECT_FALSE(detector.AddFrame({}, NavEstimate(), Matrix3d::Identity()).no_translation);
 }
 
 }  // namespace
