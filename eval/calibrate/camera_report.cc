@@ -11,8 +11,6 @@
 namespace alidade {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kCoordinates = CameraGyroCoordinate::kCount;
 constexpr int kDigits = 6;
 

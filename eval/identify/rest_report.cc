@@ -14,8 +14,6 @@
 namespace alidade {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kDigits = 6;
 
 /// A coefficient in the texts of the report.

@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "core/numbers.h"
+#include "eval/report/report_json.h"
 
 namespace alidade {
 namespace {
@@ -205,7 +206,6 @@ TextTable HeatTable(const HeatMap& map) {
 }
 
 nlohmann::ordered_json HeatMapsJson(const std::vector<HeatMap>& maps) {
-  using Json = nlohmann::ordered_json;
   Json list = Json::array();
   for (const HeatMap& map : maps) {
     Json legend = Json::array();

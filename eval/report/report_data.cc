@@ -20,8 +20,6 @@
 namespace alidade {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json FigureValues(const std::vector<Figure>& figures, const CellResult& cell) {
   Json values = Json::array();
   for (const Figure& figure : figures) {

@@ -7,8 +7,6 @@
 
 namespace alidade {
 
-using Json = nlohmann::ordered_json;
-
 Json RoundedJson(double value, int digits) {
   if (!std::isfinite(value)) {
     return nullptr;

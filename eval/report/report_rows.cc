@@ -5,8 +5,6 @@
 
 namespace alidade {
 
-using Json = nlohmann::ordered_json;
-
 Json FigureJson(const Figure& figure) {
   const char* ideal = figure.ideal == Ideal::kLow      ? "low"
                       : figure.ideal == Ideal::kTarget ? "target"

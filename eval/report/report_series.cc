@@ -12,8 +12,6 @@
 namespace alidade {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Three components of a series of vectors, scaled; empty when the series is absent.
 template <typename Vectors>
 Json PackComponents(const Vectors& vectors, int first, double scale, double finest) {
