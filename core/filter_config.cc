@@ -45,7 +45,8 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
   visitor.Enumeration({"clone_policy", "-", "which clone is removed from a full window"}, &clone_policy,
                       {{"oldest", ClonePolicy::kOldest},
                        {"keep_bases", ClonePolicy::kKeepBases},
-                       {"alternate", ClonePolicy::kAlternate}});
+                       {"alternate", ClonePolicy::kAlternate},
+                       {"spread", ClonePolicy::kSpread}});
   visitor.Integer(
       {"refine_iterations", "-",
        "largest number of Gauss-Newton steps on the landmark; landmark msckf and slam_features only"},

@@ -14,7 +14,7 @@ enum class BaseReuse {
   kLimit,     ///< at most max_base_rounds rounds a base
   kDisjoint,  ///< never re-used: a new base each round
 };
-enum class ClonePolicy { kOldest, kKeepBases, kAlternate };
+enum class ClonePolicy { kOldest, kKeepBases, kAlternate, kSpread };
 /// What an immediate update keeps of the landmark (docs/pose_only.md).
 enum class TrackMemoryPolicy {
   kNone,    ///< nothing but the base observation, see BaseReuse

@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/format.h"
+#include "core/imu_step.h"
 
 namespace alidade {
 namespace {
@@ -78,10 +79,15 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
   const auto first = std::upper_bound(held.begin(), held.end(), from_ns,
                                       [](TimeNs stamp, const ImuSample& s) { return stamp < s.stamp_ns; });
   const auto last = std::lower_bound(first, held.end(), to_ns, Earlier);
-  const ImuSample& before = *(first - 1);
-  interval->push_back(before.stamp_ns == from_ns ? before : Interpolate(before, *first, from_ns));
+  const auto sample_at = [&](auto next, TimeNs stamp_ns) {
+    const ImuSample& before = *(next - 1);
+    return before.stamp_ns == stamp_ns ? before
+           : next - 1 == held.begin()  ? Interpolate(before, *next, stamp_ns)
+                                       : InterpolateParabola(*(next - 2), before, *next, stamp_ns);
+  };
+  interval->push_back(sample_at(first, from_ns));
   interval->insert(interval->end(), first, last);
-  interval->push_back(last->stamp_ns == to_ns ? *last : Interpolate(*(last - 1), *last, to_ns));
+  interval->push_back(last->stamp_ns == to_ns ? *last : sample_at(last, to_ns));
   for (auto sample = first; sample <= last && sample != held.end(); ++sample) {
     const double step_s = SecondsBetween((sample - 1)->stamp_ns, sample->stamp_ns);
     statistics_.longest_gap_s = std::max(statistics_.longest_gap_s, step_s);
@@ -92,7 +98,8 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
 
 void ImuBuffer::DropBefore(TimeNs stamp_ns, double kept_s) {
   const TimeNs kept_ns = stamp_ns - SecondsToNs(kept_s);
-  while (samples().size() >= 2 && samples()[1].stamp_ns <= kept_ns) {
+  // One before that which comes before the stamp: the parabola between samples passes through it.
+  while (samples().size() >= 3 && samples()[2].stamp_ns <= kept_ns) {
     ++begin_;
   }
   // Without a sample at or before the stamp, the one that comes before it is still needed.

@@ -33,9 +33,10 @@ class ImuBuffer {
   /// is older than the last consumed interval.
   Status Add(const ImuSample& sample);
 
-  /// Samples that cover [from, to]: linearly interpolated at both ends, all measured ones between. kInput: to
-  /// <= from, or the buffer does not reach both ends (the message gives the missing milliseconds). A gap
-  /// longer than the limit is counted and bridged by interpolation.
+  /// Samples that cover [from, to]: interpolated at both ends (InterpolateParabola with the sample before,
+  /// the same for every interval that meets there), all measured ones between. kInput: to <= from, or the
+  /// buffer does not reach both ends (the message gives the missing milliseconds). A gap longer than the
+  /// limit is counted and bridged by interpolation.
   Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* interval);
 
   /// Forgets samples that no interval starting at or after `stamp_ns` needs, but for those of the `kept_s`

@@ -9,13 +9,13 @@ namespace alidade {
 /// `noise` with what vibration adds to its white densities over consecutive samples (stamps strictly
 /// increasing).
 ///
-/// A step of the integration takes the mean of two samples x_k, x_{k+1} as constant. A cubic through the
-/// samples around it says that this is wrong by
+/// A cubic through the samples around a step and the line through its ends differ by
 ///
-///     e_k = dt / 24 (x_{k-1} - x_k - x_{k+1} + x_{k+2}),
+///     e_k = dt / 24 (x_{k-1} - x_k - x_{k+1} + x_{k+2})
 ///
-/// what the rule does not resolve of the motion between samples. White samples of density N have
-/// var(e_k) / dt = N^2 / 144 from it. The mean square of e_k over the interval and the three axes beyond
+/// in the integral. The integration takes the cubic (core/imu_step.h), but of vibration near half the sample
+/// rate, where e_k is large, it resolves little: its error is then of that size. White samples of density N
+/// have var(e_k) / dt = N^2 / 144 from it. The mean square of e_k over the interval and the three axes beyond
 /// that, over dt, is added to N^2, for gyroscope and accelerometer each; nothing is ever taken off. Only
 /// steps of equal length count (within a tenth), so that interpolated ends do not; with none the noise is
 /// unchanged.

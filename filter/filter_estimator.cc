@@ -1,13 +1,13 @@
 #include "filter/filter_estimator.h"
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <string>
 
 #include "core/observation_plane.h"
 #include "core/rest_model.h"
 #include "core/stopwatch.h"
+#include "filter/leaving_clone.h"
 
 namespace alidade {
 
@@ -107,14 +107,19 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   statistics_.pixel_noise_px = pixel_noise_.px();
   statistics_.observations_invalid =
       tracks_.AddFrame(state_.calibration().camera, pixel_noise_.px(), serial_, frame.observations);
-  const int leaving = ChooseLeavingClone();
-  const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
   bool finite = true;
   if (config_.vision.rest_updates) {
     const RestVerdict rest = rest_.AddFrame(frame, state_.Estimate(), state_.calibration().T_BC.rotation);
     statistics_.at_rest = rest.no_translation;
     finite = UpdateAtRest(rest);
   }
+  if (config_.filter.update_iterations > 1 || config_.filter.max_direction_deviation > 0 ||
+      config_.filter.clone_policy == ClonePolicy::kSpread) {
+    baseline_ = MeasureBaseline(state_);
+  }
+  const int leaving =
+      ChooseLeavingClone(config_.filter, state_.clones(), tracks_.tracks(), serial_, ShapeIsKnown());
+  const int leaving_serial = leaving >= 0 ? state_.clones()[static_cast<size_t>(leaving)].serial : -1;
   finite = finite && UpdateWithDueTracks(leaving_serial);
   pixel_noise_.EndFrame(frame_stamp_ns_, statistics_.suspect);
   gate_noise_.EndFrame(frame_stamp_ns_);
@@ -136,36 +141,6 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     observer_->OnFrame(state_);
   }
   return Status::Ok();
-}
-
-int FilterEstimator::ChooseLeavingClone() const {
-  const std::vector<Clone>& clones = state_.clones();
-  if (static_cast<int>(clones.size()) <= config_.filter.window) {
-    return -1;
-  }
-  if (config_.filter.clone_policy == ClonePolicy::kOldest) {
-    return 0;
-  }
-  if (config_.filter.clone_policy == ClonePolicy::kAlternate) {
-    return serial_ % 2 == 0 ? 0 : static_cast<int>(clones.size()) - 2;
-  }
-  // The newest clones hold views that still wait for their first update: they are not candidates.
-  const size_t candidates =
-      clones.size() - static_cast<size_t>(std::min<int>(config_.filter.min_observations,
-                                                        static_cast<int>(clones.size()) - 1));
-  size_t best = 0;
-  int best_bases = INT_MAX;
-  for (size_t i = 0; i < candidates; ++i) {
-    int bases = 0;
-    for (const Track& track : tracks_.tracks()) {
-      bases += !track.views.empty() && track.views.front().serial == clones[i].serial ? 1 : 0;
-    }
-    if (bases < best_bases) {
-      best_bases = bases;
-      best = i;
-    }
-  }
-  return static_cast<int>(best);
 }
 
 bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {

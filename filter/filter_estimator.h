@@ -16,6 +16,7 @@
 #include "filter/measurement_update.h"
 #include "filter/slam_features.h"
 #include "filter/track_store.h"
+#include "filter/window_shape.h"
 
 namespace alidade {
 
@@ -60,8 +61,8 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] NavEstimate EstimateIfWatched() const;
   /// Corrects the state unless `finite` is false; kDiverged when the state is lost.
   Status EndMeasurement(const char* what, TimeNs stamp_ns, const NavEstimate& before, bool finite);
-  /// Index of the clone to marginalise after this frame, or -1 while the window is not full.
-  [[nodiscard]] int ChooseLeavingClone() const;
+  /// Of the window, its scale too.
+  [[nodiscard]] bool ShapeIsKnown() const;
   /// True when the track's views are to be used in this frame.
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
   /// Appends the rows of a track: of its landmark in the state, of its entry there, or of its due views.
@@ -122,6 +123,7 @@ class FilterEstimator : public Estimator {
   std::optional<AbsoluteCorrection> absolute_;  ///< the last one
   bool aligned_ = false;                        ///< W stands as Align turned it
   DueTracks due_ = DueTracks::kUsual;           ///< in this frame
+  BaselineDeviation baseline_;                  ///< before the tracks of this frame
   int serial_ = 0;                              ///< of the newest frame
   int first_serial_ = 1;                        ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;           ///< IMU time of the last frame

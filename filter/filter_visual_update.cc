@@ -11,8 +11,13 @@ namespace {
 
 // A remembered track that is refused more often in a row is taken for another point.
 constexpr int kMaxRefusals = 1;
-// Square of what may be neglected in the linearisation of an update, in standard deviations of one row.
-constexpr double kNegligible = 0.1;
+// Square of what may be neglected in the linearisation of an update, in standard deviations of one row, once
+// the window's shape is known and before. What is neglected has the same sign in every update, that of a
+// larger scale. While the scale is uncertain, a repeated update takes noise for it.
+constexpr double kNegligible = 1e-3;
+constexpr double kNegligibleUncertain = 0.1;
+// Largest relative deviation of a window of known shape.
+constexpr double kKnownShape = 0.1;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
 // Of the deviation across the line between the cameras that is allowed, what may be along it.
@@ -76,14 +81,17 @@ int FilterEstimator::AppendDueTracks(int leaving_serial) {
   return landmark_rows;
 }
 
+bool FilterEstimator::ShapeIsKnown() const {
+  return baseline_.along < kKnownShape && baseline_.across < kKnownShape;
+}
+
 int FilterEstimator::ChooseAndAppendTracks(int leaving_serial) {
   due_ = DueTracks::kUsual;
   const double limit = config_.filter.max_direction_deviation;
   if (!(limit > 0)) {
     return AppendDueTracks(leaving_serial);
   }
-  const BaselineDeviation deviation = MeasureBaseline(state_);
-  if (deviation.across > limit) {
+  if (baseline_.across > limit) {
     due_ = DueTracks::kAll;
     const int landmark_rows = AppendDueTracks(leaving_serial);
     const double ready = static_cast<double>(appended_.size());
@@ -91,7 +99,7 @@ int FilterEstimator::ChooseAndAppendTracks(int leaving_serial) {
       return landmark_rows;
     }
     due_ = DueTracks::kLeaving;
-  } else if (deviation.along > kScaleTolerance * limit) {
+  } else if (baseline_.along > kScaleTolerance * limit) {
     due_ = DueTracks::kLeaving;
   }
   return AppendDueTracks(leaving_serial);
@@ -129,7 +137,8 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
     const double explained = covariance.Solution(Correction());
     Correction() -= corrected;
     const double deformation = RelativeDeformation(state_, Correction());
-    if (!(deformation * deformation * explained > kNegligible)) {
+    const double negligible = ShapeIsKnown() ? kNegligible : kNegligibleUncertain;
+    if (!(deformation * deformation * explained > negligible)) {
       break;
     }
     corrected += Correction();

@@ -52,7 +52,8 @@ struct Plan {
   std::vector<std::string> settings;  ///< over every estimator's file, before the estimator's own
   std::vector<PlanEstimator> estimators;
   std::vector<PlanSequence> sequences;
-  EvaluationOptions metrics;
+  EvaluationOptions metrics;        ///< but for what MetricsOf sets
+  std::optional<bool> interpolate;  ///< the truth; by default where it is a simulation's own
   std::vector<std::string> pair_figures = Comparison().pair_figures;
   bool pair_across = false;
   std::string baseline;  ///< name of the sequence that RMSEs are also given relative to; may be empty

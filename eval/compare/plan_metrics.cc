@@ -43,7 +43,8 @@ Status ReadAlignShare(const PlanReader& reader, const Node& node, double* share)
   return reader.Real(node, "align_share", kLeast, 1, share);
 }
 
-Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions* metrics) {
+Status ReadMetrics(const PlanReader& reader, const Node& node, Plan* plan) {
+  EvaluationOptions* metrics = &plan->metrics;
   AssociationOptions& association = metrics->association;
   ALIDADE_RETURN_IF_ERROR(reader.Map(
       node, "metrics",
@@ -60,13 +61,13 @@ Status ReadMetrics(const PlanReader& reader, const Node& node, EvaluationOptions
        {"anchor_at_first",
         [&](const Node& n) { return reader.Boolean(n, "anchor_at_first", &metrics->anchor_at_first); }},
        {"interpolate",
-        [&](const Node& n) { return reader.Boolean(n, "interpolate", &association.interpolate); }},
+        [&](const Node& n) { return reader.Boolean(n, "interpolate", &plan->interpolate.emplace()); }},
        {"max_gap",
         [&](const Node& n) { return reader.Real(n, "max_gap", 0, kMaxSeconds, &association.max_gap_s); }}}));
   if (!node["max_dt"]) {
     association.max_dt_s = DefaultMaxDt(association.method);
   }
-  if (association.interpolate && association.method != EvaluationTool::kAlidade) {
+  if (plan->interpolate.value_or(false) && association.method != EvaluationTool::kAlidade) {
     return reader.Fault(node["interpolate"], "interpolate", "association: alidade, which alone interpolates");
   }
   return Status::Ok();

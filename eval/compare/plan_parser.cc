@@ -48,7 +48,7 @@ class PlanParser {
             return reader_.Each(n, "sequences", [&](const YAML::Node& e) { return AddSequence(e); });
           },
           true},
-         {"metrics", [&](const YAML::Node& n) { return ReadMetrics(reader_, n, &plan_.metrics); }},
+         {"metrics", [&](const YAML::Node& n) { return ReadMetrics(reader_, n, &plan_); }},
          {"pairs", [&](const YAML::Node& n) { return ReadPairs(n); }},
          {"baseline", [&](const YAML::Node& n) { return reader_.Text(n, "baseline", &plan_.baseline); }},
          {"audit", [&](const YAML::Node& n) { return reader_.Boolean(n, "audit", &plan_.audit); }},

@@ -95,10 +95,26 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_FALSE(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).anchor_at_first);
   EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
   EXPECT_EQ(plan->metrics.association.max_dt_s, 0.02);
-  EXPECT_TRUE(plan->metrics.association.interpolate);
+  EXPECT_EQ(plan->interpolate, true);
   EXPECT_EQ(plan->metrics.association.max_gap_s, 0.2);
   ASSERT_EQ(plan->references.size(), 1u);
   EXPECT_EQ(plan->references[0].figures.at("ate_pos_m"), 0.1);
+}
+
+// GIVEN nothing else THEN the truth of a simulation is interpolated at the frames, which need not fall on its
+// rows.
+TEST_F(PlanTest, TheTruthOfASimulationIsInterpolated) {
+  const std::string data = "  - {path: '${data}/seq'}\n";
+  const auto interpolates = [&](const std::string& metrics, size_t sequence) {
+    const Result<Plan> plan = Read(kMinimal + data + metrics, folder_.File("data"));
+    EXPECT_TRUE(plan.ok()) << plan.message();
+    return plan->MetricsOf(plan->estimators[0], plan->sequences[sequence]).association.interpolate;
+  };
+  EXPECT_TRUE(interpolates("", 0));
+  EXPECT_FALSE(interpolates("", 1));
+  EXPECT_FALSE(interpolates("metrics: {interpolate: false}\n", 0));
+  EXPECT_FALSE(interpolates("metrics: {association: evo}\n", 0));
+  EXPECT_TRUE(interpolates("metrics: {interpolate: true}\n", 1));
 }
 
 TEST_F(PlanTest, FillsTitleAndSeedWhenTheyAreLeftOut) {
