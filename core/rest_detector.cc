@@ -90,22 +90,22 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const NavEstimate& e
   const auto since_both = [&](const auto& flow_is_zero) {
     return flow_is_zero(before) && (frame_count_ == 2 || flow_is_zero(middle));
   };
-  const auto turned_flow_is_zero = [&](const OrientedFrame& since) {
-    return FlowIsZero(since.frame, frame, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC);
-  };
-  const auto raw_flow_is_zero = [&](const OrientedFrame& since) {
-    return FlowIsZero(since.frame, frame, Matrix3d::Identity());
-  };
-  verdict.no_translation = since_both(turned_flow_is_zero);
-  if (imu.gyro_std_radps >= init_.static_max_gyro_std_radps) {
-    return verdict;
+  double turned_deviations = 0;
+  double raw_deviations = 0;
+  const bool turned_flow_is_zero = since_both([&](const OrientedFrame& since) {
+    return FlowIsZero(since.frame, frame, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC,
+                      &turned_deviations);
+  });
+  const bool raw_flow_is_zero =
+      imu.gyro_std_radps < init_.static_max_gyro_std_radps && since_both([&](const OrientedFrame& since) {
+        return FlowIsZero(since.frame, frame, Matrix3d::Identity(), &raw_deviations);
+      });
+  if (raw_flow_is_zero && TurnMayBeBias(imu.mean_gyro, estimate)) {
+    return {true, true, raw_deviations};
   }
-  if (verdict.no_translation) {
-    verdict.no_rotation = raw_flow_is_zero(before);
-  } else if (TurnMayBeBias(imu.mean_gyro, estimate) && since_both(raw_flow_is_zero)) {
-    verdict.no_translation = true;
-    verdict.no_rotation = true;
-  }
+  verdict.no_translation = turned_flow_is_zero;
+  verdict.no_rotation = turned_flow_is_zero && raw_flow_is_zero;
+  verdict.flow_deviations = turned_deviations;
   return verdict;
 }
 
@@ -130,7 +130,8 @@ void RestDetector::FindCommon(const TrackFrame& before, const TrackFrame& now, c
   }
 }
 
-bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before) {
+bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before,
+                              double* deviations) {
   FindCommon(before, now, R_now_before);
   std::vector<CommonTrack>& common = common_;
   if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
@@ -161,7 +162,14 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
     right += design.transpose() * track.flow;
   }
   const Eigen::Vector4d flow = SymmetricSolver(normal).Solve(right);
-  return flow.allFinite() && flow.cwiseAbs().maxCoeff() < vision_.rest_max_flow_px;
+  if (!flow.allFinite() || flow.cwiseAbs().maxCoeff() >= vision_.rest_max_flow_px) {
+    return false;
+  }
+  // The difference of two observations has twice the variance of one.
+  const Eigen::Array4d variance =
+      2 * vision_.pixel_noise_px * vision_.pixel_noise_px * normal.inverse().diagonal().array();
+  *deviations = std::max(*deviations, (flow.array().abs() / variance.sqrt()).maxCoeff());
+  return true;
 }
 
 }  // namespace alidade

@@ -17,6 +17,9 @@ namespace alidade {
 struct RestVerdict {
   bool no_translation = false;  ///< the camera's velocity is zero
   bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
+  /// The largest part of the flow that was taken for none, in standard deviations of what the tracks' noise
+  /// makes of it. At rest hardly above two; more tells slow motion.
+  double flow_deviations = 0;
 };
 
 /// Measured angular rates, bias included; rad/s, in B.
@@ -63,9 +66,10 @@ class RestDetector {
   };
   /// Carries R_0B_ on to the last sample.
   void Turn(const Eigen::Vector3d& gyro_bias_radps);
-  /// R_now_before: turn of the camera between the frames; identity takes the flow as it is.
+  /// R_now_before: turn of the camera between the frames; identity takes the flow as it is. deviations: as in
+  /// RestVerdict, raised where it is less.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
-                                const Eigen::Matrix3d& R_now_before);
+                                const Eigen::Matrix3d& R_now_before, double* deviations);
   /// Fills common_.
   void FindCommon(const TrackFrame& before, const TrackFrame& now, const Eigen::Matrix3d& R_now_before);
 

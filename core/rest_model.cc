@@ -1,9 +1,17 @@
 #include "core/rest_model.h"
 
+#include <algorithm>
+
 #include "core/check.h"
 #include "core/lie.h"
 
 namespace alidade {
+namespace {
+
+// The flow at rest, in its standard deviations.
+constexpr double kUsualFlow = 2.5;
+
+}  // namespace
 
 void RestModel::Evaluate(const NavState& state, const ImuBias& bias, Vector6d* residual,
                          Jacobian* jacobian) const {
@@ -30,10 +38,11 @@ RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates&
                                     const Eigen::Vector3d& p_BC, const VisionConfig& vision) {
   CHECK(verdict.no_translation);
   RestMeasurement measurement{{rates, p_BC}};
-  measurement.sqrt_information.head<3>().setConstant(1 / vision.rest_velocity_std_mps);
+  const double factor = std::max(1.0, verdict.flow_deviations / kUsualFlow);
+  measurement.sqrt_information.head<3>().setConstant(1 / (factor * vision.rest_velocity_std_mps));
   if (verdict.no_rotation) {
     measurement.model.rates.at_end_radps = rates.mean_radps;  // the same, less its noise
-    measurement.sqrt_information.tail<3>().setConstant(1 / vision.rest_rate_std_radps);
+    measurement.sqrt_information.tail<3>().setConstant(1 / (factor * vision.rest_rate_std_radps));
   }
   return measurement;
 }

@@ -35,7 +35,8 @@ struct RestMeasurement {
                 RestModel::Jacobian* jacobian) const;
 };
 
-/// Precondition: verdict.no_translation.
+/// The configured deviations, larger where the verdict's flow is more than that of rest: far scenery hides
+/// slow motion. Precondition: verdict.no_translation.
 [[nodiscard]] RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates& rates,
                                                   const Eigen::Vector3d& p_BC, const VisionConfig& vision);
 

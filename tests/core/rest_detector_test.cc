@@ -78,6 +78,15 @@ TEST_F(RestDetectorTest, StandingStillIsRest) {
   EXPECT_NEAR(mean_gyro_.y(), 0.01, 0.001) << "the gyroscope's bias";
 }
 
+// GIVEN a motion that moves tracks by less than the limit THEN the verdict says that their flow is more than
+// noise.
+TEST_F(RestDetectorTest, SlowMotionIsTold) {
+  EXPECT_LT(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 3.5);
+  const RestVerdict verdict = AfterOneSecond(Vector3d(0.013, 0, 0), 0, 0.1);
+  EXPECT_TRUE(verdict.no_translation);
+  EXPECT_GT(verdict.flow_deviations, 3.5);
+}
+
 TEST_F(RestDetectorTest, ATurnOnTheSpotIsNoTranslation) {
   const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0.05, 0.1);
   EXPECT_TRUE(verdict.no_translation);

@@ -74,5 +74,16 @@ TEST(RestModelTest, WhitensWithTheConfiguredDeviationsAndLeavesATurningRigItsRat
   EXPECT_EQ(jacobian.bottomRows<3>().norm(), 0);
 }
 
+// GIVEN four times the flow of a rig at rest THEN its velocity is zero to four times the configured
+// deviation.
+TEST(RestModelTest, FlowThatIsMoreThanNoiseMakesTheVelocityLessCertain) {
+  const VisionConfig vision;
+  const auto at_rest = MakeRestMeasurement({true, true, 2}, {}, Eigen::Vector3d::Zero(), vision);
+  const auto slow = MakeRestMeasurement({true, true, 10}, {}, Eigen::Vector3d::Zero(), vision);
+  EXPECT_DOUBLE_EQ(at_rest.sqrt_information[0] * vision.rest_velocity_std_mps, 1);
+  EXPECT_DOUBLE_EQ(at_rest.sqrt_information[0], 4 * slow.sqrt_information[0]);
+  EXPECT_DOUBLE_EQ(at_rest.sqrt_information[3], 4 * slow.sqrt_information[3]);
+}
+
 }  // namespace
 }  // namespace alidade
