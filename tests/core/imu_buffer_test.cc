@@ -58,11 +58,11 @@ TEST(ImuBufferTest, SaysWhatIsMissing) {
 TEST(ImuBufferTest, RefusesWhatIsNotFiniteOrTooOld) {
   ImuBuffer buffer(0.5);
   EXPECT_FALSE(buffer.Add({0, Vector3d(std::nan(""), 0, 0), Vector3d::Zero()}).ok());
-  ASSERT_TRUE(buffer.Add(At(1.0, 1)).ok());
-  ASSERT_TRUE(buffer.Add(At(1.1, 1)).ok());
-  ASSERT_TRUE(buffer.Add(At(1.2, 1)).ok());
+  for (const double stamp_s : {0.9, 1.0, 1.1, 1.2}) {
+    ASSERT_TRUE(buffer.Add(At(stamp_s, 1)).ok());
+  }
   buffer.DropBefore(SecondsToNs(1.15));
-  EXPECT_EQ(buffer.samples().size(), 2u) << "the sample before the stamp is needed to interpolate";
+  EXPECT_EQ(buffer.samples().size(), 3u) << "two samples before the stamp are needed to interpolate";
   EXPECT_FALSE(buffer.Add(At(1.05, 1)).ok());
   EXPECT_EQ(buffer.statistics().rejected, 2);
 }

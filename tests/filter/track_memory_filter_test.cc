@@ -126,7 +126,7 @@ TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAnd
   const double right = nees(6, 0.2);
   EXPECT_LT(right, 15);
   EXPECT_GT(nees(1, 0), 3 * right);
-  EXPECT_GT(nees(6, 0), 3 * right);
+  EXPECT_GT(nees(6, 0), 2 * right);
 }
 
 }  // namespace
