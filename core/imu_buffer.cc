@@ -81,9 +81,11 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
   const auto last = std::lower_bound(first, held.end(), to_ns, Earlier);
   const auto sample_at = [&](auto next, TimeNs stamp_ns) {
     const ImuSample& before = *(next - 1);
-    return before.stamp_ns == stamp_ns ? before
-           : next - 1 == held.begin()  ? Interpolate(before, *next, stamp_ns)
-                                       : InterpolateParabola(*(next - 2), before, *next, stamp_ns);
+    if (before.stamp_ns == stamp_ns) {
+      return before;
+    }
+    const ImuSample on_line = Interpolate(before, *next, stamp_ns);
+    return next - 1 == held.begin() ? on_line : OntoParabola(*(next - 2), before, *next, on_line);
   };
   interval->push_back(sample_at(first, from_ns));
   interval->insert(interval->end(), first, last);

@@ -33,7 +33,7 @@ class ImuBuffer {
   /// is older than the last consumed interval.
   Status Add(const ImuSample& sample);
 
-  /// Samples that cover [from, to]: interpolated at both ends (InterpolateParabola with the sample before,
+  /// Samples that cover [from, to]: interpolated at both ends (OntoParabola with the sample before,
   /// the same for every interval that meets there), all measured ones between. kInput: to <= from, or the
   /// buffer does not reach both ends (the message gives the missing milliseconds). A gap longer than the
   /// limit is counted and bridged by interpolation.

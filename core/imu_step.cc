@@ -1,6 +1,5 @@
 #include "core/imu_step.h"
 
-#include "core/imu_buffer.h"
 #include "core/imu_gap.h"
 #include "core/lie.h"
 
@@ -70,12 +69,13 @@ StepMean MeanOverStep(std::span<const ImuSample> samples, size_t k, const ImuBia
   return {turned * gyro, turned * accel + swayed * gyro, turned, swayed};
 }
 
-ImuSample InterpolateParabola(const ImuSample& before, const ImuSample& from, const ImuSample& to,
-                              TimeNs stamp_ns) {
-  ImuSample sample = Interpolate(from, to, stamp_ns);
+ImuSample OntoParabola(const ImuSample& before, const ImuSample& from, const ImuSample& to,
+                       const ImuSample& on_line) {
+  ImuSample sample = on_line;
   if (!imu_gap::IsInside(before, from) && !imu_gap::IsInside(from, to)) {
     const Curvature curvature(before, from, to);
-    const double bow = 0.5 * SecondsBetween(from.stamp_ns, stamp_ns) * SecondsBetween(stamp_ns, to.stamp_ns);
+    const double bow =
+        0.5 * SecondsBetween(from.stamp_ns, sample.stamp_ns) * SecondsBetween(sample.stamp_ns, to.stamp_ns);
     sample.gyro -= bow * curvature.gyro;
     sample.accel -= bow * curvature.accel;
   }

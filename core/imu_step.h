@@ -28,9 +28,9 @@ struct StepMean {
 /// Precondition: k + 1 < samples.size(), stamps strictly increasing.
 [[nodiscard]] StepMean MeanOverStep(std::span<const ImuSample> samples, size_t k, const ImuBias& bias);
 
-/// The parabola through three samples, at a stamp between the last two, or the line through these where a
-/// silence lies between any two of them.
-[[nodiscard]] ImuSample InterpolateParabola(const ImuSample& before, const ImuSample& from,
-                                            const ImuSample& to, TimeNs stamp_ns);
+/// A sample between the last two of three, moved from the line through these onto the parabola through all.
+/// It stays where a silence lies between any two of them.
+[[nodiscard]] ImuSample OntoParabola(const ImuSample& before, const ImuSample& from, const ImuSample& to,
+                                     const ImuSample& on_line);
 
 }  // namespace alidade

@@ -92,7 +92,10 @@ TEST(ImuStepTest, SamplesBeyondASilenceDoNotCount) {
                                           {SecondsToNs(0.31), Vector3d(9, 0, 0), Vector3d::Zero()}};
   EXPECT_DOUBLE_EQ(MeanOverStep(samples, 1, {}).gyro.x(), 1.5);
   EXPECT_DOUBLE_EQ(MeanOverStep(samples, 0, {}).gyro.x(), 5);
-  EXPECT_DOUBLE_EQ(InterpolateParabola(samples[0], samples[1], samples[2], SecondsToNs(0.155)).gyro.x(), 1.5);
+  EXPECT_DOUBLE_EQ(OntoParabola(samples[0], samples[1], samples[2],
+                                {SecondsToNs(0.155), Vector3d(7, 0, 0), Vector3d::Zero()})
+                       .gyro.x(),
+                   7);
 }
 
 }  // namespace
