@@ -24,7 +24,13 @@ ImuSample Interpolate(const ImuSample& a, const ImuSample& b, TimeNs stamp_ns) {
   DCHECK_LT(a.stamp_ns, b.stamp_ns);
   const double gap_s = SecondsBetween(a.stamp_ns, b.stamp_ns);
   const double w = SecondsBetween(a.stamp_ns, stamp_ns) / gap_s;
-  return {stamp_ns, (1 - w) * a.gyro + w * b.gyro, (1 - w) * a.accel + w * b.accel, gap_s};
+  const double bow = 0.5 * w * (1 - w) * gap_s * gap_s;
+  return {stamp_ns,
+          (1 - w) * a.gyro + w * b.gyro - bow * b.gyro_curvature,
+          (1 - w) * a.accel + w * b.accel - bow * b.accel_curvature,
+          gap_s,
+          b.gyro_curvature,
+          b.accel_curvature};
 }
 
 Status ImuBuffer::Add(const ImuSample& sample) {
@@ -79,17 +85,20 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
   const auto first = std::upper_bound(held.begin(), held.end(), from_ns,
                                       [](TimeNs stamp, const ImuSample& s) { return stamp < s.stamp_ns; });
   const auto last = std::lower_bound(first, held.end(), to_ns, Earlier);
-  const auto sample_at = [&](auto next, TimeNs stamp_ns) {
-    const ImuSample& before = *(next - 1);
-    if (before.stamp_ns == stamp_ns) {
-      return before;
+  const auto measured = [&](auto sample) {
+    ImuSample curved = *sample;
+    if (sample - held.begin() >= 2) {
+      SetCurvature(*(sample - 2), *(sample - 1), &curved);
     }
-    const ImuSample on_line = Interpolate(before, *next, stamp_ns);
-    return next - 1 == held.begin() ? on_line : OntoParabola(*(next - 2), before, *next, on_line);
+    return curved;
   };
-  interval->push_back(sample_at(first, from_ns));
-  interval->insert(interval->end(), first, last);
-  interval->push_back(last->stamp_ns == to_ns ? *last : sample_at(last, to_ns));
+  const ImuSample& before = *(first - 1);
+  interval->push_back(before.stamp_ns == from_ns ? before : Interpolate(before, measured(first), from_ns));
+  for (auto sample = first; sample != last; ++sample) {
+    interval->push_back(measured(sample));
+  }
+  const ImuSample next = measured(last);
+  interval->push_back(next.stamp_ns == to_ns ? next : Interpolate(*(last - 1), next, to_ns));
   for (auto sample = first; sample <= last && sample != held.end(); ++sample) {
     const double step_s = SecondsBetween((sample - 1)->stamp_ns, sample->stamp_ns);
     statistics_.longest_gap_s = std::max(statistics_.longest_gap_s, step_s);
@@ -100,7 +109,7 @@ Status ImuBuffer::Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>*
 
 void ImuBuffer::DropBefore(TimeNs stamp_ns, double kept_s) {
   const TimeNs kept_ns = stamp_ns - SecondsToNs(kept_s);
-  // One before that which comes before the stamp: the parabola between samples passes through it.
+  // The one before that which comes before the stamp has its part in the next one's curvature.
   while (samples().size() >= 3 && samples()[2].stamp_ns <= kept_ns) {
     ++begin_;
   }

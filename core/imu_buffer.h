@@ -33,10 +33,10 @@ class ImuBuffer {
   /// is older than the last consumed interval.
   Status Add(const ImuSample& sample);
 
-  /// Samples that cover [from, to]: interpolated at both ends (OntoParabola with the sample before,
-  /// the same for every interval that meets there), all measured ones between. kInput: to <= from, or the
-  /// buffer does not reach both ends (the message gives the missing milliseconds). A gap longer than the
-  /// limit is counted and bridged by interpolation.
+  /// Samples that cover [from, to]: interpolated at both ends, all measured ones between, with the curvatures
+  /// that earlier samples tell (core/imu_step.h). kInput: to <= from, or the buffer does not reach both ends
+  /// (the message gives the missing milliseconds). A gap longer than the limit is counted and bridged by a
+  /// line.
   Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* interval);
 
   /// Forgets samples that no interval starting at or after `stamp_ns` needs, but for those of the `kept_s`
@@ -59,7 +59,7 @@ class ImuBuffer {
   ImuBufferStatistics statistics_;
 };
 
-/// Linear interpolation at `stamp_ns` between two samples; a.stamp_ns < b.stamp_ns.
+/// At `stamp_ns` between two samples, a.stamp_ns < b.stamp_ns, on the parabola through both of b's curvature.
 [[nodiscard]] ImuSample Interpolate(const ImuSample& a, const ImuSample& b, TimeNs stamp_ns);
 
 }  // namespace alidade

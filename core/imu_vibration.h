@@ -13,7 +13,7 @@ namespace alidade {
 ///
 ///     e_k = dt / 24 (x_{k-1} - x_k - x_{k+1} + x_{k+2})
 ///
-/// in the integral. The integration takes the cubic (core/imu_step.h), but of vibration near half the sample
+/// in the integral. The integration takes a parabola (core/imu_step.h), but of vibration near half the sample
 /// rate, where e_k is large, it resolves little: its error is then of that size. White samples of density N
 /// have var(e_k) / dt = N^2 / 144 from it. The mean square of e_k over the interval and the three axes beyond
 /// that, over dt, is added to N^2, for gyroscope and accelerometer each; nothing is ever taken off. Only

@@ -1,7 +1,5 @@
 #include "core/preintegration.h"
 
-#include <array>
-
 #include "core/check.h"
 #include "core/imu_gap.h"
 #include "core/imu_step.h"
@@ -13,10 +11,10 @@ namespace alidade {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-void Preintegration::AddStep(std::span<const ImuSample> samples, size_t k, const ImuNoise& noise) {
-  const double dt_s = SecondsBetween(samples[k].stamp_ns, samples[k + 1].stamp_ns);
+void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
+  const double dt_s = SecondsBetween(from.stamp_ns, to.stamp_ns);
   DCHECK_GT(dt_s, 0);
-  const StepMean mean = MeanOverStep(samples, k, bias_);
+  const StepMean mean = MeanOverStep(from, to, bias_);
   ImuIncrement step = StepIncrement(mean.gyro, mean.accel, dt_s, noise);
   const Eigen::Matrix<double, 9, 3> over_gyro = step.bias_jacobian.leftCols<3>();
   const Eigen::Matrix<double, 9, 3> over_accel = step.bias_jacobian.rightCols<3>();
@@ -25,15 +23,11 @@ void Preintegration::AddStep(std::span<const ImuSample> samples, size_t k, const
   increment_.Append(step);
 }
 
-void Preintegration::Add(const ImuSample& from, const ImuSample& to) {
-  AddStep(std::array{from, to}, 0, noise_);
-}
-
 void Preintegration::Add(std::span<const ImuSample> samples) {
   const ImuNoise noise = noise_.with_vibration ? AddVibration(samples, noise_) : noise_;
   for (size_t k = 0; k + 1 < samples.size(); ++k) {
     const bool silent = imu_gap::IsInside(samples[k], samples[k + 1]);
-    AddStep(samples, k, silent ? imu_gap::AddNoise(samples[k], samples[k + 1], noise) : noise);
+    Add(samples[k], samples[k + 1], silent ? imu_gap::AddNoise(samples[k], samples[k + 1], noise) : noise);
   }
 }
 

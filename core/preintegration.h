@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 #include "core/imu_increment.h"
@@ -10,7 +9,8 @@ namespace alidade {
 
 /// The IMU between two stamps, integrated with given biases: the one model of the IMU that the filter, the
 /// smoother, the batch solution and the initialisers consume. A step between two samples is that of a
-/// constant rate and force (MeanOverStep, StepIncrement).
+/// constant rate and force (MeanOverStep, StepIncrement), so intervals that meet at a
+/// sample compose.
 ///
 /// Samples that are not finite, or so large that a number overflows, show in NoiseRoot and Whitening.
 class Preintegration {
@@ -18,7 +18,7 @@ class Preintegration {
   Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
 
   /// Appends one step between two samples with the given densities; stamps strictly increasing.
-  void Add(const ImuSample& from, const ImuSample& to);
+  void Add(const ImuSample& from, const ImuSample& to) { Add(from, to, noise_); }
   /// Appends all steps of consecutive samples, with their vibration as white noise where the noise says so,
   /// and what a silence of the IMU hides (core/imu_gap.h); fewer than two add nothing.
   void Add(std::span<const ImuSample> samples);
@@ -43,7 +43,7 @@ class Preintegration {
   [[nodiscard]] const ImuNoise& noise() const { return noise_; }
 
  private:
-  void AddStep(std::span<const ImuSample> samples, size_t k, const ImuNoise& noise);
+  void Add(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
 
   ImuBias bias_;
   ImuNoise noise_;

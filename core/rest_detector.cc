@@ -96,11 +96,13 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const NavEstimate& e
     return FlowIsZero(since.frame, frame, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC,
                       &turned_deviations);
   });
+  const bool turn_may_be_bias = TurnMayBeBias(imu.mean_gyro, estimate);
   const bool raw_flow_is_zero =
-      imu.gyro_std_radps < init_.static_max_gyro_std_radps && since_both([&](const OrientedFrame& since) {
+      imu.gyro_std_radps < init_.static_max_gyro_std_radps && (turned_flow_is_zero || turn_may_be_bias) &&
+      since_both([&](const OrientedFrame& since) {
         return FlowIsZero(since.frame, frame, Matrix3d::Identity(), &raw_deviations);
       });
-  if (raw_flow_is_zero && TurnMayBeBias(imu.mean_gyro, estimate)) {
+  if (raw_flow_is_zero && turn_may_be_bias) {
     return {true, true, raw_deviations};
   }
   verdict.no_translation = turned_flow_is_zero;

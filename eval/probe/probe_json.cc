@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/imu_step.h"
+
 namespace alidade::probe {
 namespace {
 
@@ -129,6 +131,7 @@ std::vector<ImuSample> ImuSamples(const Json& object) {
     }
     samples.push_back(sample);
   }
+  SetCurvatures(samples);
   return samples;
 }
 

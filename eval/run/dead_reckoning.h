@@ -10,8 +10,7 @@
 namespace alidade {
 
 /// An estimate carried on over the IMU alone, with its covariance. The samples it holds are bounded: the
-/// oldest are integrated when there are many. How far that has gone changes the result by no more
-/// than the error of the integration (core/imu_step.h).
+/// oldest are integrated when there are many. How far that has gone changes no bit of the result.
 class DeadReckoning {
  public:
   /// `noise`: of the IMU, scaled. Gravity in m/s^2.

@@ -73,12 +73,13 @@ std::vector<ImuSample> ImuStream::Range(TimeNs stamp_ns, size_t end) const {
   auto first = std::upper_bound(samples_.begin(), last, stamp_ns, [](TimeNs stamp, const ImuSample& sample) {
     return stamp < sample.stamp_ns;
   });
-  first -= first == samples_.begin() ? 0 : 1;
+  // One more than covers the stamp, for the curvature after it (core/imu_step.h).
+  first -= std::min<std::ptrdiff_t>(2, first - samples_.begin());
   return {first, last};
 }
 
 void ImuStream::DropBefore(TimeNs stamp_ns) {
-  while (delivered_ >= 2 && samples_[1].stamp_ns <= stamp_ns) {
+  while (delivered_ >= 3 && samples_[2].stamp_ns <= stamp_ns) {
     samples_.pop_front();
     --delivered_;
   }

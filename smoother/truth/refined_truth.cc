@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "core/imu_propagation.h"
+#include "core/imu_step.h"
 #include "smoother/truth/fixed_point.h"
 #include "smoother/truth/truth_terms.h"
 
@@ -205,6 +206,7 @@ class Refinement {
     for (const ImuSample& sample : imu_) {
       scaled_.push_back(scale_.Applied(sample));
     }
+    SetCurvatures(scaled_);
   }
 
   /// Diagonal of J P J^T of a pose's rows, over orientation and position.

@@ -111,8 +111,9 @@ TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAnd
   const auto nees = [&](int iterations, double max_direction_deviation) {
     config.filter.update_iterations = iterations;
     config.filter.max_direction_deviation = max_direction_deviation;
+    constexpr unsigned kRuns = 12;  // of which one in six is lost without the tracks that wait
     double sum = 0;
-    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+    for (unsigned seed = 1; seed <= kRuns; ++seed) {
       const Dataset dataset = test::SimulateOrDie(*sim, seed);
       FilterEstimator filter(config, dataset.rig);
       NavEstimate initial = UncertainStart(dataset, seed);
@@ -121,12 +122,12 @@ TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAnd
       EXPECT_TRUE(result.status.ok()) << result.status.message();
       sum += result.nees_pose;
     }
-    return sum / 6;
+    return sum / kRuns;
   };
   const double right = nees(6, 0.2);
   EXPECT_LT(right, 15);
   EXPECT_GT(nees(1, 0), 3 * right);
-  EXPECT_GT(nees(6, 0), 2 * right);
+  EXPECT_GT(nees(6, 0), 3 * right);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
 #include "filter/filter.h"
 #include "smoother/manifold/nav_state_manifold.h"
@@ -57,7 +58,7 @@ TrackFrame EmptyFrame(TimeNs stamp_ns) {
 
 // GIVEN equal starts and IMU samples WHEN no camera or GNSS says anything, over more frames than the smoother
 // keeps, THEN mean and covariance of both back ends are the same in every error convention, and those of the
-// samples carried from frame to frame.
+// samples carried at once.
 TEST(ImuIntervalTest, FilterAndSmootherCarryTheSameState) {
   for (const ErrorConvention convention : test::kAllConventions) {
     test::RandomStates random(11);
@@ -72,24 +73,26 @@ TEST(ImuIntervalTest, FilterAndSmootherCarryTheSameState) {
     for (const std::unique_ptr<Estimator>& estimator : estimators) {
       ASSERT_TRUE(estimator->Initialize(start).ok());
     }
-    NavEstimate carried = start;
-    std::vector<ImuSample> samples;  // since the last frame
+    ImuBuffer buffer(config.imu.max_gap_s);
     const Vector3d turn = random.Vector(0.8);
     for (int k = 0; k <= 8 * kSamplesPerFrame; ++k) {
       const Vector3d gyro = turn + random.Vector(0.3);
-      samples.push_back({SecondsToNs(k / kImuRateHz), gyro, Vector3d(0, 0, kGravity) + random.Vector(2)});
+      const ImuSample sample{SecondsToNs(k / kImuRateHz), gyro, Vector3d(0, 0, kGravity) + random.Vector(2)};
+      ASSERT_TRUE(buffer.Add(sample).ok());
       for (const std::unique_ptr<Estimator>& estimator : estimators) {
-        ASSERT_TRUE(estimator->AddImu(samples.back()).ok());
+        ASSERT_TRUE(estimator->AddImu(sample).ok());
         if (k % kSamplesPerFrame == 0) {
-          const Status status = estimator->AddFrame(EmptyFrame(samples.back().stamp_ns));
+          const Status status = estimator->AddFrame(EmptyFrame(sample.stamp_ns));
           ASSERT_TRUE(status.ok()) << status.message();
         }
       }
       if (k == 0 || k % kSamplesPerFrame != 0) {
         continue;
       }
-      ASSERT_TRUE(PropagateEstimate(samples, rig.imu_noise, GravityInWorld(kGravity), &carried).ok());
-      samples = {samples.back()};
+      NavEstimate carried = start;
+      std::vector<ImuSample> interval;
+      ASSERT_TRUE(buffer.Interval(start.stamp_ns, sample.stamp_ns, &interval).ok());
+      ASSERT_TRUE(PropagateEstimate(interval, rig.imu_noise, GravityInWorld(kGravity), &carried).ok());
       for (const std::unique_ptr<Estimator>& estimator : estimators) {
         const NavEstimate latest = estimator->Latest();
         SCOPED_TRACE(std::string(ToString(convention)) +
@@ -161,11 +164,14 @@ TEST(ImuIntervalTest, RowsOfTheSmootherHoldTheCovarianceOfTheFilter) {
     WindowFrame second;
     const std::unique_ptr<Estimator> filter = MakeFilter(config, rig);
     ASSERT_TRUE(filter->Initialize(start).ok());
+    ImuBuffer buffer(config.imu.max_gap_s);
     for (int k = 0; k <= kSamplesPerFrame; ++k) {
-      second.imu.push_back(
-          {SecondsToNs(k / kImuRateHz), random.Vector(1), Vector3d(0, 0, kGravity) + random.Vector(2)});
-      ASSERT_TRUE(filter->AddImu(second.imu.back()).ok());
+      const ImuSample sample{SecondsToNs(k / kImuRateHz), random.Vector(1),
+                             Vector3d(0, 0, kGravity) + random.Vector(2)};
+      ASSERT_TRUE(buffer.Add(sample).ok());
+      ASSERT_TRUE(filter->AddImu(sample).ok());
     }
+    ASSERT_TRUE(buffer.Interval(0, SecondsToNs(kSamplesPerFrame / kImuRateHz), &second.imu).ok());
     ASSERT_TRUE(filter->AddFrame(EmptyFrame(second.imu.back().stamp_ns)).ok());
     const NavEstimate end = filter->Latest();
     PackNavState(start.nav, first.nav.data());

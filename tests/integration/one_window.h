@@ -11,6 +11,7 @@
 #include "core/error_convention.h"
 #include "core/estimator/measurement_log.h"
 #include "core/imu_propagation.h"
+#include "core/imu_step.h"
 #include "core/random.h"
 
 namespace alidade::test {
@@ -67,6 +68,7 @@ inline std::vector<NavState> MakeMotion(NavEstimate at, const ImuNoise& noise,
       const Eigen::Vector3d force(2 * std::sin(6 * t), 2 * std::cos(8 * t), std::sin(11 * t));
       samples->push_back({SecondsToNs(t), gyro + at.bias.gyro, up_B + force + at.bias.accel});
     }
+    SetCurvatures(*samples);
     const std::span<const ImuSample> interval(samples->begin() + static_cast<std::ptrdiff_t>(first),
                                               samples->end());
     EXPECT_TRUE(PropagateEstimate(interval, noise, GravityInWorld(kGravity), &at).ok());
@@ -131,6 +133,7 @@ inline OneWindow MakeWindow(double scale) {
     sample.accel +=
         scale * root_rate * window.rig.imu_noise.accel_noise_density_mps2_sqrthz * random.Normal3();
   }
+  SetCurvatures(window.samples);
   window.start.covariance = StartCovariance(&random);
   Vector15d draw;
   for (double& entry : draw) {

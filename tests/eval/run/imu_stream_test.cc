@@ -37,7 +37,7 @@ TEST(ImuStreamTest, RefusesWhatIsThereAndWhatIsNotAfterTheDelivered) {
   EXPECT_EQ(stream.Add(At(11)), ImuStream::Arrival::kTaken);
 }
 
-TEST(ImuStreamTest, ForgetsDeliveredSamplesButTheLastOneNotAfter) {
+TEST(ImuStreamTest, ForgetsDeliveredSamplesButTheLastTwoNotAfter) {
   ImuStream stream(false);
   for (TimeNs stamp = 10; stamp <= 60; stamp += 10) {
     ASSERT_EQ(stream.Add(At(stamp)), ImuStream::Arrival::kTaken);
@@ -45,12 +45,12 @@ TEST(ImuStreamTest, ForgetsDeliveredSamplesButTheLastOneNotAfter) {
   while (stream.Deliver(40) != nullptr) {
   }
   stream.DropBefore(35);
-  ASSERT_EQ(stream.size(), 4u);  // 30, 40 and the two that are not delivered
-  EXPECT_EQ(stream.DeliveredSince(35).front().stamp_ns, 30);
+  ASSERT_EQ(stream.size(), 5u);  // 20, 30, 40 and the two that are not delivered
+  EXPECT_EQ(stream.DeliveredSince(35).front().stamp_ns, 20);
   EXPECT_EQ(stream.DeliveredSince(35).back().stamp_ns, 40);
   EXPECT_EQ(stream.Since(35).back().stamp_ns, 60);
   stream.DropBefore(1000);
-  EXPECT_EQ(stream.size(), 3u);
+  EXPECT_EQ(stream.size(), 4u);
 }
 
 TEST(ImuStreamTest, PassesOverSamplesThatNobodyAskedFor) {
