@@ -40,7 +40,8 @@ class ImuStream {
   [[nodiscard]] const Eigen::Vector3d& newest_gyro() const { return newest_gyro_; }
   [[nodiscard]] TimeNs delivered_ns() const { return delivered_ns_; }
   /// The samples from the one before the last not after `stamp_ns` on (from the first there is, where there
-  /// are fewer), up to the last delivered one or to the newest: what ImuBuffer needs for an interval from there.
+  /// are fewer), up to the last delivered one or to the newest: what ImuBuffer needs for an interval from
+  /// there.
   [[nodiscard]] std::vector<ImuSample> DeliveredSince(TimeNs stamp_ns) const;
   [[nodiscard]] std::vector<ImuSample> Since(TimeNs stamp_ns) const;
 
