@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/format.h"
+#include "core/imu_gap.h"
 #include "core/imu_step.h"
 
 namespace alidade {
@@ -121,6 +122,15 @@ void ImuBuffer::DropBefore(TimeNs stamp_ns, double kept_s) {
     samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(begin_));
     begin_ = 0;
   }
+}
+
+void ImuBuffer::StartAt(TimeNs stamp_ns, double kept_s) {
+  if (!samples().empty() && SecondsBetween(samples_.back().stamp_ns, stamp_ns) > imu_gap::kMinGapS) {
+    samples_.clear();
+    begin_ = 0;
+  }
+  DropBefore(stamp_ns, kept_s);
+  consumed_before_ns_ = INT64_MIN;
 }
 
 }  // namespace alidade

@@ -42,6 +42,9 @@ class ImuBuffer {
   /// Forgets samples that no interval starting at or after `stamp_ns` needs, but for those of the `kept_s`
   /// seconds before it, which remain in samples().
   void DropBefore(TimeNs stamp_ns, double kept_s = 0);
+  /// Begins at a state of this stamp: as DropBefore, but samples of any age are taken from now on. When those
+  /// held end more than a silence (core/imu_gap.h) earlier, they are of before a loss and all forgotten.
+  void StartAt(TimeNs stamp_ns, double kept_s = 0);
   void Clear() {
     samples_.clear();
     begin_ = 0;
@@ -59,7 +62,8 @@ class ImuBuffer {
   ImuBufferStatistics statistics_;
 };
 
-/// At `stamp_ns` between two samples, a.stamp_ns < b.stamp_ns, on the parabola through both of b's curvature.
+/// At `stamp_ns` between two samples, a.stamp_ns < b.stamp_ns, on the parabola through a and b with b's
+/// curvature.
 [[nodiscard]] ImuSample Interpolate(const ImuSample& a, const ImuSample& b, TimeNs stamp_ns);
 
 }  // namespace alidade

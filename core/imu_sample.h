@@ -12,8 +12,8 @@ struct ImuSample {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
   double gap_s = 0;  ///< of an interpolated one: time between the measured samples around it
-  // Second derivatives of the parabola through this measured sample, or the next one of an interpolated one,
-  // and the two before it [rad/s^3, m/s^4]; zero where they are not known.
+  // Second derivatives of the parabola through this measured sample and the two before it [rad/s^3, m/s^4];
+  // zero where they are not known. An interpolated sample has those of the measured one after it.
   Eigen::Vector3d gyro_curvature = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_curvature = Eigen::Vector3d::Zero();
 };

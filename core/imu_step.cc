@@ -8,14 +8,23 @@ namespace alidade {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+namespace {
+
+// Of a parabola beyond the step it comes from. The oldest sample's weight in the next step, over its length,
+// is r^2 / (6 (1 + r)) for a ratio r of the two.
+constexpr double kMaxExtension = 2;
+
+}  // namespace
+
 void SetCurvature(const ImuSample& first, const ImuSample& second, ImuSample* last) {
-  if (imu_gap::IsInside(first, second) || imu_gap::IsInside(second, *last)) {
+  const double before_s = SecondsBetween(first.stamp_ns, second.stamp_ns);
+  const double after_s = SecondsBetween(second.stamp_ns, last->stamp_ns);
+  if (imu_gap::IsInside(first, second) || imu_gap::IsInside(second, *last) ||
+      after_s > kMaxExtension * before_s) {
     last->gyro_curvature.setZero();
     last->accel_curvature.setZero();
     return;
   }
-  const double before_s = SecondsBetween(first.stamp_ns, second.stamp_ns);
-  const double after_s = SecondsBetween(second.stamp_ns, last->stamp_ns);
   const double half_s = 0.5 * (before_s + after_s);
   last->gyro_curvature =
       ((last->gyro - second.gyro) / after_s - (second.gyro - first.gyro) / before_s) / half_s;
@@ -34,6 +43,9 @@ StepMean MeanOverStep(const ImuSample& from, const ImuSample& to, const ImuBias&
   const double bow = dt_s * dt_s / 12;
   const Vector3d gyro = 0.5 * (from.gyro + to.gyro) - bias.gyro - bow * to.gyro_curvature;
   const Vector3d accel = 0.5 * (from.accel + to.accel) - bias.accel - bow * to.accel_curvature;
+  if (imu_gap::IsInside(from, to)) {
+    return {gyro, accel, Matrix3d::Identity(), Matrix3d::Zero()};
+  }
   // w_k x w_{k+1} = w x (w_{k+1} - w_k), with w the mean of the two.
   const Matrix3d turned = Matrix3d::Identity() - dt_s / 12 * Skew(to.gyro - from.gyro);
   const Matrix3d swayed = -dt_s / 12 * Skew(to.accel - from.accel);

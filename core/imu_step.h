@@ -8,7 +8,8 @@
 namespace alidade {
 
 /// Fills the curvatures of the last of three consecutive measured samples. Zero when a silence lies between
-/// any two of them (core/imu_gap.h).
+/// any two of them (core/imu_gap.h), or the last step is more than twice as long as the one before: extended
+/// that far, the parabola multiplies the noise of the samples.
 void SetCurvature(const ImuSample& first, const ImuSample& second, ImuSample* last);
 /// The same for all from the third of consecutive measured samples on.
 void SetCurvatures(std::span<ImuSample> samples);
@@ -18,7 +19,7 @@ void SetCurvatures(std::span<ImuSample> samples);
 struct StepMean {
   Eigen::Vector3d gyro;
   Eigen::Vector3d accel;
-  // Derivatives over the measured rate and force, whose bias is removed; that of gyro over accel is zero.
+  // Derivatives over a shift of both samples, as a bias is; that of gyro over accel is zero.
   Eigen::Matrix3d gyro_over_gyro;  ///< and of accel over accel
   Eigen::Matrix3d accel_over_gyro;
 };
@@ -27,7 +28,9 @@ struct StepMean {
 /// that of `to`. The turn of the axes within the step adds the coning and the sculling term of a rate w and a
 /// force f that change linearly (Savage 1998),
 ///
-///     dt/12 w_k x w_{k+1},   dt/12 (w x (f_{k+1} - f_k) - (w_{k+1} - w_k) x f).
+///     dt/12 w_k x w_{k+1},   dt/12 (w x (f_{k+1} - f_k) - (w_{k+1} - w_k) x f);
+///
+/// not in a silence, where the step is not short for the series behind it and the motion is not known.
 [[nodiscard]] StepMean MeanOverStep(const ImuSample& from, const ImuSample& to, const ImuBias& bias);
 
 }  // namespace alidade

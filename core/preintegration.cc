@@ -16,6 +16,8 @@ void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNo
   DCHECK_GT(dt_s, 0);
   const StepMean mean = MeanOverStep(from, to, bias_);
   ImuIncrement step = StepIncrement(mean.gyro, mean.accel, dt_s, noise);
+  // A force that grows within the step acts late on the position.
+  step.motion.alpha -= dt_s * dt_s / 12 * (to.accel - from.accel);
   const Eigen::Matrix<double, 9, 3> over_gyro = step.bias_jacobian.leftCols<3>();
   const Eigen::Matrix<double, 9, 3> over_accel = step.bias_jacobian.rightCols<3>();
   step.bias_jacobian << over_gyro * mean.gyro_over_gyro + over_accel * mean.accel_over_gyro,

@@ -9,8 +9,8 @@ namespace alidade {
 
 /// The IMU between two stamps, integrated with given biases: the one model of the IMU that the filter, the
 /// smoother, the batch solution and the initialisers consume. A step between two samples is that of a
-/// constant rate and force (MeanOverStep, StepIncrement), so intervals that meet at a
-/// sample compose.
+/// constant rate and force (MeanOverStep, StepIncrement), to which the effect of the force's change on the
+/// position is added. It depends on the two samples alone, so intervals that meet at a sample compose.
 ///
 /// Samples that are not finite, or so large that a number overflows, show in NoiseRoot and Whitening.
 class Preintegration {

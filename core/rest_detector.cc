@@ -59,8 +59,8 @@ void RestDetector::Turn(const Vector3d& gyro_bias_radps) {
   turned_ns_ = imu_.empty() ? INT64_MIN : imu_.back().stamp_ns;
 }
 
-RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const NavEstimate& estimate,
-                                   const Matrix3d& R_BC) {
+RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_px,
+                                   const NavEstimate& estimate, const Matrix3d& R_BC) {
   Turn(estimate.bias.gyro);
   if (frame_count_ == frames_.size()) {
     frames_.emplace_back();
@@ -90,24 +90,28 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, const NavEstimate& e
   const auto since_both = [&](const auto& flow_is_zero) {
     return flow_is_zero(before) && (frame_count_ == 2 || flow_is_zero(middle));
   };
-  double turned_deviations = 0;
-  double raw_deviations = 0;
-  const bool turned_flow_is_zero = since_both([&](const OrientedFrame& since) {
-    return FlowIsZero(since.frame, frame, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC,
-                      &turned_deviations);
-  });
-  const bool turn_may_be_bias = TurnMayBeBias(imu.mean_gyro, estimate);
-  const bool raw_flow_is_zero =
-      imu.gyro_std_radps < init_.static_max_gyro_std_radps && (turned_flow_is_zero || turn_may_be_bias) &&
-      since_both([&](const OrientedFrame& since) {
-        return FlowIsZero(since.frame, frame, Matrix3d::Identity(), &raw_deviations);
-      });
-  if (raw_flow_is_zero && turn_may_be_bias) {
-    return {true, true, raw_deviations};
+  const bool calm_gyro = imu.gyro_std_radps < init_.static_max_gyro_std_radps;
+  const bool as_it_is_decides = calm_gyro && TurnMayBeBias(imu.mean_gyro, estimate);
+  double deviations = 0;
+  const auto flow_is_zero = [&](const OrientedFrame& since, const Matrix3d& R_now_before) {
+    return FlowIsZero(since.frame, frame, R_now_before, pixel_noise_px, &deviations);
+  };
+  const auto flow_as_it_is_is_zero = [&] {
+    return since_both([&](const OrientedFrame& since) { return flow_is_zero(since, Matrix3d::Identity()); });
+  };
+  if (as_it_is_decides) {
+    verdict.no_translation = verdict.no_rotation = flow_as_it_is_is_zero();
+    verdict.flow_deviations = deviations;
+    return verdict;
   }
-  verdict.no_translation = turned_flow_is_zero;
-  verdict.no_rotation = turned_flow_is_zero && raw_flow_is_zero;
-  verdict.flow_deviations = turned_deviations;
+  verdict.no_translation = since_both([&](const OrientedFrame& since) {
+    return flow_is_zero(since, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC);
+  });
+  verdict.flow_deviations = deviations;
+  if (verdict.no_translation && calm_gyro && flow_as_it_is_is_zero()) {
+    verdict.no_rotation = true;
+    verdict.flow_deviations = deviations;
+  }
   return verdict;
 }
 
@@ -133,7 +137,7 @@ void RestDetector::FindCommon(const TrackFrame& before, const TrackFrame& now, c
 }
 
 bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before,
-                              double* deviations) {
+                              double pixel_noise_px, double* deviations) {
   FindCommon(before, now, R_now_before);
   std::vector<CommonTrack>& common = common_;
   if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
@@ -147,7 +151,7 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
   const double median = middle->flow.norm();
   // The half with the smallest flow would hide a zoom (it lives near the centre), so its median is bounded
   // first.
-  if (median > vision_.rest_max_flow_px + 2 * vision_.pixel_noise_px) {
+  if (median > vision_.rest_max_flow_px + 2 * pixel_noise_px) {
     return false;
   }
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
@@ -168,8 +172,7 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
     return false;
   }
   // The difference of two observations has twice the variance of one.
-  const Eigen::Array4d variance =
-      2 * vision_.pixel_noise_px * vision_.pixel_noise_px * normal.inverse().diagonal().array();
+  const Eigen::Array4d variance = 2 * pixel_noise_px * pixel_noise_px * normal.inverse().diagonal().array();
   *deviations = std::max(*deviations, (flow.array().abs() / variance.sqrt()).maxCoeff());
   return true;
 }

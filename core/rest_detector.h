@@ -18,7 +18,7 @@ struct RestVerdict {
   bool no_translation = false;  ///< the camera's velocity is zero
   bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
   /// The largest part of the flow that was taken for none, in standard deviations of what the tracks' noise
-  /// makes of it. At rest hardly above two; more tells slow motion.
+  /// makes of it. At rest nine in ten are below 2.5; more tells slow motion.
   double flow_deviations = 0;
 };
 
@@ -37,9 +37,9 @@ struct RestRates {
 /// VisionConfig::rest_max_flow_px at the image's corner, and the specific force spreads less than
 /// rest_max_accel_std_mps2. No rotation: so does the flow as it is, and the angular rate spreads less than
 /// InitConfig allows. While the bias is not known well enough to tell whether the rig turns (the mean rate is
-/// within three of its deviations), a calm gyroscope and the flow as it is decide both. Neglected: motion so
-/// slow or scenery so far that it moves tracks by less than the limit in the window, and a turn that hides a
-/// translation.
+/// within three of its deviations), with a calm gyroscope the flow as it is decides both. Neglected: motion
+/// so slow or scenery so far that it moves tracks by less than the limit in the window, and a turn that hides
+/// a translation.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);
@@ -48,8 +48,10 @@ class RestDetector {
   void AddImu(std::span<const ImuSample> samples);
   /// Verdict on the window that ends with this frame, at whose IMU time the samples end. The gyroscope and
   /// not the estimate tells the turn: at rest corrections of the estimated attitude would look like motion.
-  /// estimate: a recent one; its gyroscope bias is used, with its covariance. R_BC: camera to body.
-  RestVerdict AddFrame(const TrackFrame& frame, const NavEstimate& estimate, const Eigen::Matrix3d& R_BC);
+  /// pixel_noise_px: of the tracks. estimate: a recent one; its gyroscope bias is used, with its covariance.
+  /// R_BC: camera to body.
+  RestVerdict AddFrame(const TrackFrame& frame, double pixel_noise_px, const NavEstimate& estimate,
+                       const Eigen::Matrix3d& R_BC);
   void Clear();
 
   /// Over the present window.
@@ -69,7 +71,8 @@ class RestDetector {
   /// R_now_before: turn of the camera between the frames; identity takes the flow as it is. deviations: as in
   /// RestVerdict, raised where it is less.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
-                                const Eigen::Matrix3d& R_now_before, double* deviations);
+                                const Eigen::Matrix3d& R_now_before, double pixel_noise_px,
+                                double* deviations);
   /// Fills common_.
   void FindCommon(const TrackFrame& before, const TrackFrame& now, const Eigen::Matrix3d& R_now_before);
 

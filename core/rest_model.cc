@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// The flow at rest, in its standard deviations.
+// The largest part of the flow at rest, in standard deviations: nine in ten are below.
 constexpr double kUsualFlow = 2.5;
 
 }  // namespace

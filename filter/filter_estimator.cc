@@ -52,7 +52,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   aligned_ = false;
   absolute_.reset();
   rest_.Clear();
-  imu_.DropBefore(initial.stamp_ns, read_out_span_s_);
+  imu_.StartAt(initial.stamp_ns, read_out_span_s_);
   frame_stamp_ns_ = INT64_MIN;
   statistics_ = {};
   initialized_ = true;
@@ -109,7 +109,8 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
       tracks_.AddFrame(state_.calibration().camera, pixel_noise_.px(), serial_, frame.observations);
   bool finite = true;
   if (config_.vision.rest_updates) {
-    const RestVerdict rest = rest_.AddFrame(frame, state_.Estimate(), state_.calibration().T_BC.rotation);
+    const RestVerdict rest =
+        rest_.AddFrame(frame, pixel_noise_.px(), state_.Estimate(), state_.calibration().T_BC.rotation);
     statistics_.at_rest = rest.no_translation;
     finite = UpdateAtRest(rest);
   }

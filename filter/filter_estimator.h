@@ -61,7 +61,7 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] NavEstimate EstimateIfWatched() const;
   /// Corrects the state unless `finite` is false; kDiverged when the state is lost.
   Status EndMeasurement(const char* what, TimeNs stamp_ns, const NavEstimate& before, bool finite);
-  /// Of the window, its scale too.
+  /// Whether direction and length of the line between newest and oldest camera are known to a tenth.
   [[nodiscard]] bool ShapeIsKnown() const;
   /// True when the track's views are to be used in this frame.
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;

@@ -6,7 +6,7 @@
 namespace alidade {
 namespace {
 
-// Least share of the live tracks that were seen before the second oldest clone, for the oldest to stay.
+// Least share of the live tracks that are as old as the second oldest clone, for the oldest to stay.
 constexpr double kOldShare = 0.5;
 constexpr double kOldShareUncertain = 0.1;
 // The distance of two clones grows with their age and this share of the window, in frames.
@@ -40,7 +40,8 @@ bool OldestIsUsed(const std::vector<Clone>& clones, const std::vector<Track>& tr
   for (const Track& track : tracks) {
     if (track.last_serial == serial) {
       ++live;
-      old += serial - track.observations < clones[1].serial ? 1 : 0;
+      const int first_serial = serial - track.observations + 1;
+      old += first_serial <= clones[1].serial ? 1 : 0;
     }
   }
   return old > (shape_is_known ? kOldShare : kOldShareUncertain) * live;

@@ -14,8 +14,8 @@ namespace alidade {
 ///
 /// ClonePolicy::kSpread keeps clones whose distances grow with their age. What a memory said of a clone
 /// between two others is then said of these with little loss (ConditionClone), and the window is long in
-/// time. The oldest leaves when few of the live tracks were seen before the next one: less than half of them,
-/// or a tenth while the window's shape is uncertain, which only a longer baseline mends.
+/// time. The oldest leaves when few of the live tracks are as old as the second oldest clone: less than half
+/// of them, or a tenth while the window's shape is uncertain, which only a longer baseline mends.
 [[nodiscard]] int ChooseLeavingClone(const FilterConfig& filter, const std::vector<Clone>& clones,
                                      const std::vector<Track>& tracks, int serial, bool shape_is_known);
 

@@ -39,6 +39,48 @@ TEST(ImuBufferTest, InterpolatesToTheMeasurement) {
   EXPECT_EQ(samples.size(), 3u) << "ends that are measured are not doubled";
 }
 
+// GIVEN readings on a parabola THEN the ends lie on it, and measured samples know its curvature where there
+// are two before them.
+TEST(ImuBufferTest, AnIntervalFollowsAParabola) {
+  const auto value = [](double t_s) { return 3 + 2 * t_s - 50 * t_s * t_s; };
+  ImuBuffer buffer(0.5);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(buffer.Add(At(0.01 * i, value(0.01 * i))).ok());
+  }
+  std::vector<ImuSample> samples;
+  ASSERT_TRUE(buffer.Interval(SecondsToNs(0.0), SecondsToNs(0.03), &samples).ok());
+  EXPECT_EQ(samples[1].gyro_curvature, Vector3d::Zero());
+  EXPECT_NEAR(samples[2].gyro_curvature.x(), -100, 1e-9);
+  EXPECT_NEAR(samples[3].accel_curvature.y(), 100, 1e-9);
+  buffer.DropBefore(SecondsToNs(0.034));
+  ASSERT_TRUE(buffer.Interval(SecondsToNs(0.034), SecondsToNs(0.067), &samples).ok());
+  ASSERT_EQ(samples.size(), 5u);
+  for (const ImuSample& sample : samples) {
+    EXPECT_NEAR(sample.gyro.z(), value(SecondsBetween(0, sample.stamp_ns)), 1e-12);
+    EXPECT_NEAR(sample.gyro_curvature.x(), -100, 1e-9);
+  }
+}
+
+// GIVEN a start after a loss THEN samples of before are forgotten, and those around the start are taken
+// whatever was consumed.
+TEST(ImuBufferTest, AStartAfterALossBeginsAnew) {
+  ImuBuffer buffer(0.5);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(buffer.Add(At(0.01 * i, 1)).ok());
+  }
+  buffer.DropBefore(SecondsToNs(0.09));
+  buffer.StartAt(SecondsToNs(5.005));
+  EXPECT_TRUE(buffer.samples().empty());
+  for (const double stamp_s : {4.99, 5.0, 5.01}) {
+    EXPECT_TRUE(buffer.Add(At(stamp_s, 2)).ok()) << stamp_s;
+  }
+  std::vector<ImuSample> samples;
+  ASSERT_TRUE(buffer.Interval(SecondsToNs(5.005), SecondsToNs(5.01), &samples).ok());
+  EXPECT_EQ(samples.front().gyro.x(), 2);
+  buffer.StartAt(SecondsToNs(5.02));
+  EXPECT_EQ(buffer.samples().size(), 2u) << "a start directly behind needs the last samples";
+}
+
 TEST(ImuBufferTest, SaysWhatIsMissing) {
   ImuBuffer buffer(0.05);
   std::vector<ImuSample> samples;

@@ -52,7 +52,7 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      verdict = detector.AddFrame(frame, bias_, Matrix3d::Identity());
+      verdict = detector.AddFrame(frame, 1, bias_, Matrix3d::Identity());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
@@ -126,14 +126,24 @@ TEST_F(RestDetectorTest, AStillImageWhileTheRigIsKnownToTurnIsNoRest) {
 
 TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
   TellBias(0.01, 0.005);
-  for (const Vector3d& velocity : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0, 0, 0.2)}) {
+  for (const Vector3d& velocity : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0, 0, 0.2),
+                                   // Of one sign, the wrong turn hides it in the image.
+                                   Vector3d(0.04, 0, 0), Vector3d(-0.04, 0, 0)}) {
     EXPECT_FALSE(AfterOneSecond(velocity, 0, 0.01).no_translation) << velocity.transpose();
   }
 }
 
+// GIVEN a turn that the gyroscope knows but that moves the image by less than the limit, WHEN it is taken for
+// rest, THEN the verdict says that the flow is more than noise.
+TEST_F(RestDetectorTest, ASlowTurnIsTold) {
+  const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0.003, 0.1);
+  EXPECT_TRUE(verdict.no_rotation);
+  EXPECT_GT(verdict.flow_deviations, 3.5);
+}
+
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {
   RestDetector detector(VisionConfig(), InitConfig(), camera_);
-  EXPECT_FALSE(detector.AddFrame({}, NavEstimate(), Matrix3d::Identity()).no_translation);
+  EXPECT_FALSE(detector.AddFrame({}, 1, NavEstimate(), Matrix3d::Identity()).no_translation);
 }
 
 }  // namespace

@@ -58,6 +58,21 @@ TEST_F(LeavingCloneTest, WhenMostTracksAreNewTheOldestLeaves) {
   EXPECT_GT(clones_.front().serial, 1);
 }
 
+// GIVEN tracks that were all seen first by the second oldest clone THEN that is old enough for the oldest.
+TEST_F(LeavingCloneTest, TracksAsOldAsTheSecondOldestKeepTheOldest) {
+  Feed(1);
+  AddTracks(20);
+  Feed(10);
+  EXPECT_EQ(clones_.front().serial, 1);
+  clones_.clear();
+  tracks_.clear();
+  serial_ = 0;
+  Feed(2);
+  AddTracks(20);
+  Feed(9);
+  EXPECT_EQ(clones_.front().serial, 2);
+}
+
 // GIVEN a fifth of the tracks that are old THEN the oldest clone stays only while the window's shape is
 // uncertain.
 TEST_F(LeavingCloneTest, AnUncertainShapeKeepsALongerBaseline) {

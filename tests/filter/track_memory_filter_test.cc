@@ -111,7 +111,7 @@ TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAnd
   const auto nees = [&](int iterations, double max_direction_deviation) {
     config.filter.update_iterations = iterations;
     config.filter.max_direction_deviation = max_direction_deviation;
-    constexpr unsigned kRuns = 12;  // of which one in six is lost without the tracks that wait
+    constexpr unsigned kRuns = 12;  // of which one in six is lost when tracks wait for their depth
     double sum = 0;
     for (unsigned seed = 1; seed <= kRuns; ++seed) {
       const Dataset dataset = test::SimulateOrDie(*sim, seed);

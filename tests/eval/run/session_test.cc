@@ -138,6 +138,9 @@ TEST(SessionTest, ReportsLossAndRestart) {
   ASSERT_EQ(restarted.size(), lost.size());
   EXPECT_GT(lost[0].stamp_ns, dataset.imu.front().stamp_ns + SecondsToNs(8));
   EXPECT_FALSE(lost[0].reason.empty());
+  for (const SkippedEvent& skipped : Only<SkippedEvent>(events)) {
+    EXPECT_NE(skipped.sensor, Sensor::kImu) << skipped.reason;
+  }
   EXPECT_EQ(restarted[0].lost_ns, lost[0].stamp_ns);
   EXPECT_GT(restarted[0].estimate.stamp_ns, lost[0].stamp_ns);
   for (const NavEstimate& state : test::StatesOf(events)) {
