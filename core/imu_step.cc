@@ -10,8 +10,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of a parabola beyond the step it comes from. The oldest sample's weight in the next step, over its length,
-// is r^2 / (6 (1 + r)) for a ratio r of the two.
+// Largest ratio r of a step to the one before. The oldest sample has the weight r^2 / (6 (1 + r)) in the mean
+// over the step.
 constexpr double kMaxExtension = 2;
 
 }  // namespace

@@ -59,9 +59,7 @@ void RestDetector::Turn(const Vector3d& gyro_bias_radps) {
   turned_ns_ = imu_.empty() ? INT64_MIN : imu_.back().stamp_ns;
 }
 
-RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_px,
-                                   const NavEstimate& estimate, const Matrix3d& R_BC) {
-  Turn(estimate.bias.gyro);
+void RestDetector::Keep(const TrackFrame& frame) {
   if (frame_count_ == frames_.size()) {
     frames_.emplace_back();
   }
@@ -69,46 +67,49 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
   frames_[frame_count_].R_0B = R_0B_;
   ++frame_count_;
   const TimeNs window_ns = SecondsToNs(vision_.rest_window_s);
-  const TimeNs start_ns = frame.stamp_ns - window_ns;
-  while (frame_count_ > 2 && frames_[1].frame.stamp_ns <= start_ns) {
+  while (frame_count_ > 2 && frames_[1].frame.stamp_ns <= frame.stamp_ns - window_ns) {
     std::rotate(frames_.begin(), frames_.begin() + 1, frames_.end());
     --frame_count_;
   }
   imu_.erase(imu_.begin(), std::find_if(imu_.begin(), imu_.end(), [&](const ImuSample& sample) {
                return sample.stamp_ns >= imu_.back().stamp_ns - window_ns;
              }));
+}
+
+RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_px,
+                                   const NavEstimate& estimate, const Matrix3d& R_BC) {
+  Turn(estimate.bias.gyro);
+  Keep(frame);
   const OrientedFrame& before = frames_.front();
   RestVerdict verdict;
   const ImuStatistics imu = MeasureImu(imu_);
-  if (frame_count_ < 2 || before.frame.stamp_ns > start_ns || imu_.size() < 5 ||
-      imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
+  if (frame_count_ < 2 || before.frame.stamp_ns > frame.stamp_ns - SecondsToNs(vision_.rest_window_s) ||
+      imu_.size() < 5 || imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
     return verdict;
   }
   // Under a constant force, as at a turning point, the camera passes the same place twice, with a calm IMU:
   // the ends of the window alone would not tell.
   const OrientedFrame& middle = frames_[frame_count_ / 2];
-  const auto since_both = [&](const auto& flow_is_zero) {
-    return flow_is_zero(before) && (frame_count_ == 2 || flow_is_zero(middle));
+  double deviations = 0;
+  const auto flow_is_zero = [&](const auto& turn_since) {
+    const auto since = [&](const OrientedFrame& old) {
+      return FlowIsZero(old.frame, frame, turn_since(old), pixel_noise_px, &deviations);
+    };
+    return since(before) && (frame_count_ == 2 || since(middle));
+  };
+  const auto uncompensated = [](const OrientedFrame&) -> Matrix3d { return Matrix3d::Identity(); };
+  const auto compensated = [&](const OrientedFrame& old) -> Matrix3d {
+    return R_BC.transpose() * R_0B_.transpose() * old.R_0B * R_BC;
   };
   const bool calm_gyro = imu.gyro_std_radps < init_.static_max_gyro_std_radps;
-  const bool as_it_is_decides = calm_gyro && TurnMayBeBias(imu.mean_gyro, estimate);
-  double deviations = 0;
-  const auto flow_is_zero = [&](const OrientedFrame& since, const Matrix3d& R_now_before) {
-    return FlowIsZero(since.frame, frame, R_now_before, pixel_noise_px, &deviations);
-  };
-  const auto flow_as_it_is_is_zero = [&] {
-    return since_both([&](const OrientedFrame& since) { return flow_is_zero(since, Matrix3d::Identity()); });
-  };
-  if (as_it_is_decides) {
-    verdict.no_translation = verdict.no_rotation = flow_as_it_is_is_zero();
+  if (calm_gyro && TurnMayBeBias(imu.mean_gyro, estimate)) {
+    verdict.no_translation = verdict.no_rotation = flow_is_zero(uncompensated);
     verdict.flow_deviations = deviations;
     return verdict;
   }
-  verdict.no_translation = since_both([&](const OrientedFrame& since) {
-    return flow_is_zero(since, R_BC.transpose() * R_0B_.transpose() * since.R_0B * R_BC);
-  });
+  verdict.no_translation = flow_is_zero(compensated);
   verdict.flow_deviations = deviations;
-  if (verdict.no_translation && calm_gyro && flow_as_it_is_is_zero()) {
+  if (verdict.no_translation && calm_gyro && flow_is_zero(uncompensated)) {
     verdict.no_rotation = true;
     verdict.flow_deviations = deviations;
   }

@@ -35,11 +35,11 @@ struct RestRates {
 /// No translation: the image flow since the oldest frame of the window and since its middle one, freed of the
 /// rig's turn by the gyroscope, fitted by shift, zoom and roll over the common tracks, stays below
 /// VisionConfig::rest_max_flow_px at the image's corner, and the specific force spreads less than
-/// rest_max_accel_std_mps2. No rotation: so does the flow as it is, and the angular rate spreads less than
-/// InitConfig allows. While the bias is not known well enough to tell whether the rig turns (the mean rate is
-/// within three of its deviations), with a calm gyroscope the flow as it is decides both. Neglected: motion
-/// so slow or scenery so far that it moves tracks by less than the limit in the window, and a turn that hides
-/// a translation.
+/// rest_max_accel_std_mps2. No rotation: so does the uncompensated flow, and the angular rate spreads less
+/// than InitConfig allows. While the bias is not known well enough to tell whether the rig turns (the mean
+/// rate is within three of its deviations), with a calm gyroscope the uncompensated flow decides both.
+/// Neglected: motion so slow or scenery so far that it moves tracks by less than the limit in the window, and
+/// a turn that hides a translation.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);
@@ -66,9 +66,11 @@ class RestDetector {
     Eigen::Vector2d before;
     Eigen::Vector2d flow;
   };
+  /// Adds the frame and forgets frames and samples older than the window.
+  void Keep(const TrackFrame& frame);
   /// Carries R_0B_ on to the last sample.
   void Turn(const Eigen::Vector3d& gyro_bias_radps);
-  /// R_now_before: turn of the camera between the frames; identity takes the flow as it is. deviations: as in
+  /// R_now_before: turn of the camera between the frames; identity compensates nothing. deviations: as in
   /// RestVerdict, raised where it is less.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
                                 const Eigen::Matrix3d& R_now_before, double pixel_noise_px,

@@ -56,6 +56,9 @@ TEST(ImuStepTest, ErrorOnASmoothMotionIsOfThirdOrder) {
   EXPECT_NEAR((exact.alpha - coarse.alpha).norm() / (exact.alpha - fine.alpha).norm(), 8, 1);
   EXPECT_LT(TurnError(exact, fine), 2e-5) << "rad after 1 s; the mean of two samples is off by 2e-4";
   EXPECT_LT((exact.beta - fine.beta).norm(), 2e-4) << "m/s; 2e-3";
+  const ImuMotion by_frames = FirstSecond(200, 1.0 / 30);
+  EXPECT_LT(TurnError(exact, by_frames), 2e-5) << "intervals that end between samples keep that";
+  EXPECT_LT((exact.beta - by_frames.beta).norm(), 2e-4);
 }
 
 /// Rate and force of amplitudes in rad/s and m/s^2, whose axes move with 0.7 to 1.1 times the frequency.
