@@ -52,7 +52,7 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      verdict = detector.AddFrame(frame, 1, bias_, Matrix3d::Identity());
+      verdict = detector.AddFrame(frame, told_noise_px_, bias_, Matrix3d::Identity());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
@@ -68,6 +68,7 @@ class RestDetectorTest : public ::testing::Test {
   CameraModel camera_;
   std::vector<Vector3d> landmarks_;
   NavEstimate bias_;
+  double told_noise_px_ = 1;
   Vector3d mean_gyro_;
 };
 
@@ -85,6 +86,14 @@ TEST_F(RestDetectorTest, SlowMotionIsTold) {
   const RestVerdict verdict = AfterOneSecond(Vector3d(0.013, 0, 0), 0, 0.1);
   EXPECT_TRUE(verdict.no_translation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
+}
+
+TEST_F(RestDetectorTest, FlowIsJudgedByTheNoiseThatIsTold) {
+  const RandomStream start = random_;
+  const double usual = AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations;
+  random_ = start;
+  told_noise_px_ = 2;
+  EXPECT_NEAR(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 0.5 * usual, 1e-12);
 }
 
 TEST_F(RestDetectorTest, ATurnOnTheSpotIsNoTranslation) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
+
 namespace alidade {
 namespace {
 
@@ -56,6 +58,23 @@ TEST_F(LeavingCloneTest, WhenMostTracksAreNewTheOldestLeaves) {
   AddTracks(20);
   Feed(10);
   EXPECT_GT(clones_.front().serial, 1);
+}
+
+// GIVEN clones at uneven distances THEN that one leaves whose neighbours are nearest to each other for its
+// age.
+TEST_F(LeavingCloneTest, TheOneBetweenNearNeighboursLeaves) {
+  const auto leaving = [&](std::initializer_list<int> serials) {
+    clones_.clear();
+    for (const int serial : serials) {
+      clones_.emplace_back().serial = serial;
+    }
+    Track old;
+    old.last_serial = 100;
+    old.observations = 100;
+    return clones_[static_cast<size_t>(ChooseLeavingClone(filter_, clones_, {old}, 100, true))].serial;
+  };
+  EXPECT_EQ(leaving({1, 2, 30, 36, 42, 60, 70, 80, 90, 95, 100}), 36);
+  EXPECT_EQ(leaving({1, 10, 22, 36, 42, 60, 70, 80, 97, 98, 100}), 10) << "3 apart, but young";
 }
 
 // GIVEN tracks that were all seen first by the second oldest clone THEN that is old enough for the oldest.
