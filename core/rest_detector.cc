@@ -7,6 +7,7 @@
 #include "core/dense_solvers.h"
 #include "core/imu_statistics.h"
 #include "core/lie.h"
+#include "core/robust.h"
 #include "core/turned_ray.h"
 #include "core/visual_observation.h"
 
@@ -19,6 +20,11 @@ using Eigen::Vector3d;
 
 constexpr int kMinCommonTracks = 12;
 constexpr double kBiasDeviations = 3;
+// Rest that contradicts the estimate must last for so many windows.
+constexpr double kWindowsInDoubt = 4;
+constexpr double kDoubtProbability = 0.95;
+// Of the deviation of the velocity at rest: what no estimate can contradict.
+constexpr double kLeastDeviation = 0.1;
 
 bool TurnMayBeBias(const Vector3d& mean_gyro_radps, const NavEstimate& estimate) {
   const Vector3d bias_std_radps = estimate.covariance.diagonal().segment<3>(9).cwiseSqrt();
@@ -39,6 +45,7 @@ void RestDetector::Clear() {
   frame_count_ = 0;
   imu_.clear();
   turned_ns_ = INT64_MIN;
+  doubted_since_ns_ = INT64_MAX;
 }
 
 void RestDetector::AddImu(std::span<const ImuSample> samples) {
@@ -67,7 +74,8 @@ void RestDetector::Keep(const TrackFrame& frame) {
   frames_[frame_count_].R_0B = R_0B_;
   ++frame_count_;
   const TimeNs window_ns = SecondsToNs(vision_.rest_window_s);
-  while (frame_count_ > 2 && frames_[1].frame.stamp_ns <= frame.stamp_ns - window_ns) {
+  const TimeNs history_ns = SecondsToNs(kWindowsInDoubt * vision_.rest_window_s);
+  while (frame_count_ > 2 && frames_[1].frame.stamp_ns <= frame.stamp_ns - history_ns) {
     std::rotate(frames_.begin(), frames_.begin() + 1, frames_.end());
     --frame_count_;
   }
@@ -76,30 +84,58 @@ void RestDetector::Keep(const TrackFrame& frame) {
              }));
 }
 
+const RestDetector::OrientedFrame* RestDetector::FrameBefore(double seconds) const {
+  const OrientedFrame* found = nullptr;
+  const TimeNs latest_ns = frames_[frame_count_ - 1].frame.stamp_ns - SecondsToNs(seconds);
+  for (size_t i = 0; i < frame_count_ && frames_[i].frame.stamp_ns <= latest_ns; ++i) {
+    found = &frames_[i];
+  }
+  return found;
+}
+
+bool RestDetector::ContradictsRest(const NavEstimate& estimate, const Vector3d& p_BC) const {
+  const Vector3d swing = (imu_.back().gyro - estimate.bias.gyro).cross(p_BC);
+  const Vector3d v_WC = estimate.nav.v_WB + estimate.nav.R_WB * swing;
+  Matrix3d variance = estimate.covariance.block<3, 3>(6, 6);
+  const double least_mps = kLeastDeviation * vision_.rest_velocity_std_mps;
+  variance.diagonal().array() += least_mps * least_mps;
+  return v_WC.dot(SolveSymmetric(variance, v_WC)) > ChiSquareQuantile(3, kDoubtProbability);
+}
+
 RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_px,
-                                   const NavEstimate& estimate, const Matrix3d& R_BC) {
+                                   const NavEstimate& estimate, const Pose& T_BC) {
   Turn(estimate.bias.gyro);
   Keep(frame);
-  const OrientedFrame& before = frames_.front();
   RestVerdict verdict;
+  const OrientedFrame* const before = FrameBefore(vision_.rest_window_s);
   const ImuStatistics imu = MeasureImu(imu_);
-  if (frame_count_ < 2 || before.frame.stamp_ns > frame.stamp_ns - SecondsToNs(vision_.rest_window_s) ||
-      imu_.size() < 5 || imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
+  if (before == nullptr || imu_.size() < 5 || imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
     return verdict;
+  }
+  const OrientedFrame* doubted = nullptr;
+  if (ContradictsRest(estimate, T_BC.translation)) {
+    doubted_since_ns_ = std::min(doubted_since_ns_, frame.stamp_ns);
+    doubted = FrameBefore(kWindowsInDoubt * vision_.rest_window_s);
+    if (doubted == nullptr || doubted->frame.stamp_ns < doubted_since_ns_) {
+      return verdict;
+    }
+  } else {
+    doubted_since_ns_ = INT64_MAX;
   }
   // Under a constant force, as at a turning point, the camera passes the same place twice, with a calm IMU:
   // the ends of the window alone would not tell.
-  const OrientedFrame& middle = frames_[frame_count_ / 2];
+  const OrientedFrame* const end = frames_.data() + frame_count_;
+  const OrientedFrame* const middle = before + (end - before) / 2;
   double deviations = 0;
   const auto flow_is_zero = [&](const auto& turn_since) {
     const auto since = [&](const OrientedFrame& old) {
       return FlowIsZero(old.frame, frame, turn_since(old), pixel_noise_px, &deviations);
     };
-    return since(before) && (frame_count_ == 2 || since(middle));
+    return since(*before) && (middle + 1 == end || since(*middle)) && (doubted == nullptr || since(*doubted));
   };
   const auto uncompensated = [](const OrientedFrame&) -> Matrix3d { return Matrix3d::Identity(); };
   const auto compensated = [&](const OrientedFrame& old) -> Matrix3d {
-    return R_BC.transpose() * R_0B_.transpose() * old.R_0B * R_BC;
+    return T_BC.rotation.transpose() * R_0B_.transpose() * old.R_0B * T_BC.rotation;
   };
   const bool calm_gyro = imu.gyro_std_radps < init_.static_max_gyro_std_radps;
   if (calm_gyro && TurnMayBeBias(imu.mean_gyro, estimate)) {

@@ -38,7 +38,11 @@ struct RestRates {
 /// rest_max_accel_std_mps2. No rotation: so does the uncompensated flow, and the angular rate spreads less
 /// than InitConfig allows. While the bias is not known well enough to tell whether the rig turns (the mean
 /// rate is within three of its deviations), with a calm gyroscope the uncompensated flow decides both.
-/// Neglected: motion so slow or scenery so far that it moves tracks by less than the limit in the window, and
+///
+/// Far scenery hides a motion that the IMU has told the estimator. While the estimated velocity of the camera
+/// contradicts rest, the flow must have been below the limit for four windows.
+///
+/// Neglected: motion so slow or scenery so far that it moves tracks by less than the limit in that time, and
 /// a turn that hides a translation.
 class RestDetector {
  public:
@@ -48,10 +52,10 @@ class RestDetector {
   void AddImu(std::span<const ImuSample> samples);
   /// Verdict on the window that ends with this frame, at whose IMU time the samples end. The gyroscope and
   /// not the estimate tells the turn: at rest corrections of the estimated attitude would look like motion.
-  /// pixel_noise_px: of the tracks. estimate: a recent one; its gyroscope bias is used, with its covariance.
-  /// R_BC: camera to body.
+  /// pixel_noise_px: of the tracks. estimate: a recent one; its gyroscope bias and its velocity are used,
+  /// with their covariance.
   RestVerdict AddFrame(const TrackFrame& frame, double pixel_noise_px, const NavEstimate& estimate,
-                       const Eigen::Matrix3d& R_BC);
+                       const Pose& T_BC);
   void Clear();
 
   /// Over the present window.
@@ -66,8 +70,12 @@ class RestDetector {
     Eigen::Vector2d before;
     Eigen::Vector2d flow;
   };
-  /// Adds the frame and forgets frames and samples older than the window.
+  /// Adds the frame and forgets what is older than is asked for.
   void Keep(const TrackFrame& frame);
+  /// The newest frame that is at least this much older than the newest one; null when none is.
+  [[nodiscard]] const OrientedFrame* FrameBefore(double seconds) const;
+  /// Whether the estimate says that the camera moves.
+  [[nodiscard]] bool ContradictsRest(const NavEstimate& estimate, const Eigen::Vector3d& p_BC) const;
   /// Carries R_0B_ on to the last sample.
   void Turn(const Eigen::Vector3d& gyro_bias_radps);
   /// R_now_before: turn of the camera between the frames; identity compensates nothing. deviations: as in
@@ -87,7 +95,8 @@ class RestDetector {
   size_t frame_count_ = 0;
   std::vector<ImuSample> imu_;
   Eigen::Matrix3d R_0B_ = Eigen::Matrix3d::Identity();
-  TimeNs turned_ns_ = INT64_MIN;  ///< stamp of the sample up to which R_0B_ was carried
+  TimeNs turned_ns_ = INT64_MIN;         ///< stamp of the sample up to which R_0B_ was carried
+  TimeNs doubted_since_ns_ = INT64_MAX;  ///< stamp of the first frame of those that the estimate contradicts
   std::vector<CommonTrack> common_;
 };
 

@@ -110,7 +110,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   bool finite = true;
   if (config_.vision.rest_updates) {
     const RestVerdict rest =
-        rest_.AddFrame(frame, pixel_noise_.px(), state_.Estimate(), state_.calibration().T_BC.rotation);
+        rest_.AddFrame(frame, pixel_noise_.px(), state_.Estimate(), state_.calibration().T_BC);
     statistics_.at_rest = rest.no_translation;
     finite = UpdateAtRest(rest);
   }

@@ -117,8 +117,7 @@ void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& fra
   WindowFrame& node = *frames_.back();
   AddObservations(frame, node);
   if (config_.vision.rest_updates) {
-    const RestVerdict verdict =
-        rest_.AddFrame(frame, config_.vision.pixel_noise_px, estimate, rig_.T_BC.rotation);
+    const RestVerdict verdict = rest_.AddFrame(frame, config_.vision.pixel_noise_px, estimate, rig_.T_BC);
     if (verdict.no_translation) {
       node.rest = MakeRestMeasurement(verdict, rest_.Rates(), rig_.T_BC.translation, config_.vision);
     }

@@ -188,7 +188,7 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
     return;
   }
   WindowFrame& newest = window_.newest();
-  const RestVerdict verdict = rest_.AddFrame(frame, pixel_noise_.px(), latest_, camera().T_BC.rotation);
+  const RestVerdict verdict = rest_.AddFrame(frame, pixel_noise_.px(), latest_, camera().T_BC);
   statistics_.at_rest = verdict.no_translation;
   if (verdict.no_translation) {
     newest.rest = MakeRestMeasurement(verdict, rest_.Rates(), camera().T_BC.translation, config_.vision);

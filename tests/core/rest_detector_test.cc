@@ -24,13 +24,18 @@ class RestDetectorTest : public ::testing::Test {
     TellBias(0, 1e-4);
   }
 
-  /// Verdict after one second of motion at the given velocity and camera turn rate (about y); accel_spread
-  /// shakes the IMU.
   RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread,
                              const Vector3d& acceleration = Vector3d::Zero()) {
+    return After(1, velocity, turn_rate, accel_spread, acceleration);
+  }
+
+  /// Verdict after so many seconds of motion at the given velocity and camera turn rate (about y);
+  /// accel_spread shakes the IMU.
+  RestVerdict After(double seconds, const Vector3d& velocity, double turn_rate, double accel_spread,
+                    const Vector3d& acceleration = Vector3d::Zero()) {
     RestDetector detector(VisionConfig(), InitConfig(), camera_);
     RestVerdict verdict;
-    for (int k = 0; k <= 20; ++k) {
+    for (int k = 0; k <= static_cast<int>(20 * seconds); ++k) {
       const double t = 0.05 * k;
       std::vector<ImuSample> imu;
       for (int i = 0; i <= 10 && k > 0; ++i) {
@@ -52,7 +57,11 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      verdict = detector.AddFrame(frame, told_noise_px_, bias_, Matrix3d::Identity());
+      NavEstimate told = estimate_;
+      if (t < doubt_from_s_) {
+        told.nav.v_WB.setZero();
+      }
+      verdict = detector.AddFrame(frame, told_noise_px_, told, Pose());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
@@ -60,14 +69,20 @@ class RestDetectorTest : public ::testing::Test {
 
   /// The bias of 0.01 rad/s about y is told as this much larger, with this deviation.
   void TellBias(double error_radps, double std_radps) {
-    bias_.bias.gyro.y() = 0.01 + error_radps;
-    bias_.covariance.diagonal().segment<3>(9).setConstant(std_radps * std_radps);
+    estimate_.bias.gyro.y() = 0.01 + error_radps;
+    estimate_.covariance.diagonal().segment<3>(9).setConstant(std_radps * std_radps);
+  }
+
+  void TellVelocity(const Vector3d& v_WB, double std_mps) {
+    estimate_.nav.v_WB = v_WB;
+    estimate_.covariance.diagonal().segment<3>(6).setConstant(std_mps * std_mps);
   }
 
   RandomStream random_{1, "rest detector"};
   CameraModel camera_;
   std::vector<Vector3d> landmarks_;
-  NavEstimate bias_;
+  NavEstimate estimate_;
+  double doubt_from_s_ = 0;  ///< before, the estimate's velocity is zero
   double told_noise_px_ = 1;
   Vector3d mean_gyro_;
 };
@@ -150,9 +165,41 @@ TEST_F(RestDetectorTest, ASlowTurnIsTold) {
   EXPECT_GT(verdict.flow_deviations, 3.5);
 }
 
+// GIVEN scenery so far that a slow motion stays below the limit of the flow, WHEN the estimate knows of the
+// motion, THEN that is no rest; the images alone cannot tell.
+TEST_F(RestDetectorTest, FarSceneryHidesNoMotionThatTheEstimateKnows) {
+  for (Vector3d& landmark : landmarks_) {
+    landmark *= 20;
+  }
+  const Vector3d velocity(0.1, 0, 0);
+  EXPECT_TRUE(After(4, velocity, 0, 0.01).no_translation);
+  TellVelocity(velocity, 0.01);
+  EXPECT_FALSE(AfterOneSecond(velocity, 0, 0.01).no_translation);
+  EXPECT_FALSE(After(4, velocity, 0, 0.01).no_translation);
+  TellVelocity(velocity, 0.1);
+  EXPECT_TRUE(AfterOneSecond(velocity, 0, 0.01).no_translation) << "nor does the estimate tell";
+}
+
+// GIVEN an estimate that moves on while the rig stands still THEN that is rest, later than usual.
+TEST_F(RestDetectorTest, LastingRestOverrulesTheEstimate) {
+  TellVelocity(Vector3d(0.1, 0, 0), 0.01);
+  EXPECT_FALSE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
+  EXPECT_TRUE(After(2.6, Vector3d::Zero(), 0, 0.1).no_translation);
+}
+
+// GIVEN a rig that has stood still, WHEN the estimate begins to move, THEN the rest before does not make that
+// one last.
+TEST_F(RestDetectorTest, RestBeforeTheDoubtDoesNotCount) {
+  doubt_from_s_ = 2.5;
+  TellVelocity(Vector3d(0.1, 0, 0), 0.01);
+  EXPECT_TRUE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
+  EXPECT_FALSE(After(3, Vector3d::Zero(), 0, 0.1).no_translation);
+  EXPECT_TRUE(After(4.6, Vector3d::Zero(), 0, 0.1).no_translation);
+}
+
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {
   RestDetector detector(VisionConfig(), InitConfig(), camera_);
-  EXPECT_FALSE(detector.AddFrame({}, 1, NavEstimate(), Matrix3d::Identity()).no_translation);
+  EXPECT_FALSE(detector.AddFrame({}, 1, NavEstimate(), Pose()).no_translation);
 }
 
 }  // namespace
