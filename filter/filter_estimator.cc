@@ -32,6 +32,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       read_out_span_s_(ReadOutSpan(state_.calibration())),
       pixel_noise_(config.vision),
       gate_noise_(config.vision),
+      scale_direction_(state_.covariance().capacity()),
       correction_(state_.covariance().capacity()),
       corrected_(state_.covariance().capacity()) {
   appended_.reserve(kUsualTracks);

@@ -14,6 +14,7 @@
 #include "filter/filter_state.h"
 #include "filter/gnss_update.h"
 #include "filter/measurement_update.h"
+#include "filter/scale_direction.h"
 #include "filter/slam_features.h"
 #include "filter/track_store.h"
 #include "filter/window_shape.h"
@@ -95,6 +96,9 @@ class FilterEstimator : public Estimator {
   }
   /// Corrects state and memories by Correction().
   void Correct();
+  /// The same after an update by tracks, with what the covariance says of the scale while that is uncertain;
+  /// `errors`: corrections since the prediction, or empty.
+  void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);
   /// What the memories become when a clone leaves.
   void LeaveMemories(size_t leaving);
   /// What a track keeps after its views were used (base re-use) or refused.
@@ -124,9 +128,12 @@ class FilterEstimator : public Estimator {
   bool aligned_ = false;                        ///< W stands as Align turned it
   DueTracks due_ = DueTracks::kUsual;           ///< in this frame
   BaselineDeviation baseline_;                  ///< before the tracks of this frame
-  int serial_ = 0;                              ///< of the newest frame
-  int first_serial_ = 1;                        ///< of the first frame after the initialisation
-  TimeNs frame_stamp_ns_ = INT64_MIN;           ///< IMU time of the last frame
+  ScaleDirection scale_direction_;
+  bool carry_scale_ = false;           ///< whether corrections carry the direction that was taken
+  int told_serial_ = 0;                ///< of the newest frame when tracks last updated the state
+  int serial_ = 0;                     ///< of the newest frame
+  int first_serial_ = 1;               ///< of the first frame after the initialisation
+  TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame
   // Scratch kept between frames.
   std::vector<ImuSample> interval_;
   std::vector<size_t> appended_;

@@ -63,6 +63,8 @@ class FilterObserver {
   /// of yaw and position are along directions that are unobservable anyway. Then six rows of the clock enter
   /// before the core if `has_clock`. There are no landmarks.
   virtual void OnAlign(const Eigen::MatrixXd& /*turn*/, bool /*has_clock*/) {}
+  /// The error x becomes x + column (row . x).
+  virtual void OnShear(const Eigen::VectorXd& /*column*/, const Eigen::VectorXd& /*row*/) {}
   /// The clock's six rows <- phi times them + w, w ~ N(0, q).
   virtual void OnPropagateClock(const Matrix6d& /*phi*/, const Matrix6d& /*q*/) {}
   /// An update is about to be applied to `state`.

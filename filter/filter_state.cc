@@ -173,6 +173,14 @@ void FilterState::RemoveLandmark(size_t index) {
   landmarks_.erase(landmarks_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
+void FilterState::Shear(const Eigen::Ref<const Eigen::VectorXd>& column,
+                        const Eigen::Ref<const Eigen::VectorXd>& row) {
+  covariance_.Shear(column, row);
+  if (observer_ != nullptr) {
+    observer_->OnShear(column, row);
+  }
+}
+
 void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   CHECK_EQ(correction.size(), covariance_.dimension());
   const int core = CoreOffset();

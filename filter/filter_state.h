@@ -106,6 +106,8 @@ class FilterState {
   /// enters the clock's rows if its covariance is given. Precondition: no landmarks.
   void Align(const YawShift& transform, const Eigen::Matrix4d& covariance,
              const std::optional<Matrix6d>& clock_covariance);
+  /// Maps the error x to x + column (row . x).
+  void Shear(const Eigen::Ref<const Eigen::VectorXd>& column, const Eigen::Ref<const Eigen::VectorXd>& row);
   /// Retracts every state by its part of the correction (error order of the class).
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction);
 

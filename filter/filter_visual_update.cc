@@ -105,10 +105,22 @@ int FilterEstimator::ChooseAndAppendTracks(int leaving_serial) {
   return AppendDueTracks(leaving_serial);
 }
 
+void FilterEstimator::CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors) {
+  Correct();
+  if (carry_scale_) {
+    scale_direction_.Carry(&state_, errors);
+  }
+}
+
 bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   SquareRootCovariance& covariance = state_.covariance();
   auto corrected = corrected_.head(covariance.dimension());  // since the prediction
   corrected.setZero();
+  // While the direction of the motion is not known either, the covariance holds little of tracks yet.
+  const bool scale_is_open = config_.filter.max_direction_deviation > 0 && baseline_.along > kKnownShape &&
+                             baseline_.across < config_.filter.max_direction_deviation &&
+                             state_.landmarks().empty();
+  carry_scale_ = scale_is_open && scale_direction_.Take(state_, told_serial_);
   for (int pass = 1;; ++pass) {
     const int landmark_rows =
         pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
@@ -142,7 +154,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       break;
     }
     corrected += Correction();
-    Correct();
+    CorrectByTracks(corrected);
     ++statistics_.iterations;
   }
   if (observer_ != nullptr) {
@@ -150,6 +162,8 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   }
   covariance.Commit(Correction());
   Correction() -= corrected;
+  told_serial_ = serial_;
+  carry_scale_ = scale_is_open && scale_direction_.Take(state_, told_serial_);
   return true;
 }
 
@@ -177,7 +191,7 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     }
   }
   const auto correction = Correction();  // of the dimension before landmarks enter
-  Correct();
+  CorrectByTracks(corrected_.head(0));
   slam_.Enter(correction, weights_, &state_, &tracks_);
   for (size_t block = 0; block < appended_.size(); ++block) {
     RetireViews(&tracks[appended_[block]], accepted_[block]);

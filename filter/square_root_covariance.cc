@@ -129,6 +129,32 @@ void SquareRootCovariance::AddToLeading(int target, const Eigen::Matrix3d& m, in
   Part(target, source, 3, columns).noalias() += m * Part(source, source, 3, columns);
 }
 
+void SquareRootCovariance::Shear(const Eigen::Ref<const VectorXd>& column,
+                                 const Eigen::Ref<const VectorXd>& row) {
+  CHECK(column.size() == dimension_ && row.size() == dimension_);
+  // S + column (S^T row)^T. Rotations of neighbouring columns gather S^T row in the last one, where S may be
+  // full. They leave one diagonal below that of S, which rotations from the end on remove.
+  const int last = dimension_ - 1;
+  auto w = whitened_.head(dimension_);
+  w.noalias() = factor().transpose() * row;
+  Eigen::JacobiRotation<double> rotation;
+  for (int j = 0; j < last; ++j) {
+    if (w(j) != 0) {
+      rotation.makeGivens(w(j + 1), w(j), &w(j + 1));
+      Part(0, j, j + 2, 2).applyOnTheRight(1, 0, rotation);
+    }
+  }
+  Part(0, last, dimension_, 1) += w(last) * column;
+  for (int j = last - 1; j >= 0; --j) {
+    double* below = Data(j + 1, j);
+    if (*below != 0) {
+      rotation.makeGivens(*Data(j + 1, j + 1), *below);
+      Part(0, j, j + 2, 2).applyOnTheRight(1, 0, rotation);
+      *below = 0;
+    }
+  }
+}
+
 void SquareRootCovariance::Remove(int first, int size) {
   CHECK(first >= 0 && first + size <= dimension_);
   CHECK(first + size <= leading_ || first >= leading_ + kCore) << "the core block stays";

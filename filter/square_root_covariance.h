@@ -53,6 +53,9 @@ class SquareRootCovariance {
   /// the leading blocks.
   void AddToLeading(int target, const Eigen::Matrix3d& m, int source);
 
+  /// Maps the error x to x + column (row . x).
+  void Shear(const Eigen::Ref<const Eigen::VectorXd>& column, const Eigen::Ref<const Eigen::VectorXd>& row);
+
   /// Marginalises the rows [first, first + size), which lie outside the core block.
   void Remove(int first, int size);
 
@@ -135,7 +138,7 @@ class SquareRootCovariance {
   Eigen::MatrixXd information_;  // scratch of Apply
   Eigen::MatrixXd corner_;       // scratch of Propagate and CloneCore
   Eigen::VectorXd projected_;
-  Eigen::VectorXd whitened_;                     // scratch of Solution
+  Eigen::VectorXd whitened_;                     // scratch of Solution and Shear
   int factored_ = 0;                             // first column of S that Factor's rows see
   std::vector<std::pair<int, double>> entries_;  // scratch of PrepareSparse: column and value
   std::vector<size_t> row_ends_;

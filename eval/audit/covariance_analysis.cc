@@ -71,6 +71,12 @@ int CovarianceAnalysis::FindKept(std::int64_t track_id, int serial) const {
   return -1;
 }
 
+void CovarianceAnalysis::OnShear(const Eigen::VectorXd& column, const Eigen::VectorXd& row) {
+  if (!met_landmark_) {
+    Transform(MatrixXd::Identity(actual_.rows(), actual_.rows()) + column * row.transpose());
+  }
+}
+
 void CovarianceAnalysis::OnUpdate(const FilterState& state, const FilterRows& rows) {
   if (met_landmark_) {
     return;

@@ -38,6 +38,7 @@ class CovarianceAnalysis : public FilterObserver {
   void OnClone(int first, int size) override;
   void OnAddLandmark(int first, const Eigen::MatrixXd& rows) override;
   void OnRemove(int first, int size) override;
+  void OnShear(const Eigen::VectorXd& column, const Eigen::VectorXd& row) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
 

@@ -153,6 +153,10 @@ void ObservabilityAudit::OnAlign(const MatrixXd& turn, bool has_clock) {
   has_clock_ = has_clock;
 }
 
+void ObservabilityAudit::OnShear(const Eigen::VectorXd& column, const Eigen::VectorXd& row) {
+  map_ += column * (row.transpose() * map_);
+}
+
 void ObservabilityAudit::OnUpdate(const FilterState& /*state*/, const FilterRows& rows) {
   const bool sees_clock = has_clock_ && !rows.jacobian.middleCols<kClock>(core_ - kClock).isZero(0);
   AddRows(sees_clock ? WithoutColumns(core_ - kClock, kClock, rows.jacobian) : rows.jacobian);

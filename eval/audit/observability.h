@@ -49,6 +49,7 @@ class ObservabilityAudit : public FilterObserver {
   void OnAddToLandmark(int landmark, const Eigen::Matrix3d& m, int source) override;
   void OnRemove(int first, int size) override;
   void OnAlign(const Eigen::MatrixXd& turn, bool has_clock) override;
+  void OnShear(const Eigen::VectorXd& column, const Eigen::VectorXd& row) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;
 

@@ -84,6 +84,12 @@ class Replay {
     return true;
   }
 
+  bool operator()(const LinearSystem::Shear& shear) {
+    covariance_.Shear(shear.column, shear.row);
+    offset_ += shear.row.dot(offset_) * shear.column;
+    return true;
+  }
+
   bool operator()(const LinearSystem::Update& update) {
     double nis = 0, log_det = 0;
     if (!Correct(update, &nis, &log_det)) {

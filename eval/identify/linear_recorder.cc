@@ -90,6 +90,10 @@ void LinearRecorder::OnAlign(const MatrixXd& /*turn*/, bool /*has_clock*/) {
   AddRestart();
 }
 
+void LinearRecorder::OnShear(const VectorXd& column, const VectorXd& row) {
+  system_.steps.emplace_back(LinearSystem::Shear{column, row});
+}
+
 void LinearRecorder::OnPropagateClock(const Matrix6d& phi, const Matrix6d& q) {
   system_.steps.emplace_back(LinearSystem::ClockPropagation{phi, q});
 }

@@ -17,6 +17,7 @@ class LinearRecorder : public FilterObserver {
   void OnClone(int first, int size) override;
   void OnRemove(int first, int size) override;
   void OnAlign(const Eigen::MatrixXd& turn, bool has_clock) override;
+  void OnShear(const Eigen::VectorXd& column, const Eigen::VectorXd& row) override;
   void OnPropagateClock(const Matrix6d& phi, const Matrix6d& q) override;
   void OnUpdate(const FilterState& state, const FilterRows& rows) override;
   void OnFrame(const FilterState& state) override;

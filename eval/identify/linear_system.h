@@ -38,6 +38,10 @@ struct LinearSystem {
   struct Removal {
     int first = 0, size = 0;
   };
+  /// xi <- xi + column (row . xi).
+  struct Shear {
+    Eigen::VectorXd column, row;
+  };
   /// y = H xi + n, n ~ N(0, I), H zero before the column `first`. More rows than columns are rotated into as
   /// many, which leaves `discarded_rows` innovations of pure noise with the squared norm `discarded`.
   struct Update {
@@ -52,7 +56,8 @@ struct LinearSystem {
   struct FrameEnd {
     TimeNs stamp_ns = 0;
   };
-  using Step = std::variant<Restart, Propagation, ClockPropagation, Cloning, Removal, Update, FrameEnd>;
+  using Step =
+      std::variant<Restart, Propagation, ClockPropagation, Cloning, Removal, Shear, Update, FrameEnd>;
 
   std::vector<Step> steps;
   int capacity = 0;  ///< largest dimension of the error

@@ -61,6 +61,11 @@ class CovarianceReplay : public FilterObserver {
     p_ = map * p_ * map.transpose();
     core_ -= first < core_ ? size : 0;
   }
+  void OnShear(const Eigen::VectorXd& column, const Eigen::VectorXd& row) override {
+    const MatrixXd map = MatrixXd::Identity(p_.rows(), p_.rows()) + column * row.transpose();
+    p_ = map * p_ * map.transpose();
+    ++shears_;
+  }
   void OnUpdate(const FilterState& state, const FilterRows& rows) override {
     ASSERT_EQ(rows.jacobian.cols(), state.covariance().dimension());
     MatrixXd innovation_covariance = rows.jacobian * p_ * rows.jacobian.transpose();
@@ -84,6 +89,7 @@ class CovarianceReplay : public FilterObserver {
   int updates() const { return updates_; }
   int landmarks() const { return landmarks_; }
   int anchor_moves() const { return anchor_moves_; }
+  int shears() const { return shears_; }
   int inflated() const { return inflated_; }
   int plain() const { return plain_; }
   double worst() const { return worst_; }
@@ -110,6 +116,7 @@ class CovarianceReplay : public FilterObserver {
   int updates_ = 0;
   int landmarks_ = 0;
   int anchor_moves_ = 0;
+  int shears_ = 0;
   int inflated_ = 0;
   int plain_ = 0;
   double worst_ = 0;
@@ -145,6 +152,23 @@ TEST(FilterObserverTest, LandmarksOfTheStateAreObservedToo) {
   const CovarianceReplay replay = Replay(BaseReuse::kInflate, RobustKernel::kHuber, 10);
   EXPECT_GT(replay.landmarks(), 20);
   EXPECT_GT(replay.anchor_moves(), 20);
+  EXPECT_LT(replay.worst(), 1e-6);
+}
+
+TEST(FilterObserverTest, WhatCarriesAnUncertainScaleIsObservedToo) {
+  SimulatorConfig sim;
+  sim.duration_s = 5;
+  sim.path_m = 0.5;
+  const Dataset dataset = test::SimulateOrDie(sim, 3);
+  EstimatorConfig config;
+  config.filter.window = 12;
+  config.filter.max_direction_deviation = 0.2;
+  CovarianceReplay replay;
+  const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig, &replay);
+  const test::ScenarioResult result =
+      test::RunScenario(dataset, test::DrawInitialState(dataset, 3), filter.get());
+  ASSERT_TRUE(result.status.ok()) << result.status.message();
+  EXPECT_GT(replay.shears(), 5);
   EXPECT_LT(replay.worst(), 1e-6);
 }
 

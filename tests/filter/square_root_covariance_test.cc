@@ -55,6 +55,19 @@ TEST_F(SquareRootCovarianceTest, FollowsTheDenseCovarianceWithLeadingBlocks) {
   }
 }
 
+TEST_F(SquareRootCovarianceTest, AShearIsThatOfTheCovariance) {
+  for (int round = 0; round < 3; ++round) {
+    Shear();
+    ExpectEqual();
+    Clone();
+    AddLeading();
+    Shear();
+    ExpectEqual();
+    Update();
+    ExpectEqual();
+  }
+}
+
 TEST_F(SquareRootCovarianceTest, UpdateIsTheKalmanUpdate) {
   for (int frame = 0; frame < 5; ++frame) {
     Propagate();

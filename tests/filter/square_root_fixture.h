@@ -71,6 +71,16 @@ class SquareRootCovarianceTest : public ::testing::Test {
     root_.AddToLeading(target, m, source);
   }
 
+  void Shear() {
+    const Eigen::Index n = dense_.rows();
+    const Eigen::VectorXd column = 0.1 * RandomMatrix(&random_, n, 1);
+    Eigen::VectorXd row = 0.1 * RandomMatrix(&random_, n, 1);
+    row.head(n / 3).setZero();
+    const Eigen::MatrixXd j = Eigen::MatrixXd::Identity(n, n) + column * row.transpose();
+    dense_ = j * dense_ * j.transpose();
+    root_.Shear(column, row);
+  }
+
   void Remove(int first, int size = 6) {
     const Eigen::Index n = dense_.rows();
     Eigen::MatrixXd keep = Eigen::MatrixXd::Zero(n - size, n);

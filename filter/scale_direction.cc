@@ -1,0 +1,92 @@
+#include "filter/scale_direction.h"
+
+#include <Eigen/LU>
+
+namespace alidade {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// Of the scale at Take. A window that shrinks by more has another shape.
+constexpr double kLeastScale = 0.1;
+
+Vector3d FromOldest(const FilterState& state, size_t clone) {
+  return state.clones()[clone].T_WC.translation - state.clones().front().T_WC.translation;
+}
+
+/// d camera position / d position part of the clone's error.
+auto OverPosition(const Clone& clone) {
+  return clone.camera_from_error.bottomRightCorner<3, 3>();
+}
+
+}  // namespace
+
+ScaleDirection::ScaleDirection(int capacity) : row_(capacity), places_(capacity / 6, 3), change_(capacity) {}
+
+bool ScaleDirection::Take(const FilterState& state, int last_serial) {
+  const std::vector<Clone>& clones = state.clones();
+  told_ = 0;
+  while (told_ < clones.size() && clones[told_].serial <= last_serial) {
+    ++told_;
+  }
+  if (told_ < 2) {
+    return false;
+  }
+  auto row = row_.head(state.covariance().dimension());
+  row.setZero();
+  double extent = 0;
+  for (size_t i = 0; i < told_; ++i) {
+    const Vector3d place = FromOldest(state, i);
+    places_.row(static_cast<Index>(i)) = place;
+    extent += place.squaredNorm();
+    row.segment<3>(state.CloneOffset(i) + 3) += OverPosition(clones[i]).transpose() * place;
+    row.segment<3>(state.CloneOffset(0) + 3) -= OverPosition(clones.front()).transpose() * place;
+  }
+  row /= extent;
+  return extent > 0;
+}
+
+void ScaleDirection::Carry(FilterState* state, Eigen::Ref<VectorXd> errors) {
+  const std::vector<Clone>& clones = state->clones();
+  auto change = change_.head(state->covariance().dimension());
+  change.setZero();
+  double scale = 0;                  // l.n
+  Vector3d last = Vector3d::Zero();  // change of the last place
+  Vector3d rate = Vector3d::Zero();
+  TimeNs last_ns = clones.front().stamp_ns;
+  for (size_t i = 0; i < clones.size(); ++i) {
+    const double dt_s = SecondsBetween(last_ns, clones[i].stamp_ns);
+    Vector3d moved = last + dt_s * rate;
+    if (i < told_) {
+      const Vector3d place = FromOldest(*state, i);
+      moved = place - places_.row(static_cast<Index>(i)).transpose();
+      if (dt_s > 0) {
+        rate = (moved - last) / dt_s;
+      }
+      scale += row_.segment<3>(state->CloneOffset(i) + 3)
+                   .dot(OverPosition(clones[i]).inverse() * places_.row(static_cast<Index>(i)).transpose());
+      places_.row(static_cast<Index>(i)) = place;
+    }
+    change.segment<3>(state->CloneOffset(i) + 3) = OverPosition(clones[i]).inverse() * moved;
+    last = moved;
+    last_ns = clones[i].stamp_ns;
+  }
+  Vector15d core = Vector15d::Zero();
+  core.segment<3>(3) = last;
+  core.segment<3>(6) = rate;
+  change.segment<15>(state->CoreOffset()) = InverseImuChartJacobian(state->convention(), state->nav()) * core;
+  if (!(scale > kLeastScale)) {
+    return;
+  }
+  change /= scale;
+  const auto row = row_.head(change.size());
+  state->Shear(change, row);
+  if (errors.size() > 0) {
+    errors += row.dot(errors) * change;
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,107 @@
+#include "filter/scale_direction.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/cloned_window.h"
+#include "tests/support/jacobian_checker.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+class ScaleDirectionTest : public ::testing::TestWithParam<ErrorConvention> {
+ protected:
+  ScaleDirectionTest()
+      : state_(test::CloneEveryFrame(test::SimulateOrDie(SimulatorConfig(), 1), GetParam())),
+        T_BC_(test::SimulateOrDie(SimulatorConfig(), 1).rig.T_BC) {}
+
+  /// The error in which the cameras' distances from the oldest one are off by as much as they are.
+  [[nodiscard]] VectorXd ErrorOfScale() const {
+    constexpr double kStep = 1e-6;
+    const Vector3d oldest = (state_.clones().front().T_WB * T_BC_).translation;
+    VectorXd error = VectorXd::Zero(state_.covariance().dimension());
+    for (size_t i = 0; i < state_.clones().size(); ++i) {
+      const Pose& T_WB = state_.clones()[i].T_WB;
+      Pose scaled = T_WB;
+      scaled.translation += kStep * ((T_WB * T_BC_).translation - oldest);
+      error.segment<6>(state_.CloneOffset(i)) = Local(GetParam(), T_WB, scaled) / kStep;
+    }
+    return error;
+  }
+
+  /// Moves every clone, as another velocity from the oldest one on would have.
+  void ChangeShape(FilterState* state) const {
+    VectorXd correction = VectorXd::Zero(state->covariance().dimension());
+    const TimeNs start_ns = state->clones().front().stamp_ns;
+    for (size_t i = 0; i < state->clones().size(); ++i) {
+      const Pose& T_WB = state->clones()[i].T_WB;
+      Pose moved = T_WB;
+      moved.translation +=
+          SecondsBetween(start_ns, state->clones()[i].stamp_ns) * change_mps_ + Vector3d(0.1, 0.2, -0.3);
+      correction.segment<6>(state->CloneOffset(i)) = Local(GetParam(), T_WB, moved);
+    }
+    state->Correct(correction);
+  }
+
+  /// The clones' part of an error.
+  [[nodiscard]] VectorXd OfClones(const VectorXd& error) const {
+    return error.tail(error.size() - state_.CloneOffset(state_.clones().size() - 1));
+  }
+
+  FilterState state_;
+  Pose T_BC_;
+  Vector3d change_mps_{0.2, -0.1, 0.15};
+};
+
+INSTANTIATE_TEST_SUITE_P(Conventions, ScaleDirectionTest, ::testing::ValuesIn(test::kAllConventions));
+
+// GIVEN corrections that change the window's shape THEN an error of scale before is one of scale after them,
+// also where the tracks have told the first clones alone.
+TEST_P(ScaleDirectionTest, AnErrorOfScaleStaysOne) {
+  for (const size_t told : {state_.clones().size(), size_t{6}}) {
+    ScaleDirection direction(state_.covariance().capacity());
+    ASSERT_TRUE(direction.Take(state_, state_.clones()[told - 1].serial));
+    VectorXd errors = ErrorOfScale();
+    for (int correction = 1; correction <= 2; ++correction) {
+      ChangeShape(&state_);
+      direction.Carry(&state_, errors);
+      const VectorXd expected = ErrorOfScale();
+      EXPECT_LT((OfClones(errors) - OfClones(expected)).norm(), 1e-5 * expected.norm()) << told;
+      const VectorXd core =
+          ImuChartJacobian(GetParam(), state_.nav()) * errors.segment<15>(state_.CoreOffset());
+      EXPECT_LT((core.segment<3>(6) - correction * change_mps_).norm(), 1e-5) << told;
+    }
+  }
+}
+
+TEST_P(ScaleDirectionTest, TheCovarianceIsCarriedAsErrorsAre) {
+  ScaleDirection direction(state_.covariance().capacity());
+  ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
+  const Eigen::Index size = state_.covariance().dimension();
+  Eigen::MatrixXd map(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    FilterState state = state_;
+    ScaleDirection taken = direction;
+    ChangeShape(&state);
+    VectorXd error = VectorXd::Unit(size, i);
+    taken.Carry(&state, error);
+    map.col(i) = error;
+  }
+  const Eigen::MatrixXd expected = map * state_.covariance().Covariance() * map.transpose();
+  ChangeShape(&state_);
+  VectorXd none;
+  direction.Carry(&state_, none);
+  EXPECT_LT((state_.covariance().Covariance() - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_GT((map - Eigen::MatrixXd::Identity(size, size)).norm(), 0.1);
+}
+
+TEST_P(ScaleDirectionTest, AShapeThatNoTrackHasToldIsNotCarried) {
+  ScaleDirection direction(state_.covariance().capacity());
+  EXPECT_FALSE(direction.Take(state_, state_.clones().front().serial));
+  EXPECT_TRUE(direction.Take(state_, state_.clones()[1].serial));
+}
+
+}  // namespace
+}  // namespace alidade
