@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "core/imu_propagation.h"
@@ -20,11 +21,12 @@ class RecordedRun : public testing::Test {
   void Record(double pixel_noise_px, const ImuNoise& noise) {
     SimulatorConfig simulation;
     simulation.duration_s = 6;
-    simulation.path_m = 7.9;
+    simulation.path_m = path_m_;
     const Dataset dataset = SimulateOrDie(simulation, 5);
     EstimatorConfig config;
     config.init.method = InitMethod::kTruth;
     config.filter.window = 8;
+    config.filter.max_direction_deviation = max_direction_deviation_;
     config.vision.pixel_noise_px = pixel_noise_px;
     config = IdentifyingFilter(config);
     MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
@@ -48,23 +50,42 @@ class RecordedRun : public testing::Test {
     return total;
   }
 
+  /// Records, and evaluates at the recorded noises.
+  void ExpectTheFilter() {
+    Record(1, ImuNoise());
+    const Result<std::vector<FrameFit>> fits = EvaluateInnovations(system_, PerNoise{});
+    ASSERT_TRUE(fits.ok()) << fits.message();
+    ASSERT_EQ(fits->size(), run_.records.size());
+    int rows = 0;
+    for (std::size_t k = 0; k < fits->size(); ++k) {
+      EXPECT_NEAR((*fits)[k].nis[0], run_.records[k].statistics.nis,
+                  1e-6 * (1 + run_.records[k].statistics.nis));
+      EXPECT_EQ((*fits)[k].dof[0], run_.records[k].statistics.nis_dof);
+      rows += (*fits)[k].dof[0];
+    }
+    EXPECT_GT(rows, 1000);
+  }
+
+  double path_m_ = 7.9;
+  double max_direction_deviation_ = 0;
   RunResult run_;
   LinearSystem system_;
 };
 
 TEST_F(RecordedRun, AtTheRecordedNoisesTheReplayIsTheFilter) {
-  Record(1, ImuNoise());
-  const Result<std::vector<FrameFit>> fits = EvaluateInnovations(system_, PerNoise{});
-  ASSERT_TRUE(fits.ok()) << fits.message();
-  ASSERT_EQ(fits->size(), run_.records.size());
-  int rows = 0;
-  for (std::size_t k = 0; k < fits->size(); ++k) {
-    EXPECT_NEAR((*fits)[k].nis[0], run_.records[k].statistics.nis,
-                1e-6 * (1 + run_.records[k].statistics.nis));
-    EXPECT_EQ((*fits)[k].dof[0], run_.records[k].statistics.nis_dof);
-    rows += (*fits)[k].dof[0];
-  }
-  EXPECT_GT(rows, 1000);
+  ExpectTheFilter();
+}
+
+// GIVEN a motion whose scale is uncertain for seconds THEN what carries it is replayed.
+TEST_F(RecordedRun, AnUncertainScaleIsReplayedToo) {
+  path_m_ = 0.6;
+  max_direction_deviation_ = 0.2;
+  ExpectTheFilter();
+  EXPECT_GT(std::count_if(system_.steps.begin(), system_.steps.end(),
+                          [](const LinearSystem::Step& step) {
+                            return std::holds_alternative<LinearSystem::Shear>(step);
+                          }),
+            5);
 }
 
 TEST_F(RecordedRun, GivenOtherNoisesThenTheReplayIsAFilterWithThem) {
