@@ -24,7 +24,7 @@ constexpr double kBiasDeviations = 3;
 constexpr double kWindowsInDoubt = 4;
 constexpr double kDoubtProbability = 0.95;
 // Of the deviation of the velocity at rest: what no estimate can contradict.
-constexpr double kLeastDeviation = 0.1;
+constexpr double kLeastDeviation = 0.5;
 
 bool TurnMayBeBias(const Vector3d& mean_gyro_radps, const NavEstimate& estimate) {
   const Vector3d bias_std_radps = estimate.covariance.diagonal().segment<3>(9).cwiseSqrt();
