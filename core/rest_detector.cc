@@ -7,7 +7,6 @@
 #include "core/dense_solvers.h"
 #include "core/imu_statistics.h"
 #include "core/lie.h"
-#include "core/robust.h"
 #include "core/turned_ray.h"
 #include "core/visual_observation.h"
 
@@ -25,6 +24,7 @@ constexpr double kWindowsInDoubt = 4;
 constexpr double kDoubtProbability = 0.95;
 // Of the deviation of the velocity at rest: what no estimate can contradict.
 constexpr double kLeastDeviation = 0.5;
+constexpr int kVelocityDof = 3;
 
 bool TurnMayBeBias(const Vector3d& mean_gyro_radps, const NavEstimate& estimate) {
   const Vector3d bias_std_radps = estimate.covariance.diagonal().segment<3>(9).cwiseSqrt();
@@ -37,6 +37,7 @@ bool TurnMayBeBias(const Vector3d& mean_gyro_radps, const NavEstimate& estimate)
 RestDetector::RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera)
     : vision_(vision),
       init_(init),
+      doubt_(kDoubtProbability, kVelocityDof),
       camera_(camera),
       image_center_(0.5 * camera.width_px(), 0.5 * camera.height_px()),
       image_radius_px_(0.5 * std::hypot(camera.width_px(), camera.height_px())) {}
@@ -99,7 +100,12 @@ bool RestDetector::ContradictsRest(const NavEstimate& estimate, const Vector3d& 
   Matrix3d variance = estimate.covariance.block<3, 3>(6, 6);
   const double least_mps = kLeastDeviation * vision_.rest_velocity_std_mps;
   variance.diagonal().array() += least_mps * least_mps;
-  return v_WC.dot(SolveSymmetric(variance, v_WC)) > ChiSquareQuantile(3, kDoubtProbability);
+  return !doubt_.Accepts(v_WC.dot(SolveSymmetric(variance, v_WC)), kVelocityDof);
+}
+
+bool RestDetector::DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since) {
+  doubted_since_ns_ = std::min(doubted_since_ns_, stamp_ns);
+  return since != nullptr && since->frame.stamp_ns >= doubted_since_ns_;
 }
 
 RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_px,
@@ -114,9 +120,8 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
   }
   const OrientedFrame* doubted = nullptr;
   if (ContradictsRest(estimate, T_BC.translation)) {
-    doubted_since_ns_ = std::min(doubted_since_ns_, frame.stamp_ns);
     doubted = FrameBefore(kWindowsInDoubt * vision_.rest_window_s);
-    if (doubted == nullptr || doubted->frame.stamp_ns < doubted_since_ns_) {
+    if (!DoubtHasLasted(frame.stamp_ns, doubted)) {
       return verdict;
     }
   } else {

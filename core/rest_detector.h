@@ -8,6 +8,7 @@
 #include "core/imu_sample.h"
 #include "core/init_config.h"
 #include "core/navigation_state.h"
+#include "core/robust.h"
 #include "core/track_frame.h"
 #include "core/vision_config.h"
 
@@ -76,6 +77,8 @@ class RestDetector {
   [[nodiscard]] const OrientedFrame* FrameBefore(double seconds) const;
   /// Whether the estimate says that the camera moves.
   [[nodiscard]] bool ContradictsRest(const NavEstimate& estimate, const Eigen::Vector3d& p_BC) const;
+  /// Whether the estimate has contradicted rest from the frame `since`, if there is one, to the one at hand.
+  [[nodiscard]] bool DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since);
   /// Carries R_0B_ on to the last sample.
   void Turn(const Eigen::Vector3d& gyro_bias_radps);
   /// R_now_before: turn of the camera between the frames; identity compensates nothing. deviations: as in
@@ -88,6 +91,7 @@ class RestDetector {
 
   VisionConfig vision_;
   InitConfig init_;
+  ChiSquareGate doubt_;
   CameraModel camera_;
   Eigen::Vector2d image_center_;
   double image_radius_px_;

@@ -96,8 +96,13 @@ class FilterEstimator : public Estimator {
   }
   /// Corrects state and memories by Correction().
   void Correct();
-  /// The same after an update by tracks, with what the covariance says of the scale while that is uncertain;
-  /// `errors`: corrections since the prediction, or empty.
+  /// Whether the tracks' information must be kept blind to the scale (filter/scale_direction.h).
+  [[nodiscard]] bool ScaleIsUncertain() const;
+  /// Moves the state to the solution of the update at hand, where its tracks are to be linearised again;
+  /// false, with nothing moved, where that changes nothing. `corrected`: less the prior's mean, as an error
+  /// of the state.
+  bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
+  /// Correct(), and what it does to the covariance while the scale is uncertain, and to `errors` likewise.
   void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);
   /// What the memories become when a clone leaves.
   void LeaveMemories(size_t leaving);
@@ -144,7 +149,8 @@ class FilterEstimator : public Estimator {
   std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;
   Eigen::VectorXd correction_;  ///< see Correction()
-  Eigen::VectorXd corrected_;
+  Eigen::VectorXd corrected_;   ///< see MoveByTracks
+  Eigen::VectorXd moved_;       ///< sum of an update's corrections so far
   Eigen::MatrixXd rest_rows_;
   Eigen::VectorXd rest_innovation_;
 };

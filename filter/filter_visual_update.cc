@@ -1,9 +1,7 @@
-#include <cmath>
-
 #include "filter/filter_estimator.h"
 #include "filter/window_shape.h"
 
-// The visual update of FilterEstimator: which rows, which of them pass the gate, and what becomes of their
+// The visual update of FilterEstimator: which rows, where they are linearised, and what becomes of their
 // tracks.
 
 namespace alidade {
@@ -112,22 +110,41 @@ void FilterEstimator::CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors) {
   }
 }
 
+bool FilterEstimator::ScaleIsUncertain() const {
+  // While the direction of the motion is not known either, the covariance holds little of tracks yet.
+  const double limit = config_.filter.max_direction_deviation;
+  return limit > 0 && baseline_.along > kKnownShape && baseline_.across < limit && state_.landmarks().empty();
+}
+
+bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
+  const double explained = state_.covariance().Solution(Correction());
+  Correction() -= corrected;
+  const double deformation = RelativeDeformation(state_, Correction());
+  const double negligible = ShapeIsKnown() ? kNegligible : kNegligibleUncertain;
+  if (!(deformation * deformation * explained > negligible)) {
+    return false;
+  }
+  corrected += Correction();
+  moved_.head(corrected.size()) += Correction();
+  CorrectByTracks(corrected);
+  ++statistics_.iterations;
+  return true;
+}
+
 bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   SquareRootCovariance& covariance = state_.covariance();
-  auto corrected = corrected_.head(covariance.dimension());  // since the prediction
+  auto corrected = corrected_.head(covariance.dimension());
   corrected.setZero();
-  // While the direction of the motion is not known either, the covariance holds little of tracks yet.
-  const bool scale_is_open = config_.filter.max_direction_deviation > 0 && baseline_.along > kKnownShape &&
-                             baseline_.across < config_.filter.max_direction_deviation &&
-                             state_.landmarks().empty();
-  carry_scale_ = scale_is_open && scale_direction_.Take(state_, told_serial_);
+  auto moved = moved_.head(covariance.dimension());
+  moved.setZero();
+  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, told_serial_);
   for (int pass = 1;; ++pass) {
     const int landmark_rows =
         pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
     if (appended_.empty()) {
       if (pass > 1) {
-        Correction() = -corrected;
-        Correct();
+        Correction() = -moved;
+        CorrectByTracks(corrected);
       }
       return true;
     }
@@ -143,19 +160,9 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
     if (!covariance.Factor(rows, &statistics_.nis)) {
       return false;
     }
-    if (pass == config_.filter.update_iterations) {
+    if (pass == config_.filter.update_iterations || !MoveByTracks(corrected)) {
       break;
     }
-    const double explained = covariance.Solution(Correction());
-    Correction() -= corrected;
-    const double deformation = RelativeDeformation(state_, Correction());
-    const double negligible = ShapeIsKnown() ? kNegligible : kNegligibleUncertain;
-    if (!(deformation * deformation * explained > negligible)) {
-      break;
-    }
-    corrected += Correction();
-    CorrectByTracks(corrected);
-    ++statistics_.iterations;
   }
   if (observer_ != nullptr) {
     observer_->OnUpdate(state_, observed_);
@@ -163,7 +170,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   covariance.Commit(Correction());
   Correction() -= corrected;
   told_serial_ = serial_;
-  carry_scale_ = scale_is_open && scale_direction_.Take(state_, told_serial_);
+  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, told_serial_);
   return true;
 }
 
@@ -210,67 +217,6 @@ TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial
     return update_.Append(state_, track, config_.filter.max_direction_deviation);
   }
   return to_remember ? update_.AppendToRemember(state_, track) : update_.Append(state_, track);
-}
-
-void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
-  block_nis_.clear();
-  for (const FeatureUpdate::Block& block : update_.blocks()) {
-    block_nis_.push_back(state_.covariance().NormalizedInnovationSquared(rows, block.first, block.rows,
-                                                                         gate_noise_.variance()));
-  }
-}
-
-bool FilterEstimator::RefuseBlocks(const PreparedRows& rows) {
-  MeasureBlocks(rows);
-  accepted_.assign(appended_.size(), true);
-  int refused = 0;
-  for (size_t i = 0; i < appended_.size(); ++i) {
-    accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
-    refused += accepted_[i] ? 0 : 1;
-  }
-  return StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
-                        kLeastRefusedTracks);
-}
-
-void FilterEstimator::GateBlocks(PreparedRows* rows) {
-  bool state_is_suspect = RefuseBlocks(*rows);
-  if (state_is_suspect && gate_noise_.lowered()) {
-    gate_noise_.Reset();
-    state_is_suspect = RefuseBlocks(*rows);
-  }
-  weights_.assign(appended_.size(), 0);
-  // Of the last linearisation alone.
-  statistics_.features_used = 0;
-  statistics_.features_gated = 0;
-  statistics_.nis_dof = 0;
-  statistics_.suspect = state_is_suspect;
-  for (size_t i = 0; i < appended_.size(); ++i) {
-    const FeatureUpdate::Block& block = update_.blocks()[i];
-    double weight = 0;
-    if (accepted_[i]) {
-      // The kernel acts on an observation's two rows; a track's rows share one weight of the same mean
-      // square.
-      weight = RobustWeight(config_.vision.robust_kernel, config_.vision.robust_scale_sigma,
-                            2 * block_nis_[i] / block.rows);
-    } else if (state_is_suspect && std::isfinite(block_nis_[i])) {
-      accepted_[i] = true;
-      weight = gate_.Threshold(block.rows) / block_nis_[i];
-    }
-    weights_[i] = weight;
-    ++(accepted_[i] ? statistics_.features_used : statistics_.features_gated);
-    statistics_.nis_dof += accepted_[i] ? block.rows : 0;
-    if (weight < 1) {
-      rows->Scale(block.first, block.rows, std::sqrt(weight));
-      if (observer_ != nullptr) {
-        observed_.jacobian.middleRows(block.first, block.rows) *= std::sqrt(weight);
-        observed_.innovation.segment(block.first, block.rows) *= std::sqrt(weight);
-        for (TracedBlock& trace : observed_.blocks) {
-          // A block that a memory made has no trace.
-          trace.noise *= trace.first == block.first ? std::sqrt(weight) : 1.0;
-        }
-      }
-    }
-  }
 }
 
 void FilterEstimator::RetireViews(Track* track, bool used) {

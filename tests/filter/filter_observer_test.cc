@@ -122,17 +122,11 @@ class CovarianceReplay : public FilterObserver {
   double worst_ = 0;
 };
 
-CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel, int slam_features = 0) {
+CovarianceReplay Replay(const EstimatorConfig& config, double path_m) {
   SimulatorConfig sim;
   sim.duration_s = 8;
-  sim.path_m = 10;
+  sim.path_m = path_m;
   const Dataset dataset = test::SimulateOrDie(sim, 3);
-  EstimatorConfig config;
-  config.filter.base_reuse = reuse;
-  config.filter.window = 12;
-  config.filter.slam_features = slam_features;
-  config.vision.robust_kernel = kernel;
-  config.vision.gate_probability = kernel == RobustKernel::kNone ? 1.0 : 0.99;
   CovarianceReplay replay;
   const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig, &replay);
   const test::ScenarioResult result =
@@ -140,6 +134,16 @@ CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel, int slam_features 
   EXPECT_TRUE(result.status.ok()) << result.status.message();
   EXPECT_EQ(result.frames, replay.frames());
   return replay;
+}
+
+CovarianceReplay Replay(BaseReuse reuse, RobustKernel kernel, int slam_features = 0) {
+  EstimatorConfig config;
+  config.filter.base_reuse = reuse;
+  config.filter.window = 12;
+  config.filter.slam_features = slam_features;
+  config.vision.robust_kernel = kernel;
+  config.vision.gate_probability = kernel == RobustKernel::kNone ? 1.0 : 0.99;
+  return Replay(config, 10);
 }
 
 TEST(FilterObserverTest, WhatIsObservedIsWhatTheFilterDoes) {
@@ -156,18 +160,10 @@ TEST(FilterObserverTest, LandmarksOfTheStateAreObservedToo) {
 }
 
 TEST(FilterObserverTest, WhatCarriesAnUncertainScaleIsObservedToo) {
-  SimulatorConfig sim;
-  sim.duration_s = 5;
-  sim.path_m = 0.5;
-  const Dataset dataset = test::SimulateOrDie(sim, 3);
   EstimatorConfig config;
   config.filter.window = 12;
   config.filter.max_direction_deviation = 0.2;
-  CovarianceReplay replay;
-  const std::unique_ptr<Estimator> filter = MakeFilter(config, dataset.rig, &replay);
-  const test::ScenarioResult result =
-      test::RunScenario(dataset, test::DrawInitialState(dataset, 3), filter.get());
-  ASSERT_TRUE(result.status.ok()) << result.status.message();
+  const CovarianceReplay replay = Replay(config, 0.8);
   EXPECT_GT(replay.shears(), 5);
   EXPECT_LT(replay.worst(), 1e-6);
 }

@@ -11,38 +11,28 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-class ScaleDirectionTest : public ::testing::TestWithParam<ErrorConvention> {
+class ScaleDirectionTest : public test::ClonedWindow {
  protected:
-  ScaleDirectionTest()
-      : state_(test::CloneEveryFrame(test::SimulateOrDie(SimulatorConfig(), 1), GetParam())),
-        T_BC_(test::SimulateOrDie(SimulatorConfig(), 1).rig.T_BC) {}
-
   /// The error in which the cameras' distances from the oldest one are off by as much as they are.
   [[nodiscard]] VectorXd ErrorOfScale() const {
     constexpr double kStep = 1e-6;
     const Vector3d oldest = (state_.clones().front().T_WB * T_BC_).translation;
-    VectorXd error = VectorXd::Zero(state_.covariance().dimension());
-    for (size_t i = 0; i < state_.clones().size(); ++i) {
-      const Pose& T_WB = state_.clones()[i].T_WB;
-      Pose scaled = T_WB;
-      scaled.translation += kStep * ((T_WB * T_BC_).translation - oldest);
-      error.segment<6>(state_.CloneOffset(i)) = Local(GetParam(), T_WB, scaled) / kStep;
-    }
-    return error;
+    return CorrectionTo([&](const Clone& clone) {
+             return Moved(clone, kStep * ((clone.T_WB * T_BC_).translation - oldest));
+           }) /
+           kStep;
   }
 
   /// Moves every clone, as another velocity from the oldest one on would have.
   void ChangeShape(FilterState* state) const {
-    VectorXd correction = VectorXd::Zero(state->covariance().dimension());
     const TimeNs start_ns = state->clones().front().stamp_ns;
-    for (size_t i = 0; i < state->clones().size(); ++i) {
-      const Pose& T_WB = state->clones()[i].T_WB;
-      Pose moved = T_WB;
-      moved.translation +=
-          SecondsBetween(start_ns, state->clones()[i].stamp_ns) * change_mps_ + Vector3d(0.1, 0.2, -0.3);
-      correction.segment<6>(state->CloneOffset(i)) = Local(GetParam(), T_WB, moved);
-    }
-    state->Correct(correction);
+    state->Correct(CorrectionTo(*state, [&](const Clone& clone) {
+      return Moved(clone, SecondsBetween(start_ns, clone.stamp_ns) * change_mps_ + Vector3d(0.1, 0.2, -0.3));
+    }));
+  }
+
+  [[nodiscard]] static Pose Moved(const Clone& clone, const Vector3d& shift) {
+    return {clone.T_WB.rotation, clone.T_WB.translation + shift};
   }
 
   /// The clones' part of an error.
@@ -50,8 +40,6 @@ class ScaleDirectionTest : public ::testing::TestWithParam<ErrorConvention> {
     return error.tail(error.size() - state_.CloneOffset(state_.clones().size() - 1));
   }
 
-  FilterState state_;
-  Pose T_BC_;
   Vector3d change_mps_{0.2, -0.1, 0.15};
 };
 

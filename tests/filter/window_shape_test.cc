@@ -13,23 +13,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-class WindowShapeTest : public ::testing::TestWithParam<ErrorConvention> {
+class WindowShapeTest : public test::ClonedWindow {
  protected:
-  WindowShapeTest()
-      : state_(test::CloneEveryFrame(test::SimulateOrDie(SimulatorConfig(), 1), GetParam())),
-        T_BC_(test::SimulateOrDie(SimulatorConfig(), 1).rig.T_BC) {}
-
-  /// The correction that takes every body to where `move` puts it.
-  template <typename Move>
-  [[nodiscard]] VectorXd CorrectionTo(Move move) const {
-    VectorXd correction = VectorXd::Zero(state_.covariance().dimension());
-    for (size_t i = 0; i < state_.clones().size(); ++i) {
-      const Pose& T_WB = state_.clones()[i].T_WB;
-      correction.segment<6>(state_.CloneOffset(i)) = Local(GetParam(), T_WB, move(T_WB));
-    }
-    return correction;
-  }
-
   /// The oldest camera's position as the newest one sees it, after both errors.
   [[nodiscard]] Vector3d OldestPlace(const VectorXd& error) const {
     const auto camera = [&](size_t i) {
@@ -38,23 +23,22 @@ class WindowShapeTest : public ::testing::TestWithParam<ErrorConvention> {
     const Pose newest = camera(state_.clones().size() - 1);
     return newest.rotation.transpose() * (camera(0).translation - newest.translation);
   }
-
-  FilterState state_;
-  Pose T_BC_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Conventions, WindowShapeTest, ::testing::ValuesIn(test::kAllConventions));
 
 TEST_P(WindowShapeTest, AWorldThatIsMovedAsAWholeIsNotDeformed) {
   const Matrix3d turn = so3::Exp({1e-4, -2e-4, 3e-4});
-  const VectorXd moved = CorrectionTo([&](const Pose& T_WB) {
+  const VectorXd moved = CorrectionTo([&](const Clone& clone) {
+    const Pose& T_WB = clone.T_WB;
     return Pose{turn * T_WB.rotation, turn * T_WB.translation + Vector3d(1e-3, 2e-3, -1e-3)};
   });
   EXPECT_LT(RelativeDeformation(state_, moved), 1e-6);
 }
 
 TEST_P(WindowShapeTest, AWorldOfAnotherScaleIsDeformedByIt) {
-  const VectorXd scaled = CorrectionTo([&](const Pose& T_WB) {
+  const VectorXd scaled = CorrectionTo([&](const Clone& clone) {
+    const Pose& T_WB = clone.T_WB;
     // The cameras' positions, not the bodies'.
     const Vector3d lever = T_WB.rotation * T_BC_.translation;
     return Pose{T_WB.rotation, 1.001 * (T_WB.translation + lever) - lever};

@@ -1,42 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <initializer_list>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "eval/config/config_yaml.h"
-#include "filter/filter.h"
-#include "smoother/sliding/smoother.h"
-#include "tests/support/scenario.h"
+#include "tests/support/preset_run.h"
 
 namespace alidade {
 namespace {
-
-using StartResult = test::ScenarioResult;
-
-/// Runs of both presets from a start that is drawn with `scale` times the prior's deviations.
-void RunStarts(const SimulatorConfig& sim, std::initializer_list<unsigned> seeds, double scale,
-               const std::vector<std::string>& overrides,
-               const std::function<void(const StartResult&, const std::string&)>& expect) {
-  for (const std::string preset : {"alidade_filter", "alidade_smoother"}) {
-    const Result<EstimatorConfig> config =
-        LoadEstimatorConfig(ALIDADE_SOURCE_DIR "/configs/estimators/" + preset + ".yaml", overrides);
-    ASSERT_TRUE(config.ok()) << config.message();
-    for (const unsigned seed : seeds) {
-      const Dataset dataset = test::SimulateOrDie(sim, seed);
-      const std::unique_ptr<Estimator> estimator = config->backend == Backend::kFilter
-                                                       ? MakeFilter(*config, dataset.rig)
-                                                       : MakeSmoother(*config, dataset.rig);
-      NavEstimate initial = test::DrawInitialState(dataset, seed, scale);
-      initial.covariance *= scale * scale;
-      const StartResult result = test::RunScenario(dataset, initial, estimator.get());
-      ASSERT_TRUE(result.status.ok()) << result.status.message();
-      expect(result, preset + ", seed " + std::to_string(seed));
-    }
-  }
-}
 
 // GIVEN a rig at rest whose state is known as well as its prior says, the gyroscope's bias to 5e-3 rad/s,
 // WHEN it moves off after some seconds THEN both back ends have not drifted meanwhile.
@@ -45,10 +14,14 @@ TEST(RestStart, AnUncertainBiasDoesNotHideRest) {
   sim.rest_s = 5;
   sim.duration_s = 15;
   sim.path_m = 13;
-  RunStarts(sim, {411, 412, 413}, 2.5, {}, [](const StartResult& result, const std::string& run) {
-    EXPECT_LT(result.nees_pose, 20) << run;
-    EXPECT_LT(result.rmse_position_m, 0.15) << run;
-  });
+  for (const unsigned seed : {411U, 412U, 413U}) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    for (const std::string preset : {"alidade_filter", "alidade_smoother"}) {
+      const test::ScenarioResult result = test::RunPreset(preset, {}, dataset, seed, 2.5);
+      EXPECT_LT(result.nees_pose, 20) << preset << ", seed " << seed;
+      EXPECT_LT(result.rmse_position_m, 0.15) << preset << ", seed " << seed;
+    }
+  }
 }
 
 // GIVEN a rig that moves off from rest before scenery so far that the images show it half a second later THEN
@@ -65,9 +38,13 @@ TEST(RestStart, FarSceneryDoesNotHideTheBeginningOfMotion) {
   sim.landmark_min_distance_m = 10;
   sim.landmark_max_distance_m = 60;
   sim.max_range_m = 100;
-  RunStarts(
-      sim, {414, 415, 416}, 1, {"vision.pixel_noise_px=1.5"},
-      [](const StartResult& result, const std::string& run) { EXPECT_LT(result.nees_pose, 15) << run; });
+  for (const unsigned seed : {414U, 415U, 416U}) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    for (const std::string preset : {"alidade_filter", "alidade_smoother"}) {
+      EXPECT_LT(test::RunPreset(preset, {"vision.pixel_noise_px=1.5"}, dataset, seed).nees_pose, 15)
+          << preset << ", seed " << seed;
+    }
+  }
 }
 
 }  // namespace

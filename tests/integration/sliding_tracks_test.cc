@@ -2,30 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <string>
 
-#include "eval/config/config_yaml.h"
-#include "filter/filter.h"
-#include "smoother/sliding/smoother.h"
-#include "tests/support/scenario.h"
+#include "tests/support/preset_run.h"
 
 namespace alidade {
 namespace {
 
 double NeesOf(const Dataset& dataset, unsigned seed, const std::string& preset,
               const std::string& gate_noise) {
-  const Result<EstimatorConfig> config =
-      LoadEstimatorConfig(ALIDADE_SOURCE_DIR "/configs/estimators/" + preset + ".yaml",
-                          {"vision.pixel_noise_px=0.5", "vision.gate_noise=" + gate_noise});
-  EXPECT_TRUE(config.ok()) << config.message();
-  const std::unique_ptr<Estimator> estimator = config->backend == Backend::kFilter
-                                                   ? MakeFilter(*config, dataset.rig)
-                                                   : MakeSmoother(*config, dataset.rig);
-  const test::ScenarioResult result =
-      test::RunScenario(dataset, test::DrawInitialState(dataset, seed), estimator.get());
-  EXPECT_TRUE(result.status.ok()) << result.status.message();
-  return result.nees_pose;
+  return test::RunPreset(preset, {"vision.pixel_noise_px=0.5", "vision.gate_noise=" + gate_noise}, dataset,
+                         seed)
+      .nees_pose;
 }
 
 // GIVEN weights for ten times the tracks' noise WHEN the gate takes that noise too THEN sliding tracks pass,

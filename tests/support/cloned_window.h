@@ -37,4 +37,32 @@ inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention conve
   return CloneEveryFrame(dataset, convention, DrawInitialState(dataset, 1));
 }
 
+/// Such a state in the convention that is the test's parameter.
+class ClonedWindow : public ::testing::TestWithParam<ErrorConvention> {
+ protected:
+  ClonedWindow() : ClonedWindow(SimulateOrDie(SimulatorConfig(), 1)) {}
+
+  /// The correction that takes every body of `state` to where `move` puts its clone.
+  template <typename Move>
+  [[nodiscard]] Eigen::VectorXd CorrectionTo(const FilterState& state, Move move) const {
+    Eigen::VectorXd correction = Eigen::VectorXd::Zero(state.covariance().dimension());
+    for (size_t i = 0; i < state.clones().size(); ++i) {
+      const Clone& clone = state.clones()[i];
+      correction.segment<6>(state.CloneOffset(i)) = Local(GetParam(), clone.T_WB, move(clone));
+    }
+    return correction;
+  }
+  template <typename Move>
+  [[nodiscard]] Eigen::VectorXd CorrectionTo(Move move) const {
+    return CorrectionTo(state_, move);
+  }
+
+  FilterState state_;
+  Pose T_BC_;
+
+ private:
+  explicit ClonedWindow(const Dataset& dataset)
+      : state_(CloneEveryFrame(dataset, GetParam())), T_BC_(dataset.rig.T_BC) {}
+};
+
 }  // namespace alidade::test

@@ -1,0 +1,30 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/preset_run.h"
+
+namespace alidade {
+namespace {
+
+// GIVEN a walk of 0.1 m/s whose velocity is known to 0.05 m/s at its start, so that the scale is uncertain by
+// half, WHEN the window changes its shape with every correction THEN the filter does not take that for
+// knowledge of the scale.
+TEST(UncertainScale, CorrectionsDoNotTellIt) {
+  SimulatorConfig sim;
+  sim.duration_s = 25;
+  sim.length_m = 3;
+  sim.width_m = 1.5;
+  sim.height_m = 0.15;
+  sim.path_m = 2.5;
+  sim.landmark_min_distance_m = 1;
+  sim.landmark_max_distance_m = 6;
+  sim.pixel_noise_px = 0.7;
+  for (const unsigned seed : {527U, 528U, 530U}) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    const test::ScenarioResult result =
+        test::RunPreset("alidade_filter", {"vision.pixel_noise_px=0.7"}, dataset, seed, 5);
+    EXPECT_LT(result.nees_pose, 20) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace alidade
