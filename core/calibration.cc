@@ -50,16 +50,9 @@ double ReadOutSpan(const CameraCalibration& camera) {
              : 0;
 }
 
-WatchedAntenna AntennaToWatch(bool gnss_enabled, bool fixes_enabled, const RigCalibration& rig) {
-  if (gnss_enabled && rig.gnss.is_present) {
-    return WatchedAntenna::kGnss;
-  }
-  return fixes_enabled && rig.fixes.size() == 1 ? WatchedAntenna::kFix : WatchedAntenna::kNone;
-}
-
 CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera,
-                                     WatchedAntenna antenna)
-    : antenna_(config.watched() ? antenna : WatchedAntenna::kNone) {
+                                     std::optional<Sensor> antenna)
+    : antenna_(config.watched() ? antenna : std::nullopt) {
   const auto take = [this](bool wanted, int size, int* first) {
     *first = wanted ? size_ : -1;
     size_ += wanted ? size : 0;
@@ -72,7 +65,7 @@ CalibrationLayout::CalibrationLayout(const CalibrationConfig& config, const Came
   take(config.time_offset || watched, 1, &time_offset_);
   take(config.line_delay, 1, &line_delay_);
   take(config.intrinsics || watched, intrinsics_size_, &intrinsics_);
-  take(antenna_ != WatchedAntenna::kNone, 3, &lever_arm_);
+  take(antenna_.has_value(), 3, &lever_arm_);
 }
 
 VectorXd WatchedDeviations(const CalibrationLayout& layout) {
@@ -81,7 +74,7 @@ VectorXd WatchedDeviations(const CalibrationLayout& layout) {
   constexpr double kTranslationM = 1e-6;
   constexpr double kTimeS = 1e-7;
   constexpr double kPixels = 5e-5;
-  constexpr double kLeverArmM = 1e-5;  // GNSS tells centimetres of it, fixes of a real-time base millimetres
+  constexpr double kLeverArmM = 1e-5;  // GNSS determines it to centimetres, RTK fixes to millimetres
   VectorXd deviations = VectorXd::Constant(layout.size(), kPixels);
   if (layout.extrinsics() >= 0) {
     deviations.segment<3>(layout.extrinsics()).setConstant(kRotationRad);
@@ -97,7 +90,7 @@ VectorXd WatchedDeviations(const CalibrationLayout& layout) {
 }
 
 CalibrationEstimate InitialCalibration(const CalibrationConfig& config, const CameraCalibration& given,
-                                       WatchedAntenna antenna) {
+                                       std::optional<Sensor> antenna) {
   CalibrationEstimate estimate{CalibrationLayout(config, given.camera, antenna), given, {}};
   const CalibrationLayout& layout = estimate.layout;
   if (layout.line_delay() >= 0) {

@@ -5,6 +5,7 @@
 
 #include "core/calibration_config.h"
 #include "core/rig_calibration.h"
+#include "core/sensor.h"
 #include "core/vision_config.h"
 #include "core/visual_observation.h"
 
@@ -27,13 +28,6 @@ struct CameraCalibration {
 /// 0 where all rows are exposed at once.
 [[nodiscard]] double ReadOutSpan(const CameraCalibration& camera);
 
-/// The point on the body whose lever arm p_BA is tested along with a watched camera.
-enum class WatchedAntenna { kNone, kGnss, kFix };
-
-/// That of the sequence's GNSS receiver, else that of its only position sensor, where the configuration uses
-/// them.
-[[nodiscard]] WatchedAntenna AntennaToWatch(bool gnss_enabled, bool fixes_enabled, const RigCalibration& rig);
-
 /// Which coordinates the error of a CameraCalibration has, and where. In this order, each group only when its
 /// key is on:
 ///
@@ -49,8 +43,9 @@ class CalibrationLayout {
   static constexpr int kMaxSize = 16;
 
   CalibrationLayout() = default;
+  /// `antenna`: of a watched calibration, the sensor whose lever arm is tested along with the camera.
   CalibrationLayout(const CalibrationConfig& config, const CameraModel& camera,
-                    WatchedAntenna antenna = WatchedAntenna::kNone);
+                    std::optional<Sensor> antenna = std::nullopt);
 
   [[nodiscard]] int size() const { return size_; }
   /// First coordinate of a group, -1 when it is not estimated.
@@ -62,7 +57,7 @@ class CalibrationLayout {
   /// The last three coordinates, or -1.
   [[nodiscard]] int lever_arm() const { return lever_arm_; }
   /// Whose lever arm it is.
-  [[nodiscard]] WatchedAntenna antenna() const { return antenna_; }
+  [[nodiscard]] std::optional<Sensor> antenna() const { return antenna_; }
 
  private:
   int size_ = 0;
@@ -72,7 +67,7 @@ class CalibrationLayout {
   int intrinsics_ = -1;
   int intrinsics_size_ = 0;
   int lever_arm_ = -1;
-  WatchedAntenna antenna_ = WatchedAntenna::kNone;
+  std::optional<Sensor> antenna_;
 };
 
 /// A calibration and what is known about its error.
@@ -88,14 +83,14 @@ struct CalibrationEstimate {
   Eigen::MatrixXd state_covariance = {};
 };
 
-/// Prior deviations of a watched calibration: far below what any data tell, so that nothing moves, and large
-/// enough that the difference of inverse squares before and after the data keeps its digits.
+/// Prior deviations of a watched calibration: far below what any data determine, so that nothing moves, and
+/// large enough that the difference of inverse squares before and after the data keeps its digits.
 [[nodiscard]] Eigen::VectorXd WatchedDeviations(const CalibrationLayout& layout);
 
 /// The given calibration with the configured trust in it.
 [[nodiscard]] CalibrationEstimate InitialCalibration(const CalibrationConfig& config,
                                                      const CameraCalibration& given,
-                                                     WatchedAntenna antenna = WatchedAntenna::kNone);
+                                                     std::optional<Sensor> antenna = std::nullopt);
 
 /// Moves a calibration by `error`. False, with `calibration` untouched, when that is no camera any more or
 /// not finite.

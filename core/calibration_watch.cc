@@ -27,8 +27,8 @@ Parameter ParameterOf(const CalibrationLayout& layout, int coordinate) {
                : Parameter{"the position of the camera on the body", "m", 1};
   }
   if (layout.lever_arm() >= 0 && coordinate >= layout.lever_arm()) {
-    return {layout.antenna() == WatchedAntenna::kGnss ? "the lever arm of the GNSS antenna"
-                                                      : "the lever arm of the position sensor",
+    return {layout.antenna() == Sensor::kGnss ? "the lever arm of the GNSS antenna"
+                                              : "the lever arm of the position sensor",
             "m", 1};
   }
   return coordinate < layout.intrinsics() + 2 ? Parameter{"the focal length of the camera", "px", 1}

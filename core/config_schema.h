@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -37,7 +36,7 @@ class ConfigVisitor {
   /// Choice over an enum whose enumerators are listed with their configuration names.
   template <typename Enum>
   void Enumeration(const KeyDoc& doc, Enum* value,
-                   std::initializer_list<std::pair<std::string_view, Enum>> options) {
+                   const std::vector<std::pair<std::string_view, Enum>>& options) {
     std::vector<std::string_view> names;
     int index = 0;
     for (const auto& [name, option] : options) {
@@ -47,7 +46,7 @@ class ConfigVisitor {
       names.push_back(name);
     }
     Choice(doc, names, &index);
-    *value = (options.begin() + index)->second;
+    *value = options[static_cast<std::size_t>(index)].second;
   }
 };
 

@@ -72,8 +72,7 @@ Eigen::Matrix<double, kSize, kSize> Chart(ErrorConvention convention, const Matr
 }  // namespace
 
 std::optional<ErrorConvention> ParseErrorConvention(std::string_view name) {
-  for (const ErrorConvention convention :
-       {ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant, ErrorConvention::kSo3xRn}) {
+  for (const ErrorConvention convention : kErrorConventions) {
     if (name == ToString(convention)) {
       return convention;
     }
@@ -91,6 +90,14 @@ std::string_view ToString(ErrorConvention convention) {
       break;
   }
   return "so3xrn";
+}
+
+std::string ErrorConventionNames(std::string_view separator) {
+  std::string names;
+  for (const ErrorConvention convention : kErrorConventions) {
+    names += std::string(names.empty() ? "" : separator) + std::string(ToString(convention));
+  }
+  return names;
 }
 
 NavState Retract(ErrorConvention convention, const NavState& estimate, const Vector9d& xi) {

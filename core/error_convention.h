@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/navigation_state.h"
@@ -17,9 +19,13 @@ namespace alidade {
 /// zeta = (phi, dp, dv): R = R^ Exp(phi), p = p^ + dp, v = v^ + dv (that is so3xrn); a convention contributes
 /// only its chart Jacobian C = d zeta / d xi at 0, so that H_xi = J_zeta C and P_zeta = C P_xi C^T.
 enum class ErrorConvention { kRightInvariant, kLeftInvariant, kSo3xRn };
+inline constexpr std::array kErrorConventions = {ErrorConvention::kRightInvariant,
+                                                 ErrorConvention::kLeftInvariant, ErrorConvention::kSo3xRn};
 
 [[nodiscard]] std::optional<ErrorConvention> ParseErrorConvention(std::string_view name);
 [[nodiscard]] std::string_view ToString(ErrorConvention convention);
+/// All names, joined by `separator`.
+[[nodiscard]] std::string ErrorConventionNames(std::string_view separator);
 
 /// est [+] xi, xi = (theta, p, v), 9x1.
 [[nodiscard]] NavState Retract(ErrorConvention convention, const NavState& estimate, const Vector9d& xi);

@@ -1,12 +1,16 @@
 #include "core/error_convention_config.h"
 
+#include <utility>
+#include <vector>
+
 namespace alidade {
 
 void DescribeErrorConvention(ConfigVisitor& visitor, std::string_view what, ErrorConvention* convention) {
-  visitor.Enumeration({"error", "-", what}, convention,
-                      {{"right_invariant", ErrorConvention::kRightInvariant},
-                       {"left_invariant", ErrorConvention::kLeftInvariant},
-                       {"so3xrn", ErrorConvention::kSo3xRn}});
+  std::vector<std::pair<std::string_view, ErrorConvention>> options;
+  for (const ErrorConvention option : kErrorConventions) {
+    options.emplace_back(ToString(option), option);
+  }
+  visitor.Enumeration({"error", "-", what}, convention, options);
 }
 
 }  // namespace alidade

@@ -31,11 +31,6 @@ Status EstimatorConfig::Validate() const {
     return Status::Config("frontend.template_px: " + std::to_string(frontend.template_px) +
                           " px do not tell how they are deformed; expected 0, or at least 5");
   }
-  if (gnss.enabled && backend == Backend::kBatch) {
-    return Status::Config(
-        "gnss.enabled: true, but the batch back end takes no GNSS; expected false, or backend: "
-        "filter or smoother");
-  }
   if (calibration.any() && backend == Backend::kBatch) {
     return Status::Config(
         "calibration: the batch back end takes the camera as given; expected extrinsics, time_offset and "

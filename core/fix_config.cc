@@ -5,12 +5,13 @@ namespace alidade {
 void FixConfig::Describe(ConfigVisitor& visitor) {
   visitor.Boolean({"enabled", "-", "loosely coupled position fixes, where the sequence has them"}, &enabled);
   visitor.Real({"std_scale", "-",
-                "on the deviations that the sensor reports; receivers are optimistic near buildings"},
+                "factor on the standard deviations that the sensor reports; receivers report too small ones "
+                "near buildings"},
                &std_scale, 0.01, 1000);
-  visitor.Real(
-      {"std_floor_m", "m",
-       "added in quadrature to each axis: errors of lever arm and time tag that no covariance reports"},
-      &std_floor_m, 0, 100);
+  visitor.Real({"std_floor_m", "m",
+                "standard deviation added in quadrature to each axis, for errors of lever arm and time tag "
+                "that the reported covariance lacks"},
+               &std_floor_m, 0, 100);
   visitor.Real({"gate_probability", "-",
                 "a fix is used if its innovation lies in this chi-square quantile; 1 opens the gate"},
                &gate_probability, 0.5, 1.0);
@@ -31,7 +32,8 @@ void FixConfig::Describe(ConfigVisitor& visitor) {
                 "aligned once the yaw between the local world and the frame of the fixes is known this well"},
                &align_max_yaw_std_rad, 1e-3, 1);
   visitor.Real({"align_inflation", "-",
-                "on the alignment's deviations: errors of fixes are correlated in time, and odometry drifts"},
+                "factor on the standard deviations of the alignment, because errors of fixes are correlated "
+                "in time and odometry drifts"},
                &align_inflation, 1, 100);
   visitor.Real(
       {"max_interpolation_s", "s",

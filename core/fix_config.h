@@ -24,6 +24,11 @@ struct FixConfig {
   double max_interpolation_s = 0.3;
 
   void Describe(ConfigVisitor& visitor);
+  /// Takes `factor` times the noise of `given`.
+  void AssumeNoise(const FixConfig& given, double factor) {
+    std_scale = factor * given.std_scale;
+    std_floor_m = factor * given.std_floor_m;
+  }
 };
 
 }  // namespace alidade

@@ -34,9 +34,9 @@ class ImuBuffer {
   Status Add(const ImuSample& sample);
 
   /// Samples that cover [from, to]: interpolated at both ends, all measured ones between, with the curvatures
-  /// that earlier samples tell (core/imu_step.h). kInput: to <= from, or the buffer does not reach both ends
-  /// (the message gives the missing milliseconds). A gap longer than the limit is counted and bridged by a
-  /// line.
+  /// that earlier samples determine (core/imu_step.h). kInput: to <= from, or the buffer does not reach both
+  /// ends (the message gives the missing milliseconds). A gap longer than the limit is counted and bridged by
+  /// a line.
   Status Interval(TimeNs from_ns, TimeNs to_ns, std::vector<ImuSample>* interval);
 
   /// Forgets samples that no interval starting at or after `stamp_ns` needs, but for those of the `kept_s`

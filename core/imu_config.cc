@@ -18,7 +18,7 @@ void ImuConfig::Describe(ConfigVisitor& visitor) {
                0.01, 10);
   visitor.Boolean({"guard", "-",
                    "replace single samples that their neighbours contradict (spikes) before any estimator "
-                   "sees them; counted and told"},
+                   "sees them; counted and reported"},
                   &guard);
 }
 

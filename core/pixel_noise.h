@@ -13,7 +13,7 @@ namespace alidade {
 ///
 /// and the factor s on the deviation follows sqrt(max(1, m)) by at most 1 % a second. So it never falls below
 /// the given noise, and a fault of some seconds moves it by some per cent, whatever it does to the
-/// innovations. Frames with fewer than ten rows, or whose state is suspect (core/robust.h), tell nothing.
+/// innovations. Frames with fewer than ten rows, or whose state is suspect (core/robust.h), are left out.
 /// That all excess is noise of the pixels is an assumption.
 class PixelNoise {
  public:

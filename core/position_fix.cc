@@ -3,20 +3,16 @@
 #include <string>
 
 #include "core/dense_solvers.h"
+#include "core/lever_arm.h"
 
 namespace alidade {
 
 Eigen::Vector3d PositionFixModel::Predict(const NavState& state) const {
-  return state.p_WB + state.R_WB * p_BA;
+  return LeverArm{p_BA}.Position(state);
 }
 
 void PositionFixModel::Evaluate(const NavState& state, Eigen::Vector3d* residual, Jacobian* jacobian) const {
-  *residual = Predict(state) - p_WA;
-  if (jacobian != nullptr) {
-    jacobian->setZero();
-    jacobian->leftCols<3>() = -state.R_WB * Skew(p_BA);
-    jacobian->middleCols<3>(3).setIdentity();
-  }
+  *residual = LeverArm{p_BA}.Position(state, jacobian) - p_WA;
 }
 
 void FixMeasurement::Evaluate(const NavState& state, Residual* residual, Jacobian* jacobian) const {

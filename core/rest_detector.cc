@@ -6,6 +6,7 @@
 
 #include "core/dense_solvers.h"
 #include "core/imu_statistics.h"
+#include "core/lever_arm.h"
 #include "core/lie.h"
 #include "core/turned_ray.h"
 #include "core/visual_observation.h"
@@ -95,8 +96,7 @@ const RestDetector::OrientedFrame* RestDetector::FrameBefore(double seconds) con
 }
 
 bool RestDetector::ContradictsRest(const NavEstimate& estimate, const Vector3d& p_BC) const {
-  const Vector3d swing = (imu_.back().gyro - estimate.bias.gyro).cross(p_BC);
-  const Vector3d v_WC = estimate.nav.v_WB + estimate.nav.R_WB * swing;
+  const Vector3d v_WC = LeverArm{p_BC}.Velocity(estimate.nav, estimate.bias, imu_.back().gyro);
   Matrix3d variance = estimate.covariance.block<3, 3>(6, 6);
   const double least_mps = kLeastDeviation * vision_.rest_velocity_std_mps;
   variance.diagonal().array() += least_mps * least_mps;
@@ -128,7 +128,7 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
     doubted_since_ns_ = INT64_MAX;
   }
   // Under a constant force, as at a turning point, the camera passes the same place twice, with a calm IMU:
-  // the ends of the window alone would not tell.
+  // the ends of the window alone would not show it.
   const OrientedFrame* const end = frames_.data() + frame_count_;
   const OrientedFrame* const middle = before + (end - before) / 2;
   double deviations = 0;
@@ -183,7 +183,7 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
   FindCommon(before, now, R_now_before);
   std::vector<CommonTrack>& common = common_;
   if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
-    return false;  // too few to tell, or half of them new: the image changes
+    return false;  // too few to decide, or half of them new: the image changes
   }
   // Mismatches among many still tracks must not look like motion: keep the half with the smallest flow.
   const auto middle = common.begin() + static_cast<std::ptrdiff_t>(common.size() / 2);

@@ -19,7 +19,7 @@ struct RestVerdict {
   bool no_translation = false;  ///< the camera's velocity is zero
   bool no_rotation = false;     ///< gyro mean = bias may be used; implies no_translation
   /// The largest part of the flow that was taken for none, in standard deviations of what the tracks' noise
-  /// makes of it. At rest nine in ten are below 2.5; more tells slow motion.
+  /// makes of it. At rest nine in ten are below 2.5; more indicates slow motion.
   double flow_deviations = 0;
 };
 
@@ -37,10 +37,10 @@ struct RestRates {
 /// rig's turn by the gyroscope, fitted by shift, zoom and roll over the common tracks, stays below
 /// VisionConfig::rest_max_flow_px at the image's corner, and the specific force spreads less than
 /// rest_max_accel_std_mps2. No rotation: so does the uncompensated flow, and the angular rate spreads less
-/// than InitConfig allows. While the bias is not known well enough to tell whether the rig turns (the mean
+/// than InitConfig allows. While the bias is not known well enough to decide whether the rig turns (the mean
 /// rate is within three of its deviations), with a calm gyroscope the uncompensated flow decides both.
 ///
-/// Far scenery hides a motion that the IMU has told the estimator. While the estimated velocity of the camera
+/// Far scenery hides a motion that the IMU has measured. While the estimated velocity of the camera
 /// contradicts rest, the flow must have been below the limit for four windows.
 ///
 /// Neglected: motion so slow or scenery so far that it moves tracks by less than the limit in that time, and
@@ -52,7 +52,7 @@ class RestDetector {
   /// Inertial samples since the previous frame (ends included).
   void AddImu(std::span<const ImuSample> samples);
   /// Verdict on the window that ends with this frame, at whose IMU time the samples end. The gyroscope and
-  /// not the estimate tells the turn: at rest corrections of the estimated attitude would look like motion.
+  /// not the estimate gives the turn: at rest corrections of the estimated attitude would look like motion.
   /// pixel_noise_px: of the tracks. estimate: a recent one; its gyroscope bias and its velocity are used,
   /// with their covariance.
   RestVerdict AddFrame(const TrackFrame& frame, double pixel_noise_px, const NavEstimate& estimate,

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/lie.h"
+#include "core/lever_arm.h"
 
 namespace alidade {
 namespace {
@@ -15,13 +15,14 @@ constexpr double kUsualFlow = 2.5;
 
 void RestModel::Evaluate(const NavState& state, const ImuBias& bias, Vector6d* residual,
                          Jacobian* jacobian) const {
-  const Eigen::Vector3d swing = (rates.at_end_radps - bias.gyro).cross(p_BC);
-  *residual << state.v_WB + state.R_WB * swing, bias.gyro - rates.mean_radps;
+  LeverArm::Jacobian camera;
+  *residual << LeverArm{p_BC}.Velocity(state, bias, rates.at_end_radps,
+                                       jacobian != nullptr ? &camera : nullptr),
+      bias.gyro - rates.mean_radps;
   if (jacobian != nullptr) {
-    jacobian->setZero();
-    jacobian->block<6, 6>(0, 6).setIdentity();
-    jacobian->block<3, 3>(0, 0) = -state.R_WB * Skew(swing);
-    jacobian->block<3, 3>(0, 9) = state.R_WB * Skew(p_BC);
+    jacobian->topRows<3>() = camera;
+    jacobian->bottomRows<3>().setZero();
+    jacobian->block<3, 3>(3, 9).setIdentity();
   }
 }
 

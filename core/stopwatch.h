@@ -4,8 +4,8 @@
 
 namespace alidade {
 
-/// Wall time since its making or its last Restart; times are told, never decided by (equal runs give equal
-/// bits).
+/// Wall time since its making or its last Restart; times are reported, and no decision depends on them (equal
+/// runs give equal bits).
 class Stopwatch {
  public:
   [[nodiscard]] double ElapsedS() const {

@@ -142,10 +142,8 @@ void FeatureUpdate::RetainRows(const FilterState& state, const Track& track, con
   for (size_t k = 0; k < offsets_.size(); ++k) {
     rows->T.middleCols<6>(offsets_[k] - core) = track_jacobian_.block<3, 6>(0, 6 * static_cast<Index>(k));
   }
-  if (calibration_ > 0) {
-    rows->T.rightCols(calibration_) =
-        track_jacobian_.block(0, 6 * static_cast<Index>(offsets_.size()), 3, calibration_);
-  }
+  rows->T.rightCols(calibration_) =
+      track_jacobian_.block(0, 6 * static_cast<Index>(offsets_.size()), 3, calibration_);
   if (state.landmark_error().anchored()) {
     rows->T.middleCols<3>(offsets_.back() - core) += LandmarkError::OverAnchor(rows->R_f, p_W);
   }
@@ -191,10 +189,8 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =
         dense.block(3, 6 * k, block.rows, 6);
   }
-  if (calibration_ > 0) {
-    jacobian_.block(block.first, state.CalibrationOffset(), block.rows, calibration_) =
-        dense.block(3, 6 * views, block.rows, calibration_);
-  }
+  jacobian_.block(block.first, state.CalibrationOffset(), block.rows, calibration_) =
+      dense.block(3, 6 * views, block.rows, calibration_);
   innovation_.segment(block.first, block.rows) = -residual_.segment(3, block.rows);
   if (purpose.landmark_rows != nullptr) {
     RetainRows(state, track, p_W, purpose.landmark_rows);
@@ -245,10 +241,8 @@ TrackOutcome FeatureUpdate::AppendRemembered(const FilterState& state, const Tra
     jacobian_.block<2, 6>(block.first, state.CloneOffset(i)) =
         keeper_.jacobian().middleCols<6>(6 * state.clones()[i].slot);
   }
-  if (calibration_ > 0) {
-    jacobian_.block(block.first, state.CalibrationOffset(), 2, calibration_) =
-        keeper_.jacobian().rightCols(calibration_);
-  }
+  jacobian_.block(block.first, state.CalibrationOffset(), 2, calibration_) =
+      keeper_.jacobian().rightCols(calibration_);
   innovation_.segment<2>(block.first) = keeper_.innovation();
   if (tracing_) {
     // The noise of the views behind a memory is not followed.

@@ -19,7 +19,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       gate_(config.vision.gate_probability),
       state_(config.filter.error, config.filter.first_estimates,
              InitialCalibration(config.calibration, GivenCamera(rig_, config.vision),
-                                AntennaToWatch(config.gnss.enabled, config.fix.enabled, rig)),
+                                AntennaToWatch(config, rig)),
              {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled}),
       update_(config.filter, config.vision, config.filter.window + 1, state_.layout().size()),
       slam_(config.filter, config.filter.window + 1),

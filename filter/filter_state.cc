@@ -34,12 +34,10 @@ Status FilterState::Reset(const NavEstimate& initial) {
   const Matrix15d to_error = InverseImuChartJacobian(convention_, initial.nav);
   const Matrix15d transformed = to_error * initial.covariance * to_error.transpose();
   ALIDADE_RETURN_IF_ERROR(covariance_.Reset(0.5 * (transformed + transformed.transpose())));
-  if (layout().size() > 0) {
-    covariance_.AddTrailing(given_.deviations);
-    calibration_ = given_.mean;
-    calibration_error_ = given_.error;
-    calibration_is_sound_ = true;
-  }
+  covariance_.AddTrailing(given_.deviations);
+  calibration_ = given_.mean;
+  calibration_error_ = given_.error;
+  calibration_is_sound_ = true;
   nav_ = initial.nav;
   nav_first_ = nav_;
   bias_ = initial.bias;
@@ -190,7 +188,7 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   bias_.accel += correction.segment<3>(core + 12);
   if (given_.watched) {
     calibration_error_ += correction.segment(CalibrationOffset(), layout().size());
-  } else if (layout().size() > 0) {
+  } else {
     calibration_is_sound_ =
         Retract(layout(), correction.segment(CalibrationOffset(), layout().size()), &calibration_) &&
         calibration_is_sound_;

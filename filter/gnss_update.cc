@@ -98,7 +98,7 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
 
 void GnssUpdate::FillRows(const FilterState& state) {
   const auto count = static_cast<Eigen::Index>(rows_.size());
-  const bool antenna = state.layout().antenna() == WatchedAntenna::kGnss;
+  const bool antenna = state.layout().antenna() == Sensor::kGnss;
   jacobian_.resize(count, kSeen + (antenna ? 3 : 0));
   innovation_.resize(count);
   const NavState& point = state.first_estimates() ? state.nav_first() : state.nav();

@@ -26,10 +26,8 @@ bool LinearizeView(const FilterState& state, const Clone& clone, const Normalize
       view.pose_jacobian * (exposed ? exposed->camera_from_error : clone.camera_from_error);
   rows->landmark = view.point_jacobian;
   rows->calibration.resize(2, state.layout().size());
-  if (state.layout().size() > 0) {
-    state.FillCalibrationRows(clone, exposed ? &*exposed : nullptr, view.pose_jacobian,
-                              Predicted(observation, rows->residual), rows->calibration);
-  }
+  state.FillCalibrationRows(clone, exposed ? &*exposed : nullptr, view.pose_jacobian,
+                            Predicted(observation, rows->residual), rows->calibration);
   return true;
 }
 

@@ -1,7 +1,6 @@
 #include "filter/measurement_update.h"
 
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 namespace alidade {
@@ -16,7 +15,7 @@ struct CoreRows {
 };
 
 template <typename Kind>
-CoreRows<Kind> Linearize(const Kind& measurement, const FilterState& state) {
+CoreRows<Kind> Linearize(const Kind& measurement, Sensor sensor, const FilterState& state) {
   CoreRows<Kind> rows;
   typename Kind::Residual residual;
   measurement.Evaluate(state.nav(), &residual, nullptr);
@@ -25,8 +24,8 @@ CoreRows<Kind> Linearize(const Kind& measurement, const FilterState& state) {
   measurement.Evaluate(point, &residual, &rows.jacobian);
   rows.jacobian *= ImuChartJacobian(state.convention(), point);
   rows.lever_arm.resize(Kind::kRows, 0);
-  if constexpr (std::is_same_v<Kind, FixMeasurement>) {
-    if (state.layout().antenna() == WatchedAntenna::kFix) {
+  if constexpr (HasLeverArm<Kind>) {
+    if (state.layout().antenna() == sensor) {
       rows.lever_arm = measurement.LeverArmJacobian(point);
     }
   }
@@ -53,7 +52,7 @@ bool MeasurementUpdate::Apply(const WhitenedMeasurement& measurement, FilterStat
   return std::visit(
       [&](const auto& kind) {
         using Kind = std::decay_t<decltype(kind)>;
-        CoreRows<Kind> rows = Linearize(kind, *state);
+        CoreRows<Kind> rows = Linearize(kind, sensor, *state);
         const double nis =
             InnovationNis<Kind::kRows>(rows.innovation, rows.jacobian, state->covariance().CoreCovariance());
         const double weight = gates_.Weigh(sensor, nis);

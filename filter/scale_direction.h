@@ -9,7 +9,7 @@ namespace alidade {
 /// The direction of a change of scale in the filter's error: every camera of the window moves away from the
 /// oldest one in proportion to its distance, and the velocity grows by the same share. The rows of tracks do
 /// not see it at the state where they are linearised. Once a correction has changed the window's shape, new
-/// rows do not see another direction, and together they would know a scale that no track tells
+/// rows do not see another direction, and together they would report a scale that no track determines
 /// (docs/track_memory.md).
 class ScaleDirection {
  public:
@@ -17,7 +17,7 @@ class ScaleDirection {
   explicit ScaleDirection(int capacity);
 
   /// Takes the direction at the present state, n, over the clones up to `last_serial`, whose shape the tracks
-  /// have told. False when they are fewer than two, or at one place: nothing is to be carried then.
+  /// have determined. False when they are fewer than two, or at one place: nothing is to be carried then.
   bool Take(const FilterState& state, int last_serial);
   /// After a correction: with n' the direction now, errors x become x + (n' - n) l.x, l.x being the relative
   /// error of scale in x, l.n = 1. So what did not see n does not see n'. The state after those clones
@@ -28,7 +28,7 @@ class ScaleDirection {
  private:
   size_t told_ = 0;          ///< number of clones that `last_serial` closes
   Eigen::VectorXd row_;      ///< l
-  Eigen::MatrixX3d places_;  ///< of the cameras told, seen from the oldest one
+  Eigen::MatrixX3d places_;  ///< of these cameras, seen from the oldest one
   Eigen::VectorXd change_;
 };
 

@@ -50,9 +50,7 @@ void SlamFeatures::Promote(int serial, TrackStore* tracks, FilterState* state) {
       rows.T.middleCols<6>(state->CloneOffset(i) - state->CoreOffset()) =
           memory.clone_rows.middleCols<6>(6 * state->clones()[i].slot);
     }
-    if (state->layout().size() > 0) {
-      rows.T.rightCols(state->layout().size()) = memory.clone_rows.rightCols(state->layout().size());
-    }
+    rows.T.rightCols(state->layout().size()) = memory.clone_rows.rightCols(state->layout().size());
     state->AddLandmark(rows);
     memory.active = false;
     track.in_state = true;

@@ -58,10 +58,8 @@ double TrackMemoryKeeper::StateDepthDeviation(const FilterState& state, const Ve
     row.segment<6>(state.CloneOffset(static_cast<size_t>(clones[k]))) -=
         clone_rows.middleCols<6>(6 * static_cast<Index>(k)).transpose() * along;
   }
-  if (calibration_ > 0) {
-    row.segment(state.CalibrationOffset(), calibration_).noalias() -=
-        clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_).transpose() * along;
-  }
+  row.segment(state.CalibrationOffset(), calibration_).noalias() -=
+      clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_).transpose() * along;
   const auto newest = static_cast<size_t>(clones.back());
   row.segment<6>(state.CloneOffset(newest)) -=
       state.clones()[newest].camera_from_error.bottomRows<3>().transpose() * direction;
@@ -97,10 +95,8 @@ void TrackMemoryKeeper::Start(const FilterState& state, const Vector3d& p_W, con
     const Clone& clone = state.clones()[static_cast<size_t>(clones[k])];
     memory->clone_rows.middleCols<6>(6 * clone.slot) = clone_rows.block<3, 6>(0, 6 * static_cast<Index>(k));
   }
-  if (calibration_ > 0) {
-    memory->clone_rows.rightCols(calibration_) =
-        clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_);
-  }
+  memory->clone_rows.rightCols(calibration_) =
+      clone_rows.middleCols(6 * static_cast<Index>(clones.size()), calibration_);
   if (error_.anchored()) {
     const Clone& anchor = state.clones()[static_cast<size_t>(clones.back())];
     memory->anchor = anchor.serial;
@@ -160,10 +156,8 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
     shift -= memory->clone_rows.middleCols<6>(6 * state.clones()[i].slot) *
              correction.segment<6>(state.CloneOffset(i));
   }
-  if (calibration_ > 0) {
-    shift.noalias() -= memory->clone_rows.rightCols(calibration_) *
-                       correction.segment(state.CalibrationOffset(), calibration_);
-  }
+  shift.noalias() -= memory->clone_rows.rightCols(calibration_) *
+                     correction.segment(state.CalibrationOffset(), calibration_);
   const Vector3d move = SolveRegular(memory->landmark_rows, shift);
   if (error_.anchored()) {
     const int anchor = state.FindClone(memory->anchor);

@@ -30,7 +30,7 @@ sources() {
 }
 
 folders=()
-for folder in core eval filter frontend gnss smoother tests; do
+for folder in core docs eval filter frontend gnss smoother tests; do
   [[ -d "$folder" ]] && folders+=("$folder")
 done
 

@@ -59,7 +59,7 @@ struct FinalizedFrame {
   std::optional<Matrix15d> filtering_covariance;
 };
 
-/// A back end: consumes one measurement log in time order and tells state and covariance after each frame.
+/// A back end: consumes one measurement log in time order and reports state and covariance after each frame.
 ///
 /// Single-threaded and deterministic: equal calls give equal bits (the *_ms statistics aside). Before
 /// AddFrame(f) the caller has added every IMU sample up to and including the first one at or after the

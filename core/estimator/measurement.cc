@@ -44,6 +44,31 @@ Result<WhitenedMeasurement> Whiten(const EstimatorConfig& config, const RigCalib
   return status.ok() ? Result<WhitenedMeasurement>(whitened) : status;
 }
 
+std::optional<Sensor> AntennaToWatch(const EstimatorConfig& config, const RigCalibration& rig) {
+  if (config.gnss.enabled && rig.gnss.is_present) {
+    return Sensor::kGnss;
+  }
+  std::optional<Sensor> antenna;
+  ForEachSensorEntry([&](auto entry, Sensor sensor) {
+    if constexpr (HasLeverArm<typename decltype(entry)::Whitened>) {
+      if (!antenna && entry.Config(config).enabled && entry.Sensors(rig).size() == 1) {
+        antenna = sensor;
+      }
+    }
+  });
+  return antenna;
+}
+
+const std::string& MeasurementKeys() {
+  static const std::string keys = [] {
+    std::string joined;
+    ForEachSensorEntry(
+        [&](auto entry, Sensor) { joined += (joined.empty() ? "" : "_") + std::string(entry.kKey); });
+    return joined;
+  }();
+  return keys;
+}
+
 double MaxInterpolation(const EstimatorConfig& config, Sensor sensor) {
   double max_s = 0;
   ForEachSensorEntry([&](auto entry, Sensor of) {

@@ -2,25 +2,38 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "core/estimator/position_fix_entry.h"
+#include "core/sensor.h"
 
 namespace alidade {
 
-/// Who sends a message. The sensors of SensorEntries are the last ones, in their order.
-enum class Sensor { kImu, kCamera, kGnss, kFix };
-
 /// The sensors whose measurements are functions of the navigation state alone and come between frames. One
-/// more of them is one more value of Sensor and one more entry here (such as PositionFixEntry): estimators,
-/// runs and their records loop over the entries. Messages of the same time are processed in this order.
+/// more of them is one more entry here (such as PositionFixEntry): estimators, runs and their records loop
+/// over the entries. Messages of the same time are processed in this order.
 using SensorEntries = std::tuple<PositionFixEntry>;
 
 inline constexpr std::size_t kFirstSensorEntry = static_cast<std::size_t>(Sensor::kGnss) + 1;
 inline constexpr std::size_t kSensors = kFirstSensorEntry + std::tuple_size_v<SensorEntries>;
+
+/// The sensor of an entry.
+template <typename Entry>
+[[nodiscard]] constexpr Sensor SensorOf() {
+  constexpr std::size_t kIndex = []<std::size_t... Index>(std::index_sequence<Index...>) {
+    return ((std::is_same_v<std::tuple_element_t<Index, SensorEntries>, Entry> ? Index : 0) + ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<SensorEntries>>());
+  static_assert(std::is_same_v<std::tuple_element_t<kIndex, SensorEntries>, Entry>);
+  return static_cast<Sensor>(kFirstSensorEntry + kIndex);
+}
 
 /// imu | camera | gnss, or the key of the entry.
 [[nodiscard]] std::string_view ToString(Sensor sensor);
@@ -59,7 +72,17 @@ using Measurement = MeasurementVariants<SensorEntries>::Raw;
 ///   using Residual, Jacobian;                                        kRows x 1, kRows x 15
 ///   void Evaluate(const NavState&, Residual*, Jacobian*) const;      core/model.h, but whitened
 ///   void ScaleSqrtInformation(double root);
+///
+/// and, where it depends on the lever arm of its sensor (p_BA of the sheet),
+///
+///   Matrix<kRows, 3> LeverArmJacobian(const NavState&) const;        d residual / d p_BA, whitened
 using WhitenedMeasurement = MeasurementVariants<SensorEntries>::Whitened;
+
+/// Whether a whitened measurement depends on a lever arm.
+template <typename Kind>
+concept HasLeverArm = requires(const Kind& measurement, const NavState& state) {
+  measurement.LeverArmJacobian(state);
+};
 
 template <typename... Kind>
 [[nodiscard]] Sensor SensorOf(const std::variant<Kind...>& measurement) {
@@ -74,6 +97,12 @@ template <typename... Kind>
 /// one of the rig's.
 [[nodiscard]] Result<WhitenedMeasurement> Whiten(const EstimatorConfig& config, const RigCalibration& rig,
                                                  const Measurement& measurement);
+/// The sensor whose lever arm is tested along with a watched camera (core/calibration_watch.h): the GNSS
+/// receiver, else the first of SensorEntries that has a lever arm and one sheet in `rig`, where the
+/// configuration uses them.
+[[nodiscard]] std::optional<Sensor> AntennaToWatch(const EstimatorConfig& config, const RigCalibration& rig);
+/// The keys of the entries, joined by '_': for one number about the measurements of all of them.
+[[nodiscard]] const std::string& MeasurementKeys();
 /// How long after a frame a smoother links a measurement of this sensor to it [s].
 [[nodiscard]] double MaxInterpolation(const EstimatorConfig& config, Sensor sensor);
 

@@ -10,8 +10,9 @@
 namespace alidade {
 
 /// Position fixes in the list of sensors (SensorEntries in core/estimator/measurement.h). What every entry
-/// needs of its types: stamp_ns and sensor (index of the sheet) of Raw, time_offset_s of a sheet, enabled and
-/// max_interpolation_s of the configuration.
+/// needs of its types: stamp_ns and sensor (index of the sheet) of Raw; time_offset_s of a sheet, and p_BA
+/// where the measurement depends on a lever arm; of the configuration enabled, gate_probability,
+/// robust_kernel, max_interpolation_s and AssumeNoise.
 struct PositionFixEntry {
   using Raw = PositionFix;
   using Whitened = FixMeasurement;
@@ -24,8 +25,14 @@ struct PositionFixEntry {
   static constexpr std::array<const char*, 4> kColumns = {"fixes_used", "fixes_gated", "fix_nis",
                                                           "fix_nis_dof"};
 
-  static const FixConfig& Config(const EstimatorConfig& config) { return config.fix; }
-  static const std::vector<FixSensor>& Sensors(const RigCalibration& rig) { return rig.fixes; }
+  template <typename Configuration>
+  static auto& Config(Configuration& config) {
+    return config.fix;
+  }
+  template <typename Rig>
+  static auto& Sensors(Rig& rig) {
+    return rig.fixes;
+  }
   /// Of a MeasurementLog or of what has its fields.
   template <typename Log>
   static auto& Measurements(Log& log) {

@@ -39,7 +39,7 @@ struct ObservabilityRecord {
 ///
 /// Rank and angle are of the factor with its columns scaled: column j by the root sum of squares of
 /// (|H| |Phi|)_j, which no cancellation shrinks, so that a value of rounding size is rounding. The
-/// propagation of noise plays no role in O: it tells what is observable, not how well.
+/// propagation of noise plays no role in O: it shows what is observable, not how well.
 class ObservabilityAudit : public FilterObserver {
  public:
   void OnReset(const FilterState& state) override;

@@ -52,7 +52,7 @@ Result<bool> BagCamera::Take(const BagMessage& message, BagContext* bag) {
   const std::string& topic = message.connection->topic;
   const std::string& type = message.connection->type;
   if (type == "alidade/Tracks" && topic == bag->topics["tracks"]) {
-    KeepDecoded(DecodeTracks(message.data), topic, &bag->dataset.tracks, &bag->remarks);
+    KeepDecoded(DecodeTracks(message.data), topic, &bag->dataset.frames, &bag->remarks);
     return true;
   }
   const bool raw = type == "sensor_msgs/Image";
@@ -98,8 +98,8 @@ Status BagCamera::TakeCompressed(const BagMessage& message, BagContext* bag) {
 Status BagCamera::Assemble(BagContext* bag) {
   Dataset& dataset = bag->dataset;
   bag->remarks.AddDropped(bag->topics["cam0"], SortByStamp(&dataset.images));
-  bag->remarks.AddDropped(bag->topics["tracks"], SortByStamp(&dataset.tracks));
-  if (!has_images_ && dataset.images.empty() && dataset.tracks.empty()) {
+  bag->remarks.AddDropped(bag->topics["tracks"], SortByStamp(&dataset.frames));
+  if (!has_images_ && dataset.images.empty() && dataset.frames.empty()) {
     return Status::Ok();
   }
   const Result<CameraSensor> sensor = bag->sheets.Camera("cam0", bag->options.camera);
@@ -109,7 +109,7 @@ Status BagCamera::Assemble(BagContext* bag) {
   dataset.rig.camera_time_offset_s = sensor->time_offset_s;
   dataset.rig.line_delay_s = sensor->line_delay_s;
   dataset.camera_rate_hz = sensor->rate_hz.value_or(0);
-  const std::vector<TrackFrame>& tracks = dataset.tracks;
+  const std::vector<TrackFrame>& tracks = dataset.frames;
   const std::vector<ImageEntry>& images = dataset.images;
   if (!sensor->rate_hz && !tracks.empty()) {
     dataset.camera_rate_hz = MeasuredRate(tracks.front().stamp_ns, tracks.back().stamp_ns, tracks.size());
@@ -155,7 +155,7 @@ void ScheduleCameras(const Dataset& dataset, const BagTopics& topics, BagSchedul
       schedule->Add(image.stamp_ns, topic, [&image] { return ReadImageMessage(image); });
     }
   }
-  std::vector<TrackFrame> frames = dataset.tracks;
+  std::vector<TrackFrame> frames = dataset.frames;
   if (frames.empty() && dataset.images.empty()) {
     for (const TimeNs stamp_ns : dataset.camera_stamps) {
       frames.push_back({stamp_ns, {}, 0});
@@ -168,7 +168,7 @@ void ScheduleCameras(const Dataset& dataset, const BagTopics& topics, BagSchedul
 }
 
 void ScheduleCameraSheets(const Dataset& dataset, BagSchedule* schedule) {
-  if (!dataset.images.empty() || !dataset.tracks.empty() || !dataset.camera_stamps.empty()) {
+  if (!dataset.images.empty() || !dataset.frames.empty() || !dataset.camera_stamps.empty()) {
     schedule->AddSheet("cam0", CameraSensorYaml(dataset.rig, dataset.camera_rate_hz));
   }
   for (std::size_t k = 0; k < dataset.extra_cameras.size(); ++k) {

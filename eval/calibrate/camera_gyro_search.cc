@@ -65,7 +65,7 @@ std::vector<Matrix3d> AxesConventions() {
   return conventions;
 }
 
-/// Enough to tell a convention of axes from the others.
+/// Enough to distinguish a convention of axes from the others.
 constexpr int kFewIterations = 5;
 
 class Search {

@@ -38,7 +38,7 @@ class ImuGaps {
  public:
   ImuGaps(const Table<ImuSample>& imu, double longest_s) {
     TimeNs before_ns = imu.front().stamp_ns;
-    // Here and below, a file that cannot be read again is told by the next who reads it.
+    // Here and below, a file that cannot be read again is reported by its next reader.
     static_cast<void>(imu.ForEach([&](const ImuSample& sample) {
       if (SecondsBetween(before_ns, sample.stamp_ns) > longest_s) {
         gaps_.emplace_back(before_ns, sample.stamp_ns);

@@ -58,7 +58,7 @@ Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const
 /// The sequence with the found camera and the tracks, which can be run as it is.
 Status WriteCalibrated(const CalibratedCamera& camera, RecordingToCalibrate recording) {
   const RigCalibration given = recording.dataset.rig;
-  recording.dataset.tracks = std::move(recording.log.frames);
+  recording.dataset.frames = std::move(recording.log.frames);
   recording.dataset.rig = camera.rig;
   ALIDADE_RETURN_IF_ERROR(WriteDataset(recording.dataset, FLAGS_output));
   return WriteCalibratedCamera(camera, given, FLAGS_dataset, recording.dataset.camera_rate_hz, FLAGS_output);

@@ -50,14 +50,14 @@ void CheckImages(const Dataset& dataset, Findings* findings) {
 void CheckCameraMotion(const Dataset& dataset, Findings* findings) {
   constexpr size_t kLeastSamples = 2;
   constexpr size_t kMostPairs = 200;
-  if (dataset.imu.size() < kLeastSamples || (dataset.tracks.empty() && dataset.images.empty())) {
+  if (dataset.imu.size() < kLeastSamples || (dataset.frames.empty() && dataset.images.empty())) {
     return;
   }
   PipelineOptions options;
   ProgressLine progress("tracks");
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   const Result<MeasurementLog> log = MakeLog(dataset, FrontendConfig(), options);
-  if (log.ok()) {  // otherwise CheckImages has told why
+  if (log.ok()) {  // otherwise CheckImages has reported why
     CheckCameraAgainstGyro(*log, kMostPairs, findings);
   }
 }

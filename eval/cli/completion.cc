@@ -88,7 +88,7 @@ _alidade() {
 complete -F _alidade alidade
 )bash";
 
-/// What the shell is told of a flag's value: words, or "@" and what kind of file it is.
+/// What the shell knows of a flag's value: words, or "@" and what kind of file it is.
 std::string ValuesOf(const FlagDescription& flag) {
   switch (flag.value) {
     case FlagValue::kPath:

@@ -85,7 +85,7 @@ Status FillRpe(EvaluationOptions* options) {
 
 Result<EvaluationOptions> OptionsFromFlags() {
   EvaluationOptions options;
-  const std::optional<Alignment> alignment = ParseAlignment(FLAGS_align);
+  const std::optional<TrajectoryAlignment> alignment = ParseTrajectoryAlignment(FLAGS_align);
   if (!alignment) {
     return Status::Usage("evaluate: --align: found '" + FLAGS_align +
                          "', expected none, pos, posyaw, se3 or sim3");

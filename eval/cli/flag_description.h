@@ -17,7 +17,7 @@ enum class FlagValue {
   kConfig,  ///< a configuration of FlagDescription::config: a file, or the name of a shipped one
 };
 
-/// One flag of one command, as the help, the manual page and the shell's completion tell of it.
+/// One flag of one command, as the help, the manual page and the shell's completion describe it.
 struct FlagDescription {
   std::string name;  ///< with dashes, without those in front
   std::string text;

@@ -1,5 +1,16 @@
 #include "eval/cli/flags.h"
 
+#include <string>
+
+#include "core/error_convention.h"
+
+namespace {
+
+const std::string kErrorText =  // NOLINT(cert-err58-cpp): of a flag, made before main like the flag
+    alidade::ErrorConventionNames(" | ") + ": error convention of the Jacobians";
+
+}  // namespace
+
 DEFINE_bool(anchor_at_first, false,
             "place the first estimate at the truth in yaw and position: for an estimate with an arbitrary "
             "yaw and origin");
@@ -30,8 +41,7 @@ DEFINE_bool(diff, false, "print the keys in which two configuration files differ
 DEFINE_string(
     engine, "local",
     "local | slurm: what runs the cells: processes of this machine, or jobs of Slurm (docs/plans.md)");
-DEFINE_string(error, "right_invariant",
-              "right_invariant | left_invariant | so3xrn: error convention of the Jacobians");
+DEFINE_string(error, "right_invariant", kErrorText.c_str());
 DEFINE_string(estimate, "", "trajectory file to evaluate");
 DEFINE_string(estimator, "",
               "configuration of the filter to analyse: a YAML file, or the name of a shipped one");
@@ -92,7 +102,7 @@ DEFINE_string(stage, "all",
               "all | worker | tracks | cells | tables: one stage of a comparison, as the processes of an "
               "engine run it");
 DEFINE_int32(starts, 100, "total number of starts, distributed over the sequences of the plan");
-DEFINE_string(status, "", "output folder of a comparison: tell how far it is");
+DEFINE_string(status, "", "output folder of a comparison: print its progress");
 DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows are paired [s]");
 DEFINE_string(
     topics, "",

@@ -21,7 +21,14 @@ std::string RunFolder(const std::string& estimator, const std::string& sequence,
   return FLAGS_input + "/cells/" + estimator + "/" + sequence + "/" + std::to_string(seed);
 }
 
-/// Judges the runs of one plan, one sequence after the other.
+/// Whether an estimator uses raw GNSS or position fixes.
+bool IsGlobal(const EstimatorConfig& config) {
+  bool global = config.gnss.enabled;
+  ForEachSensorEntry([&](auto entry, Sensor) { global = global || entry.Config(config).enabled; });
+  return global;
+}
+
+/// Scores the runs of one plan, one sequence after the other.
 class Study {
  public:
   explicit Study(const Plan& plan) : plan_(plan) {}
@@ -48,7 +55,7 @@ class Study {
       }
       const Result<EstimatorConfig> config = ConfigOf(estimator, sequence);
       ALIDADE_RETURN_IF_ERROR(config.status());
-      if (config->gnss.enabled) {
+      if (IsGlobal(*config)) {
         GnssStudyRow& row = rows_.emplace_back();
         row.sequence = sequence.name;
         row.estimator = estimator.name;
@@ -81,29 +88,29 @@ class Study {
       ALIDADE_RETURN_IF_ERROR(run.status());
       runs.emplace_back(&rows_[i], *std::move(run));
     }
-    return runs.empty() ? Status::Ok() : Judge(sequence, simulation, seed, runs);
+    return runs.empty() ? Status::Ok() : ScoreSeed(sequence, simulation, seed, runs);
   }
 
-  Status Judge(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed,
-               const std::vector<std::pair<GnssStudyRow*, RunResult>>& runs) const {
+  Status ScoreSeed(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed,
+                   const std::vector<std::pair<GnssStudyRow*, RunResult>>& runs) const {
     CompareInput input(sequence, simulation, seed, FrontendConfig());
     const Result<CompareInput::Data>& data = input.Acquire({});
     ALIDADE_RETURN_IF_ERROR(data.status());
     const Trajectory& truth = *data->truth;
     const TimeNs start_ns = data->log.imu.front().stamp_ns;
-    const GnssScenario scenario = ScenarioOf(simulation.gnss, simulation.rest_s,
-                                             SecondsBetween(start_ns, data->log.imu.back().stamp_ns));
+    const GnssScenario scenario =
+        ScenarioOf(simulation, SecondsBetween(start_ns, data->log.imu.back().stamp_ns));
     const Result<GnssRunFigures> odometry = Odometry(sequence, seed, truth, start_ns, scenario);
     ALIDADE_RETURN_IF_ERROR(odometry.status());
     const double single_point_m = SinglePointRmse(single_point_, data->log, truth);
     for (const auto& [row, run] : runs) {
       row->scenario = scenario;
-      row->runs.push_back({seed, JudgeGlobalRun(run, truth, start_ns, scenario), *odometry, single_point_m});
+      row->runs.push_back({seed, ScoreGlobalRun(run, truth, start_ns, scenario), *odometry, single_point_m});
     }
     return Status::Ok();
   }
 
-  /// What the estimator that hears no GNSS did on the same motion; NaN without one.
+  /// What an estimator without GNSS and fixes did on the same motion; NaN without one.
   Result<GnssRunFigures> Odometry(const PlanSequence& sequence, unsigned seed, const Trajectory& truth,
                                   TimeNs start_ns, const GnssScenario& scenario) const {
     for (const PlanSequence& other : plan_.sequences) {
@@ -117,7 +124,7 @@ class Study {
         }
         const Result<EstimatorConfig> config = ConfigOf(estimator, other);
         ALIDADE_RETURN_IF_ERROR(config.status());
-        if (config->gnss.enabled) {
+        if (IsGlobal(*config)) {
           continue;
         }
         const std::string folder = RunFolder(estimator.name, other.name, seed);
@@ -126,16 +133,22 @@ class Study {
         }
         const Result<RunResult> run = ReadRun(folder);
         ALIDADE_RETURN_IF_ERROR(run.status());
-        return JudgeOdometry(*run, truth, start_ns, scenario);
+        return ScoreOdometry(*run, truth, start_ns, scenario);
       }
     }
     return GnssRunFigures{};
   }
 
-  /// What makes the trajectory of a simulation: all of it but the receiver.
+  /// What makes the trajectory of a simulation: all of it but the receiver and the position sensor.
   static std::vector<std::string> MotionOf(const PlanSequence& sequence) {
     std::vector<std::string> motion = sequence.settings;
-    std::erase_if(motion, [](const std::string& setting) { return setting.starts_with("gnss."); });
+    std::erase_if(motion, [](const std::string& setting) {
+      bool of_sensor = setting.starts_with("gnss.");
+      ForEachSensorEntry([&](auto entry, Sensor) {
+        of_sensor = of_sensor || setting.starts_with(std::string(entry.kKey) + ".");
+      });
+      return of_sensor;
+    });
     motion.push_back(sequence.config);
     return motion;
   }

@@ -16,9 +16,12 @@ namespace alidade::cli {
 int RunProbe(const std::vector<std::string>&) {
   const std::optional<ErrorConvention> convention = ParseErrorConvention(FLAGS_error);
   if (!convention) {
-    return Report(Status::Usage("probe: --error: found '" + FLAGS_error +
-                                "', expected right_invariant, left_invariant or so3xrn" +
-                                Suggestion(FLAGS_error, {"right_invariant", "left_invariant", "so3xrn"})));
+    std::vector<std::string> names;
+    for (const ErrorConvention known : kErrorConventions) {
+      names.emplace_back(ToString(known));
+    }
+    return Report(Status::Usage("probe: --error: found '" + FLAGS_error + "', expected " +
+                                ErrorConventionNames(", ") + Suggestion(FLAGS_error, names)));
   }
   Result<std::string> input = std::string();
   if (FLAGS_input == "-") {

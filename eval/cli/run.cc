@@ -121,12 +121,16 @@ std::string Summary(const RunResult& result) {
 int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTables& tables,
              const MeasurementLog& log, const RunResult& result, const std::atomic<bool>* stop) {
   Say(Summary(result));
-  const bool asked = config.gnss.enabled || config.fix.enabled;
-  const bool given =
-      (config.gnss.enabled && dataset.gnss != nullptr) || (config.fix.enabled && !dataset.fixes.empty());
-  if (asked && !result.global) {
-    Say(std::string(config.gnss.enabled ? "GNSS was" : "position fixes were") +
-        " not used: " + result.align_report);
+  std::string asked = config.gnss.enabled ? "GNSS was" : "";
+  bool given = config.gnss.enabled && dataset.gnss != nullptr;
+  ForEachSensorEntry([&](auto entry, Sensor) {
+    if (entry.Config(config).enabled) {
+      asked = asked.empty() ? std::string(entry.kPluralName) + " were" : asked;
+      given = given || !entry.Measurements(dataset).empty();
+    }
+  });
+  if (!asked.empty() && !result.global) {
+    Say(asked + " not used: " + result.align_report);
   }
   if (Failed(result)) {
     RunOptions options;

@@ -9,8 +9,8 @@
 
 namespace alidade::cli {
 
-Status JudgeTracks(const Dataset& dataset, const std::vector<TrackFrame>& tracks,
-                   const std::vector<double>& cpu_ms) {
+Status ReportTrackScore(const Dataset& dataset, const std::vector<TrackFrame>& tracks,
+                        const std::vector<double>& cpu_ms) {
   const Result<TrackTruth> truth = TruthOfTracks(dataset, tracks);
   ALIDADE_RETURN_IF_ERROR(truth.status());
   const TrackScore score = ScoreTracks(tracks, dataset.rig.camera, *truth, cpu_ms);

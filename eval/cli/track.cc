@@ -41,8 +41,8 @@ Status DrawOverlays(const Dataset& dataset, const std::vector<TrackFrame>& frame
 Status WriteAll(const Dataset& dataset, const std::vector<TrackerStatistics>& statistics) {
   ALIDADE_RETURN_IF_ERROR(WriteDataset(dataset, FLAGS_output));
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically(FLAGS_output + "/frontend.csv", FrontendCsv(dataset.tracks, statistics)));
-  return DrawOverlays(dataset, dataset.tracks);
+      WriteFileAtomically(FLAGS_output + "/frontend.csv", FrontendCsv(dataset.frames, statistics)));
+  return DrawOverlays(dataset, dataset.frames);
 }
 
 /// Tracks that exist: those of --tracks, or of a sequence without images; none: the front end makes them.
@@ -52,7 +52,7 @@ Result<std::vector<TrackFrame>> GivenTracks(const Dataset& dataset) {
                ? ReadTracks(FLAGS_tracks)
                : Status::Usage("track: --tracks is for --score, the front end makes tracks of images");
   }
-  return FLAGS_score && dataset.images.empty() ? dataset.tracks : std::vector<TrackFrame>();
+  return FLAGS_score && dataset.images.empty() ? dataset.frames : std::vector<TrackFrame>();
 }
 
 /// Runs the front end over the images, writes what it leaves, and judges it if asked to.
@@ -73,19 +73,19 @@ int TrackAndWrite(const FrontendConfig& config, Dataset* dataset) {
   if (!frames.ok()) {
     return Report(frames.status());
   }
-  dataset->tracks = std::move(*frames);
-  const MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks, dataset->extra_cameras};
+  dataset->frames = std::move(*frames);
+  const MeasurementLog log{dataset->rig, dataset->imu, dataset->frames, dataset->extra_cameras};
   if (const Status status = WriteAll(*dataset, statistics); !status.ok()) {
     return Report(status);
   }
-  const FrontendSummary summary = SummarizeFrontend(dataset->tracks, statistics);
+  const FrontendSummary summary = SummarizeFrontend(dataset->frames, statistics);
   std::printf("%s\n", DescribeLog(log, DigestOf(log)).c_str());
   std::printf(
       "%.2f ms an image (95 %%: %.2f), %.1f features, tracks of %.1f frames; %.2f %% lost, %.2f %% "
       "rejected by the epipolar geometry a frame\n",
       summary.mean_ms, summary.p95_ms, summary.features_per_frame, summary.mean_length,
       100 * summary.lost_share, 100 * summary.rejected_share);
-  return FLAGS_score ? Report(JudgeTracks(*dataset, dataset->tracks, cpu_ms)) : kExitDone;
+  return FLAGS_score ? Report(ReportTrackScore(*dataset, dataset->frames, cpu_ms)) : kExitDone;
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ int RunTrack(const std::vector<std::string>&) {
     return Report(status);
   }
   return given->empty() ? TrackAndWrite(config->frontend, &*dataset)
-                        : Report(JudgeTracks(*dataset, *given, {}));
+                        : Report(ReportTrackScore(*dataset, *given, {}));
 }
 
 }  // namespace alidade::cli

@@ -38,7 +38,7 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
   }
   std::vector<std::string> remarks = dataset->remarks;
   std::optional<FrontendSummary> frontend;
-  if (dataset->tracks.empty() && !dataset->images.empty()) {
+  if (dataset->frames.empty() && !dataset->images.empty()) {
     PipelineOptions telling = options;
     telling.remark = [&remarks](const std::string& text) { remarks.push_back(text); };
     Result<FrontendRun> run =
@@ -47,7 +47,7 @@ Result<CompareInput::Data> CompareInput::LoadDataset(const PipelineOptions& opti
         });
     ALIDADE_RETURN_IF_ERROR(run.status());
     frontend = SummarizeFrontend(run->frames, run->statistics);
-    dataset->tracks = std::move(run->frames);
+    dataset->frames = std::move(run->frames);
   }
   Result<MeasurementLog> log = MakeLog(*dataset, frontend_, options);
   if (!log.ok()) {
@@ -97,7 +97,7 @@ Result<CompareInput::Data> CompareInput::RunSimulation(const PipelineOptions& op
         });
     ALIDADE_RETURN_IF_ERROR(run.status());
     frontend = SummarizeFrontend(run->frames, run->statistics);
-    dataset->tracks = std::move(run->frames);
+    dataset->frames = std::move(run->frames);
   }
   Data data;
   data.frontend = std::move(frontend);

@@ -12,7 +12,7 @@ namespace alidade {
 struct ExternalTimes {
   std::vector<double> frontend_ms;
   std::vector<double> backend_ms;
-  std::vector<TimeNs> stamps_ns;  ///< of the frames; empty when the file does not tell
+  std::vector<TimeNs> stamps_ns;  ///< of the frames; empty when the file has none
 };
 
 /// Reads a timing.csv with the columns `frontend_ms` and `backend_ms`, wherever they stand, and

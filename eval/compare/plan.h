@@ -25,7 +25,7 @@ struct PlanEstimator {
   bool camera_frame = false;                        ///< the external poses are the camera's, not the body's
   bool smoothed = false;               ///< external only: a row may use data of later than its stamp
   std::vector<std::string> sequences;  ///< only these; empty: all
-  std::optional<Alignment> alignment;  ///< its own instead of the plan's
+  std::optional<TrajectoryAlignment> alignment;  ///< its own instead of the plan's
   std::optional<double> align_share;
 
   [[nodiscard]] bool external() const { return config.empty(); }

@@ -34,8 +34,9 @@ Status ReadChoice(const PlanReader& reader, const Node& node, const char* key,
 
 }  // namespace
 
-Status ReadAlignment(const PlanReader& reader, const Node& node, Alignment* alignment) {
-  return ReadChoice(reader, node, "align", ParseAlignment, "none, pos, posyaw, se3 or sim3", alignment);
+Status ReadAlignment(const PlanReader& reader, const Node& node, TrajectoryAlignment* alignment) {
+  return ReadChoice(reader, node, "align", ParseTrajectoryAlignment, "none, pos, posyaw, se3 or sim3",
+                    alignment);
 }
 
 Status ReadAlignShare(const PlanReader& reader, const Node& node, double* share) {

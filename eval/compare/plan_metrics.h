@@ -8,7 +8,7 @@ namespace alidade {
 /// The section `metrics` of a plan, into its metrics and `interpolate`. Errors: those of PlanReader.
 Status ReadMetrics(const PlanReader& reader, const YAML::Node& node, Plan* plan);
 /// none, pos, posyaw, se3 or sim3.
-Status ReadAlignment(const PlanReader& reader, const YAML::Node& node, Alignment* alignment);
+Status ReadAlignment(const PlanReader& reader, const YAML::Node& node, TrajectoryAlignment* alignment);
 Status ReadAlignShare(const PlanReader& reader, const YAML::Node& node, double* share);
 
 }  // namespace alidade

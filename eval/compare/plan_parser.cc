@@ -109,7 +109,7 @@ class PlanParser {
     if (!estimator.external() && node.IsMap() && node["mode"]) {
       return reader_.Fault(
           node["mode"], "mode",
-          "`trajectories` or `command` beside it: a `config` tells its mode by its back end");
+          "`trajectories` or `command` beside it: the mode of a `config` follows from its back end");
     }
     if (estimator.command.text.empty() && !estimator.command.program.empty()) {
       return reader_.Fault(node, "estimators", "`program` only with `command`");

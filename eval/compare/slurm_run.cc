@@ -146,7 +146,7 @@ Status SlurmRun::Run() {
   if (options_.progress) {
     options_.progress("jobs " + names + " of Slurm; `scancel " + names +
                       "` ends them, `alidade compare --status=" + options_.output +
-                      "` tells how far they are");
+                      "` prints their progress");
   }
   int failed_queries = 0;
   Clock::time_point next_query = Clock::now() + kBetweenQueries;

@@ -105,7 +105,7 @@ Status WorkerPool::Hear(Worker* worker) {
       worker->last = worker->cell;
       worker->cell.reset();
     } else {
-      return Status::Output("a worker said \"" + *line + "\", expected the end of its cell");
+      return Status::Output("a worker answered \"" + *line + "\", expected the end of its cell");
     }
   }
   return Status::Ok();

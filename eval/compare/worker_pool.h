@@ -17,8 +17,8 @@ namespace alidade {
 /// a limit of options.limits and is killed, costs the cell it was at, and another takes its place.
 class WorkerPool {
  public:
-  /// `wanted`: the cells to run, in order. `ended` is told of each of them when its report is written, be it
-  /// by its worker or, for one that died, by this object. All must outlive the object.
+  /// `wanted`: the cells to run, in order. `ended` is called for each of them when its report is written, be
+  /// it by its worker or, for one that died, by this object. All must outlive the object.
   WorkerPool(const CompareOptions& options, const CellList& cells, const std::vector<size_t>& wanted,
              std::function<void(size_t cell)> ended);
 

@@ -25,7 +25,7 @@ class WorkerProcess {
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  /// Sends a line. What a process that has ended would be told is lost.
+  /// Sends a line. Lines to a process that has ended are lost.
   void Tell(const std::string& line) const;
   /// Reads what has come; blocks when nothing has. False: the process closed its output.
   bool Read();

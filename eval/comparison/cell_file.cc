@@ -56,7 +56,7 @@ void Fields(T& x, auto&& field) {
   field("features_used", x.features_used);
   field("tracks_in", x.tracks_in);
   field("nis_ratio", x.nis_ratio);
-  field("gnss_nis_ratio", x.gnss_nis_ratio);
+  field("sensor_nis_ratio", x.sensor_nis_ratio);
   field("rank", x.rank);
   field("yaw_leak", x.yaw_leak);
   field("position_leak", x.position_leak);
@@ -98,7 +98,7 @@ void Fields(T& x, auto&& field) {
   field("propagate_ms", x.propagate_ms);
   field("update_ms", x.update_ms);
   field("innovations", x.innovations);
-  field("gnss_innovations", x.gnss_innovations);
+  field("sensor_innovations", x.sensor_innovations);
   field("gated_share", x.gated_share);
   field("silent_s", x.silent_s);
   field("alarm_inside_share", x.alarm_inside_share);
@@ -149,6 +149,10 @@ concept Pair = requires(const T& x) {
   x.first;
 };
 template <typename T>
+concept Map = requires {
+  typename T::mapped_type;
+};
+template <typename T>
 concept Fixed = requires(const T& x) {
   x.RowsAtCompileTime;
 };  // a vector of Eigen
@@ -166,6 +170,12 @@ Json ToJson(const T& x) {
     return x ? ToJson(*x) : Json();
   } else if constexpr (Pair<T>) {
     return Json::array({ToJson(x.first), ToJson(x.second)});
+  } else if constexpr (Map<T>) {
+    Json object = Json::object();
+    for (const auto& [key, value] : x) {
+      object[key] = ToJson(value);
+    }
+    return object;
   } else if constexpr (Fixed<T>) {
     return std::vector<double>(x.data(), x.data() + x.size());
   } else if constexpr (List<T>) {
@@ -190,6 +200,12 @@ T FromJson(const Json& json) {
     return json.is_null() ? T() : T(FromJson<typename T::value_type>(json));
   } else if constexpr (Pair<T>) {
     return {FromJson<typename T::first_type>(json.at(0)), FromJson<typename T::second_type>(json.at(1))};
+  } else if constexpr (Map<T>) {
+    T x;
+    for (const auto& [key, value] : json.items()) {
+      x.emplace(key, FromJson<typename T::mapped_type>(value));
+    }
+    return x;
   } else if constexpr (Fixed<T>) {
     T x;
     for (Eigen::Index i = 0; i < x.size(); ++i) {

@@ -12,15 +12,15 @@
 #include "core/numbers.h"
 #include "eval/comparison/series_rows.h"
 #include "eval/comparison/sky_tracks.h"
-#include "eval/metrics/alignment.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/silent_failure.h"
+#include "eval/metrics/trajectory_alignment.h"
 
 namespace alidade {
 namespace {
 
-/// Longer without GNSS is an outage.
-constexpr double kGnssSilenceS = 2;
+/// Longer without a measurement of a sensor is an outage.
+constexpr double kSilenceS = 2;
 /// Regular points of a curve beyond these are not seen on a screen.
 constexpr size_t kMaxSeriesPoints = 600;
 
@@ -88,15 +88,28 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
 
 /// A sensor's innovations in a frame's statistics.
 struct Innovations {
-  double FrameStatistics::*nis;
-  int FrameStatistics::*dof;
+  double nis = 0;
+  int dof = 0;
 
-  [[nodiscard]] double Ratio(const FrameStatistics& frame) const {
-    return frame.*dof > 0 ? frame.*nis / frame.*dof : kNan;
-  }
+  [[nodiscard]] double Ratio() const { return dof > 0 ? nis / dof : kNan; }
 };
-constexpr Innovations kVision = {&FrameStatistics::nis, &FrameStatistics::nis_dof};
-constexpr Innovations kGnss = {&FrameStatistics::gnss_nis, &FrameStatistics::gnss_nis_dof};
+
+Innovations InnovationsOf(Sensor sensor, const FrameStatistics& frame) {
+  if (sensor == Sensor::kCamera) {
+    return {frame.nis, frame.nis_dof};
+  }
+  if (sensor == Sensor::kGnss) {
+    return {frame.gnss_nis, frame.gnss_nis_dof};
+  }
+  return {frame.sensors[sensor].nis, frame.sensors[sensor].nis_dof};
+}
+
+/// GNSS, and those of SensorEntries.
+std::vector<Sensor> SensorsBetweenFrames() {
+  std::vector<Sensor> sensors = {Sensor::kGnss};
+  ForEachSensorEntry([&](auto, Sensor sensor) { sensors.push_back(sensor); });
+  return sensors;
+}
 
 /// Stamp of a pair in the run itself.
 TimeNs RunStamp(const Evaluation& evaluation, const StatePair& pair) {
@@ -117,7 +130,8 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
     series->backend_ms.push_back(found ? record->second->backend_ms : kNan);
     series->features_used.push_back(found ? record->second->statistics.features_used : kNan);
     series->tracks_in.push_back(found ? record->second->statistics.tracks_in : kNan);
-    series->nis_ratio.push_back(found ? kVision.Ratio(record->second->statistics) : kNan);
+    series->nis_ratio.push_back(found ? InnovationsOf(Sensor::kCamera, record->second->statistics).Ratio()
+                                      : kNan);
     if (audited) {
       const bool has = found && record->second->observability.has_value();
       series->rank.push_back(has ? record->second->observability->rank : kNan);
@@ -148,33 +162,33 @@ void FillSilentFailure(const Evaluation& evaluation, const RunResult& run, CellR
 
 /// The newest GNSS innovations of each pair: GNSS is slower than the camera, and what is thinned would miss
 /// them.
-void FillGnssInnovations(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+void FillInnovations(Sensor sensor, const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
+  std::vector<double> ratios;
   double newest = kNan;
   TimeNs newest_ns = 0;
   auto record = run.records.begin();
   for (const StatePair& pair : evaluation.pairs) {
     const TimeNs stamp_ns = RunStamp(evaluation, pair);
     for (; record != run.records.end() && record->estimate.stamp_ns <= stamp_ns; ++record) {
-      if (record->statistics.gnss_nis_dof > 0) {
-        newest = kGnss.Ratio(record->statistics);
+      const Innovations innovations = InnovationsOf(sensor, record->statistics);
+      if (innovations.dof > 0) {
+        newest = innovations.Ratio();
         newest_ns = record->estimate.stamp_ns;
       }
     }
-    series->gnss_nis_ratio.push_back(SecondsBetween(newest_ns, stamp_ns) <= kGnssSilenceS ? newest : kNan);
+    ratios.push_back(SecondsBetween(newest_ns, stamp_ns) <= kSilenceS ? newest : kNan);
   }
-  if (std::isnan(newest)) {
-    series->gnss_nis_ratio.clear();
+  if (!std::isnan(newest)) {
+    series->sensor_nis_ratio.emplace(ToString(sensor), std::move(ratios));
   }
 }
 
-InnovationSummary Summarize(const std::vector<RunRecord>& records, const Innovations& of) {
+InnovationSummary Summarize(Sensor sensor, const std::vector<RunRecord>& records) {
   std::map<int, std::pair<double, double>> bands;  // of a sum of squares, by its number
   std::vector<double> rows;
   double nis = 0, dof = 0, inside = 0;
   for (const RunRecord& record : records) {
-    const FrameStatistics& frame = record.statistics;
-    const int count = frame.*of.dof;
-    const double squared = frame.*of.nis;
+    const auto [squared, count] = InnovationsOf(sensor, record.statistics);
     if (count > 0) {
       const auto [band, added] = bands.try_emplace(count);
       band->second = added ? NeesBand(count, 1) : band->second;
@@ -234,7 +248,9 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
   CellSeries series = MakeSeries(*evaluation);
   if (run != nullptr) {
     FillRunSeries(*evaluation, *run, &series);
-    FillGnssInnovations(*evaluation, *run, &series);
+    for (const Sensor sensor : SensorsBetweenFrames()) {
+      FillInnovations(sensor, *evaluation, *run, &series);
+    }
     FillSilentFailure(*evaluation, *run, cell);
   }
   cell->series = TakeRows(series, PickRows(series, kMaxSeriesPoints));
@@ -276,8 +292,13 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   ScoreTimes(frontend_ms, backend_ms, cell);
   cell->propagate_ms = Mean(propagate_ms);
   cell->update_ms = Mean(update_ms);
-  cell->innovations = Summarize(run.records, kVision);
-  cell->gnss_innovations = Summarize(run.records, kGnss);
+  cell->innovations = Summarize(Sensor::kCamera, run.records);
+  for (const Sensor sensor : SensorsBetweenFrames()) {
+    const InnovationSummary summary = Summarize(sensor, run.records);
+    if (summary.ratio) {
+      cell->sensor_innovations.emplace(ToString(sensor), summary);
+    }
+  }
   cell->features_per_frame = Mean(features);
   if (used + gated > 0) {
     cell->gated_share = gated / (used + gated);

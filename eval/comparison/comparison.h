@@ -24,9 +24,11 @@ struct CellSeries {
   std::vector<double> nees_pose;
   std::vector<double> backend_ms;
   std::vector<double> features_used;
-  std::vector<double> tracks_in;       ///< passed to the estimator with the frame
-  std::vector<double> nis_ratio;       ///< normalised innovation squared over its rows; NaN without rows
-  std::vector<double> gnss_nis_ratio;  ///< of the newest epoch; NaN in outages, empty without GNSS
+  std::vector<double> tracks_in;  ///< passed to the estimator with the frame
+  std::vector<double> nis_ratio;  ///< normalised innovation squared over its rows; NaN without rows
+  /// By the key of a sensor between frames (ToString in core/estimator/measurement.h): of its newest
+  /// measurement; NaN in outages. Sensors without measurements are left out.
+  std::map<std::string, std::vector<double>> sensor_nis_ratio;
   // Of an audited filter, else empty (eval/audit/observability.h).
   std::vector<double> rank;
   std::vector<double> yaw_leak;       ///< [1/rad^2]
@@ -84,12 +86,13 @@ struct CellResult {
   /// Stages of backend_ms, means a frame; other back-end time belongs to neither.
   std::optional<double> propagate_ms, update_ms;
   InnovationSummary innovations;
-  InnovationSummary gnss_innovations;
+  std::map<std::string, InnovationSummary> sensor_innovations;  ///< as CellSeries::sensor_nis_ratio
   /// Share of tracks rejected by the chi-square gate; unknown when no track reached it. On data without
   /// outliers these are false rejections.
   std::optional<double> gated_share;
   /// Of a run with status and covariance (eval/metrics/silent_failure.h): seconds with an error beyond 5 of
-  /// its own sigma that nothing told, and share of the frames with an alarm although the error was within 3.
+  /// its own sigma while the status was ok, and share of the frames with an alarm although the error was
+  /// within 3.
   std::optional<double> silent_s, alarm_inside_share;
   /// Root mean square of the deviations that the run's own covariance predicts: square root of the mean trace
   /// of the covariance of phi and of dp.

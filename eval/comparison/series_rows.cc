@@ -40,9 +40,11 @@ std::vector<Column> ListColumns(const CellSeries& series) {
     }
     columns.push_back(MakeColumn(std::move(values)));
   }
-  for (const std::vector<double>* values :
-       {&series.nees_pose, &series.backend_ms, &series.nis_ratio, &series.gnss_nis_ratio}) {
+  for (const std::vector<double>* values : {&series.nees_pose, &series.backend_ms, &series.nis_ratio}) {
     columns.push_back(MakeColumn(*values));
+  }
+  for (const auto& [key, values] : series.sensor_nis_ratio) {
+    columns.push_back(MakeColumn(values));
   }
   columns.erase(
       std::remove_if(columns.begin(), columns.end(), [](const Column& c) { return !(c.range > 0); }),
@@ -133,9 +135,12 @@ CellSeries TakeRows(const CellSeries& series, const SeriesRows& rows) {
   taken.sigma = Take(series.sigma, kept);
   for (std::vector<double> CellSeries::*column :
        {&CellSeries::time_s, &CellSeries::nees_pose, &CellSeries::backend_ms, &CellSeries::features_used,
-        &CellSeries::tracks_in, &CellSeries::nis_ratio, &CellSeries::gnss_nis_ratio, &CellSeries::rank,
-        &CellSeries::yaw_leak, &CellSeries::position_leak}) {
+        &CellSeries::tracks_in, &CellSeries::nis_ratio, &CellSeries::rank, &CellSeries::yaw_leak,
+        &CellSeries::position_leak}) {
     taken.*column = Take(series.*column, kept);
+  }
+  for (const auto& [key, values] : series.sensor_nis_ratio) {
+    taken.sensor_nis_ratio[key] = Take(values, kept);
   }
   return taken;
 }

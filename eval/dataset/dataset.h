@@ -63,7 +63,7 @@ struct Dataset {
   std::vector<ImuSample> imu;
   ImuRejections imu_rejections;
   std::vector<std::string> remarks;        ///< what the reader passed over or assumed, as text
-  std::vector<TrackFrame> tracks;          ///< cam0/tracks.csv, grouped by stamp; empty when there is none
+  std::vector<TrackFrame> frames;          ///< cam0/tracks.csv, grouped by stamp; empty when there is none
   std::vector<ExtraCamera> extra_cameras;  ///< cam1, cam2, ... that have tracks
   std::vector<ImageEntry> images;          ///< cam0/data.csv, or of a bag; empty when there is none
   std::vector<TimeNs> camera_stamps;       ///< cam0/timestamps.csv; empty when there is none
@@ -72,7 +72,7 @@ struct Dataset {
   std::optional<Trajectory>
       truth;  ///< state_groundtruth_estimate0/{data.csv | data_pose.csv | data_position.csv}
   std::string truth_path;
-  /// Of DatasetStorage::spool_folder, else null; `imu`, `tracks` and the frames of `extra_cameras` are then
+  /// Of DatasetStorage::spool_folder, else null; `imu`, `frames` and those of `extra_cameras` are then
   /// empty, and `truth` is the part that a start needs, its extent beside it.
   std::shared_ptr<LogTables> tables;
   std::optional<TruthExtent> truth_extent;

@@ -45,12 +45,12 @@ Status CompleteFrames(const std::string& tracks_path, const DatasetStorage& stor
                           [dataset](const TrackFrame& frame) { return dataset->tables->frames.Add(frame); });
   }
   std::vector<TrackFrame> frames;
-  ALIDADE_RETURN_IF_ERROR(AddEmptyFrames(tracks_path, dataset->camera_stamps, Table(dataset->tracks),
+  ALIDADE_RETURN_IF_ERROR(AddEmptyFrames(tracks_path, dataset->camera_stamps, Table(dataset->frames),
                                          [&frames](const TrackFrame& frame) {
                                            frames.push_back(frame);
                                            return Status::Ok();
                                          }));
-  dataset->tracks = std::move(frames);
+  dataset->frames = std::move(frames);
   return Status::Ok();
 }
 
@@ -63,7 +63,7 @@ Status ReadSources(const fs::path& folder, const DatasetStorage& storage, Datase
   } else if (MayExist(tracks_path)) {
     Result<std::vector<TrackFrame>> tracks = ReadTracks(tracks_path);
     ALIDADE_RETURN_IF_ERROR(tracks.status());
-    dataset->tracks = std::move(tracks).value();
+    dataset->frames = std::move(tracks).value();
   }
   if (MayExist((folder / "timestamps.csv").string())) {
     Result<std::vector<TimeNs>> stamps = ReadStamps((folder / "timestamps.csv").string());
@@ -151,7 +151,7 @@ std::vector<TimeNs> StampsToWrite(const Dataset& dataset) {
   }
   std::vector<TimeNs> stamps;
   bool some_empty = false;
-  for (const TrackFrame& frame : dataset.tracks) {
+  for (const TrackFrame& frame : dataset.frames) {
     stamps.push_back(frame.stamp_ns);
     some_empty = some_empty || frame.observations.empty();
   }
@@ -159,7 +159,7 @@ std::vector<TimeNs> StampsToWrite(const Dataset& dataset) {
 }
 
 bool HasCamera(const Dataset& dataset) {
-  return !dataset.tracks.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
+  return !dataset.frames.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
 }
 
 /// Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
@@ -202,8 +202,8 @@ Status WriteCameraFolders(const Dataset& dataset, const std::string& mav) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((first / "sensor.yaml").string(),
                                                 CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));
   }
-  if (!dataset.tracks.empty()) {
-    ALIDADE_RETURN_IF_ERROR(WriteTracks(dataset.tracks, (first / "tracks.csv").string()));
+  if (!dataset.frames.empty()) {
+    ALIDADE_RETURN_IF_ERROR(WriteTracks(dataset.frames, (first / "tracks.csv").string()));
   }
   if (const std::vector<TimeNs> stamps = StampsToWrite(dataset); !stamps.empty()) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((first / "timestamps.csv").string(), StampsCsv(stamps)));

@@ -59,7 +59,7 @@ std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
     return dataset.camera_stamps;
   }
   std::vector<TimeNs> stamps;
-  // A file that cannot be read again is told by the next who reads it.
+  // A file that cannot be read again is reported by its next reader.
   static_cast<void>(TablesOf(dataset).frames.ForEach(
       [&stamps](const TrackFrame& frame) { stamps.push_back(frame.stamp_ns); }));
   if (stamps.empty()) {

@@ -105,8 +105,8 @@ Status ReadImuTable(const std::string& path, const DatasetStorage& storage, Data
   }
   ALIDADE_RETURN_IF_ERROR(sink.Finish(intake));
   dataset->imu_rejections = rejections;
-  if (const std::string told = DescribeRejections(rejections); !told.empty()) {
-    dataset->remarks.push_back(path + Format(": of %zu rows ", rows) + told +
+  if (const std::string rejected = DescribeRejections(rejections); !rejected.empty()) {
+    dataset->remarks.push_back(path + Format(": of %zu rows ", rows) + rejected +
                                (first_fault.empty() ? "" : "; the first: " + first_fault));
   }
   return Status::Ok();
@@ -256,7 +256,7 @@ Status DigestImu(const MeasurementLog& /*log*/, const LogTables& tables, LogHash
 void CheckImu(const Dataset& dataset, Findings* findings) {
   std::vector<TimeNs> stamps;
   ImuValues values;
-  // A file that cannot be read again is told by the next who reads it.
+  // A file that cannot be read again is reported by its next reader.
   static_cast<void>(TablesOf(dataset).imu.ForEach([&](const ImuSample& sample) {
     stamps.push_back(sample.stamp_ns);
     values.Add(sample);

@@ -66,7 +66,7 @@ LogTables TablesOf(const Dataset& dataset) {
   if (dataset.tables != nullptr) {
     return *dataset.tables;
   }
-  LogTables tables{Table<ImuSample>(dataset.imu), Table<TrackFrame>(dataset.tracks), {}};
+  LogTables tables{Table<ImuSample>(dataset.imu), Table<TrackFrame>(dataset.frames), {}};
   for (const ExtraCamera& extra : dataset.extra_cameras) {
     tables.extra_frames.emplace_back(extra.frames);
   }
@@ -87,7 +87,7 @@ Status MoveTablesToFiles(const std::string& folder, Dataset* dataset) {
   }
   auto tables = std::make_shared<LogTables>();
   ALIDADE_RETURN_IF_ERROR(MoveToFile(folder, &dataset->imu, &tables->imu));
-  ALIDADE_RETURN_IF_ERROR(MoveToFile(folder, &dataset->tracks, &tables->frames));
+  ALIDADE_RETURN_IF_ERROR(MoveToFile(folder, &dataset->frames, &tables->frames));
   for (ExtraCamera& extra : dataset->extra_cameras) {
     ALIDADE_RETURN_IF_ERROR(MoveToFile(folder, &extra.frames, &tables->extra_frames.emplace_back()));
   }

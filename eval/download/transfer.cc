@@ -176,7 +176,7 @@ void SetOptions(Transfer* transfer, char* reason) {
 }
 
 /// The server's answer to a request that curl found no fault with.
-TransferResult Judge(Transfer* transfer) {
+TransferResult ResultOf(Transfer* transfer) {
   const long code = transfer->Code();
   if (code == kHttpRangeWrong && transfer->offset > 0) {
     if (transfer->range.total == transfer->offset) {
@@ -188,9 +188,9 @@ TransferResult Judge(Transfer* transfer) {
   if (code != kHttpOk && code != kHttpPartial) {
     // Codes from 500 on, and 408 and 429, say: later.
     const bool later = code >= 500 || code == 408 || code == 429;
-    const std::string said = "the server answers " + std::to_string(code);
+    const std::string answer = "the server answers " + std::to_string(code);
     return {later ? TransferOutcome::kInterrupted : TransferOutcome::kRefused,
-            Status::Input(later ? said : transfer->request.url + ": " + said), 0, false};
+            Status::Input(later ? answer : transfer->request.url + ": " + answer), 0, false};
   }
   Status opened = transfer->file ? Status::Ok() : transfer->Begin();  // an empty body
   if (opened.ok() && (std::fflush(transfer->file.get()) != 0)) {
@@ -232,7 +232,7 @@ TransferResult TransferOnce(const DownloadRequest& request, const std::string& p
     return {TransferOutcome::kRefused, transfer.fault, transfer.total, false};
   }
   if (code == CURLE_OK) {
-    return Judge(&transfer);
+    return ResultOf(&transfer);
   }
   const std::string text = *reason != '\0' ? reason : curl_easy_strerror(code);
   const bool hopeless = code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL ||

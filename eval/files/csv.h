@@ -60,7 +60,7 @@ class CsvReader {
 
   CsvReader(std::string path, File file, char separator);
   void Split(std::string_view line);
-  /// Brings all of the line at begin_ into the block and tells its length; at the end of the file what is
+  /// Brings all of the line at begin_ into the block and returns its length; at the end of the file what is
   /// left.
   size_t LoadLine();
 

@@ -11,10 +11,11 @@ struct Machine {
   int cores = 0;                ///< logical ones; 0: unknown
 };
 
-/// The text of Linux' /proc/cpuinfo. What it does not tell stays unknown: on some processors the model name.
+/// The text of Linux' /proc/cpuinfo. What it does not contain stays unknown: on some processors the model
+/// name.
 [[nodiscard]] Machine ParseCpuInfo(std::string_view text);
 
-/// Reads that file; one that cannot be read tells nothing.
+/// Reads that file; one that cannot be read gives nothing.
 [[nodiscard]] Machine ReadMachine(const std::string& path = "/proc/cpuinfo");
 
 /// "Intel(R) Xeon(R) CPU (4 logical cores)", for people.

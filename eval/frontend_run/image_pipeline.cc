@@ -190,7 +190,7 @@ std::string DescribeLog(const MeasurementLog& log, const std::string& digest) {
 
 std::string DescribeLog(const MeasurementLog& log, const LogTables& tables, const std::string& digest) {
   size_t observations = 0;
-  // A file that cannot be read again is told by the next who reads it.
+  // A file that cannot be read again is reported by its next reader.
   static_cast<void>(tables.frames.ForEach(
       [&observations](const TrackFrame& frame) { observations += frame.observations.size(); }));
   return "measurement log " + digest + ": " + std::to_string(tables.imu.size()) + " IMU samples, " +

@@ -16,9 +16,9 @@ struct PipelineOptions {
   const std::atomic<bool>* stop = nullptr;                               ///< polled once an image
   std::function<void(size_t images_done, size_t images)> progress = {};  ///< by one thread at a time
   int jobs = 1;  ///< threads that draw images, where they are drawn; they change no byte
-  /// Told of an image that cannot be read; Ok skips its frame, an error ends the tracking. None: it ends.
+  /// Called for an image that cannot be read; Ok skips its frame, an error ends the tracking. None: it ends.
   std::function<Status(const Status& fault)> unreadable = {};
-  std::function<void(const std::string& text)> remark = {};  ///< told what was skipped
+  std::function<void(const std::string& text)> remark = {};  ///< called with what was skipped
   std::vector<TrackerStatistics>* statistics = nullptr;      ///< one an image, where asked for
   std::vector<double>* cpu_ms = nullptr;  ///< CPU time of the tracker an image, where asked for
 };

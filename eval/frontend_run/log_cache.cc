@@ -47,7 +47,7 @@ std::string TimingCsv(const std::vector<TrackFrame>& frames) {
   return text;
 }
 
-/// Times of the frames, in order, as far as the file tells.
+/// Times of the frames, in order, as far as the file has them.
 void ReadTiming(const std::string& path, std::vector<TrackFrame>* frames) {
   Result<CsvReader> csv = CsvReader::Open(path);
   if (!csv.ok()) {

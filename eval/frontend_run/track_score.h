@@ -80,7 +80,7 @@ struct ExposureTime {
 
 /// What tracks are judged against.
 struct TrackTruth {
-  /// Pose of the camera; empty where the truth does not tell. No function: no truth.
+  /// Pose of the camera; empty where the truth has none. No function: no truth.
   std::function<std::optional<Pose>(const ExposureTime& time)> T_WC;
   /// What the ray from a point along a unit vector meets. No function: unknown.
   std::function<SurfacePoint(const ExposureTime& time, const Eigen::Vector3d& p_W,

@@ -15,8 +15,12 @@ EstimatorConfig IdentifyingFilter(const EstimatorConfig& config) {
   filter.filter.first_estimates = false;
   filter.filter.slam_features = 0;
   filter.calibration = CalibrationConfig();
-  filter.vision.robust_kernel = filter.gnss.robust_kernel = filter.fix.robust_kernel = RobustKernel::kNone;
-  filter.vision.gate_probability = filter.gnss.gate_probability = filter.fix.gate_probability = kGrossErrors;
+  filter.vision.robust_kernel = filter.gnss.robust_kernel = RobustKernel::kNone;
+  filter.vision.gate_probability = filter.gnss.gate_probability = kGrossErrors;
+  ForEachSensorEntry([&](auto entry, Sensor) {
+    entry.Config(filter).robust_kernel = RobustKernel::kNone;
+    entry.Config(filter).gate_probability = kGrossErrors;
+  });
   return filter;
 }
 
@@ -47,9 +51,9 @@ void AssumeNoise(const PerNoise& noise, const EstimatorConfig& given, EstimatorC
   config->gnss.corrections.pseudorange_std_m = gnss * given.gnss.corrections.pseudorange_std_m;
   config->gnss.corrections.range_rate_std_mps = gnss * given.gnss.corrections.range_rate_std_mps;
   config->gnss.corrections.model_std_scale = gnss * given.gnss.corrections.model_std_scale;
-  const double fix = noise[IndexOf(NoiseSource::kMeasurement)];
-  config->fix.std_scale = fix * given.fix.std_scale;
-  config->fix.std_floor_m = fix * given.fix.std_floor_m;
+  ForEachSensorEntry([&](auto entry, Sensor) {
+    entry.Config(*config).AssumeNoise(entry.Config(given), noise[IndexOf(NoiseSource::kMeasurement)]);
+  });
 }
 
 Result<LinearSystem> RecordFilter(const EstimatorConfig& config, const MeasurementLog& log,

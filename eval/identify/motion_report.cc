@@ -25,10 +25,13 @@ struct InnovationSensor {
   const char* colour;
 };
 
-constexpr std::array<InnovationSensor, 3> kInnovationSensors = {
-    {{RowSource::kVision, "vision", "#0072b2"},
-     {RowSource::kGnss, "gnss", "#d55e00"},
-     {RowSource::kMeasurement, "fix", "#009e73"}}};
+const std::array<InnovationSensor, 3>& InnovationSensors() {
+  static const std::array<InnovationSensor, 3> sensors = {
+      {{RowSource::kVision, "vision", "#0072b2"},
+       {RowSource::kGnss, "gnss", "#d55e00"},
+       {RowSource::kMeasurement, MeasurementKeys().c_str(), "#009e73"}}};
+  return sensors;
+}
 
 std::size_t Row(RowSource source) {
   return static_cast<std::size_t>(source);
@@ -86,7 +89,7 @@ std::string MotionNoiseJson(const MotionNoise& noise, const std::string& dataset
   for (const HalfFit& half : noise.halves) {
     MotionJson entry;
     entry["half"] = half.name;
-    for (const InnovationSensor& sensor : kInnovationSensors) {
+    for (const InnovationSensor& sensor : InnovationSensors()) {
       if (HasRows(noise, sensor.source)) {
         entry[sensor.name] = {
             {"nis_over_dof", RoundedJson(half.nis_ratio[Row(sensor.source)], kMotionDigits)},
@@ -101,13 +104,13 @@ std::string MotionNoiseJson(const MotionNoise& noise, const std::string& dataset
 
 std::string InnovationsCsv(const MotionNoise& noise) {
   std::string text = "timestamp_ns,log_likelihood";
-  for (const InnovationSensor& sensor : kInnovationSensors) {
+  for (const InnovationSensor& sensor : InnovationSensors()) {
     text += std::string(",") + sensor.name + "_nis," + sensor.name + "_dof";
   }
   text += "\n";
   for (const FrameFit& frame : noise.frames) {
     std::vector<std::string> fields = {std::to_string(frame.stamp_ns), CsvNumber(frame.log_likelihood)};
-    for (const InnovationSensor& sensor : kInnovationSensors) {
+    for (const InnovationSensor& sensor : InnovationSensors()) {
       fields.push_back(CsvNumber(frame.nis[Row(sensor.source)]));
       fields.push_back(std::to_string(frame.dof[Row(sensor.source)]));
     }
@@ -144,7 +147,7 @@ std::string NisFigure(const MotionNoise& noise) {
   SvgCanvas canvas(kFigureWidth, kFigureTop + kFigureHeight + 34);
   SvgPlot plot{"time [s]", "NIS / rows"};
   std::vector<std::pair<std::string, SvgStroke>> legend;
-  for (const InnovationSensor& sensor : kInnovationSensors) {
+  for (const InnovationSensor& sensor : InnovationSensors()) {
     if (HasRows(noise, sensor.source)) {
       plot.curves.push_back(NisCurve(noise, sensor));
       legend.emplace_back(sensor.name, plot.curves.back().stroke);
@@ -171,7 +174,7 @@ std::string MotionNoiseTable(const MotionNoise& noise) {
   text += "\nNIS over rows of a half, with the noises of the other half:\n";
   for (const HalfFit& half : noise.halves) {
     text += Format("%-8s", half.name.c_str());
-    for (const InnovationSensor& sensor : kInnovationSensors) {
+    for (const InnovationSensor& sensor : InnovationSensors()) {
       if (HasRows(noise, sensor.source)) {
         text += Format("  %s %.3f (%d rows)", sensor.name, half.nis_ratio[Row(sensor.source)],
                        half.dof[Row(sensor.source)]);

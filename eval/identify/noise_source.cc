@@ -1,5 +1,9 @@
 #include "eval/identify/noise_source.h"
 
+#include <string>
+
+#include "core/estimator/measurement.h"
+
 namespace alidade {
 
 const char* NameOf(NoiseSource source) {
@@ -19,7 +23,8 @@ const char* NameOf(NoiseSource source) {
     case NoiseSource::kMeasurement:
       break;
   }
-  return "fix_scale";
+  static const std::string name = MeasurementKeys() + "_scale";
+  return name.c_str();
 }
 
 const char* UnitOf(NoiseSource source) {

@@ -60,7 +60,7 @@ double LowerQuartile(const std::vector<RestWindow>& windows, double (*figure)(co
 }
 
 /// Marks the windows at rest.
-void JudgeWindows(const InitConfig& init, std::vector<RestWindow>* windows) {
+void MarkRest(const InitConfig& init, std::vector<RestWindow>* windows) {
   for (RestWindow& window : *windows) {
     window.at_rest = window.count >= kLeastOfWindow &&
                      window.statistics.gyro_std_radps < init.static_max_gyro_std_radps &&
@@ -201,7 +201,7 @@ Result<RestSpan> FindRestSpan(const std::vector<ImuSample>& imu, const InitConfi
   }
   const TimeNs period_ns = MedianStep(imu);
   std::vector<RestWindow> windows = SplitIntoWindows(imu);
-  JudgeWindows(init, &windows);
+  MarkRest(init, &windows);
   RestSpan span;
   span.recording_s = SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns);
   const auto [first, end] = LongestRun(imu, windows, period_ns, &span.rest_s);

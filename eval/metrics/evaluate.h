@@ -3,19 +3,19 @@
 #include <optional>
 #include <vector>
 
-#include "eval/metrics/alignment.h"
 #include "eval/metrics/association.h"
 #include "eval/metrics/error_statistics.h"
 #include "eval/metrics/metrics.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/state_pair.h"
 #include "eval/metrics/tool_rpe.h"
+#include "eval/metrics/trajectory_alignment.h"
 #include "eval/trajectory/trajectory.h"
 
 namespace alidade {
 
 struct EvaluationOptions {
-  Alignment alignment = Alignment::kPosYaw;
+  TrajectoryAlignment alignment = TrajectoryAlignment::kPosYaw;
   /// The alignment is fitted to this first share of the pairs; the rest shows drift.
   double align_share = 1;
   AssociationOptions association;

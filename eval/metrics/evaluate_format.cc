@@ -187,7 +187,7 @@ std::string FormatEvaluationText(const Evaluation& evaluation) {
                  evaluation.estimate_rows, evaluation.truth_rows,
                  DescribeAssociation(evaluation.options.association).c_str());
   text += Format("duration   %.3f s, truth path %.3f m\n", evaluation.duration_s, evaluation.path_m);
-  if (evaluation.options.alignment == Alignment::kSim3) {
+  if (evaluation.options.alignment == TrajectoryAlignment::kSim3) {
     text += Format("scale      %.6f\n", evaluation.transform.scale);
   }
   text += Format("\n%-22s%14s%14s%14s\n", "absolute error", "rmse [m]", "rmse [deg]", "max [m]");

@@ -5,10 +5,11 @@
 
 namespace alidade {
 
-Status WriteForOtherTools(const Trajectory& truth, const Trajectory& estimate, Alignment alignment,
+Status WriteForOtherTools(const Trajectory& truth, const Trajectory& estimate, TrajectoryAlignment alignment,
                           const std::string& folder) {
   const std::string header = "# timestamp tx ty tz qx qy qz qw\n";
-  const std::string align = alignment == Alignment::kPos ? "none" : std::string(ToString(alignment));
+  const std::string align =
+      alignment == TrajectoryAlignment::kPos ? "none" : std::string(ToString(alignment));
   ALIDADE_RETURN_IF_ERROR(
       WriteFileAtomically(folder + "/stamped_groundtruth.txt", header + FormatTum(truth)));
   ALIDADE_RETURN_IF_ERROR(

@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// What a run said of itself at one instant, and how far it was off.
+/// What a run reported of itself at one instant, and how far it was off.
 struct ReportedError {
   TimeNs stamp_ns = 0;
   double nees_pose = 0;  ///< NaN: no regular covariance, which says nothing

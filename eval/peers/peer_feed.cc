@@ -14,9 +14,9 @@ Result<PeerSequence> ReadPeerSequence(const std::string& path, const std::string
   ALIDADE_RETURN_IF_ERROR(dataset.status());
   PeerSequence sequence;
   sequence.dataset = std::move(*dataset);
-  sequence.from_tracks = medium == "tracks" || (medium == "auto" && !sequence.dataset.tracks.empty());
+  sequence.from_tracks = medium == "tracks" || (medium == "auto" && !sequence.dataset.frames.empty());
   if (sequence.from_tracks) {
-    for (const TrackFrame& frame : sequence.dataset.tracks) {
+    for (const TrackFrame& frame : sequence.dataset.frames) {
       sequence.frames_ns.push_back(frame.stamp_ns);
     }
   } else {

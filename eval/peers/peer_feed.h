@@ -12,7 +12,7 @@ namespace alidade {
 /// A sequence as a driver gives it to another system.
 struct PeerSequence {
   Dataset dataset;
-  bool from_tracks = false;       ///< frames are dataset.tracks, else dataset.images
+  bool from_tracks = false;       ///< frames are dataset.frames, else dataset.images
   std::vector<TimeNs> frames_ns;  ///< camera stamps, strictly increasing
 };
 

@@ -31,7 +31,7 @@ struct PeerRun {
 /// first is what `result` of a plan names. Errors: kDiverged: no frame has a state; kOutput.
 Status WritePeerRun(const PeerRun& run, const std::string& folder);
 
-/// What is left of main() in a driver: runs `execute` with the arguments and tells its error after `name`.
+/// What is left of main() in a driver: runs `execute` with the arguments and prints its error after `name`.
 /// Returns the exit code, 0 or 1.
 int RunDriver(const char* name, int argc, char** argv,
               Status (*execute)(const std::vector<std::string>& arguments));

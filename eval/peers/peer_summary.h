@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-/// What a driver tells of a run: when, after the first frame, the first pose came and the alignment with
+/// What a driver reports of a run: when, after the first frame, the first pose came and the alignment with
 /// GNSS, and Completion of the sequence.
 std::string SummaryText(const PeerSequence& sequence, const PeerRun& run,
                         const std::optional<TimeNs>& aligned_ns);

@@ -105,7 +105,7 @@ std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& con
   EstimatorConfig filter = config;
   filter.backend = Backend::kFilter;
   filter.gnss.enabled = false;
-  filter.fix.enabled = false;
+  ForEachSensorEntry([&](auto entry, Sensor) { entry.Config(filter).enabled = false; });
   if (filter.init.method == InitMethod::kTruth) {
     filter.init.method = InitMethod::kAuto;
   }

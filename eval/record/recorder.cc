@@ -64,7 +64,7 @@ Json SensorJson(const RunResult& result, Sensor sensor) {
                {"used", used},
                {"gated", gated},
                {"skipped", result.skipped[sensor]}};
-  if (sensor == Sensor::kFix && result.global && result.global->source == GlobalFrame::Source::kFixes) {
+  if (result.global && result.global->source == sensor) {
     const GlobalFrame& global = *result.global;
     json["aligned_ns"] = global.stamp_ns;
     json["yaw_rad"] = global.yaw_rad;

@@ -5,12 +5,13 @@
 
 #include "eval/files/output_file.h"
 #include "eval/record/satellite_rows.h"
+#include "gnss/model/measurement_model.h"
 #include "gnss/positioning/position_file.h"
 
 namespace alidade {
 
 bool HasGnss(const RunResult& result) {
-  return result.global && result.global->source == GlobalFrame::Source::kGnss;
+  return result.global && result.global->source == Sensor::kGnss;
 }
 
 std::string ClockColumns() {
@@ -44,10 +45,9 @@ void AppendAntenna(const RunRecord& record, const GlobalFrame& global, std::stri
   const NavEstimate& e = record.estimate;
   SinglePointSolution row;
   row.stamp_ns = row.tag_ns = e.stamp_ns - SecondsToNs(global.time_offset_s);
-  row.position_E = enu.ToEcef(e.nav.p_WB + e.nav.R_WB * global.p_BA);
-  Eigen::Matrix<double, 3, 6> antenna;
-  antenna << -e.nav.R_WB * Skew(global.p_BA), Eigen::Matrix3d::Identity();
-  const Eigen::Matrix<double, 3, 6> to_ecef = enu.R_EN * antenna;
+  Eigen::Matrix<double, 3, 15> antenna;
+  row.position_E = AntennaMount{enu, global.p_BA}.Position(e.nav, &antenna);
+  const Eigen::Matrix<double, 3, 6> to_ecef = antenna.leftCols<6>();
   row.position_covariance_E = to_ecef * e.covariance.topLeftCorner<6, 6>() * to_ecef.transpose();
   row.has_velocity = true;
   row.velocity_E = enu.R_EN * e.nav.v_WB;

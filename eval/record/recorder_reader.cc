@@ -48,19 +48,33 @@ Eigen::Vector3d GetVector(const Json& json, const char* key) {
   return values.size() == 3 ? Eigen::Vector3d(values.data()) : Eigen::Vector3d::Zero();
 }
 
-/// How the run came to stand in the ENU frame or in that of the position fixes, if it did.
+/// The sensor that aligned the run, by run.json.
+std::optional<Sensor> AligningSensor(const Json& run) {
+  const auto aligned = [&](std::string_view key) {
+    const Json section = Get(run, std::string(key).c_str(), Json::object());
+    return Get(section, "aligned", false) && section.contains("aligned_ns");
+  };
+  if (aligned("gnss")) {
+    return Sensor::kGnss;
+  }
+  std::optional<Sensor> source;
+  ForEachSensorEntry(
+      [&](auto entry, Sensor sensor) { source = !source && aligned(entry.kKey) ? sensor : source; });
+  return source;
+}
+
+/// How the run came to stand in the ENU frame or in that of a position sensor, if it did.
 std::optional<GlobalFrame> ReadGlobalFrame(const Json& run) {
-  const Json gnss = Get(run, "gnss", Json::object());
-  const bool by_gnss = Get(gnss, "aligned", false);
-  const Json json = by_gnss ? gnss : Get(run, "fix", Json::object());
-  if (!Get(json, "aligned", false)) {
+  const std::optional<Sensor> source = AligningSensor(run);
+  if (!source) {
     return std::nullopt;
   }
+  const Json json = Get(run, std::string(ToString(*source)).c_str(), Json::object());
   GlobalFrame global;
   if (json.contains("anchor_E")) {
     global.enu = EnuFrame::At(GetVector(json, "anchor_E"));
   }
-  global.source = by_gnss ? GlobalFrame::Source::kGnss : GlobalFrame::Source::kFixes;
+  global.source = *source;
   global.p_BA = GetVector(json, "lever_arm_m");
   global.stamp_ns = Get(json, "aligned_ns", TimeNs{0});
   global.time_offset_s = Get(json, "time_offset_s", 0.0);

@@ -128,7 +128,7 @@ void RunBuilder::On(const RestartedEvent& event) {
 void RunBuilder::On(const AlignedEvent& event) {
   result_.global = event.global;
   result_.align_report = event.alignment.report;
-  // What was told in the local world is turned with it; the last record tells the state as it now stands.
+  // Records in the local world are turned with it; the last record holds the state after the alignment.
   if (result_.spool != nullptr) {
     Keep(result_.spool->Turn(event.alignment));
   }

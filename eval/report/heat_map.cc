@@ -13,7 +13,8 @@ namespace {
 
 using HeatRgb = std::array<double, 3>;
 
-/// From white to the darkest colour of each side; orange and violet are told apart with any colour vision.
+/// From white to the darkest colour of each side; orange and violet are distinguishable with any colour
+/// vision.
 constexpr std::array<HeatRgb, 4> kWarmRamp = {
     {{255, 255, 255}, {253, 208, 149}, {236, 132, 44}, {158, 62, 4}}};
 constexpr std::array<HeatRgb, 4> kColdRamp = {

@@ -22,7 +22,7 @@ namespace {
 constexpr double kWidth = 252;
 constexpr double kLeft = 40, kRight = 10, kBelow = 26;
 constexpr size_t kMostEstimators = 8;
-/// The page's colours (assets/report_data.js): told apart with any colour vision.
+/// The page's colours (assets/report_data.js): distinguishable with any colour vision.
 constexpr std::array<const char*, kMostEstimators> kColours = {"#0072b2", "#d55e00", "#009e73", "#b5558c",
                                                                "#c98500", "#3aa0d8", "#6b2346", "#6b6b14"};
 const SvgStroke kTruth{"#1b2430", 1.4, "1 2"};

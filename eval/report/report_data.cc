@@ -62,6 +62,10 @@ Json CellData(const std::string& label, const std::vector<Figure>& figures, cons
                    {"n", result.count},
                    {"q", RoundedJson(BoxQuantiles(result.pos_errors_m), 4)}});
   }
+  Json sensors = Json::object();
+  for (const auto& [key, innovations] : cell.sensor_innovations) {
+    sensors[key] = InnovationJson(innovations);
+  }
   return {{"estimator", label},
           {"mode", ModeWord(cell.smoothed)},
           {"sequence", cell.sequence},
@@ -78,7 +82,7 @@ Json CellData(const std::string& label, const std::vector<Figure>& figures, cons
                                   cell.update_ms.value_or(kNan), cell.backend_ms.value_or(kNan)},
                                  4)},
           {"nis", InnovationJson(cell.innovations)},
-          {"gnss_nis", InnovationJson(cell.gnss_innovations)},
+          {"sensor_nis", sensors},
           {"rpe", rpe}};
 }
 
@@ -160,6 +164,10 @@ Json TablesData(const Comparison& comparison, const std::vector<Figure>& figures
                {"truth_covariance", comparison.SequencesWithTruthCovariance()},
                {"sequences", ListSequences(rows)},
                {"estimators", ListLabels(rows)}};
+  data["sensors"] = Json::array({{{"key", ToString(Sensor::kGnss)}, {"name", "GNSS"}}});
+  ForEachSensorEntry([&](auto entry, Sensor) {
+    data["sensors"].push_back({{"key", entry.kKey}, {"name", entry.kPluralName}});
+  });
   data["figures"] = Json::array();
   for (const Figure& figure : figures) {
     data["figures"].push_back(FigureJson(figure));

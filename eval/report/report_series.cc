@@ -92,6 +92,10 @@ Json SeriesJson(const CellSeries& whole, int most) {
   const CellSeries thinned =
       fits ? CellSeries() : TakeRows(whole, PickRows(whole, static_cast<size_t>(most) / 2));
   const CellSeries& series = fits ? whole : thinned;
+  Json sensors = Json::object();
+  for (const auto& [key, ratios] : series.sensor_nis_ratio) {
+    sensors[key] = RoundedJson(ratios, 3);
+  }
   return {{"t", PackedJson(series.time_s, 1e-3)},
           {"regular", RegularMask(series.regular)},
           {"truth", PackComponents(series.truth_position, 0, 1.0, 1e-3)},
@@ -106,7 +110,7 @@ Json SeriesJson(const CellSeries& whole, int most) {
           {"features", RoundedJson(series.features_used, 4)},
           {"tracks", RoundedJson(series.tracks_in, 4)},
           {"nis", RoundedJson(series.nis_ratio, 3)},
-          {"gnss_nis", RoundedJson(series.gnss_nis_ratio, 3)},
+          {"sensor_nis", sensors},
           {"rank", RoundedJson(series.rank, 2)},
           {"yaw_leak", LeakJson(series.yaw_leak)},
           {"position_leak", LeakJson(series.position_leak)}};

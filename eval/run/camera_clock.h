@@ -14,10 +14,10 @@ namespace alidade {
 ///
 /// A step of the stamps that is much longer than those before is either a silence of the camera or a jump.
 /// Both say how far the rig has turned between the frame before the step and a frame after it: the gyroscope
-/// over the stamps as they are, or over as much less as the step is too long. The tracks of both frames
+/// over the stamps as they are, or over the usual step. The tracks of both frames
 /// decide, by their distance to the epipolar plane of the best direction of translation (Kneip and Lynen
-/// 2013; frontend/initialization/epipolar_ray.h). Without enough common tracks, or a turn that tells, nothing
-/// is said and the stamps hold.
+/// 2013; frontend/initialization/epipolar_ray.h). Without enough common tracks, or a turn that decides, the
+/// stamps stay as they are.
 ///
 /// Neglected: clocks that step back (such frames are late and refused), and jumps of less than kLeastStepS.
 class CameraClock {
@@ -39,7 +39,7 @@ class CameraClock {
   /// Every sample that comes; one out of order is ignored.
   void AddImu(const ImuSample& sample);
   /// A frame that the IMU reaches at `imu_ns`, the time of its stamp; every one, in order. By how much the
-  /// stamps have jumped [ns], if this frame tells; it and later frames lie that much earlier.
+  /// stamps have jumped [ns], if this frame decides; it and later frames lie that much earlier.
   std::optional<TimeNs> FindJump(const TrackFrame& frame, TimeNs imu_ns, const Eigen::Vector3d& gyro_bias);
 
  private:

@@ -9,7 +9,7 @@ namespace alidade {
 
 FixRun::FixRun(const EstimatorConfig& config, const RigCalibration& rig, double lateness_s, bool with_gnss,
                Estimator* estimator, std::vector<SessionEvent>* events)
-    : MeasurementRun(Sensor::kFix, lateness_s, events),
+    : MeasurementRun(SensorOf<PositionFixEntry>(), lateness_s, events),
       estimator_(*estimator),
       sensors_(rig.fixes),
       feed_(rig, with_gnss),
@@ -105,7 +105,7 @@ Result<std::optional<GnssAlignment>> FixRun::Align(TimeNs stamp_ns) {
   alignment_ = alignment;
   AlignedEvent event;
   event.global.enu = alignment->enu;
-  event.global.source = GlobalFrame::Source::kFixes;
+  event.global.source = SensorOf<PositionFixEntry>();
   event.global.stamp_ns = stamp_ns;
   event.global.yaw_rad = alignment->yaw_rad;
   event.global.yaw_std_rad = std::sqrt(alignment->covariance(0, 0));

@@ -49,7 +49,7 @@ class GnssFeed {
 
   [[nodiscard]] size_t size() const { return waiting_.size(); }
   [[nodiscard]] TimeNs last_tag_ns() const { return last_tag_ns_; }
-  /// IMU time of an epoch of this tag as far as the last popped epoch's clock tells; nothing while none is
+  /// IMU time of an epoch of this tag by the clock of the last popped epoch; nothing while none is
   /// known.
   [[nodiscard]] std::optional<TimeNs> ExpectedStamp(TimeNs tag_ns) const;
 

@@ -13,7 +13,7 @@ namespace {
 /// clocks and atmosphere dominate what is stated, but hardly change within a minute, and mostly they are
 /// better.
 double ScatterShare(const SinglePointSolution& solution) {
-  constexpr int kLeastFreedom = 8;  // fewer residuals do not tell
+  constexpr int kLeastFreedom = 8;  // fewer residuals do not decide
   constexpr double kLeast = 0.04;
   double squares = 0;
   for (const SatelliteResidual& satellite : solution.satellites) {
@@ -152,8 +152,8 @@ void GnssRun::ReportAligned(const GnssAlignment& alignment, TimeNs stamp_ns, dou
   alignment_ = alignment;
   feed_.ShiftTime(alignment.time_offset_s);
   AlignedEvent event;
-  event.global = {alignment.enu,         GlobalFrame::Source::kGnss, receiver_.p_BA, stamp_ns,
-                  feed_.time_offset_s(), alignment.yaw_rad,          yaw_std_rad};
+  event.global = {alignment.enu,         Sensor::kGnss,     receiver_.p_BA, stamp_ns,
+                  feed_.time_offset_s(), alignment.yaw_rad, yaw_std_rad};
   event.alignment = alignment;
   event.estimate = estimator_.Latest();
   event.clock = estimator_.LatestClock();

@@ -39,7 +39,7 @@ bool Recovery::GiveUp(TimeNs stamp_ns) {
   config.init.method = config.init.method == InitMethod::kTruth ? InitMethod::kAuto : config.init.method;
   // Dead reckoning leaves the yaw of a new start uncertain by up to a radian, and the smoother's prior is
   // linear in it: where a rough scale is corrected afterwards, the velocity turns against its prior and seems
-  // to tell the yaw.
+  // to determine the yaw.
   const bool sharp = config.backend == Backend::kSmoother;
   initializer_ = std::make_unique<Initializer>(config, rig_, sharp ? ScaleDemand::Sharp() : ScaleDemand());
   return true;

@@ -20,6 +20,10 @@ Result<std::unique_ptr<Session>> Session::Make(const EstimatorConfig& config, co
   if (!options.camera && (!config.gnss.enabled || !options.gnss)) {
     return Status::Config("gnss.enabled: a session without a camera needs GNSS; expected true, and a setup");
   }
+  if (!options.camera && config.backend == Backend::kBatch) {
+    return Status::Config(
+        "backend: batch, but a session without a camera has no frames; expected filter or smoother");
+  }
   std::unique_ptr<Estimator> estimator = MakeEstimator(config, rig);
   auto session = std::make_unique<Session>(config, rig, std::move(options), estimator.get());
   session->own_estimator_ = std::move(estimator);

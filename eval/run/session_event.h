@@ -64,12 +64,10 @@ struct RestartedEvent {
   std::string report;
 };
 
-/// How the estimates came to stand in the ENU frame, or in the frame of the position fixes.
+/// How the estimates came to stand in the ENU frame, or in the frame of a position sensor.
 struct GlobalFrame {
-  std::optional<EnuFrame> enu;  ///< nothing: a frame whose place on the Earth is not known
-  /// What the alignment was estimated from.
-  enum class Source { kGnss, kFixes };
-  Source source = Source::kGnss;
+  std::optional<EnuFrame> enu;                     ///< nothing: a frame whose place on the Earth is not known
+  Sensor source = Sensor::kGnss;                   ///< whose measurements the alignment was estimated from
   Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();  ///< of GNSS
   TimeNs stamp_ns = 0;                             ///< of the first state that stands there
   double time_offset_s = 0;                        ///< IMU time less GPST, as given or estimated; of GNSS
@@ -77,7 +75,7 @@ struct GlobalFrame {
   double yaw_std_rad = 0;
 };
 
-/// The local world was turned into the ENU frame or that of the position fixes: estimates from now on stand
+/// The local world was turned into the ENU frame or that of a position sensor: estimates from now on stand
 /// there; TurnIntoEnu with `alignment` turns earlier ones.
 struct AlignedEvent {
   GlobalFrame global;

@@ -24,7 +24,7 @@ Status ImageFeed::AddImu(const ImuSample& sample) {
   const bool finite = sample.gyro.allFinite() && sample.accel.allFinite();
   Status status;
   if (finite && imu_.Add(sample) == ImuStream::Arrival::kTaken) {
-    // Before the session hears of the sample: a frame is then in time.
+    // Before the session gets the sample: a frame is then in time.
     status = TrackUntil(imu_.newest_ns() - lateness_ns_);
     while (imu_.PassOver(imu_.newest_ns() - lateness_ns_ - kForgetNs)) {
     }

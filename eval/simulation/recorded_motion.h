@@ -24,7 +24,7 @@ Result<std::string> FindTruth(const std::string& source, const std::string& trut
 
 /// The rows without a gap above max_gap_s: all of them, or with a gap the longest such stretch
 /// (TruthGaps::kLongestSpan; the first of equals) or an error (kRefuse). Precondition: stamps increase.
-/// Errors (kInput) tell the number of gaps and name the keys.
+/// Errors (kInput) give the number of gaps and name the keys.
 Result<Trajectory> KeepGapFree(const Trajectory& recorded, double max_gap_s, TruthGaps policy);
 
 /// Reads the poses of `source`, keeps a gap-free stretch of at most duration_s, and fits a spline with knots

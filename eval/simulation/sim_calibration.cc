@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/estimator/measurement.h"
 #include "core/lie.h"
 #include "core/random.h"
 
@@ -22,9 +23,13 @@ Result<RigCalibration> MiscalibratedRig(const SimulatorConfig& config, const Rig
       config.calibration_antenna_error_m *
       RandomStream(seed, "calibration_error/antenna").Normal3().normalized();
   wrong.gnss.p_BA += antenna_error;
-  for (FixSensor& sensor : wrong.fixes) {
-    sensor.p_BA += antenna_error;
-  }
+  ForEachSensorEntry([&](auto entry, Sensor) {
+    if constexpr (HasLeverArm<typename decltype(entry)::Whitened>) {
+      for (auto& sensor : entry.Sensors(wrong)) {
+        sensor.p_BA += antenna_error;
+      }
+    }
+  });
   Eigen::Vector4d intrinsics = rig.camera.intrinsics();
   for (int i = 0; i < 4; ++i) {
     intrinsics[i] +=

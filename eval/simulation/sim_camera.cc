@@ -42,7 +42,7 @@ SimulatedTracks SimulateTracks(const SimulatorConfig& config, const ContinuousTr
 }
 
 void TakeTracks(SimulatedTracks tracks, Dataset* dataset) {
-  dataset->tracks = std::move(tracks.frames);
+  dataset->frames = std::move(tracks.frames);
   for (std::size_t k = 0; k < dataset->extra_cameras.size(); ++k) {
     dataset->extra_cameras[k].frames = std::move(tracks.extra_frames[k]);
   }

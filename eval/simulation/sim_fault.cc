@@ -233,7 +233,7 @@ FaultSpan::FaultSpan(const SimulatorConfig& config, TimeNs start_ns)
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
   const FaultSpan span(config, start_ns);
   const auto fails = [=](TimeNs stamp_ns) { return span.Contains(stamp_ns); };
-  ApplyToTracks(config, seed, "", fails, &dataset->tracks);
+  ApplyToTracks(config, seed, "", fails, &dataset->frames);
   for (std::size_t i = 0; i < dataset->extra_cameras.size(); ++i) {
     ApplyToTracks(config, seed, "/cam" + std::to_string(i + 1), fails, &dataset->extra_cameras[i].frames);
   }
@@ -243,7 +243,7 @@ void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_
   }
   if (config.fault == SimFaultKind::kCameraClock) {
     const TimeNs jump_ns = SecondsToNs(config.fault_clock_jump_s);
-    for (TrackFrame& frame : dataset->tracks) {
+    for (TrackFrame& frame : dataset->frames) {
       frame.stamp_ns += frame.stamp_ns >= span.begin_ns ? jump_ns : 0;
     }
   }

@@ -49,7 +49,7 @@ class FaultSource {
   std::string camera_;
 };
 
-/// How far the position that GNSS and position fixes tell is pulled off the truth, as by a spoofer: at
+/// How far the measured position of GNSS and position fixes is pulled off the truth, as by a spoofer: at
 /// fault_ramp_mps in a horizontal direction that the seed draws, from fault_start_s on for fault_duration_s,
 /// and from then on it stays.
 class SimPull {

@@ -32,7 +32,7 @@ std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
     }
   }
   if (stamps.empty()) {
-    for (const TrackFrame& frame : dataset.tracks) {
+    for (const TrackFrame& frame : dataset.frames) {
       stamps.push_back(frame.stamp_ns);
     }
   }

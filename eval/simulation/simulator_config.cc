@@ -155,7 +155,7 @@ void DescribeMiscalibration(SimulatorConfig* config, ConfigVisitor& visitor) {
 void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Enumeration(
       {"fault", "-",
-       "simulated failure of camera, IMU, track ids or GNSS, to test what is told and what is recovered"},
+       "simulated failure of camera, IMU, track ids or GNSS, to test what is reported and what is recovered"},
       &config->fault,
       {{"none", SimFaultKind::kNone},
        {"blackout", SimFaultKind::kBlackout},

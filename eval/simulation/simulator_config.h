@@ -32,7 +32,7 @@ enum class SimOutlierKind {
 enum class SimFaultKind {
   kNone,
   kBlackout,  ///< the camera sees nothing, and all tracks end
-  kImu,       ///< the IMU tells noise
+  kImu,       ///< the IMU gives noise
   kTracks,    ///< the tracks of a frame exchange their ids at random
   kBlackoutAndImu,
   kFrozen,           ///< every frame repeats the first one of the fault

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <memory>
 
-#include "eval/metrics/alignment.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/state_pair.h"
+#include "eval/metrics/trajectory_alignment.h"
 #include "eval/run/gnss_feed.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
@@ -66,7 +66,7 @@ const PositionError* LastBefore(const std::vector<PositionError>& errors, const 
   return last;
 }
 
-void JudgeOutage(const std::vector<PositionError>& errors, const GnssScenario& scenario,
+void ScoreOutage(const std::vector<PositionError>& errors, const GnssScenario& scenario,
                  GnssRunFigures* figures) {
   figures->outage_rmse_m = Rmse(errors, scenario.outage_start_s, scenario.outage_end_s);
   const PositionError* last = LastBefore(errors, scenario);
@@ -97,19 +97,23 @@ double LargestStep(const std::vector<PositionError>& errors, double around_s) {
 
 }  // namespace
 
-GnssScenario ScenarioOf(const SimGnssConfig& config, double rest_s, double duration_s) {
+GnssScenario ScenarioOf(const SimulatorConfig& config, double duration_s) {
+  const SimGnssConfig& gnss = config.gnss;
   GnssScenario scenario;
-  scenario.motion_start_s = rest_s;
-  scenario.clock_jump_s = config.clock_jump_at_s;
-  if (config.outage_start_s >= 0) {
-    scenario.outage_start_s = config.outage_start_s;
-    scenario.outage_end_s = std::min(config.outage_start_s + config.outage_s, duration_s);
-    scenario.outage_satellites = config.outage_satellites;
+  scenario.motion_start_s = config.rest_s;
+  scenario.clock_jump_s = gnss.clock_jump_at_s;
+  const bool has_receiver = gnss.rate_hz > 0;
+  const double start_s = has_receiver ? gnss.outage_start_s : config.fix.outage_start_s;
+  if (start_s >= 0) {
+    scenario.outage_start_s = start_s;
+    scenario.outage_end_s =
+        std::min(start_s + (has_receiver ? gnss.outage_s : config.fix.outage_s), duration_s);
+    scenario.outage_satellites = has_receiver ? gnss.outage_satellites : 0;
   }
   return scenario;
 }
 
-GnssRunFigures JudgeGlobalRun(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
+GnssRunFigures ScoreGlobalRun(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
                               const GnssScenario& scenario) {
   GnssRunFigures figures;
   if (!run.global) {
@@ -129,7 +133,7 @@ GnssRunFigures JudgeGlobalRun(const RunResult& run, const Trajectory& truth, Tim
   figures.late_m = Rmse(errors, end_s - third_s, INFINITY);
   figures.nees_pos = ComputeNees(pairs).mean_position;
   if (scenario.HasOutage()) {
-    JudgeOutage(errors, scenario, &figures);
+    ScoreOutage(errors, scenario, &figures);
   }
   if (scenario.clock_jump_s >= 0) {
     figures.jump_step_m = LargestStep(errors, scenario.clock_jump_s);
@@ -137,7 +141,7 @@ GnssRunFigures JudgeGlobalRun(const RunResult& run, const Trajectory& truth, Tim
   return figures;
 }
 
-GnssRunFigures JudgeOdometry(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
+GnssRunFigures ScoreOdometry(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
                              const GnssScenario& scenario) {
   GnssRunFigures figures;
   const std::vector<StatePair> pairs =

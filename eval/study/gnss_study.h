@@ -7,11 +7,12 @@
 #include "core/estimator/measurement_log.h"
 #include "core/gnss_config.h"
 #include "eval/record/run_result.h"
-#include "eval/simulation/sim_gnss_config.h"
+#include "eval/simulation/simulator_config.h"
 
 namespace alidade {
 
-/// Simulated events of the receiver of a sequence; seconds from its first IMU sample, negative: never.
+/// Simulated events of the receiver, or of the position sensor, of a sequence; seconds from its first IMU
+/// sample, negative: never.
 struct GnssScenario {
   double motion_start_s = 0;
   double outage_start_s = -1;
@@ -21,8 +22,9 @@ struct GnssScenario {
 
   [[nodiscard]] bool HasOutage() const { return outage_start_s >= 0; }
 };
-/// The events of a simulated receiver, limited to the sequence's `duration_s`.
-[[nodiscard]] GnssScenario ScenarioOf(const SimGnssConfig& config, double rest_s, double duration_s);
+/// The events of a simulation, limited to the sequence's `duration_s`. The outage is that of raw GNSS, or of
+/// position fixes where there is no receiver.
+[[nodiscard]] GnssScenario ScenarioOf(const SimulatorConfig& config, double duration_s);
 
 /// Figures of one run. NaN: does not apply.
 struct GnssRunFigures {
@@ -40,11 +42,11 @@ struct GnssRunFigures {
   double jump_step_m = kNone;     ///< largest change of the error between two frames, within 1 s of the jump
 };
 
-/// A run with GNSS: errors are global, unaligned. Without an alignment all figures are NaN.
-[[nodiscard]] GnssRunFigures JudgeGlobalRun(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
+/// A run with GNSS or position fixes: errors are global, unaligned. Without an alignment all figures are NaN.
+[[nodiscard]] GnssRunFigures ScoreGlobalRun(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
                                             const GnssScenario& scenario);
-/// A run without GNSS: the figures of the outage, as if yaw and position had been given at its start.
-[[nodiscard]] GnssRunFigures JudgeOdometry(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
+/// A run without them: the figures of the outage, as if yaw and position had been given at its start.
+[[nodiscard]] GnssRunFigures ScoreOdometry(const RunResult& run, const Trajectory& truth, TimeNs start_ns,
                                            const GnssScenario& scenario);
 
 /// Position RMSE of the single-point solutions of the log's epochs [m], against truth in the ENU frame at the

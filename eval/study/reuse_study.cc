@@ -72,7 +72,7 @@ Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
   if (!dataset.ok()) {
     return dataset.status();
   }
-  MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks};
+  MeasurementLog log{dataset->rig, dataset->imu, dataset->frames};
   log.rig.imu_noise = simulation.imu_noise;
   CovarianceAnalysis analysis;
   const std::unique_ptr<Estimator> filter = MakeFilter(config, log.rig, &analysis);

@@ -48,11 +48,11 @@ std::optional<std::string_view> SentenceIn(std::string_view line) {
   for (const char c : line.substr(0, star)) {
     sum ^= static_cast<unsigned char>(c);
   }
-  unsigned told = 0;
+  unsigned stated = 0;
   const std::string_view digits = line.substr(star + 1, 2);
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), told, 16);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), stated, 16);
   const bool right =
-      error == std::errc() && end == digits.data() + digits.size() && digits.size() == 2 && told == sum;
+      error == std::errc() && end == digits.data() + digits.size() && digits.size() == 2 && stated == sum;
   return right ? std::optional(line.substr(0, star)) : std::nullopt;
 }
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/format.h"
-#include "frontend/initialization/alignment_refinement.h"
 #include "frontend/initialization/dynamic_window.h"
-#include "frontend/initialization/gyro_alignment.h"
-#include "frontend/initialization/linear_alignment.h"
+#include "frontend/initialization/gyro_bias_fit.h"
+#include "frontend/initialization/linear_start.h"
+#include "frontend/initialization/start_refinement.h"
 
 namespace alidade {
 namespace {
@@ -59,7 +59,7 @@ ImuNoise NoiseInMotion(const DynamicWindow& window, ImuNoise noise) {
 }
 
 /// Empty when the solution may be used.
-std::string ReasonAgainst(const RefinedAlignment& refined, double max_scale_std) {
+std::string ReasonAgainst(const RefinedStart& refined, double max_scale_std) {
   if (refined.reprojection_chi2 > kMaxReprojectionChi2) {
     return Format("moving: reprojection chi-square %.2f a degree of freedom, limit %.1f",
                   refined.reprojection_chi2, kMaxReprojectionChi2);
@@ -99,15 +99,15 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   }
   const ImuNoise noise = NoiseInMotion(window, rig.imu_noise);
   std::vector<Preintegration> preintegrations = PreintegrateWindow(window, ImuBias(), noise);
-  const GyroAlignment gyro = AlignGyro(window, preintegrations, rig);
+  const GyroBiasFit gyro = FitGyroBias(window, preintegrations, rig);
   if (gyro.median_parallax_px < config.init.dynamic_min_parallax_px) {
     return Status::Diverged(Format("moving: parallax %.1f px of %.1f", gyro.median_parallax_px,
                                    config.init.dynamic_min_parallax_px));
   }
   const ImuBias bias{gyro.gyro_bias, *accel_bias};
   preintegrations = PreintegrateWindow(window, bias, noise);
-  const Result<LinearAlignment> linear =
-      AlignLinear(window, preintegrations, bias, gyro.inlier, rig.T_BC, config.imu.gravity_mps2);
+  const Result<LinearStart> linear =
+      SolveLinearStart(window, preintegrations, bias, gyro.inlier, rig.T_BC, config.imu.gravity_mps2);
   if (!linear.ok()) {
     return linear.status();
   }
@@ -118,8 +118,8 @@ Result<DynamicSolution> InitializeDynamic(const EstimatorConfig& config, const R
   settings.gyro_bias_std_radps = kGyroBiasStdRadps;
   settings.yaw_std_rad = config.init.yaw_std_rad;
   settings.position_std_m = config.init.position_std_m;
-  const Result<RefinedAlignment> refined =
-      RefineAlignment(window, gyro.inlier, preintegrations, linear->states, linear->bias, settings);
+  const Result<RefinedStart> refined =
+      RefineStart(window, gyro.inlier, preintegrations, linear->states, linear->bias, settings);
   if (!refined.ok()) {
     return refined.status();
   }

@@ -25,9 +25,9 @@ struct DynamicLimits {
   double longest_s = 0;  ///< of the window
 };
 
-/// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_alignment.h),
-/// velocity and gravity in closed form (linear_alignment.h), maximum likelihood over the window,
-/// accelerometer bias included (alignment_refinement.h), then the checks that accept it. The IMU counts as
+/// Initialises from the newest frames in motion: gyroscope bias from epipolar geometry (gyro_bias_fit.h),
+/// velocity and gravity in closed form (linear_start.h), maximum likelihood over the window,
+/// accelerometer bias included (start_refinement.h), then the checks that accept it. The IMU counts as
 /// noisier than its sheet where its samples scatter more. Stamps of `frames` are in IMU time. `accel_bias`
 /// [m/s^2] is where the search for it begins, zero at first; it becomes what this attempt found, refused or
 /// not, where that is plausible. Error (kDiverged): why there is no solution yet, with the figure and its

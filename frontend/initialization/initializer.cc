@@ -21,8 +21,8 @@ namespace {
 
 // An attempt in motion costs a tenth of a second: not on every frame.
 constexpr double kAttemptEveryS = 0.25;
-// Length of the data that an attempt uses, in windows. Motion that is slow for its size tells its scale only
-// over a long time; but tracks that live shortly do not reach over it. So attempts take turns.
+// Length of the data that an attempt uses, in windows. Motion that is slow for its size determines its scale
+// only over a long time; but tracks that live shortly do not reach over it. So attempts take turns.
 constexpr double kUsualWindows = 3;
 constexpr double kLongestWindows = 10;
 
@@ -203,7 +203,7 @@ const std::string& Initializer::report() const {
 
 void Initializer::AddImu(const ImuSample& sample) {
   // A sample that is not finite or comes too late is dropped and counted by the buffer; the next interval
-  // tells a gap.
+  // reports a gap.
   static_cast<void>(implementation_->imu.Add(sample).ok());
 }
 

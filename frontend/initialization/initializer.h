@@ -14,8 +14,9 @@ namespace alidade {
 
 /// Largest relative deviation of the scale with which a start in motion is accepted, by the length of the
 /// search in windows (init.dynamic_window_s): `first` up to `windows_of_first`, `last` from `windows_to_last`
-/// on, log-linear between. A rough scale is told as such, and the back end goes on with the data that the
-/// initialiser would have waited for. Deviations above `first` are worth a wait of half a window.
+/// on, log-linear between. The covariance states a rough scale as such, and the back end goes on with the
+/// data that the initialiser would have waited for. Deviations above `first` are worth a wait of half a
+/// window.
 struct ScaleDemand {
   double first = 0.05;
   double windows_of_first = 1;

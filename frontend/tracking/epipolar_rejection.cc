@@ -9,6 +9,7 @@
 
 #include "core/camera_model.h"
 #include "core/lie.h"
+#include "core/robust.h"
 #include "core/turned_ray.h"
 
 namespace alidade {
@@ -165,8 +166,9 @@ void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inli
       row.head<3>() = motion->t.dot(term.g) * term.x_2 - term.g.dot(term.x_2) * motion->t;
       row.tail<2>() = basis.transpose() * term.g.cross(term.x_2);
       const double distance_px = term.error * term.scale;
-      const double weight = std::min(1.0, options.threshold_px / std::max(1e-12, std::abs(distance_px))) /
-                            (sigma_px * sigma_px);
+      const double weight =
+          RobustWeight(RobustKernel::kHuber, options.threshold_px, distance_px * distance_px) /
+          (sigma_px * sigma_px);
       hessian += weight * term.scale * term.scale * row * row.transpose();
       gradient += weight * term.scale * distance_px * row;
     }

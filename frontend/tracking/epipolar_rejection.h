@@ -23,8 +23,8 @@ struct EpipolarOptions {
 };
 
 /// Which pairs agree with one rigid motion of the camera: those within threshold_px of their epipolar line
-/// and, where the displacement tells, on the side of positive depth. Deterministic: the sampling sequence is
-/// fixed and owned.
+/// and, where the displacement decides, on the side of positive depth. Deterministic: the sampling sequence
+/// is fixed and owned.
 ///
 /// With R_21 (p_2 = R_21 p_1 + t, from the gyroscope) two pairs determine the direction of t: with g = R_21
 /// x_1, t . (g x x_2) = 0 for each pair, so t ~ n_a x n_b, n = g x x_2. The best of these starts a

@@ -168,9 +168,11 @@ FixAligner::Normal FixAligner::NormalEquations(const std::vector<Point>& points,
       continue;
     }
     ++normal.inside;
-    const Vector3d turned = R_NW * (point.p_WA + point.since_newest_s * guess.dv_W);
+    NavState antenna;
+    antenna.p_WB = point.p_WA + point.since_newest_s * guess.dv_W;
     Eigen::Matrix<double, kRows, 7> jacobian;
-    jacobian << Vector3d::UnitZ().cross(turned), Matrix3d::Identity(), point.since_newest_s * R_NW;
+    jacobian << guess.transform.ParameterJacobian(guess.transform * antenna).middleRows<3>(3),
+        point.since_newest_s * R_NW;
     jacobian = (point.sqrt_information * jacobian).eval();
     const double weight =
         RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma * normal.scale, norms[k] * norms[k]);
@@ -225,10 +227,10 @@ std::optional<GnssAlignment> FixAligner::TryAlign() {
     report_ = "the position fixes do not determine the alignment";
     return std::nullopt;
   }
-  return Judge(fit, points.size());
+  return Accept(fit, points.size());
 }
 
-std::optional<GnssAlignment> FixAligner::Judge(const Fit& fit, std::size_t points) {
+std::optional<GnssAlignment> FixAligner::Accept(const Fit& fit, std::size_t points) {
   const double inflation = config_.align_inflation * fit.scale;
   GnssAlignment alignment;
   alignment.covariance = inflation * inflation * 0.5 * (fit.covariance + fit.covariance.transpose());

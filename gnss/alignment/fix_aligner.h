@@ -56,7 +56,7 @@ class FixAligner {
   [[nodiscard]] static Guess FirstGuess(const std::vector<Point>& points);
   [[nodiscard]] Normal NormalEquations(const std::vector<Point>& points, const Guess& guess) const;
   [[nodiscard]] Fit Refine(const std::vector<Point>& points, Guess guess) const;
-  std::optional<GnssAlignment> Judge(const Fit& fit, std::size_t points);
+  std::optional<GnssAlignment> Accept(const Fit& fit, std::size_t points);
 
   FixConfig config_;
   std::vector<FixSensor> sensors_;

@@ -52,7 +52,7 @@ bool TextStream::Read(std::string* text) {
   }
   int code = Z_OK;
   const char* reason = gzerror(file, &code);
-  // gzread() gives what there is of a torn gzip file and tells it at the end only.
+  // gzread() gives what there is of a torn gzip file and reports it at the end only.
   if (count < 0 || code == Z_BUF_ERROR) {
     status_ =
         Status::Input(path_ + ": cannot be unpacked: " + (code == Z_ERRNO ? std::strerror(errno) : reason));

@@ -1,6 +1,7 @@
 #include "gnss/model/measurement_model.h"
 
 #include "core/check.h"
+#include "core/lever_arm.h"
 #include "gnss/base/constants.h"
 
 namespace alidade {
@@ -70,24 +71,20 @@ Eigen::Matrix3d AntennaMount::VelocityByLeverArm(const NavState& state, const Im
 }
 
 Vector3d AntennaMount::Position(const NavState& state, Eigen::Matrix<double, 3, 15>* jacobian) const {
+  const Vector3d p_WA = LeverArm{p_BA}.Position(state, jacobian);
   if (jacobian != nullptr) {
-    jacobian->setZero();
-    jacobian->block<3, 3>(0, 0) = -enu.R_EN * state.R_WB * Skew(p_BA);
-    jacobian->block<3, 3>(0, 3) = enu.R_EN;
+    *jacobian = enu.R_EN * *jacobian;
   }
-  return enu.ToEcef(state.p_WB + state.R_WB * p_BA);
+  return enu.ToEcef(p_WA);
 }
 
 Vector3d AntennaMount::Velocity(const NavState& state, const ImuBias& bias, const Vector3d& gyro_radps,
                                 Eigen::Matrix<double, 3, 15>* jacobian) const {
-  const Vector3d swing = (gyro_radps - bias.gyro).cross(p_BA);
+  const Vector3d v_WA = LeverArm{p_BA}.Velocity(state, bias, gyro_radps, jacobian);
   if (jacobian != nullptr) {
-    jacobian->setZero();
-    jacobian->block<3, 3>(0, 0) = -enu.R_EN * state.R_WB * Skew(swing);
-    jacobian->block<3, 3>(0, 6) = enu.R_EN;
-    jacobian->block<3, 3>(0, 9) = enu.R_EN * state.R_WB * Skew(p_BA);
+    *jacobian = enu.R_EN * *jacobian;
   }
-  return enu.R_EN * (state.v_WB + state.R_WB * swing);
+  return enu.R_EN * v_WA;
 }
 
 }  // namespace alidade

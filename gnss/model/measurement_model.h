@@ -49,8 +49,7 @@ struct RangeRateModel {
                 double* residual, RowVector3d* position_jacobian, RowVector3d* velocity_jacobian) const;
 };
 
-/// Antenna of a body whose world is the ENU frame at an anchor: p_A = p + R l, v_A = v + R (omega x l), with
-/// the lever arm l = p_BA and omega = gyro - b_g.
+/// Antenna of a body whose world is the ENU frame at an anchor, at a lever arm (core/lever_arm.h).
 struct AntennaMount {
   EnuFrame enu;
   Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();

@@ -29,6 +29,7 @@ std::vector<FrameStatistics> CountFeatures(const BatchSequence& sequence) {
   for (size_t i = 0; i < statistics.size(); ++i) {
     statistics[i].observations_invalid = sequence.invalid_observations(static_cast<int>(i));
     statistics[i].at_rest = sequence.frames()[i]->rest.has_value();
+    sequence.gnss().Count(static_cast<int>(i), &statistics[i]);
   }
   for (const BatchMeasurement& measurement : sequence.measurements()) {
     SensorStatistics& counts = statistics[static_cast<size_t>(measurement.frame)]
@@ -102,17 +103,10 @@ Status BatchEstimator::Align(const GnssAlignment& alignment) {
   return Status::Ok();
 }
 
-Status BatchEstimator::AddMeasurement(const Measurement& measurement) {
-  if (!aligned_) {
-    return Status::Diverged("batch: not aligned");
-  }
-  ALIDADE_RETURN_IF_ERROR(initial_->AddMeasurement(measurement));
-  const Sensor sensor = SensorOf(measurement);
-  const TimeNs stamp_ns = StampOf(measurement);
+Result<std::vector<ImuSample>> BatchEstimator::ReachMeasurement(TimeNs stamp_ns, double max_interpolation_s) {
   const NavEstimate estimate = initial_->Latest();
   const TimeNs last_ns = sequence_.frames().back()->stamp_ns;
-  if (estimate.stamp_ns == stamp_ns &&
-      SecondsBetween(last_ns, stamp_ns) > MaxInterpolation(config_, sensor)) {
+  if (estimate.stamp_ns == stamp_ns && SecondsBetween(last_ns, stamp_ns) > max_interpolation_s) {
     ALIDADE_RETURN_IF_ERROR(ReachFrame(estimate));
   }
   std::vector<ImuSample> link;
@@ -122,8 +116,31 @@ Status BatchEstimator::AddMeasurement(const Measurement& measurement) {
       return Status::Diverged("batch: " + status.message());
     }
   }
+  return link;
+}
+
+Status BatchEstimator::AddGnss(const GnssEpoch& epoch) {
+  if (!aligned_) {
+    return Status::Diverged("batch: not aligned");
+  }
+  ALIDADE_RETURN_IF_ERROR(initial_->AddGnss(epoch));
+  Result<std::vector<ImuSample>> link = ReachMeasurement(epoch.stamp_ns, config_.gnss.max_interpolation_s);
+  ALIDADE_RETURN_IF_ERROR(link.status());
+  sequence_.AddGnss(epoch, *std::move(link));
+  return Status::Ok();
+}
+
+Status BatchEstimator::AddMeasurement(const Measurement& measurement) {
+  if (!aligned_) {
+    return Status::Diverged("batch: not aligned");
+  }
+  ALIDADE_RETURN_IF_ERROR(initial_->AddMeasurement(measurement));
+  const Sensor sensor = SensorOf(measurement);
+  Result<std::vector<ImuSample>> link =
+      ReachMeasurement(StampOf(measurement), MaxInterpolation(config_, sensor));
+  ALIDADE_RETURN_IF_ERROR(link.status());
   return sequence_.AddMeasurement(measurement, initial_->last_statistics().sensors[sensor].used > 0,
-                                  std::move(link));
+                                  *std::move(link));
 }
 
 Result<std::vector<FinalizedFrame>> BatchEstimator::TakeFinalized(const std::atomic<bool>* stop) {

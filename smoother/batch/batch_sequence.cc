@@ -60,7 +60,8 @@ BatchSequence::BatchSequence(const EstimatorConfig& config, const RigCalibration
       kernel_{config.batch.robust_kernel, config.vision.robust_scale_sigma},
       gate_(config.batch.gate_probability),
       rest_(config.vision, config.init, rig_.camera),
-      calibration_{{}, GivenCamera(rig_, config.vision)} {
+      calibration_{{}, GivenCamera(rig_, config.vision)},
+      gnss_(config.gnss, rig.gnss, GravityInWorld(config.imu.gravity_mps2)) {
   calibration_.mean.time_offset_s = 0;  // frames come in IMU time
 }
 
@@ -70,6 +71,7 @@ bool BatchSequence::Start(const NavEstimate& initial) {
   tracks_.clear();
   track_of_id_.clear();
   measurements_.clear();
+  gnss_.Clear();
   rest_.Clear();
   frames_.push_back(MakeFrame(initial, 0));
   initial_ = initial;
@@ -85,7 +87,15 @@ bool BatchSequence::Align(const GnssAlignment& alignment) {
   free.covariance =
       Eigen::Vector4d(kFreeYawStd, kFreeShiftStd, kFreeShiftStd, kFreeShiftStd).cwiseAbs2().asDiagonal();
   initial_ = TurnIntoEnu(free, initial_);
-  return MakeInitialPrior(config_.smoother.error, *frames_.front(), initial_.covariance, &prior_);
+  const bool made = MakeInitialPrior(config_.smoother.error, *frames_.front(), initial_.covariance, &prior_);
+  if (made && alignment.clock) {
+    gnss_.Align(alignment, frames_, &prior_);
+  }
+  return made;
+}
+
+void BatchSequence::AddGnss(const GnssEpoch& epoch, std::vector<ImuSample> imu) {
+  gnss_.AddEpoch(epoch, std::move(imu), config_.imu.Scaled(rig_.imu_noise), frames_.back().get());
 }
 
 Status BatchSequence::AddMeasurement(const Measurement& measurement, bool accepted,
@@ -110,6 +120,7 @@ void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample>
   frames_.push_back(MakeFrame(estimate, static_cast<int>(frames_.size())));
   frames_.back()->turn = TurnAround(around, estimate.stamp_ns, span_s);
   frames_.back()->imu = std::move(imu);
+  gnss_.AddFrame(frames_);
   invalid_.push_back(0);
 }
 
@@ -155,6 +166,9 @@ void BatchSequence::Preintegrate() {
     for (FrameMeasurement& measurement : frame->measurements) {
       measurement.Set(std::move(measurement.imu), frame->imu_bias(), noise);
     }
+    for (FrameEpoch& epoch : frame->epochs) {
+      epoch.Set(std::move(epoch.imu), frame->imu_bias(), noise);
+    }
   }
 }
 
@@ -192,6 +206,7 @@ TrackSelection BatchSequence::Select(bool gate) {
   }
   TrackSelection selection;
   SelectMeasurements(gate, &selection);
+  selection.changed = gnss_.Select(gate, config_.imu.Scaled(rig_.imu_noise), frames_) || selection.changed;
   for (BatchTrack& track : tracks_) {
     if (track.views.size() < kMinViews) {
       continue;

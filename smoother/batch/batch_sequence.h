@@ -11,6 +11,7 @@
 #include "core/rig_calibration.h"
 #include "core/robust.h"
 #include "gnss/alignment/alignment.h"
+#include "smoother/batch/batch_gnss.h"
 #include "smoother/factors/prior_factor.h"
 #include "smoother/window/frame_geometry.h"
 
@@ -37,7 +38,7 @@ struct TrackSelection {
   int without_depth = 0;  ///< tracks of two views or more whose depth is not determined
   int gated = 0;          ///< tracks refused as a whole
   int outliers = 0;       ///< single observations refused
-  int measurements = 0;   ///< between frames, used
+  int measurements = 0;   ///< between frames, used; without GNSS
   bool changed = false;   ///< against the selection before
 };
 
@@ -61,6 +62,9 @@ class BatchSequence {
   /// `accepted`: the verdict of the initial estimator. kInput: see Whiten.
   Status AddMeasurement(const Measurement& measurement, bool accepted, std::vector<ImuSample> imu);
 
+  /// The same for a GNSS epoch, whose rows are judged at the present states alone.
+  void AddGnss(const GnssEpoch& epoch, std::vector<ImuSample> imu);
+
   /// Which tracks and observations enter, judged at the present states. With `gate` off only the parallax
   /// counts: a depth known to kMaxDepthDeviation, in front of every view. With it on, an observation must lie
   /// in the chi-square gate (2 degrees of freedom) around a robustly estimated landmark, then its track
@@ -73,6 +77,7 @@ class BatchSequence {
   [[nodiscard]] const WindowFrames& frames() const { return frames_; }
   [[nodiscard]] const std::vector<BatchTrack>& tracks() const { return tracks_; }
   [[nodiscard]] const std::vector<BatchMeasurement>& measurements() const { return measurements_; }
+  [[nodiscard]] const BatchGnss& gnss() const { return gnss_; }
   [[nodiscard]] const LinearPrior& prior() const { return prior_; }
   /// The camera; the batch estimates nothing of it.
   [[nodiscard]] const WindowCalibration& calibration() const { return calibration_; }
@@ -101,6 +106,7 @@ class BatchSequence {
   std::vector<int> invalid_;  ///< observations outside the camera model's domain, a frame
   std::vector<BatchTrack> tracks_;
   std::vector<BatchMeasurement> measurements_;  ///< in order of time
+  BatchGnss gnss_;
   std::map<std::int64_t, size_t> track_of_id_;
 };
 

@@ -52,6 +52,9 @@ ceres::Solver::Options SolverOptions(const BatchConfig& config, ParameterBlocks*
   for (int i = 0; i < blocks->frames(); ++i) {
     solver.linear_solver_ordering->AddElementToGroup(blocks->Nav(i), 1);
     solver.linear_solver_ordering->AddElementToGroup(blocks->Bias(i), 1);
+    if (blocks->has_clocks()) {
+      solver.linear_solver_ordering->AddElementToGroup(blocks->Clock(i), 1);
+    }
   }
   return solver;
 }
@@ -102,7 +105,8 @@ class BatchSolve {
                   WindowTerms* terms) const {
     const WindowFrames& frames = sequence_.frames();
     terms->push_back(MakePriorTerm(sequence_.prior(), sequence_.calibration()));
-    ALIDADE_RETURN_IF_ERROR(AddSensorTerms({gravity_W_}, frames, static_cast<int>(frames.size()), terms));
+    ALIDADE_RETURN_IF_ERROR(AddSensorTerms({gravity_W_, sequence_.gnss().context()}, frames,
+                                           static_cast<int>(frames.size()), terms));
     AddTrackTerms(frames, tracks, sequence_.calibration(), kernel, terms);
     return Status::Ok();
   }

@@ -9,6 +9,7 @@
 #include "gnss/model/receiver_clock.h"
 #include "smoother/manifold/lifted_cost.h"
 #include "smoother/window/frame_epoch.h"
+#include "smoother/window/window_calibration.h"
 
 namespace alidade {
 
@@ -39,11 +40,10 @@ class GnssEpochFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;
 
-  /// All must outlive the factor; `rows` is what LinearizeFrameEpoch gives for them. `layout`: of a watched
-  /// calibration, else null.
+  /// All must outlive the factor; `rows` is what LinearizeFrameEpoch gives for them.
   GnssEpochFactor(const GnssFactorContext* context, const FrameEpoch* epoch, double dt_s, int rows,
-                  const CalibrationLayout* layout = nullptr)
-      : context_(context), epoch_(epoch), dt_s_(dt_s), rows_(rows), layout_(layout) {}
+                  const CalibrationLayout& layout = NotCalibrated().layout)
+      : context_(context), epoch_(epoch), dt_s_(dt_s), rows_(rows), layout_(&layout) {}
 
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
@@ -54,9 +54,7 @@ class GnssEpochFactor {
  private:
   static constexpr std::array<BlockKind, 4> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
                                                        BlockKind::kClock, BlockKind::kCalibration};
-  [[nodiscard]] bool sees_calibration() const {
-    return layout_ != nullptr && layout_->antenna() == WatchedAntenna::kGnss;
-  }
+  [[nodiscard]] bool sees_calibration() const { return layout_->antenna() == Sensor::kGnss; }
   const GnssFactorContext* context_;
   const FrameEpoch* epoch_;
   double dt_s_;

@@ -71,7 +71,7 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[2]);
   AnchoredRows rows;
   const bool in_front = LinearizeAnchoredView(base, view, observation, {}, landmark, &rows,
-                                              tangent_jacobians != nullptr, camera, plane_);
+                                              tangent_jacobians != nullptr, *camera, plane_);
   if (!in_front) {
     rows.residual.setConstant(kBehindSigma);
     rows.anchor.setZero();

@@ -2,12 +2,12 @@
 
 #include <array>
 #include <span>
-#include <type_traits>
 #include <variant>
 
 #include "core/imu_propagation.h"
 #include "smoother/manifold/lifted_cost.h"
 #include "smoother/window/frame_measurement.h"
+#include "smoother/window/window_calibration.h"
 
 namespace alidade {
 
@@ -18,10 +18,10 @@ class MeasurementFactor {
  public:
   static constexpr int kRows = Kind::kRows;
 
-  /// All must outlive the factor. `layout`: of a watched calibration, else null.
+  /// All must outlive the factor.
   MeasurementFactor(const FrameMeasurement* measurement, const Eigen::Vector3d& gravity_W,
-                    const CalibrationLayout* layout = nullptr)
-      : measurement_(measurement), gravity_W_(gravity_W), layout_(layout) {}
+                    const CalibrationLayout& layout = NotCalibrated().layout)
+      : measurement_(measurement), gravity_W_(gravity_W), layout_(&layout) {}
 
   [[nodiscard]] int rows() const { return kRows; }
   [[nodiscard]] std::span<const BlockKind> blocks() const {
@@ -46,7 +46,7 @@ class MeasurementFactor {
       Eigen::Map<Eigen::Matrix<double, kRows, 6, Eigen::RowMajor>>{tangent_jacobians[1]} =
           jacobian.template rightCols<6>();
     }
-    if constexpr (kHasLeverArm) {
+    if constexpr (HasLeverArm<Kind>) {
       if (sees_calibration() && tangent_jacobians != nullptr && tangent_jacobians[2] != nullptr) {
         PutLeverArm(*layout_, std::get<Kind>(measurement_->measurement).LeverArmJacobian(nav),
                     tangent_jacobians[2]);
@@ -58,9 +58,8 @@ class MeasurementFactor {
  private:
   static constexpr std::array<BlockKind, 3> kBlocks = {BlockKind::kNavState, BlockKind::kBias,
                                                        BlockKind::kCalibration};
-  static constexpr bool kHasLeverArm = std::is_same_v<Kind, FixMeasurement>;
   [[nodiscard]] bool sees_calibration() const {
-    return kHasLeverArm && layout_ != nullptr && layout_->antenna() == WatchedAntenna::kFix;
+    return HasLeverArm<Kind> && layout_->antenna() == SensorOf(measurement_->measurement);
   }
   const FrameMeasurement* measurement_;
   Eigen::Vector3d gravity_W_;

@@ -156,7 +156,7 @@ bool SlamPrior::See(const Scene& scene, const VectorXd& landmarks, bool with_fra
       FrameGeometry row_geometry;
       if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)], AtRow(geometry, view, &row_geometry),
                                  view.observation, kernel_, landmarks.segment<3>(row), &rows, with_frames,
-                                 &scene.calibration, tracks_[i]->plane())) {
+                                 scene.calibration, tracks_[i]->plane())) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);

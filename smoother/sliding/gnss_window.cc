@@ -18,14 +18,15 @@ std::vector<double*> RowVariances(const GnssConfig& config, const GnssResiduals&
   std::vector<double*> variances;
   std::vector<double*> rates;
   auto measured = epoch->satellites.begin();
-  for (const SatelliteResidual& told : residuals.satellites) {  // those of the epoch above the mask, in order
-    while (!(measured->satellite == told.satellite)) {
+  for (const SatelliteResidual& satellite :
+       residuals.satellites) {  // those of the epoch above the mask, in order
+    while (!(measured->satellite == satellite.satellite)) {
       ++measured;
     }
     if (config.pseudorange) {
       variances.push_back(&measured->pseudorange_variance);
     }
-    if (config.doppler && told.range_rate_residual_mps) {
+    if (config.doppler && satellite.range_rate_residual_mps) {
       rates.push_back(&measured->range_rate_variance);
     }
   }
@@ -46,7 +47,7 @@ void GnssWindow::Align(const GnssAlignment& alignment, WindowFrame* frame, Linea
   context_ = GnssFactorContext{config_, {*alignment.enu, receiver_.p_BA}, gravity_W_};
   removed_jumps_m_ = 0;
   clock_lost_ = false;
-  const double since_s = std::max(0.0, SecondsBetween(alignment.stamp_ns, frame->stamp_ns));
+  const double since_s = SecondsBetween(alignment.stamp_ns, frame->stamp_ns);
   const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * *alignment.clock);
   frame->clock.emplace();
   Eigen::Map<Vector6d>{frame->clock->data()} = fresh.mean;
@@ -105,6 +106,7 @@ bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
   const std::vector<GnssRow> rows =
       LinearizeEpoch(config_, context_->mount, point, epoch->measurements, &ignored);
   const double step = CommonStep(rows);
+  step_m_ = step;
   constexpr double kPredictedStdM = kFreshClockStdM;
   if (!IsClockJump(config_, rows, step, kPredictedStdM)) {
     return !clock_lost_;
@@ -116,55 +118,54 @@ bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
     return false;
   }
   removed_jumps_m_ += whole;
+  step_m_ -= whole;
   for (SatelliteMeasurement& m : epoch->measurements.satellites) {
     m.pseudorange_m -= whole;
   }
   return !clock_lost_;
 }
 
-void GnssWindow::Gate(Window* window, FrameStatistics* statistics) {
-  for (int i = 0; i < window->size(); ++i) {
-    WindowFrame& frame = window->frame(i);
-    for (FrameEpoch& epoch : frame.epochs) {
-      const double dt_s = epoch.SecondsAfter(frame.stamp_ns);
-      epoch.used.clear();
-      GnssResiduals residuals;
-      residuals.stamp_ns = epoch.stamp_ns;
-      const FrameEpochRows rows =
-          LinearizeFrameEpoch(*context_, epoch, dt_s, frame.nav_state(), frame.imu_bias(),
-                              frame.clock_state(), false, &residuals);
-      std::vector<double> nis;
-      for (const double residual : rows.residual) {
-        nis.push_back(residual * residual);
-      }
-      const GnssWeights weights = WeighRows(config_, gate_threshold_, nis);
-      const std::vector<double*> variances = RowVariances(config_, residuals, &epoch.measurements);
-      CHECK_EQ(variances.size(), nis.size());
-      for (std::size_t k = 0; k < nis.size(); ++k) {
-        epoch.used.push_back(weights.weights[k] > 0);
-        if (epoch.used[k] && nis[k] > gate_threshold_) {
-          *variances[k] /= weights.weights[k];  // the state is suspect: as WindowTrack::ScaleInformation
-        }
-      }
-      if (epoch.counted) {
-        continue;
-      }
-      epoch.counted = true;
-      statistics->gnss_nis_dof += weights.used;
-      for (std::size_t k = 0; k < nis.size(); ++k) {
-        statistics->gnss_nis += weights.weights[k] * nis[k];
-      }
-      // Pseudoranges come first, one a satellite; then the rates of those that have one.
-      std::size_t row = 0;
-      for (SatelliteResidual& told : residuals.satellites) {
-        told.used = config_.pseudorange && epoch.used[row++];
-      }
-      for (SatelliteResidual& told : residuals.satellites) {
-        told.range_rate_used = config_.doppler && told.range_rate_residual_mps && epoch.used[row++];
-        ++(told.used || told.range_rate_used ? statistics->satellites_used : statistics->satellites_gated);
-      }
-      residuals_ = residuals;
+void GnssWindow::Gate(WindowFrame* frame, FrameStatistics* statistics) {
+  for (FrameEpoch& epoch : frame->epochs) {
+    const double dt_s = epoch.SecondsAfter(frame->stamp_ns);
+    epoch.used.clear();
+    GnssResiduals residuals;
+    residuals.stamp_ns = epoch.stamp_ns;
+    const FrameEpochRows rows =
+        LinearizeFrameEpoch(*context_, epoch, dt_s, frame->nav_state(), frame->imu_bias(),
+                            frame->clock_state(), false, &residuals);
+    std::vector<double> nis;
+    for (const double residual : rows.residual) {
+      nis.push_back(residual * residual);
     }
+    const GnssWeights weights = WeighRows(config_, gate_threshold_, nis);
+    const std::vector<double*> variances = RowVariances(config_, residuals, &epoch.measurements);
+    CHECK_EQ(variances.size(), nis.size());
+    for (std::size_t k = 0; k < nis.size(); ++k) {
+      epoch.used.push_back(weights.weights[k] > 0);
+      if (epoch.used[k] && nis[k] > gate_threshold_) {
+        *variances[k] /= weights.weights[k];  // the state is suspect: as WindowTrack::ScaleInformation
+      }
+    }
+    if (epoch.counted) {
+      continue;
+    }
+    epoch.counted = true;
+    statistics->gnss_nis_dof += weights.used;
+    for (std::size_t k = 0; k < nis.size(); ++k) {
+      statistics->gnss_nis += weights.weights[k] * nis[k];
+    }
+    // Pseudoranges come first, one a satellite; then the rates of those that have one.
+    std::size_t row = 0;
+    for (SatelliteResidual& satellite : residuals.satellites) {
+      satellite.used = config_.pseudorange && epoch.used[row++];
+    }
+    for (SatelliteResidual& satellite : residuals.satellites) {
+      satellite.range_rate_used = config_.doppler && satellite.range_rate_residual_mps && epoch.used[row++];
+      ++(satellite.used || satellite.range_rate_used ? statistics->satellites_used
+                                                     : statistics->satellites_gated);
+    }
+    residuals_ = residuals;
   }
 }
 

@@ -31,13 +31,16 @@ class GnssWindow {
   /// Links the epoch to the frame; `imu` spans from the frame to the epoch, empty at the frame itself. False
   /// when the epoch was skipped because the clock was lost; it is re-initialised at the next frame.
   bool Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame);
-  /// After a solve: the gate of each row of each epoch; statistics of those that are judged for the first
-  /// time.
-  void Gate(Window* window, FrameStatistics* statistics);
+  /// After a solve: the gate of each row of each epoch of a frame; statistics of those that are judged for
+  /// the first time.
+  void Gate(WindowFrame* frame, FrameStatistics* statistics);
 
   [[nodiscard]] double gate_threshold() const { return gate_threshold_; }
   [[nodiscard]] const GnssResiduals& residuals() const { return residuals_; }
   [[nodiscard]] bool jumped() const { return jumped_; }
+  /// Median over the pseudoranges of the epoch attached last, less whole milliseconds: measured less
+  /// predicted with the clock of its frame [m].
+  [[nodiscard]] double step_m() const { return step_m_; }
 
  private:
   /// Looks for a jump of the clock at the predicted state and takes whole milliseconds out of the epoch;
@@ -52,6 +55,7 @@ class GnssWindow {
   double removed_jumps_m_ = 0;  ///< whole milliseconds taken out of the pseudoranges since
   bool clock_lost_ = false;
   bool jumped_ = false;
+  double step_m_ = 0;
   GnssResiduals residuals_;
 };
 

@@ -6,8 +6,8 @@
 namespace alidade {
 
 template <typename Kind>
-double MeasurementWindow::Judge(const Kind& measurement, Sensor sensor, const NavEstimate& predicted,
-                                SensorStatistics* counts) {
+double MeasurementWindow::WeighAndCount(const Kind& measurement, Sensor sensor, const NavEstimate& predicted,
+                                        SensorStatistics* counts) {
   typename Kind::Residual residual;
   typename Kind::Jacobian jacobian;
   measurement.Evaluate(predicted.nav, &residual, &jacobian);
@@ -30,7 +30,7 @@ bool MeasurementWindow::Attach(const WhitenedMeasurement& measurement, const Nav
                                FrameStatistics* statistics) {
   const Sensor sensor = SensorOf(measurement);
   const double weight = std::visit(
-      [&](const auto& kind) { return Judge(kind, sensor, predicted, &statistics->sensors[sensor]); },
+      [&](const auto& kind) { return WeighAndCount(kind, sensor, predicted, &statistics->sensors[sensor]); },
       measurement);
   if (!(weight > 0)) {
     return false;

@@ -26,8 +26,8 @@ class MeasurementWindow {
  private:
   /// The gate's weight.
   template <typename Kind>
-  double Judge(const Kind& measurement, Sensor sensor, const NavEstimate& predicted,
-               SensorStatistics* counts);
+  double WeighAndCount(const Kind& measurement, Sensor sensor, const NavEstimate& predicted,
+                       SensorStatistics* counts);
 
   MeasurementGates gates_;
 };

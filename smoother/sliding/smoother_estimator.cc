@@ -34,7 +34,7 @@ SmootherEstimator::SmootherEstimator(const EstimatorConfig& config, const RigCal
       gnss_(config.gnss, rig.gnss, gravity_W_),
       measurements_(config),
       given_(InitialCalibration(config.calibration, GivenCamera(rig_, config.vision),
-                                AntennaToWatch(config.gnss.enabled, config.fix.enabled, rig))),
+                                AntennaToWatch(config, rig))),
       calibration_{given_.layout, given_.mean},
       fixed_{{}, given_.mean} {}
 
@@ -240,7 +240,9 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, &terms)));
   }
   if (gnss_.aligned()) {
-    gnss_.Gate(&window_, &statistics_);
+    for (int i = 0; i < window_.size(); ++i) {
+      gnss_.Gate(&window_.frame(i), &statistics_);
+    }
   }
   AddJudgedVision(*tracks, &terms);
   return UpdateLatest(terms);

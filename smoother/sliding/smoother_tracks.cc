@@ -8,8 +8,8 @@ namespace alidade {
 namespace {
 
 // The filter linearises a track once and needs its depth to vision.max_relative_depth_deviation; here every
-// solve linearises again, so a track may enter earlier. It is still held to this multiple when it is
-// marginalised, linearised for good.
+// solve linearises again, so a track may enter at this multiple of it: with the shipped 0.1, once its inverse
+// depth is known to its own size. It is still held to that when it is marginalised, linearised for good.
 constexpr double kParallaxSlack = 10;
 // Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
 // as uncertain as it is large.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -70,8 +72,11 @@ class FactorTerm final : public FactorBlocks {
   LiftedCost<Factor> cost_;
 };
 
+/// `blocks`: in the order of the factor's; the last ones are left out where the factor has fewer.
 template <typename Factor>
 [[nodiscard]] std::unique_ptr<FactorTerm<Factor>> MakeTerm(Factor factor, std::vector<TermBlock> blocks) {
+  const auto used = static_cast<std::ptrdiff_t>(std::min(blocks.size(), factor.blocks().size()));
+  blocks.erase(blocks.begin() + used, blocks.end());
   return std::make_unique<FactorTerm<Factor>>(std::move(factor), std::move(blocks));
 }
 

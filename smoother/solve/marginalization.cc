@@ -150,10 +150,10 @@ void PriorRows::AddLandmark(size_t landmark, Index rows, VectorXd* residual) {
   const int to = track->anchor->index;
   AnchorChange back;
   CHECK(ChangeAnchor(geometry_[static_cast<size_t>(to)], geometry_[static_cast<size_t>(from)],
-                     track->landmark, &back, nullptr, {track->plane(), known.plane}));
+                     track->landmark, &back, {}, {track->plane(), known.plane}));
   AnchorChange change;
   CHECK(ChangeAnchor(geometry_[static_cast<size_t>(from)], geometry_[static_cast<size_t>(to)], back.to,
-                     &change, &calibration_.layout, {known.plane, track->plane()}));
+                     &change, calibration_.layout, {known.plane, track->plane()}));
   own.noalias() = columns * change.landmark;
   stack_.Columns(Pose(from), 0, rows).noalias() += columns * (change.from_frame * stack_.PoseChart(from));
   stack_.Columns(Pose(to), 0, rows).noalias() += columns * (change.to_frame * stack_.PoseChart(to));
@@ -167,7 +167,7 @@ void PriorRows::AddView(const WindowTrack& track, const WindowView& view, int la
   const int seen = view.frame->index;
   FrameGeometry row;
   if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], AtRow(geometry_, view, &row),
-                             view.observation, slam_.kernel, track.landmark, &rows, true, &calibration_,
+                             view.observation, slam_.kernel, track.landmark, &rows, true, calibration_,
                              track.plane())) {
     return;
   }

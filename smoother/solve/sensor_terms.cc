@@ -19,21 +19,14 @@ Status AddImuTerm(const SensorContext& context, const WindowFrame& from, const W
   return Status::Ok();
 }
 
-const CalibrationLayout* LayoutOf(const SensorContext& context) {
-  return context.calibration == nullptr ? nullptr : &context.calibration->layout;
-}
-
 void AddMeasurementTerms(const SensorContext& context, const WindowFrame& frame, WindowTerms* terms) {
   for (const FrameMeasurement& attached : frame.measurements) {
     std::visit(
         [&](const auto& kind) {
           using Factor = MeasurementFactor<std::decay_t<decltype(kind)>>;
-          const Factor factor(&attached, context.gravity_W, LayoutOf(context));
-          std::vector<TermBlock> blocks = {NavBlock(frame), BiasBlock(frame)};
-          if (factor.blocks().size() > blocks.size()) {
-            blocks.push_back(CalibrationBlock(*context.calibration));
-          }
-          terms->push_back(MakeTerm(factor, std::move(blocks)));
+          terms->push_back(
+              MakeTerm(Factor(&attached, context.gravity_W, context.calibration->layout),
+                       {NavBlock(frame), BiasBlock(frame), CalibrationBlock(*context.calibration)}));
         },
         attached.measurement);
   }
@@ -47,13 +40,10 @@ void AddEpochTerms(const SensorContext& context, const WindowFrame& frame, Windo
     const FrameEpochRows rows = LinearizeFrameEpoch(gnss, epoch, dt_s, frame.nav_state(), frame.imu_bias(),
                                                     frame.clock_state(), true, &ignored);
     if (rows.residual.size() > 0) {
-      const GnssEpochFactor factor(&gnss, &epoch, dt_s, static_cast<int>(rows.residual.size()),
-                                   LayoutOf(context));
-      std::vector<TermBlock> blocks = {NavBlock(frame), BiasBlock(frame), ClockBlock(frame)};
-      if (factor.blocks().size() > blocks.size()) {
-        blocks.push_back(CalibrationBlock(*context.calibration));
-      }
-      terms->push_back(MakeTerm(factor, std::move(blocks)));
+      terms->push_back(MakeTerm(
+          GnssEpochFactor(&gnss, &epoch, dt_s, static_cast<int>(rows.residual.size()),
+                          context.calibration->layout),
+          {NavBlock(frame), BiasBlock(frame), ClockBlock(frame), CalibrationBlock(*context.calibration)}));
     }
   }
 }

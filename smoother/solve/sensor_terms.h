@@ -2,14 +2,15 @@
 
 #include "smoother/factors/gnss_factors.h"
 #include "smoother/solve/window_term.h"
+#include "smoother/window/window_calibration.h"
 
 namespace alidade {
 
 /// What the sensors' terms need besides the frames.
 struct SensorContext {
   Eigen::Vector3d gravity_W = Eigen::Vector3d::Zero();
-  const GnssFactorContext* gnss = nullptr;         ///< of an aligned window
-  const WindowCalibration* calibration = nullptr;  ///< of which terms may have rows
+  const GnssFactorContext* gnss = nullptr;  ///< of an aligned window
+  const WindowCalibration* calibration = &NotCalibrated();
 };
 
 /// Appends what every sensor but the camera says about the first `count` frames: IMU between them, rest,

@@ -11,7 +11,7 @@ namespace alidade {
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
                            const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames,
-                           const WindowCalibration* calibration, const BearingPlane& plane) {
+                           const WindowCalibration& calibration, const BearingPlane& plane) {
   const InverseDepthModel model{observation.z, observation.plane, plane};
   const Eigen::Matrix2d& whitening = observation.sqrt_information;
   InverseDepthModel::PoseJacobian over_anchor;
@@ -34,12 +34,10 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
   if (with_frames) {
     rows->anchor = whitening * over_anchor * anchor.camera_from_body;
     rows->view = whitening * over_view * view.camera_from_body;
-  }
-  if (with_frames && calibration != nullptr && calibration->size() > 0) {
-    const CalibrationLayout& layout = calibration->layout;
+    const CalibrationLayout& layout = calibration.layout;
     // The ray's part; the cameras' places follow.
     rows->calibration.resize(2, layout.size());
-    CalibrationRows(layout, calibration->mean.camera, view.R_WB, {}, Eigen::Matrix<double, 2, 6>::Zero(),
+    CalibrationRows(layout, calibration.mean.camera, view.R_WB, {}, Eigen::Matrix<double, 2, 6>::Zero(),
                     Predicted(observation, rows->residual), rows->calibration);
     rows->calibration += whitening * (over_anchor * CalibrationChain(layout, anchor) +
                                       over_view * CalibrationChain(layout, view));
@@ -57,7 +55,7 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
   for (const WindowView& view : track.views) {
     if (!LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
                                AtRow(geometry, view, &row), view.observation, {}, track.landmark, &rows,
-                               false, nullptr, track.plane())) {
+                               false, NotCalibrated(), track.plane())) {
       return std::numeric_limits<double>::infinity();
     }
     chi2 += rows.squared_norm;
@@ -66,7 +64,7 @@ double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> g
 }
 
 bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
-                  AnchorChange* change, const CalibrationLayout* layout, const AnchorPlanes& planes) {
+                  AnchorChange* change, const CalibrationLayout& layout, const AnchorPlanes& planes) {
   const Eigen::Vector3d q_to =
       planes.to.InAxes(AnchoredPointInCamera(from.T_WC, to.T_WC, l_from, planes.from).q);
   Eigen::Vector2d bearing;
@@ -87,10 +85,7 @@ bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eige
   change->landmark(2, 2) += 1 / depth;
   change->from_frame.noalias() = over_from * from.camera_from_body;
   change->to_frame.noalias() = over_to * to.camera_from_body;
-  if (layout != nullptr) {
-    change->calibration =
-        over_to * CalibrationChain(*layout, to) + over_from * CalibrationChain(*layout, from);
-  }
+  change->calibration = over_to * CalibrationChain(layout, to) + over_from * CalibrationChain(layout, from);
   return true;
 }
 

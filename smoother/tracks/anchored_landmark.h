@@ -12,19 +12,19 @@ struct AnchoredRows {
   Eigen::Matrix<double, 2, 6> anchor;    ///< over (phi, dp) of the anchor's body
   Eigen::Matrix<double, 2, 6> view;      ///< over (phi, dp) of the view's body
   Eigen::Matrix<double, 2, 3> landmark;  ///< over (x, y, rho)
-  Eigen::Matrix2Xd calibration;          ///< over the camera's calibration, where it is estimated
+  Eigen::Matrix2Xd calibration;          ///< over the camera's calibration
   Eigen::Vector2d residual;              ///< predicted - measured
   double squared_norm = 0;               ///< of the residual
   double weight = 1;                     ///< of all rows: the kernel's
 };
 /// False behind the view. `with_frames` false leaves out the derivatives over bodies and calibration, and
 /// takes the landmark's at the present cameras: those it is solved for with.
-/// `calibration`: of a camera that is calibrated online. `plane`: of the anchor, that of the landmark's
+/// `plane`: of the anchor, that of the landmark's
 /// coordinates.
 bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& view,
                            const NormalizedObservation& observation, const ObservationKernel& kernel,
                            const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames = true,
-                           const WindowCalibration* calibration = nullptr,
+                           const WindowCalibration& calibration = NotCalibrated(),
                            const BearingPlane& plane = kNormalizedPlane);
 
 /// Sum of whitened squared residuals (no kernel) of a track at its landmark, SLAM feature or not; infinite
@@ -38,7 +38,7 @@ struct AnchorChange {
   Eigen::Matrix3d landmark;                ///< d l_from / d l_to
   Eigen::Matrix<double, 3, 6> from_frame;  ///< d l_from / d (phi, dp) of the old anchor's body
   Eigen::Matrix<double, 3, 6> to_frame;    ///< d l_from / d (phi, dp) of the new anchor's body
-  Eigen::Matrix3Xd calibration;            ///< d l_from / d calibration, where a layout is given
+  Eigen::Matrix3Xd calibration;            ///< d l_from / d calibration
 };
 /// Planes of the coordinates l_from and l_to.
 struct AnchorPlanes {
@@ -46,7 +46,7 @@ struct AnchorPlanes {
 };
 /// False when the landmark lies behind the new anchor's camera, or its plane.
 bool ChangeAnchor(const FrameGeometry& from, const FrameGeometry& to, const Eigen::Vector3d& l_from,
-                  AnchorChange* change, const CalibrationLayout* layout = nullptr,
+                  AnchorChange* change, const CalibrationLayout& layout = {},
                   const AnchorPlanes& planes = {});
 /// The plane that a landmark of `from` gets in the camera `to`: tangent at its ray there if it was before.
 [[nodiscard]] BearingPlane PlaneInAnchor(const FrameGeometry& from, const BearingPlane& from_plane,

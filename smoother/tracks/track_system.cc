@@ -17,16 +17,13 @@ constexpr double kMaxInverseDepth = 1e4;  // [1/m]; where a landmark ran into it
 
 /// The depth prior on rho, the inverse depth in the base view.
 void AddDepthPrior(const DepthPrior& prior, const FrameGeometry& base, const BearingPlane& base_plane,
-                   const Vector3d& landmark, const CalibrationLayout* layout, TrackWorkspace* workspace) {
+                   const Vector3d& landmark, const CalibrationLayout& layout, TrackWorkspace* workspace) {
   const double rho = landmark.z();
   const Eigen::Matrix<double, 1, 6> camera = InverseDepthRow(base, landmark, base_plane);
   const Eigen::Matrix<double, 1, 6> pose = prior.sqrt_information * camera * base.camera_from_body;
   const double residual = prior.sqrt_information * (rho - prior.mean);
   workspace->prior_residual = residual;
-  if (layout != nullptr) {
-    workspace->prior_calibration.noalias() =
-        prior.sqrt_information * camera * CalibrationChain(*layout, base);
-  }
+  workspace->prior_calibration.noalias() = prior.sqrt_information * camera * CalibrationChain(layout, base);
   workspace->prior_pose = pose;
   workspace->prior_hessian.noalias() = pose.transpose() * pose;
   workspace->prior_gradient.noalias() = pose.transpose() * residual;
@@ -108,19 +105,14 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
 
 }  // namespace
 
-/// d rho = drho - rho dz_b, z_b the depth of (x, y, 1) in the base view.
+/// d rho = drho - rho dz_b, z_b the depth along the plane's normal of (x, y, 1) in the base view.
 Eigen::Matrix<double, 1, 6> InverseDepthRow(const FrameGeometry& base, const Vector3d& landmark,
                                             const BearingPlane& base_plane) {
   const double rho = landmark.z();
+  const Vector3d normal = base_plane.axes().col(2);
   Eigen::Matrix<double, 1, 6> camera;
-  if (base_plane.is_tangent()) {
-    const Vector3d normal = base_plane.axes().col(2);
-    camera << -rho * normal.transpose() * Skew(base_plane.Direction(landmark.head<2>())),
-        rho * rho * (base.Linearized().rotation * normal).transpose();
-    return camera;
-  }
-  const Vector3d ray = landmark.head<2>().homogeneous();
-  camera << -rho * Skew(ray).row(2), rho * rho * base.Linearized().rotation.col(2).transpose();
+  camera << -rho * normal.transpose() * Skew(base_plane.Direction(landmark.head<2>())),
+      rho * rho * (base.Linearized().rotation * normal).transpose();
   return camera;
 }
 
@@ -166,7 +158,7 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   if (prior.sqrt_information > 0) {
     FrameGeometry row;
     AddDepthPrior(prior, AtRow(geometry, views.front(), &row), views.front().observation.plane, landmark,
-                  system->calibration == nullptr ? nullptr : &system->calibration->layout, workspace);
+                  system->calibration->layout, workspace);
   }
   // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
   const Vector3d scale = workspace->landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();

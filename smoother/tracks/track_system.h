@@ -15,10 +15,10 @@ namespace alidade {
 /// the left null space of its point Jacobian): over (phi, dp) of each frame's body pose in the canonical
 /// chart.
 struct PoseSystem {
-  /// calibration: of a camera that is calibrated online, else null; it must outlive the system.
-  explicit PoseSystem(int frames, const WindowCalibration* calibration = nullptr);
+  /// calibration: it must outlive the system.
+  explicit PoseSystem(int frames, const WindowCalibration* calibration = &NotCalibrated());
 
-  [[nodiscard]] int calibration_size() const { return calibration == nullptr ? 0 : calibration->size(); }
+  [[nodiscard]] int calibration_size() const { return calibration->size(); }
 
   const WindowCalibration* calibration;
   Eigen::MatrixXd hessian;   ///< 6F + calibration squared, lower triangle; the calibration comes last

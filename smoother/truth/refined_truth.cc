@@ -48,7 +48,7 @@ class Refinement {
       ALIDADE_RETURN_IF_ERROR(Linearize(robust, &system));
       Step(system);
       poses_.Attach(imu_, constants_.time_offset_s);
-      Judge(robust);
+      UpdateWeights(robust);
       if (!robust && IsSettled(system, before)) {
         return Finish(&system);
       }
@@ -222,7 +222,7 @@ class Refinement {
   }
 
   /// Residuals, refused poses and noise at the present states.
-  void Judge(bool robust) {
+  void UpdateWeights(bool robust) {
     for (JudgedPose& pose : poses_.poses()) {
       if (pose.state) {
         pose.residual = Term(pose).residual;

@@ -39,8 +39,8 @@ struct RefinedTruth {
   TruthFit gyro, accel;            ///< white noise of the IMU
   TruthFit gyro_walk, accel_walk;  ///< of the biases
   /// Correlation time of the residuals in poses: 1 + 2 sum of the autocorrelation up to where it falls below
-  /// 0.05. So many successive poses tell as much as one with independent noise; 1 where the noise of the
-  /// truth is white. Where it is not, the covariances are too small: fewer poses, or a larger noise.
+  /// 0.05. So many successive poses hold as much information as one with independent noise; 1 where the noise
+  /// of the truth is white. Where it is not, the covariances are too small: fewer poses, or a larger noise.
   double orientation_correlation = 1, position_correlation = 1;
   std::vector<TruthSpan> spans;  ///< without poses that are used
   int imu_gaps = 0;              ///< steps of the IMU of more than ten times the median

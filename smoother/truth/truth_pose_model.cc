@@ -1,5 +1,6 @@
 #include "smoother/truth/truth_pose_model.h"
 
+#include "core/lever_arm.h"
 #include "core/lie.h"
 
 namespace alidade {
@@ -24,7 +25,8 @@ void TruthPoseModel::Evaluate(const NavState& state, const Vector3d& angular_rat
   const Matrix3d& R_BM = constants.T_BM.rotation;
   const Vector3d& p_BM = constants.T_BM.translation;
   const Matrix3d R_TB = constants.R_TW * state.R_WB;
-  const Vector3d p_WM = state.p_WB + state.R_WB * p_BM;
+  LeverArm::Jacobian marker;
+  const Vector3d p_WM = LeverArm{p_BM}.Position(state, &marker);
   const Vector3d turn = so3::Log(T_TM_measured.rotation.transpose() * R_TB * R_BM);
   *residual << turn, constants.R_TW * p_WM - T_TM_measured.translation;
   const Matrix3d right_inverse = so3::RightJacobianInverse(turn);
@@ -32,8 +34,7 @@ void TruthPoseModel::Evaluate(const NavState& state, const Vector3d& angular_rat
   if (jacobian_state != nullptr) {
     jacobian_state->setZero();
     jacobian_state->block<3, 3>(0, 0) = of_phi;
-    jacobian_state->block<3, 3>(3, 0) = -R_TB * Skew(p_BM);
-    jacobian_state->block<3, 3>(3, 3) = constants.R_TW;
+    jacobian_state->bottomRows<3>() = constants.R_TW * marker.leftCols<9>();
   }
   if (jacobian_constants != nullptr) {
     jacobian_constants->setZero();

@@ -56,7 +56,7 @@ class GyroTurns {
   std::vector<Matrix3d> turns_;
 };
 
-/// The same turn as the truth tells it, in the marker's frame, and the gyroscope, in that of the body.
+/// The same turn by the truth, in the marker's frame, and the gyroscope, in that of the body.
 struct Turn {
   Vector3d marker = Vector3d::Zero();
   Vector3d body = Vector3d::Zero();

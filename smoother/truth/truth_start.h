@@ -26,12 +26,12 @@ struct TruthStart {
   std::vector<TruthState> states;  ///< at the stamps of the IMU samples
 };
 
-/// Initial values from turns over 0.1 s, as poses and gyroscope tell them: the time offset (within 0.3 s) and
+/// Initial values from turns over 0.1 s, by poses and gyroscope: the time offset (within 0.3 s) and
 /// the rotation of the marker at which they agree best in the median, then the vertical from the mean
-/// specific force. Where the turns do not tell a rotation better than none, the marker counts as parallel to
-/// the body. States: poses as recorded, between them rotation by the gyroscope, position linear; velocities
-/// are differences over 0.1 s. The lever arm and the bias of the accelerometer start at zero. At least two
-/// samples and two poses.
+/// specific force. Where the turns do not determine a rotation better than none, the marker counts as
+/// parallel to the body. States: poses as recorded, between them rotation by the gyroscope, position linear;
+/// velocities are differences over 0.1 s. The lever arm and the bias of the accelerometer start at zero. At
+/// least two samples and two poses.
 [[nodiscard]] TruthStart StartTruth(std::span<const ImuSample> imu, std::span<const TruthPose> poses);
 
 }  // namespace alidade

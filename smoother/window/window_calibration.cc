@@ -5,6 +5,11 @@ namespace alidade {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
+const WindowCalibration& NotCalibrated() {
+  static const WindowCalibration calibration;
+  return calibration;
+}
+
 bool WindowCalibration::At(const double* block, CameraCalibration* calibration) const {
   *calibration = mean;
   return Retract(layout, Eigen::Map<const Eigen::VectorXd>(block, size()), calibration);

@@ -22,6 +22,9 @@ struct WindowCalibration {
   [[nodiscard]] Eigen::MatrixXd BlockJacobian(const double* block) const;
 };
 
+/// The calibration of a window that estimates none.
+[[nodiscard]] const WindowCalibration& NotCalibrated();
+
 /// d Local(layout, origin, Retract(layout, error, estimate)) / d error at 0, size x size.
 [[nodiscard]] Eigen::MatrixXd LocalJacobian(const CalibrationLayout& layout, const CameraCalibration& origin,
                                             const CameraCalibration& estimate);

@@ -40,30 +40,30 @@ void FilterFrame(benchmark::State& state, EstimatorConfig (*preset)()) {
   const NavEstimate initial = test::DrawInitialState(dataset, 1);
   constexpr size_t kWarmUpFrames = 60;
   std::unique_ptr<Estimator> filter;
-  size_t frame = dataset.tracks.size();
+  size_t frame = dataset.frames.size();
   size_t imu = 0;
   double tracks = 0;
   double used = 0;
   double rows = 0;
   const auto feed_imu = [&] {
-    while (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.tracks[frame].stamp_ns) {
+    while (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.frames[frame].stamp_ns) {
       (void)filter->AddImu(dataset.imu[imu++]);
     }
   };
   for ([[maybe_unused]] auto _ : state) {
     state.PauseTiming();
-    if (frame == dataset.tracks.size()) {
+    if (frame == dataset.frames.size()) {
       filter = MakeFilter(config, dataset.rig);
       (void)filter->Initialize(initial);
       imu = 0;
       for (frame = 0; frame < kWarmUpFrames; ++frame) {
         feed_imu();
-        (void)filter->AddFrame(dataset.tracks[frame]);
+        (void)filter->AddFrame(dataset.frames[frame]);
       }
     }
     feed_imu();
     state.ResumeTiming();
-    const Status status = filter->AddFrame(dataset.tracks[frame]);
+    const Status status = filter->AddFrame(dataset.frames[frame]);
     benchmark::DoNotOptimize(status.ok());
     tracks += filter->last_statistics().tracks_in;
     used += filter->last_statistics().features_used;

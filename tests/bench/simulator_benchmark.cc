@@ -15,7 +15,7 @@ void SimulateSequence(benchmark::State& state) {
       state.SkipWithError(dataset.message().c_str());
       return;
     }
-    benchmark::DoNotOptimize(dataset->tracks.size());
+    benchmark::DoNotOptimize(dataset->frames.size());
   }
 }
 BENCHMARK(SimulateSequence)->Unit(benchmark::kMillisecond);

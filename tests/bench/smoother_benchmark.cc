@@ -29,30 +29,30 @@ void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKer
   const NavEstimate initial = test::DrawInitialState(dataset, 1);
   constexpr size_t kWarmUpFrames = 60;
   std::unique_ptr<Estimator> smoother;
-  size_t frame = dataset.tracks.size();
+  size_t frame = dataset.frames.size();
   size_t imu = 0;
   double used = 0;
   double rows = 0;
   double solver_iterations = 0;
   const auto feed_imu = [&] {
-    while (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.tracks[frame].stamp_ns) {
+    while (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.frames[frame].stamp_ns) {
       (void)smoother->AddImu(dataset.imu[imu++]);
     }
   };
   for ([[maybe_unused]] auto _ : state) {
     state.PauseTiming();
-    if (frame == dataset.tracks.size()) {
+    if (frame == dataset.frames.size()) {
       smoother = MakeSmoother(config, dataset.rig);
       (void)smoother->Initialize(initial);
       imu = 0;
       for (frame = 0; frame < kWarmUpFrames; ++frame) {
         feed_imu();
-        (void)smoother->AddFrame(dataset.tracks[frame]);
+        (void)smoother->AddFrame(dataset.frames[frame]);
       }
     }
     feed_imu();
     state.ResumeTiming();
-    const Status status = smoother->AddFrame(dataset.tracks[frame]);
+    const Status status = smoother->AddFrame(dataset.frames[frame]);
     benchmark::DoNotOptimize(status.ok());
     used += smoother->last_statistics().features_used;
     rows += smoother->last_statistics().nis_dof;

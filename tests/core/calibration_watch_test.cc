@@ -141,18 +141,11 @@ TEST(CalibrationWatchTest, WithoutDataNothingIsDoubted) {
   EXPECT_EQ(doubt.pose_sigmas, 0);
 }
 
-TEST(CalibrationWatchTest, TheLeverArmOfAnAntennaThatIsInUseComesLast) {
-  RigCalibration rig;
-  EXPECT_EQ(AntennaToWatch(true, true, rig), WatchedAntenna::kNone);
-  rig.fixes.resize(1);
-  EXPECT_EQ(AntennaToWatch(true, true, rig), WatchedAntenna::kFix);
-  EXPECT_EQ(AntennaToWatch(true, false, rig), WatchedAntenna::kNone);
-  rig.gnss.is_present = true;
-  EXPECT_EQ(AntennaToWatch(true, true, rig), WatchedAntenna::kGnss);
-  CalibrationEstimate watched = InitialCalibration(Watching(), CameraCalibration(), WatchedAntenna::kGnss);
+TEST(CalibrationWatchTest, TheLeverArmOfAnAntennaComesLast) {
+  CalibrationEstimate watched = InitialCalibration(Watching(), CameraCalibration(), Sensor::kGnss);
   ASSERT_EQ(watched.layout.size(), 14);
   EXPECT_EQ(watched.layout.lever_arm(), 11);
-  EXPECT_EQ(InitialCalibration({}, CameraCalibration(), WatchedAntenna::kGnss).layout.size(), 0);
+  EXPECT_EQ(InitialCalibration({}, CameraCalibration(), Sensor::kGnss).layout.size(), 0);
   // 10 sigma of the second axis, half a metre, with 1e4 of information.
   const double precision = 1 / (watched.deviations[12] * watched.deviations[12]) + 400;
   watched.deviations[12] = 1 / std::sqrt(precision);

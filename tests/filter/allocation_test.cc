@@ -67,14 +67,14 @@ TEST_P(SteadyState, AllocatesNothing) {
   allocations = 0;
   int in_steady_state = 0;
   int used = 0;
-  for (size_t frame = 0; frame < dataset.tracks.size(); ++frame) {
-    counting = frame >= 2 * dataset.tracks.size() / 3;
+  for (size_t frame = 0; frame < dataset.frames.size(); ++frame) {
+    counting = frame >= 2 * dataset.frames.size() / 3;
     for (; imu < dataset.imu.size() &&
-           (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.tracks[frame].stamp_ns);
+           (imu == 0 || dataset.imu[imu - 1].stamp_ns < dataset.frames[frame].stamp_ns);
          ++imu) {
       ASSERT_TRUE(filter.AddImu(dataset.imu[imu]).ok());
     }
-    const bool ok = filter.AddFrame(dataset.tracks[frame]).ok();
+    const bool ok = filter.AddFrame(dataset.frames[frame]).ok();
     in_steady_state += counting ? 1 : 0;
     used += counting ? filter.last_statistics().features_used : 0;
     counting = false;

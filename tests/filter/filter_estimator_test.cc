@@ -143,8 +143,8 @@ TEST(FilterEstimatorTest, WrongTracksDoNotRaiseTheAdaptiveNoise) {
   EXPECT_GE(clean.max_pixel_noise_px, config.vision.pixel_noise_px);
   EXPECT_LT(clean.max_pixel_noise_px, 1.1 * config.vision.pixel_noise_px);
   RandomStream random(6, "wrong tracks");
-  const TimeNs start_ns = dataset.tracks.front().stamp_ns + 15 * kSecondNs;
-  for (TrackFrame& frame : dataset.tracks) {
+  const TimeNs start_ns = dataset.frames.front().stamp_ns + 15 * kSecondNs;
+  for (TrackFrame& frame : dataset.frames) {
     for (TrackObservation& seen : frame.observations) {
       if (seen.track_id % 10 < 3 && frame.stamp_ns >= start_ns && frame.stamp_ns < start_ns + 5 * kSecondNs) {
         seen.pixel += 15 * Eigen::Vector2d(random.Normal(), random.Normal());
@@ -175,18 +175,18 @@ TEST(FilterEstimatorTest, WindowNeverExceedsItsSize) {
 TEST(FilterEstimatorTest, AFrameThatNoImuReachesIsSkippedAndNothingIsLost) {
   const Dataset dataset = test::SimulateOrDie(ShortFigureEight(), 8);
   FilterEstimator filter(FilterPreset(FilterLandmark::kMsckf, UpdateTiming::kDelayedAll, 5), dataset.rig);
-  EXPECT_EQ(filter.AddFrame(dataset.tracks[0]).code(), StatusCode::kDiverged) << "before Initialize";
+  EXPECT_EQ(filter.AddFrame(dataset.frames[0]).code(), StatusCode::kDiverged) << "before Initialize";
   const NavEstimate initial = test::DrawInitialState(dataset, 8);
   ASSERT_TRUE(filter.Initialize(initial).ok());
   for (int i = 0; i < 30; ++i) {
     ASSERT_TRUE(filter.AddImu(dataset.imu[static_cast<size_t>(i)]).ok());
   }
-  ASSERT_TRUE(filter.AddFrame(dataset.tracks[0]).ok());
+  ASSERT_TRUE(filter.AddFrame(dataset.frames[0]).ok());
   const NavEstimate before = filter.Latest();
-  EXPECT_EQ(filter.AddFrame(dataset.tracks[20]).code(), StatusCode::kInput);
+  EXPECT_EQ(filter.AddFrame(dataset.frames[20]).code(), StatusCode::kInput);
   EXPECT_EQ(filter.Latest().nav.p_WB, before.nav.p_WB);
-  EXPECT_EQ(filter.AddFrame(dataset.tracks[0]).code(), StatusCode::kInput) << "not after the last one";
-  EXPECT_TRUE(filter.AddFrame(dataset.tracks[1]).ok());
+  EXPECT_EQ(filter.AddFrame(dataset.frames[0]).code(), StatusCode::kInput) << "not after the last one";
+  EXPECT_TRUE(filter.AddFrame(dataset.frames[1]).ok());
 }
 
 TEST(FilterEstimatorTest, BadInitialStatesAreRefused) {

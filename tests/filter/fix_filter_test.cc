@@ -29,7 +29,7 @@ TEST_P(FixFilterTest, RefusesWrongFixesAndIsConsistent) {
     const Dataset dataset = SimulateOrDie(scene, seed);
     FilterEstimator filter(config, dataset.rig);
     RunWithFixes(dataset, DrawInitialState(dataset, 3), &filter, [&](const PositionFix& fix) {
-      const SensorStatistics& counts = filter.last_statistics().sensors[Sensor::kFix];
+      const SensorStatistics& counts = filter.last_statistics().sensors[SensorOf<PositionFixEntry>()];
       used += counts.used;
       gated += counts.gated;
       nis += counts.nis;

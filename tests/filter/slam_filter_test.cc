@@ -72,7 +72,7 @@ TEST(SlamFilterTest, LandmarksLeaveWithTheirTracksAndMismatchesAreRefused) {
   EXPECT_LT(result.rmse_position_m, 0.2);
   EXPECT_GT(filter.state().landmarks().size(), 5u);
   TrackFrame empty;
-  empty.stamp_ns = dataset.tracks.back().stamp_ns + 50'000'000;
+  empty.stamp_ns = dataset.frames.back().stamp_ns + 50'000'000;
   ImuSample sample = dataset.imu.back();
   for (int i = 0; i < 10; ++i) {
     sample.stamp_ns += 10'000'000;

@@ -75,8 +75,8 @@ void TakeSequence(std::string_view bytes) {
     for (const ImuSample& sample : dataset->imu) {
       Require(sample.gyro.allFinite() && sample.accel.allFinite(), "IMU samples are finite");
     }
-    for (std::size_t i = 1; i < dataset->tracks.size(); ++i) {
-      Require(dataset->tracks[i - 1].stamp_ns < dataset->tracks[i].stamp_ns, "stamps of frames increase");
+    for (std::size_t i = 1; i < dataset->frames.size(); ++i) {
+      Require(dataset->frames[i - 1].stamp_ns < dataset->frames[i].stamp_ns, "stamps of frames increase");
     }
   });
 }

@@ -65,7 +65,7 @@ TimeNs* StampOf(Call* call) {
 std::vector<Call> SceneCalls() {
   const Dataset& scene = FuzzScene();
   std::vector<Call> calls(scene.imu.begin(), scene.imu.end());
-  calls.insert(calls.end(), scene.tracks.begin(), scene.tracks.end());
+  calls.insert(calls.end(), scene.frames.begin(), scene.frames.end());
   calls.insert(calls.end(), scene.gnss->epochs.begin(), scene.gnss->epochs.end());
   calls.insert(calls.end(), scene.fixes.begin(), scene.fixes.end());
   std::stable_sort(calls.begin(), calls.end(), [](Call a, Call b) { return *StampOf(&a) < *StampOf(&b); });

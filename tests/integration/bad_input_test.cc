@@ -97,7 +97,7 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {run + " --config=" + folder_.File("unknown_key.yaml"), 3, "unknown_key.yaml:3:3"},
       {run + " --config=" + base + " --set=filter.windw=3", 3, "filter.window"},
       {run + " --config=" + base + " --set=filter.window=0", 3, "filter.window"},
-      {run + " --config=" + base + " --set=gnss.enabled=true,backend=batch", 3, "batch back end"},
+      {run + " --config=" + base + " --set=calibration.extrinsics=true,backend=batch", 3, "batch back end"},
       {"run --dataset=" + folder_.File("none") + " --config=" + base + " --output=" + out, 4, "none"},
       {"run --dataset=" + folder_.File("no_imu") + " --config=" + base + " --output=" + out, 4, "imu0"},
       {"run --dataset=" + folder_.File("torn_imu") + " --config=" + base + " --output=" + out, 4,

@@ -35,7 +35,7 @@ TEST(Consumer, AProjectOfItsOwnFindsBuildsAndRuns) {
 TEST(Consumer, ARobotNeedsTheSessionAlone) {
   TemporaryFolder folder;
   const CommandResult configured =
-      Shell(std::string(ALIDADE_CMAKE) + " -G Ninja -S " + Source("tests/package/robot") + " -B " +
+      Shell(std::string(ALIDADE_CMAKE) + " -G Ninja -S " + Source("docs/robot_example") + " -B " +
             folder.File("build") + " -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH='" ALIDADE_PREFIX "'" +
             " -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON" +
             " -DCMAKE_DISABLE_FIND_PACKAGE_BZip2=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenSSL=ON" +

@@ -22,7 +22,7 @@ inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention conve
     EXPECT_TRUE(imu.Add(sample).ok());
   }
   for (int k = 0; k < frames; ++k) {
-    const TimeNs stamp_ns = dataset.tracks[static_cast<size_t>(k)].stamp_ns;
+    const TimeNs stamp_ns = dataset.frames[static_cast<size_t>(k)].stamp_ns;
     if (k > 0) {
       std::vector<ImuSample> interval;
       EXPECT_TRUE(imu.Interval(state.stamp_ns(), stamp_ns, &interval).ok());

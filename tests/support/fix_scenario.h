@@ -41,7 +41,7 @@ void RunWithFixes(const Dataset& dataset, const NavEstimate& initial, Estimator*
       ASSERT_TRUE(estimator->AddImu(dataset.imu[imu]).ok());
     }
   };
-  for (const TrackFrame& frame : dataset.tracks) {
+  for (const TrackFrame& frame : dataset.frames) {
     for (; next < dataset.fixes.size(); ++next) {
       PositionFix fix = dataset.fixes[next];
       fix.stamp_ns += SecondsToNs(dataset.rig.fixes[0].time_offset_s);

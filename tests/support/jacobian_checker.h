@@ -60,7 +60,6 @@ inline std::string CompareJacobians(const Eigen::MatrixXd& analytic, const Eigen
   return message.str();
 }
 
-inline constexpr ErrorConvention kAllConventions[] = {
-    ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant, ErrorConvention::kSo3xRn};
+inline constexpr auto kAllConventions = kErrorConventions;
 
 }  // namespace alidade::test

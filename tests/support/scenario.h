@@ -46,7 +46,7 @@ inline const TrajectoryPoint& TruthAt(const Dataset& dataset, TimeNs stamp_ns) {
 
 /// The truth at the first frame, displaced by a draw from the prior it comes with.
 inline NavEstimate DrawInitialState(const Dataset& dataset, unsigned seed, double scale = 1) {
-  const TrajectoryPoint& truth = TruthAt(dataset, dataset.tracks.front().stamp_ns);
+  const TrajectoryPoint& truth = TruthAt(dataset, dataset.frames.front().stamp_ns);
   Vector15d deviation;
   deviation << Eigen::Vector3d::Constant(2e-3), Eigen::Vector3d::Constant(1e-3),
       Eigen::Vector3d::Constant(1e-2), Eigen::Vector3d::Constant(2e-3), Eigen::Vector3d::Constant(2e-2);
@@ -90,7 +90,7 @@ inline ScenarioResult RunScenario(const Dataset& dataset, const NavEstimate& ini
   RunOptions options;
   options.start_state = [&](TimeNs) { return Result<NavEstimate>(initial); };
   ForwardPass forward(estimator);
-  const RunResult run = RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, options, &forward);
+  const RunResult run = RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames}, options, &forward);
   EXPECT_EQ(run.imu_rejected, 0);
   ScenarioResult result;
   result.status = run.status.ok() && run.frames_skipped > 0 ? Status::Input(run.skip_report) : run.status;

@@ -31,7 +31,7 @@ double System::TimeOf(TimeNs stamp_ns) const {
 
 Result<std::vector<VinsFeature>> System::FeaturesOf(size_t frame, double time_s, bool hand_over) {
   if (tracker_ == nullptr) {
-    return given_.Take(sequence_.dataset.rig.camera, sequence_.dataset.tracks[frame], time_s);
+    return given_.Take(sequence_.dataset.rig.camera, sequence_.dataset.frames[frame], time_s);
   }
   const Result<GreyImage> image =
       images_.ReadFor(sequence_.dataset.rig.camera, sequence_.dataset.images[frame]);

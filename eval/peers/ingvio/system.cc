@@ -154,7 +154,7 @@ Status System::PublishFeatures(size_t frame, double time_s) {
     const auto message = std::make_shared<::feature_tracker::MonoFrame>();
     message->header.stamp = ros::Time(time_s);
     const CameraModel& camera = sequence_.dataset.rig.camera;
-    for (const VinsFeature& f : given_.Take(camera, sequence_.dataset.tracks[frame], time_s)) {
+    for (const VinsFeature& f : given_.Take(camera, sequence_.dataset.frames[frame], time_s)) {
       ::feature_tracker::MonoMeas feature;
       feature.id = static_cast<std::uint64_t>(f.id);
       feature.u0 = f.plane.x();

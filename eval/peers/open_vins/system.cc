@@ -93,7 +93,7 @@ Status System::FeedFrame(size_t frame) {
   message.sensor_ids = {0};
   message.images = {*image};
   message.masks = {cv::Mat::zeros(image->size(), CV_8UC1)};
-  given_ = sequence_.from_tracks ? &sequence_.dataset.tracks[frame] : nullptr;
+  given_ = sequence_.from_tracks ? &sequence_.dataset.frames[frame] : nullptr;
   frontend_s_ = 0;
   const double before = ProcessCpuSeconds();
   feed_measurement_camera(message);

@@ -42,7 +42,8 @@ window.addEventListener('error', function (event) {
       ['truth', 'est', 'ori', 'ori_sigma', 'pos', 'pos_sigma'].forEach(function (key) {
         unpacked[key] = packed[key].map(unpack);
       });
-      ['nees', 'ms', 'ms_quantiles', 'features', 'tracks', 'nis', 'gnss_nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) { unpacked[key] = packed[key]; });
+      ['nees', 'ms', 'ms_quantiles', 'features', 'tracks', 'nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) { unpacked[key] = packed[key]; });
+      report.data.sensors.forEach(function (sensor) { unpacked[sensor.key + '_nis'] = packed.sensor_nis[sensor.key] || []; });
       cell.unpacked = unpacked;
     }
     return cell.unpacked;
@@ -96,7 +97,8 @@ window.addEventListener('error', function (event) {
         return combine(all, function (series) { return series[key][axis]; }, rootMeanSquare);
       });
     });
-    ['nees', 'ms', 'features', 'tracks', 'nis', 'gnss_nis', 'rank', 'yaw_leak', 'position_leak'].forEach(function (key) {
+    const ofSensors = report.data.sensors.map(function (sensor) { return sensor.key + '_nis'; });
+    ['nees', 'ms', 'features', 'tracks', 'nis', 'rank', 'yaw_leak', 'position_leak'].concat(ofSensors).forEach(function (key) {
       merged[key] = combine(all, function (series) { return series[key]; }, d3.mean);
     });
     const filled = all.filter(function (series) { return series.ms_quantiles.length; });

@@ -6,34 +6,38 @@
   function percent(share) { return (100 * share).toFixed(1) + ' %'; }
 
   // Of frames, over the runs of an entry: mean ratio and share inside the band.
-  function innovationText(entries, key) {
+  function innovationText(entries, pick) {
     return entries.map(function (entry) {
-      const known = entry.cells.filter(function (cell) { return cell[key][0] !== null; });
-      return known.length ? entry.name + ' ' + d3.mean(known, function (cell) { return cell[key][0]; }).toFixed(2) + ', ' +
-        percent(d3.mean(known, function (cell) { return cell[key][1]; })) : '';
+      const known = entry.cells.map(pick).filter(function (summary) { return summary && summary[0] !== null; });
+      return known.length ? entry.name + ' ' + d3.mean(known, function (summary) { return summary[0]; }).toFixed(2) + ', ' +
+        percent(d3.mean(known, function (summary) { return summary[1]; })) : '';
     }).filter(function (text) { return text; }).join('; ');
   }
 
-  function drawNis(grid, entries, key, title) {
+  function drawNis(grid, entries, key, pick, title) {
     const bounds = [];
     entries.forEach(function (entry) {
-      const known = entry.cells.filter(function (cell) { return cell[key][0] !== null; });
-      (known.length ? known[0][key].slice(2) : []).forEach(function (value) { if (value > 0) { bounds.push({ style: entry.style, dash: '2 4', value: value }); } });
+      const known = entry.cells.map(pick).filter(function (summary) { return summary && summary[0] !== null; });
+      (known.length ? known[0].slice(2) : []).forEach(function (value) { if (value > 0) { bounds.push({ style: entry.style, dash: '2 4', value: value }); } });
     });
     report.timePlot(grid, spec(key, title, 'NIS / rows [\u2013], log scale', '', entries,
       { log: true, means: bounds, lines: lines(entries, function (series) { return series[key]; }) }));
   }
 
   report.drawInnovations = function (entries) {
-    const withGnss = entries.filter(function (entry) {
-      return entry.cells.some(function (cell) { return cell.gnss_nis[0] !== null; });
-    });
+    const ofVision = function (cell) { return cell.nis; };
+    const sensors = report.data.sensors.map(function (sensor) {
+      const pick = function (cell) { return cell.sensor_nis[sensor.key]; };
+      return { key: sensor.key + '_nis', name: sensor.name, pick: pick, entries: entries.filter(function (entry) { return entry.cells.some(pick); }) };
+    }).filter(function (sensor) { return sensor.entries.length; });
     const grid = group('Innovations and features', 'Normalised innovation squared of a frame divided by the number of its rows: 1 on average if the ' +
       'assumed noise is correct. Dotted: 95 % band of a frame with the median number of rows. Gated measurements are ' +
       'excluded; for a smoother the residuals of its window after the solve. Mean and share of frames inside their own band: ' +
-      (innovationText(entries, 'nis') || 'unknown') + (withGnss.length ? '; of GNSS: ' + innovationText(withGnss, 'gnss_nis') : '') + '.');
-    drawNis(grid, entries, 'nis', 'Innovations');
-    if (withGnss.length) { drawNis(grid, withGnss, 'gnss_nis', 'Innovations of GNSS'); }
+      (innovationText(entries, ofVision) || 'unknown') + sensors.map(function (sensor) {
+        return '; of ' + sensor.name + ': ' + innovationText(sensor.entries, sensor.pick);
+      }).join('') + '.');
+    drawNis(grid, entries, 'nis', ofVision, 'Innovations');
+    sensors.forEach(function (sensor) { drawNis(grid, sensor.entries, sensor.key, sensor.pick, 'Innovations of ' + sensor.name); });
     report.timePlot(grid, spec('tracks', 'Tracks per frame', 'tracks [1/frame]', '', entries,
       { zero: true, lines: lines(entries, function (series) { return series.tracks; }) }));
     report.timePlot(grid, spec('features', 'Features used per frame', 'features [1/frame]', '', entries,

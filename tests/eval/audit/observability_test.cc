@@ -254,7 +254,7 @@ TEST(ObservabilityTest, GnssTellsYawAndPosition) {
   sim.path_m = 16;
   sim.gnss.rate_hz = 5;
   const Dataset dataset = test::SimulateOrDie(sim, 3);
-  const MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss};
+  const MeasurementLog log{dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss};
   EstimatorConfig config;
   config.init.method = InitMethod::kTruth;
   config.gnss.enabled = true;

@@ -94,8 +94,8 @@ TEST_F(BagRoundTrip, KeepsImages) {
     image.pixels[i] = static_cast<unsigned char>(i * i % 251);
   }
   ASSERT_TRUE(WritePng(image, folder_.File("image.png")).ok());
-  const TimeNs stamp_ns = dataset.tracks.front().stamp_ns;
-  dataset.tracks.clear();
+  const TimeNs stamp_ns = dataset.frames.front().stamp_ns;
+  dataset.frames.clear();
   dataset.images = {{stamp_ns, folder_.File("image.png")}};
   Result<BagImport> import = ThroughABag(dataset);
   ASSERT_TRUE(import.ok()) << import.message();

@@ -32,7 +32,7 @@ class CalibratedFigureEight : public testing::Test {
     dataset_ = new Dataset(SimulateOrDie(simulation, 21));
     EstimatorConfig config;
     config.vision.pixel_noise_px = simulation.pixel_noise_px;
-    MeasurementLog log{dataset_->rig, dataset_->imu, dataset_->tracks};
+    MeasurementLog log{dataset_->rig, dataset_->imu, dataset_->frames};
     camera_ = new Result<CalibratedCamera>(CalibrateCamera(config, log, {}));
   }
   static void TearDownTestSuite() {

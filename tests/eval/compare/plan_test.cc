@@ -85,10 +85,10 @@ TEST_F(PlanTest, ReadsEveryKey) {
               ElementsAre("pixel_noise_px=2", "hybrid_dataset=" + folder_.File("data") + "/seq"));
   EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
   EXPECT_TRUE(plan->audit);
-  EXPECT_EQ(plan->metrics.alignment, Alignment::kSe3);
-  EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).alignment, Alignment::kSe3);
+  EXPECT_EQ(plan->metrics.alignment, TrajectoryAlignment::kSe3);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).alignment, TrajectoryAlignment::kSe3);
   EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).align_share, 0.5);
-  EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).alignment, Alignment::kPos);
+  EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).alignment, TrajectoryAlignment::kPos);
   EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).align_share, 0.05);
   EXPECT_EQ(plan->sequences[2].group, "one half");
   EXPECT_TRUE(plan->MetricsOf(plan->estimators[0], plan->sequences[2]).anchor_at_first);

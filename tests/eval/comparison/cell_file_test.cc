@@ -42,6 +42,8 @@ CellReport Report() {
   cell.series.position = {{1, 2, kThird}, {4, 5, 6}, {7, 8, 9}};
   cell.series.error.assign(3, Vector6d::Constant(kThird));
   cell.series.nis_ratio = {1, NAN, 2};
+  cell.series.sensor_nis_ratio["fix"] = {kThird, NAN, 2};
+  cell.sensor_innovations["fix"] = {kThird, 0.5, std::nullopt};
   cell.sky = {{"G07", {1}, {2}, {3}, {kThird}, 0.5, 1.25}};
   return report;
 }
@@ -68,6 +70,8 @@ TEST(CellFile, KeepsEveryBit) {
   EXPECT_TRUE(std::isnan(cell.rpe[1].pos_rmse_m));
   EXPECT_EQ(cell.innovations.band->second, kThird);
   EXPECT_FALSE(cell.innovations.inside);
+  EXPECT_EQ(cell.series.sensor_nis_ratio.at("fix")[0], kThird);
+  EXPECT_EQ(cell.sensor_innovations.at("fix").inside, 0.5);
   EXPECT_EQ(cell.series.regular, report.result.series.regular);
   EXPECT_EQ(cell.series.position[0], report.result.series.position[0]);
   EXPECT_EQ(cell.series.error[2], report.result.series.error[2]);

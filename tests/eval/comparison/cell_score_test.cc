@@ -64,8 +64,8 @@ TEST(CellScore, GivenInnovationsThenTheirMeanAndShareInsideAreThoseOfAHandCalcul
   EXPECT_DOUBLE_EQ(*cell.innovations.inside, 0.5);
   EXPECT_NEAR(cell.innovations.band->first, 0.4844 / 4, 1e-4);
   EXPECT_NEAR(cell.innovations.band->second, 11.1433 / 4, 1e-4);
-  EXPECT_DOUBLE_EQ(*cell.gnss_innovations.ratio, 2 * 31.4 / 24);
-  EXPECT_DOUBLE_EQ(*cell.gnss_innovations.inside, 2.0 / 3) << "20, 42 and 0.8 of 10, 10 and 4";
+  EXPECT_DOUBLE_EQ(*cell.sensor_innovations.at("gnss").ratio, 2 * 31.4 / 24);
+  EXPECT_DOUBLE_EQ(*cell.sensor_innovations.at("gnss").inside, 2.0 / 3) << "20, 42 and 0.8 of 10, 10 and 4";
   EXPECT_DOUBLE_EQ(*cell.propagate_ms, 2);
   EXPECT_FALSE(cell.frontend_ms) << "the tracks were read from a file";
   EXPECT_FALSE(cell.gated_share) << "no track met the gate";
@@ -91,7 +91,8 @@ TEST(CellScore, GivenGnssSlowerThanTheCameraThenItsInnovationsAreHeldButNotThrou
     }
     CellResult cell;
     ScoreRun(&truth, run, EvaluationOptions(), &cell);
-    return cell.series.gnss_nis_ratio;
+    const auto found = cell.series.sensor_nis_ratio.find("gnss");
+    return found == cell.series.sensor_nis_ratio.end() ? std::vector<double>() : found->second;
   };
   EXPECT_TRUE(score(false).empty());
   const std::vector<double> ratio = score(true);

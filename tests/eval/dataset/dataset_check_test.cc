@@ -34,7 +34,7 @@ Dataset Healthy() {
     point.stamp_ns = stamp;
     truth.points.push_back(point);
     if (i % 10 == 0) {
-      dataset.tracks.push_back({stamp, {{1, Eigen::Vector2d(5, 5)}, {2, Eigen::Vector2d(600, 400)}}, 0});
+      dataset.frames.push_back({stamp, {{1, Eigen::Vector2d(5, 5)}, {2, Eigen::Vector2d(600, 400)}}, 0});
     }
   }
   dataset.truth = truth;
@@ -109,7 +109,7 @@ TEST(DatasetCheck, GivenRepeatedRowsThenTheirShareIsNamed) {
 
 TEST(DatasetCheck, GivenAnotherClockThenTheSensorsShareNoTime) {
   Dataset dataset = Healthy();
-  for (TrackFrame& frame : dataset.tracks) {
+  for (TrackFrame& frame : dataset.frames) {
     frame.stamp_ns /= 1000;
   }
   EXPECT_THAT(Complaints(dataset, Severity::kError),
@@ -118,7 +118,7 @@ TEST(DatasetCheck, GivenAnotherClockThenTheSensorsShareNoTime) {
 
 TEST(DatasetCheck, GivenPixelsOutsideTheImageThenTheResolutionIsDoubted) {
   Dataset dataset = Healthy();
-  for (TrackFrame& frame : dataset.tracks) {
+  for (TrackFrame& frame : dataset.frames) {
     frame.observations[1].pixel.x() += 200;
   }
   EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("101 observations are outside 640 x 480 px"));
@@ -126,7 +126,7 @@ TEST(DatasetCheck, GivenPixelsOutsideTheImageThenTheResolutionIsDoubted) {
 
 TEST(DatasetCheck, GivenATrackThatComesBackThenItIsNamed) {
   Dataset dataset = Healthy();
-  dataset.tracks[50].observations.pop_back();
+  dataset.frames[50].observations.pop_back();
   EXPECT_THAT(Complaints(dataset, Severity::kWarning),
               HasSubstr("1 times a track is missing in some frames"));
 }

@@ -48,14 +48,14 @@ Dataset SmallDataset() {
     for (int j = 0; j < (i == 2 ? 0 : 4); ++j) {
       frame.observations.push_back({10 * i + j, Eigen::Vector2d(100.1 / (1 + j), 200.3 + i)});
     }
-    dataset.tracks.push_back(frame);
+    dataset.frames.push_back(frame);
   }
   dataset.truth = truth;
   return dataset;
 }
 
 MeasurementLog LogOf(const Dataset& dataset) {
-  return {dataset.rig, dataset.imu, dataset.tracks};
+  return {dataset.rig, dataset.imu, dataset.frames};
 }
 
 TEST(Dataset, WhenWrittenAndReadThenMeasurementsAreEqualToTheLastBit) {
@@ -69,8 +69,8 @@ TEST(Dataset, WhenWrittenAndReadThenMeasurementsAreEqualToTheLastBit) {
   EXPECT_EQ(read->camera_rate_hz, 20);
   EXPECT_EQ(read->rig.T_BC.rotation, written.rig.T_BC.rotation);
   EXPECT_EQ(read->rig.line_delay_s, 2.9737e-5);
-  ASSERT_EQ(read->tracks.size(), 5u);
-  EXPECT_TRUE(read->tracks[2].observations.empty()) << "a frame that saw nothing survives";
+  ASSERT_EQ(read->frames.size(), 5u);
+  EXPECT_TRUE(read->frames[2].observations.empty()) << "a frame that saw nothing survives";
   ASSERT_TRUE(read->truth.has_value());
   ASSERT_EQ(read->truth->points.size(), written.truth->points.size());
   EXPECT_TRUE(read->truth->has_velocity && read->truth->has_bias && !read->truth->has_covariance);
@@ -125,7 +125,7 @@ TEST(Dataset, GivenTheRealSequencesThenEachReads) {
       ASSERT_TRUE(dataset.ok()) << dataset.message();
       EXPECT_LT(elapsed.count(), 2.0) << entry.path() << " reads slowly";
       EXPECT_GT(dataset->imu.size(), 1000u);
-      EXPECT_GT(dataset->tracks.size() + dataset->images.size() + dataset->camera_stamps.size(), 90u);
+      EXPECT_GT(dataset->frames.size() + dataset->images.size() + dataset->camera_stamps.size(), 90u);
       EXPECT_EQ(dataset->name, entry.path().filename().string());
       for (const DatasetFinding& finding : CheckDataset(*dataset)) {
         EXPECT_NE(finding.severity, DatasetFinding::Severity::kError)
@@ -144,7 +144,7 @@ TEST(Dataset, GivenTheTangoSequenceThenItsFovCameraIsRead) {
   EXPECT_EQ(dataset->rig.camera.model(), DistortionModel::kFov);
   EXPECT_EQ(dataset->rig.camera.coefficients()[0], 0.932489670230815);
   EXPECT_FALSE(dataset->truth.has_value());
-  EXPECT_EQ(dataset->tracks.size(), 969u);
+  EXPECT_EQ(dataset->frames.size(), 969u);
 }
 
 TEST(Dataset, GivenRealExtrinsicsRoundedInTheFileThenTheRotationIsOrthonormal) {

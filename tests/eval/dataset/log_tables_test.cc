@@ -61,14 +61,14 @@ TEST(LogTables, OfFilesAreThoseOfMemory) {
   WriteSequence(folder);
   const Result<Dataset> held = ReadDataset(folder.path());
   ASSERT_TRUE(held.ok()) << held.message();
-  ASSERT_EQ(held->tracks.size(), 600u);
+  ASSERT_EQ(held->frames.size(), 600u);
   ASSERT_GT(held->imu_rejections.dropped(), 20u);
   const test::TemporaryFolder spool;
   const Result<Dataset> read = ReadDataset(folder.path(), {spool.path(), 5});
   ASSERT_TRUE(read.ok()) << read.message();
-  EXPECT_TRUE(read->imu.empty() && read->tracks.empty() && read->extra_cameras.at(0).frames.empty());
+  EXPECT_TRUE(read->imu.empty() && read->frames.empty() && read->extra_cameras.at(0).frames.empty());
   EXPECT_EQ(read->tables->imu.size(), held->imu.size());
-  EXPECT_EQ(read->tables->frames.size(), held->tracks.size());
+  EXPECT_EQ(read->tables->frames.size(), held->frames.size());
   EXPECT_EQ(DigestOfTables(*read), DigestOf(MeasurementsOf(*held)));
   EXPECT_EQ(FindingsOf(*read), FindingsOf(*held));
   EXPECT_EQ(read->remarks, held->remarks);
@@ -77,7 +77,7 @@ TEST(LogTables, OfFilesAreThoseOfMemory) {
 
   Dataset moved = *held;
   ASSERT_TRUE(MoveTablesToFiles(spool.path(), &moved).ok());
-  EXPECT_TRUE(moved.imu.empty() && moved.tracks.empty());
+  EXPECT_TRUE(moved.imu.empty() && moved.frames.empty());
   EXPECT_EQ(DigestOfTables(moved), DigestOfTables(*read));
 }
 

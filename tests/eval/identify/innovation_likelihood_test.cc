@@ -29,7 +29,7 @@ class RecordedRun : public testing::Test {
     config.filter.max_direction_deviation = max_direction_deviation_;
     config.vision.pixel_noise_px = pixel_noise_px;
     config = IdentifyingFilter(config);
-    MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
+    MeasurementLog log{dataset.rig, dataset.imu, dataset.frames};
     log.rig.imu_noise = noise;
     LinearRecorder recorder(noise, GravityInWorld(config.imu.gravity_mps2));
     const std::unique_ptr<Estimator> filter = MakeFilter(config, log.rig, &recorder);

@@ -40,7 +40,7 @@ class ShortMotion : public testing::Test {
     config.init.method = InitMethod::kTruth;
     config.filter.window = 10;
     config.vision.pixel_noise_px = 2;
-    MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
+    MeasurementLog log{dataset.rig, dataset.imu, dataset.frames};
     log.rig.imu_noise.gyro_noise_density_radps_sqrthz *= 3;
     log.rig.imu_noise.accel_noise_density_mps2_sqrthz *= 2;
     MotionOptions options;

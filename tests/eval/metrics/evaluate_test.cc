@@ -29,7 +29,7 @@ Trajectory ScaledEstimate(bool with_covariance) {
   return estimate;
 }
 
-Evaluation EvaluateScaled(Alignment alignment, bool with_covariance) {
+Evaluation EvaluateScaled(TrajectoryAlignment alignment, bool with_covariance) {
   EvaluationOptions options;
   options.alignment = alignment;
   options.rpe_distances_m = {2, 5000};
@@ -40,7 +40,7 @@ Evaluation EvaluateScaled(Alignment alignment, bool with_covariance) {
 }
 
 TEST(Evaluate, UndoesTheSimilarityAndReportsItsScale) {
-  const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
+  const Evaluation evaluation = EvaluateScaled(TrajectoryAlignment::kSim3, true);
   EXPECT_EQ(evaluation.pairs.size(), 300u);
   EXPECT_EQ(evaluation.truth_rows, 400u);
   EXPECT_NEAR(evaluation.duration_s, 29.9, 1e-9);
@@ -52,7 +52,7 @@ TEST(Evaluate, UndoesTheSimilarityAndReportsItsScale) {
 }
 
 TEST(Evaluate, LeavesAScaleErrorInARigidAlignment) {
-  const Evaluation evaluation = EvaluateScaled(Alignment::kPosYaw, false);
+  const Evaluation evaluation = EvaluateScaled(TrajectoryAlignment::kPosYaw, false);
   EXPECT_NEAR(evaluation.rpe[0].pos_rmse_m, 0.02, 1.5e-3);  // below 1 % of 2 m where the path bends
   EXPECT_LT(evaluation.ate.ori_deg, 1e-5);
   EXPECT_FALSE(evaluation.nees.has_value());
@@ -93,7 +93,7 @@ TEST(Evaluate, JudgesVelocityAndBiasesOnlyWhereTheTruthHoldsThem) {
 }
 
 TEST(Evaluate, JudgesConsistencyUnaligned) {
-  const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
+  const Evaluation evaluation = EvaluateScaled(TrajectoryAlignment::kSim3, true);
   ASSERT_TRUE(evaluation.nees.has_value());
   EXPECT_NEAR(evaluation.nees->mean_orientation, M_PI * M_PI / 4, 1e-6);
 }
@@ -159,7 +159,7 @@ TEST(FormatEvaluation, GivenAToolsRelativeErrorThenTextAndJsonNameIt) {
 }
 
 TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
-  const Evaluation evaluation = EvaluateScaled(Alignment::kSim3, true);
+  const Evaluation evaluation = EvaluateScaled(TrajectoryAlignment::kSim3, true);
   const std::string text = FormatEvaluationJson(evaluation);
   const nlohmann::ordered_json json = nlohmann::ordered_json::parse(text);
   std::vector<std::string> keys;
@@ -183,20 +183,21 @@ TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
   EXPECT_GT(json["rpe"][0]["count"], 100);
   EXPECT_EQ(json["rpe"][1]["count"], 0);
   EXPECT_TRUE(json["rpe"][1]["pos_rmse_m"].is_null());
-  EXPECT_EQ(text, FormatEvaluationJson(EvaluateScaled(Alignment::kSim3, true)));
+  EXPECT_EQ(text, FormatEvaluationJson(EvaluateScaled(TrajectoryAlignment::kSim3, true)));
   EXPECT_TRUE(
-      nlohmann::json::parse(FormatEvaluationJson(EvaluateScaled(Alignment::kPos, false)))["nees"].is_null());
+      nlohmann::json::parse(FormatEvaluationJson(EvaluateScaled(TrajectoryAlignment::kPos, false)))["nees"]
+          .is_null());
 }
 
 TEST(FormatEvaluation, TextSaysWhatAPersonNeeds) {
-  const std::string text = FormatEvaluationText(EvaluateScaled(Alignment::kSim3, true));
+  const std::string text = FormatEvaluationText(EvaluateScaled(TrajectoryAlignment::kSim3, true));
   EXPECT_THAT(text, HasSubstr("pairs      300 of 300 estimate and 400 truth rows (nearest within 0.01 s)"));
   EXPECT_THAT(text, HasSubstr("scale      0.990099"));
   EXPECT_THAT(text, HasSubstr("aligned (sim3)"));
   EXPECT_THAT(text, HasSubstr("5000 m"));
   EXPECT_THAT(text, HasSubstr("NEES (unaligned)"));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
-  EXPECT_THAT(FormatEvaluationText(EvaluateScaled(Alignment::kPos, false)), Not(HasSubstr("NEES")));
+  EXPECT_THAT(FormatEvaluationText(EvaluateScaled(TrajectoryAlignment::kPos, false)), Not(HasSubstr("NEES")));
 }
 
 }  // namespace

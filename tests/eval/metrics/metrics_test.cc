@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "eval/metrics/alignment.h"
 #include "eval/metrics/state_pair.h"
+#include "eval/metrics/trajectory_alignment.h"
 #include "tests/eval/trajectory/synthetic_trajectory.h"
 
 namespace alidade {

@@ -18,7 +18,7 @@ Result<Evaluation> EvaluateXivo(const std::string& room) {
     return truth.ok() ? estimate.status() : truth.status();
   }
   EvaluationOptions options;
-  options.alignment = Alignment::kSe3;
+  options.alignment = TrajectoryAlignment::kSe3;
   options.association.max_dt_s = 1e-3;
   return Evaluate(*truth, *estimate, options);
 }

@@ -67,8 +67,8 @@ double EvoMaxDt(const std::string& name) {
   return name == "camera" ? 0.01 : name == "crowded" ? 0.04 : 0.02;
 }
 
-Evaluation EvaluateAs(const std::string& name, Alignment alignment, const AssociationOptions& association,
-                      const ToolRpeOptions& rpe = {}) {
+Evaluation EvaluateAs(const std::string& name, TrajectoryAlignment alignment,
+                      const AssociationOptions& association, const ToolRpeOptions& rpe = {}) {
   const test::TrajectoryPair pair = FormulaPair(name);
   EvaluationOptions options;
   options.alignment = alignment;
@@ -100,8 +100,8 @@ ErrorStatistics Find(const ToolRpeResult& result, const std::string& relation) {
 // Words: kind, trajectories, alignment, offset, relation, pairs.
 TEST(EvoAgreement, AbsoluteErrors) {
   for (const FigureRow& row : ReadFigures("evo_figures.txt", "ape", 7)) {
-    const Evaluation evaluation =
-        EvaluateAs(row.words[1], *ParseAlignment(row.words[2]), AsEvo(row.words[1], std::stod(row.words[3])));
+    const Evaluation evaluation = EvaluateAs(row.words[1], *ParseTrajectoryAlignment(row.words[2]),
+                                             AsEvo(row.words[1], std::stod(row.words[3])));
     EXPECT_EQ(evaluation.pairs.size(), std::stoul(row.words[5])) << row.text;
     ExpectAsEvo(row.words[4] == "angle_deg" ? evaluation.ate_ori_deg : evaluation.ate_pos_m, row);
     EXPECT_DOUBLE_EQ(evaluation.ate.pos_m, evaluation.ate_pos_m.rmse);
@@ -119,7 +119,7 @@ TEST(EvoAgreement, RelativeErrors) {
                                  .pairs_from_truth = row.words[6] == "truth",
                                  .tolerance = std::stod(row.words[7])};
     const Evaluation evaluation =
-        EvaluateAs(row.words[1], *ParseAlignment(row.words[2]), AsEvo(row.words[1]), options);
+        EvaluateAs(row.words[1], *ParseTrajectoryAlignment(row.words[2]), AsEvo(row.words[1]), options);
     ASSERT_EQ(evaluation.tool_rpe.size(), 1U);
     EXPECT_EQ(evaluation.tool_rpe[0].count, std::stoul(row.words[9])) << row.text;
     ExpectAsEvo(Find(evaluation.tool_rpe[0], row.words[8]), row);
@@ -130,7 +130,7 @@ TEST(EvoAgreement, RelativeErrors) {
 // Words: kind, trajectories, alignment, error, pairs.
 TEST(RpgAgreement, AbsoluteErrors) {
   for (const FigureRow& row : ReadFigures("rpg_figures.txt", "abs", 6)) {
-    const Evaluation evaluation = EvaluateAs(row.words[1], *ParseAlignment(row.words[2]), AsRpg());
+    const Evaluation evaluation = EvaluateAs(row.words[1], *ParseTrajectoryAlignment(row.words[2]), AsRpg());
     EXPECT_EQ(evaluation.pairs.size(), std::stoul(row.words[4])) << row.text;
     ExpectAsRpg(row.words[3] == "rot" ? evaluation.ate_ori_deg : evaluation.ate_pos_m, row);
   }
@@ -140,7 +140,7 @@ TEST(RpgAgreement, AbsoluteErrors) {
 TEST(RpgAgreement, RelativeErrors) {
   for (const FigureRow& row : ReadFigures("rpg_figures.txt", "rel", 6)) {
     const Evaluation evaluation =
-        EvaluateAs(row.words[1], *ParseAlignment(row.words[2]), AsRpg(),
+        EvaluateAs(row.words[1], *ParseTrajectoryAlignment(row.words[2]), AsRpg(),
                    {.method = EvaluationTool::kRpg, .deltas = {std::stod(row.words[3])}});
     ASSERT_EQ(evaluation.tool_rpe.size(), 1U);
     EXPECT_EQ(evaluation.tool_rpe[0].count, std::stoul(row.words[5])) << row.text;
@@ -152,14 +152,14 @@ TEST(RpgAgreement, RelativeErrors) {
 TEST(OvEvalAgreement, AbsoluteErrors) {
   struct Row {
     const char* name;
-    Alignment alignment;
+    TrajectoryAlignment alignment;
     double pos_rmse, pos_mean, pos_max, ori_rmse, ori_mean, ori_max;
   };
   constexpr Row kRows[] = {
-      {"camera", Alignment::kNone, 4.149, 3.797, 6.845, 40.140, 40.133, 41.515},
-      {"camera", Alignment::kPosYaw, 0.142, 0.133, 0.265, 1.156, 1.103, 1.812},
-      {"camera", Alignment::kSe3, 0.139, 0.130, 0.254, 1.044, 1.004, 1.699},
-      {"camera", Alignment::kSim3, 0.083, 0.077, 0.164, 1.044, 1.004, 1.699},
+      {"camera", TrajectoryAlignment::kNone, 4.149, 3.797, 6.845, 40.140, 40.133, 41.515},
+      {"camera", TrajectoryAlignment::kPosYaw, 0.142, 0.133, 0.265, 1.156, 1.103, 1.812},
+      {"camera", TrajectoryAlignment::kSe3, 0.139, 0.130, 0.254, 1.044, 1.004, 1.699},
+      {"camera", TrajectoryAlignment::kSim3, 0.083, 0.077, 0.164, 1.044, 1.004, 1.699},
   };
   for (const Row& row : kRows) {
     SCOPED_TRACE(std::string(ToString(row.alignment)));
@@ -214,12 +214,12 @@ TEST(ToolRpe, GivenAnImpossibleRequestThenItIsRefused) {
 }
 
 TEST(ToolRpe, GivenNoDeltasThenTheyAreTheToolsOwn) {
-  const Evaluation evo =
-      EvaluateAs("camera", Alignment::kNone, AsEvo("camera"), {.method = EvaluationTool::kEvo, .deltas = {}});
+  const Evaluation evo = EvaluateAs("camera", TrajectoryAlignment::kNone, AsEvo("camera"),
+                                    {.method = EvaluationTool::kEvo, .deltas = {}});
   ASSERT_EQ(evo.tool_rpe.size(), 1U);
   EXPECT_EQ(evo.tool_rpe[0].count, 969U);
-  const Evaluation rpg =
-      EvaluateAs("camera", Alignment::kSe3, AsRpg(), {.method = EvaluationTool::kRpg, .deltas = {}});
+  const Evaluation rpg = EvaluateAs("camera", TrajectoryAlignment::kSe3, AsRpg(),
+                                    {.method = EvaluationTool::kRpg, .deltas = {}});
   ASSERT_EQ(rpg.tool_rpe.size(), 5U);
   EXPECT_DOUBLE_EQ(rpg.tool_rpe[1].delta, DefaultRpgLengths(FormulaPair("camera").truth)[1]);
 }

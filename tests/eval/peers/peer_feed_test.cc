@@ -21,7 +21,7 @@ PeerSequence MakeSequence(const std::vector<int>& frames_ms) {
   }
   for (const int ms : frames_ms) {
     sequence.frames_ns.push_back(ms * TimeNs{1'000'000});
-    sequence.dataset.tracks.push_back({sequence.frames_ns.back(), {{7, Eigen::Vector2d(1, 2)}}});
+    sequence.dataset.frames.push_back({sequence.frames_ns.back(), {{7, Eigen::Vector2d(1, 2)}}});
   }
   return sequence;
 }

@@ -87,7 +87,7 @@ TEST_P(CalibrationRunTest, WritesItsCourse) {
   const RunResult result = RunOn(config, *dataset);
   ASSERT_TRUE(result.status.ok()) << result.status.message();
   const test::TemporaryFolder folder;
-  const RunIdentity identity{config, "walk", "d", "i", 101, dataset->imu.size(), dataset->tracks.size()};
+  const RunIdentity identity{config, "walk", "d", "i", 101, dataset->imu.size(), dataset->frames.size()};
   ASSERT_TRUE(WriteRun(identity, result, folder.path()).ok());
   const std::string text = test::ReadFile(folder.path() + "/calibration.csv");
   EXPECT_EQ(

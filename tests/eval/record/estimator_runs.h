@@ -46,7 +46,7 @@ inline RunResult RunOn(const EstimatorConfig& config, const Dataset& dataset, st
   options.truth = &*dataset.truth;
   options.true_rig = dataset.true_rig ? &*dataset.true_rig : nullptr;
   options.seed = seed;
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, options);
+  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames}, options);
 }
 
 }  // namespace alidade::test

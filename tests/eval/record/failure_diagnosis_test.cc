@@ -18,7 +18,7 @@ MeasurementLog LogWithSigns(const Eigen::Vector3d& signs) {
   simulation.path_m = 35;
   simulation.max_features = 80;
   const Dataset dataset = SimulateOrDie(simulation, 9);
-  MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks};
+  MeasurementLog log{dataset.rig, dataset.imu, dataset.frames};
   for (ImuSample& sample : log.imu) {
     sample.accel = sample.accel.cwiseProduct(signs);
   }

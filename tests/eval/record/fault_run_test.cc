@@ -51,7 +51,7 @@ class FaultRunTest : public testing::TestWithParam<Backend> {
     EstimatorConfig config;
     config.backend = GetParam();
     config.init.method = InitMethod::kTruth;
-    run.result = RunEstimator(config, {run.dataset.rig, run.dataset.imu, run.dataset.tracks},
+    run.result = RunEstimator(config, {run.dataset.rig, run.dataset.imu, run.dataset.frames},
                               &*run.dataset.truth, 105);
     EXPECT_TRUE(run.result.status.ok()) << run.result.status.message();
     for (const RunRecord& record : run.result.records) {

@@ -25,7 +25,8 @@ struct FixScore {
   int nis_dof = 0;
 };
 
-/// Figure-8 of 500 m in 120 s (4 m/s) with position fixes, a tenth of them wrong, and an outage of 30 s.
+/// Figure-8 of 500 m in 120 s (4 m/s) with position fixes, a tenth of them wrong, and an outage of 30 s. Two
+/// seeds here; configs/plans/fix.yaml runs twelve of it.
 SimulatorConfig Scene(double std_m) {
   SimulatorConfig config;
   config.duration_s = 120;
@@ -65,7 +66,7 @@ RunResult RunWithFixes(const EstimatorConfig& config, const Dataset& dataset, un
     start.nav = YawShift{yaw_rad, Vector3d(7, -3, 2)} * start.nav;
     return Result<NavEstimate>(start);
   };
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks, {}, nullptr, dataset.fixes},
+  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames, {}, nullptr, dataset.fixes},
                       options);
 }
 
@@ -74,7 +75,7 @@ FixScore Score(const RunResult& run, const Dataset& dataset) {
   if (!run.global) {
     return score;
   }
-  score.aligned_s = SecondsBetween(dataset.tracks.front().stamp_ns, run.global->stamp_ns);
+  score.aligned_s = SecondsBetween(dataset.frames.front().stamp_ns, run.global->stamp_ns);
   int frames = 0;
   for (const RunRecord& record : run.records) {
     const NavEstimate& now = record.estimate;
@@ -84,7 +85,7 @@ FixScore Score(const RunResult& run, const Dataset& dataset) {
     const Vector3d error = now.nav.p_WB - TruthAt(dataset, now.stamp_ns).nav.p_WB;
     score.nees_position += error.dot(now.covariance.block<3, 3>(3, 3).ldlt().solve(error));
     score.rmse_m += error.squaredNorm();
-    const SensorStatistics& counts = record.statistics.sensors[Sensor::kFix];
+    const SensorStatistics& counts = record.statistics.sensors[SensorOf<PositionFixEntry>()];
     score.gated += counts.gated;
     score.nis += counts.nis;
     score.nis_dof += counts.nis_dof;
@@ -104,7 +105,7 @@ void ExpectConsistent(Backend backend, double std_m, unsigned first_seed, int ru
     const Dataset dataset = SimulateOrDie(Scene(std_m), seed);
     const RunResult run = RunWithFixes(Preset(backend), dataset, seed, 0.7 * seed);
     ASSERT_TRUE(run.status.ok()) << run.status.message();
-    EXPECT_EQ(run.skipped[Sensor::kFix], 0) << run.skip_report;
+    EXPECT_EQ(run.skipped[SensorOf<PositionFixEntry>()], 0) << run.skip_report;
     const FixScore score = Score(run, dataset);
     EXPECT_GE(score.aligned_s, 0) << "seed " << seed << ": " << run.align_report;
     EXPECT_LT(score.aligned_s, 15) << "seed " << seed;
@@ -148,15 +149,15 @@ TEST_P(FixRunTest, WHEN_a_run_with_fixes_is_written_THEN_it_reads_back_with_what
   const Result<RunResult> read = ReadRun(folder);
   ASSERT_TRUE(read.ok()) << read.message();
   ASSERT_TRUE(read->global.has_value());
-  EXPECT_EQ(read->global->source, GlobalFrame::Source::kFixes);
+  EXPECT_EQ(read->global->source, SensorOf<PositionFixEntry>());
   EXPECT_EQ(read->global->stamp_ns, run.global->stamp_ns);
   EXPECT_EQ(read->global->yaw_rad, run.global->yaw_rad);
   EXPECT_FALSE(read->global->enu.has_value());
   int used = 0;
   for (size_t i = 0; i < run.records.size(); ++i) {
     EXPECT_EQ(read->records[i].status, run.records[i].status);
-    const SensorStatistics& counts = run.records[i].statistics.sensors[Sensor::kFix];
-    const SensorStatistics& counts_read = read->records[i].statistics.sensors[Sensor::kFix];
+    const SensorStatistics& counts = run.records[i].statistics.sensors[SensorOf<PositionFixEntry>()];
+    const SensorStatistics& counts_read = read->records[i].statistics.sensors[SensorOf<PositionFixEntry>()];
     EXPECT_EQ(counts_read.used, counts.used);
     EXPECT_EQ(counts_read.gated, counts.gated);
     EXPECT_EQ(counts_read.nis, counts.nis);

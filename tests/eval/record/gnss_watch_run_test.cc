@@ -58,7 +58,7 @@ class GnssWatchRunTest : public testing::TestWithParam<Backend> {
     options.truth = &*dataset->truth;
     options.seed = kSeed;
     const RunResult result = RunEstimator(
-        config, {dataset->rig, dataset->imu, dataset->tracks, {}, dataset->gnss, dataset->fixes}, options);
+        config, {dataset->rig, dataset->imu, dataset->frames, {}, dataset->gnss, dataset->fixes}, options);
     EXPECT_TRUE(result.status.ok()) << result.status.message();
     return result;
   }

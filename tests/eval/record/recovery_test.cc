@@ -38,7 +38,7 @@ EstimatorConfig Config(Backend backend) {
 }
 
 RunResult RunOn(const EstimatorConfig& config, const Dataset& dataset) {
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks}, &*dataset.truth, 101);
+  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames}, &*dataset.truth, 101);
 }
 
 /// Speed error of a record; unlike position, a new start knows it.
@@ -77,7 +77,7 @@ TEST_P(RecoveryRunTest, StartsAgainAfterCameraAndImuFailed) {
   EXPECT_LT(SecondsBetween(failed_ns, restart.lost_ns), 6);
   EXPECT_GT(restart.restarted_ns, restart.lost_ns);
   EXPECT_FALSE(restart.reason.empty());
-  EXPECT_GT(result.records.back().estimate.stamp_ns, dataset->tracks.back().stamp_ns - SecondsToNs(0.2));
+  EXPECT_GT(result.records.back().estimate.stamp_ns, dataset->frames.back().stamp_ns - SecondsToNs(0.2));
   EXPECT_LT(SpeedError(result.records.back(), *dataset), 0.2);
   // Tens of metres off, and its covariance says so: chi-square with 6 degrees of freedom, 1e-4 beyond 27.9.
   EXPECT_LT(MeanNees(result, restart.restarted_ns, *dataset), 27.9);
@@ -97,7 +97,7 @@ TEST_P(RecoveryRunTest, NothingAbortsWhateverFails) {
     ASSERT_TRUE(dataset.ok()) << dataset.message();
     const RunResult result = RunOn(Config(GetParam()), *dataset);
     ASSERT_TRUE(result.status.ok()) << static_cast<int>(fault) << ": " << result.status.message();
-    EXPECT_GT(result.records.back().estimate.stamp_ns, dataset->tracks.back().stamp_ns - SecondsToNs(0.2));
+    EXPECT_GT(result.records.back().estimate.stamp_ns, dataset->frames.back().stamp_ns - SecondsToNs(0.2));
     EXPECT_LT(SpeedError(result.records.back(), *dataset), 0.3) << static_cast<int>(fault);
   }
 }
@@ -120,7 +120,7 @@ TEST_P(RecoveryRunTest, StatusTellsWhenAndWhy) {
   const EstimatorConfig config = Config(GetParam());
   const RunResult result = RunOn(config, *dataset);
   const test::TemporaryFolder folder;
-  const RunIdentity identity{config, "walk", "d", "i", 101, dataset->imu.size(), dataset->tracks.size()};
+  const RunIdentity identity{config, "walk", "d", "i", 101, dataset->imu.size(), dataset->frames.size()};
   ASSERT_TRUE(WriteRun(identity, result, folder.path()).ok());
   const std::string text = test::ReadFile(folder.path() + "/status.csv");
   EXPECT_THAT(text, HasSubstr(",lost,"));

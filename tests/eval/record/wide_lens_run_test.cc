@@ -74,7 +74,7 @@ TEST(WideLensRun, WhatLiesBesideAndBehindIsEnough) {
   Result<Dataset> dataset = Simulate(scene, 906);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   const CameraModel& camera = dataset->rig.camera;
-  for (TrackFrame& frame : dataset->tracks) {
+  for (TrackFrame& frame : dataset->frames) {
     std::erase_if(frame.observations, [&](const TrackObservation& seen) {
       Eigen::Vector3d ray;
       return !camera.Bearing(seen.pixel, &ray) || ray.z() > 0;

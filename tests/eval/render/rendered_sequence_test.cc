@@ -127,7 +127,7 @@ TEST(RenderedSequence, ThreadsChangeNoByteAndTheFolderReadsBack) {
 
   const Dataset read = ReadDataset(one.path()).value();
   ASSERT_EQ(read.images.size(), 21U);
-  EXPECT_TRUE(read.tracks.empty()) << "the front end makes them";
+  EXPECT_TRUE(read.frames.empty()) << "the front end makes them";
   const GreyImage image = ReadGreyImage(read.images[7].path).value();
   EXPECT_EQ(image.pixels, scene.sequence.Frame(7).pixels);
 

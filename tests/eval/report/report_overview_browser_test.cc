@@ -63,20 +63,22 @@ TEST_F(ReportInBrowser, GivenRunsThatWereLostOrNotStartedThenTheOverviewNamesThe
   EXPECT_THAT(visit.dom, HasSubstr("vins_mono_class on V1_01_easy, seed 2: failed</span>"));
 }
 
-TEST_F(ReportInBrowser, GivenGnssThenItsInnovationsHaveAPlotOfTheirOwn) {
+TEST_F(ReportInBrowser, GivenGnssAndFixesThenTheirInnovationsHavePlotsOfTheirOwn) {
   Comparison comparison;
   comparison.cells = {test::SyntheticCell("gvio", "field", 1, 0.1, 1, 2, 60),
                       test::SyntheticCell("vio", "field", 1, 0.1, 1, 2, 60)};
   ASSERT_TRUE(WriteReport(comparison, folder_.File("without.html")).ok());
   EXPECT_THAT(Open(ReadFile(folder_.File("without.html"))).dom, Not(HasSubstr("of GNSS: gvio")));
   CellResult& gvio = comparison.cells[0];
-  gvio.series.gnss_nis_ratio = gvio.series.nis_ratio;
-  gvio.gnss_innovations = {0.97, 0.95, std::pair(0.5, 1.7)};
+  gvio.series.sensor_nis_ratio["gnss"] = gvio.series.nis_ratio;
+  gvio.sensor_innovations["gnss"] = {0.97, 0.95, std::pair(0.5, 1.7)};
+  comparison.cells[1].series.sensor_nis_ratio["fix"] = gvio.series.nis_ratio;
+  comparison.cells[1].sensor_innovations["fix"] = {1.02, 0.94, std::pair(0.1, 2.3)};
   ASSERT_TRUE(WriteReport(comparison, folder_.File("with.html")).ok());
   const PageVisit visit = Open(ReadFile(folder_.File("with.html")));
   EXPECT_THAT(visit.console, IsEmpty());
   EXPECT_EQ(visit.Mark("errors"), "");
-  EXPECT_THAT(visit.dom, HasSubstr("of GNSS: gvio 0.97, 95.0 %."));
+  EXPECT_THAT(visit.dom, HasSubstr("of GNSS: gvio 0.97, 95.0 %; of position fixes: vio 1.02, 94.0 %."));
 }
 
 TEST_F(ReportInBrowser, GivenATableThenItIsAtLeastAsWideAsItsPlace) {

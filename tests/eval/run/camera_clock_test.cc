@@ -30,8 +30,8 @@ class CameraClockTest : public testing::Test {
     }
     std::vector<double> told;
     TimeNs taken_off_ns = 0;
-    for (size_t i = 0; i + 40 < dataset_.tracks.size(); ++i) {
-      TrackFrame frame = dataset_.tracks[i];
+    for (size_t i = 0; i + 40 < dataset_.frames.size(); ++i) {
+      TrackFrame frame = dataset_.frames[i];
       frame.stamp_ns += SecondsToNs(late_s(i, told.size()));
       if (const auto jump = clock.FindJump(frame, frame.stamp_ns - taken_off_ns, Eigen::Vector3d::Zero())) {
         taken_off_ns += *jump;
@@ -62,7 +62,7 @@ TEST_F(CameraClockTest, StampsThatHoldAreLeftAlone) {
 }
 
 TEST_F(CameraClockTest, ASilenceOfTheCameraIsNoJump) {
-  dataset_.tracks.erase(dataset_.tracks.begin() + 30, dataset_.tracks.begin() + 38);
+  dataset_.frames.erase(dataset_.frames.begin() + 30, dataset_.frames.begin() + 38);
   EXPECT_TRUE(Jumps([](size_t, size_t) { return 0.0; }).empty());
 }
 

@@ -55,7 +55,7 @@ SessionOptions Options(const EstimatorConfig& config, const Dataset& dataset) {
 }
 
 RunResult RunOrdered(const EstimatorConfig& config, const Dataset& dataset) {
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss, dataset.fixes},
+  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss, dataset.fixes},
                       &*dataset.truth, 1);
 }
 
@@ -73,12 +73,12 @@ TEST_P(SessionFixTest, GIVEN_fixes_that_come_late_THEN_the_session_aligns_and_gi
   const RunResult ordered = RunOrdered(config, dataset);
   ASSERT_TRUE(ordered.status.ok()) << ordered.status.message();
   ASSERT_TRUE(ordered.global.has_value()) << ordered.align_report;
-  EXPECT_EQ(ordered.skipped[Sensor::kFix], 0) << ordered.skip_report;
+  EXPECT_EQ(ordered.skipped[SensorOf<PositionFixEntry>()], 0) << ordered.skip_report;
   const std::vector<SessionEvent> events = StreamOf(config, dataset, 1);
   EXPECT_TRUE(Only<TooLateEvent>(events).empty());
   const auto aligned = Only<AlignedEvent>(events);
   ASSERT_EQ(aligned.size(), 1u);
-  EXPECT_EQ(aligned[0].global.source, GlobalFrame::Source::kFixes);
+  EXPECT_EQ(aligned[0].global.source, SensorOf<PositionFixEntry>());
   EXPECT_TRUE(aligned[0].global.enu.has_value());
   EXPECT_FALSE(aligned[0].clock.has_value());
   EXPECT_EQ(aligned[0].global.yaw_rad, ordered.global->yaw_rad);
@@ -93,10 +93,10 @@ TEST_P(SessionFixTest, GIVEN_fixes_that_come_late_THEN_the_session_aligns_and_gi
     }
   }
   EXPECT_GT(compared, 50u);
-  EXPECT_GT(test::StatesOf(events, Sensor::kFix).size(), 10u);
+  EXPECT_GT(test::StatesOf(events, SensorOf<PositionFixEntry>()).size(), 10u);
   int used = 0;
   for (const RunRecord& record : ordered.records) {
-    used += record.statistics.sensors[Sensor::kFix].used;
+    used += record.statistics.sensors[SensorOf<PositionFixEntry>()].used;
   }
   EXPECT_GT(used, 10);
 }
@@ -107,16 +107,16 @@ TEST_P(SessionFixTest, GIVEN_raw_GNSS_and_fixes_THEN_there_is_one_alignment_and_
   const RunResult run = RunOrdered(Preset(GetParam(), "true"), dataset);
   ASSERT_TRUE(run.status.ok()) << run.status.message();
   ASSERT_TRUE(run.global.has_value()) << run.align_report;
-  EXPECT_EQ(run.global->source, GlobalFrame::Source::kGnss);
+  EXPECT_EQ(run.global->source, Sensor::kGnss);
   int fixes = 0;
   int satellites = 0;
   for (const RunRecord& record : run.records) {
-    fixes += record.statistics.sensors[Sensor::kFix].used;
+    fixes += record.statistics.sensors[SensorOf<PositionFixEntry>()].used;
     satellites += record.statistics.satellites_used;
   }
   EXPECT_GT(fixes, 5);
   EXPECT_GT(satellites, 100);
-  EXPECT_EQ(run.skipped[Sensor::kFix], 0) << run.skip_report;
+  EXPECT_EQ(run.skipped[SensorOf<PositionFixEntry>()], 0) << run.skip_report;
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBackEnds, SessionFixTest, testing::Values("gvio", "gvins_class"),
@@ -144,10 +144,10 @@ TEST(SessionWithoutFixesTest, GIVEN_what_the_session_cannot_use_THEN_it_says_why
   const std::vector<SessionEvent> events = (*session)->TakeEvents();
   const auto skipped = Only<SkippedEvent>(events);
   ASSERT_EQ(skipped.size(), 2u);
-  EXPECT_EQ(skipped[0].sensor, Sensor::kFix);
+  EXPECT_EQ(skipped[0].sensor, SensorOf<PositionFixEntry>());
   EXPECT_NE(Describe(skipped[1]).find("no fix sensor 3"), std::string::npos) << Describe(skipped[1]);
   ASSERT_EQ(Only<TooLateEvent>(events).size(), 1u);
-  EXPECT_EQ(Only<TooLateEvent>(events)[0].sensor, Sensor::kFix);
+  EXPECT_EQ(Only<TooLateEvent>(events)[0].sensor, SensorOf<PositionFixEntry>());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 using test::Only;
 
-constexpr test::Delays kLive = {{0.02, 0.008}, {0.06, 0.1}, {0.2, 0.1}};
+constexpr test::Delays kLive = {{0.02, 0.008}, {0.06, 0.13}, {0.2, 0.1}};
 
 Dataset SimulateGnss(const std::vector<std::string>& settings) {
   const Result<SimulatorConfig> config = LoadSimulatorConfig(
@@ -66,7 +66,7 @@ TEST_P(SessionGnssTest, AlignsAndGivesTheStatesOfTheOrderedLog) {
   const Dataset& dataset = Walk();
   const EstimatorConfig config = Preset(GetParam());
   const RunResult ordered =
-      RunEstimator(config, {dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss}, &*dataset.truth, 1);
+      RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss}, &*dataset.truth, 1);
   ASSERT_TRUE(ordered.status.ok()) << ordered.status.message();
   ASSERT_TRUE(ordered.global.has_value()) << ordered.align_report;
   const std::vector<SessionEvent> events = StreamOf(config, dataset, Options(config, dataset), 1);
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(BothBackEnds, SessionGnssTest, testing::Values("gvio", 
 TEST(SessionWithoutCameraTest, StartsFromGnssAndTheOrderOfArrivalDoesNotMatter) {
   Dataset dataset =
       SimulateGnss({"duration_s=40", "path_m=600", "landmark_count=10", "gnss.outage_start_s=39"});
-  dataset.tracks.clear();
+  dataset.frames.clear();
   const EstimatorConfig config = Preset("gnss_imu");
   const RunResult ordered =
       RunEstimator(config, {dataset.rig, dataset.imu, {}, {}, dataset.gnss}, nullptr, 1);

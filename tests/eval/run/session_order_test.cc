@@ -40,7 +40,7 @@ class SessionOrderTest : public testing::TestWithParam<Backend> {
 TEST_P(SessionOrderTest, StatesAreThoseOfTheOrderedLog) {
   const Dataset dataset = SimulateWalk();
   const RunResult ordered =
-      RunEstimator(Config(), {dataset.rig, dataset.imu, dataset.tracks}, &*dataset.truth, 1);
+      RunEstimator(Config(), {dataset.rig, dataset.imu, dataset.frames}, &*dataset.truth, 1);
   ASSERT_TRUE(ordered.status.ok()) << ordered.status.message();
   SessionOptions options;
   options.lateness = {0.01, 0.25, 0};
@@ -81,15 +81,15 @@ TEST(SessionLatenessTest, SaysWhenAFrameCameTooLate) {
   const Dataset dataset = SimulateWalk();
   Result<std::unique_ptr<Session>> session = Session::Make(EstimatorConfig(), dataset.rig);
   ASSERT_TRUE(session.ok()) << session.message();
-  const TimeNs late_ns = dataset.tracks[4].stamp_ns;
+  const TimeNs late_ns = dataset.frames[4].stamp_ns;
   for (const test::Arrival& message : test::ArrivalsOf(dataset, {}, 1)) {
     if (message.sensor == Sensor::kImu && message.arrival_ns <= late_ns + SecondsToNs(0.3)) {
       (*session)->AddImu(dataset.imu[message.index]);
     }
   }
-  (*session)->AddFrame(dataset.tracks[5]);
+  (*session)->AddFrame(dataset.frames[5]);
   EXPECT_TRUE(Only<TooLateEvent>((*session)->TakeEvents()).empty());
-  (*session)->AddFrame(dataset.tracks[4]);
+  (*session)->AddFrame(dataset.frames[4]);
   const auto late = Only<TooLateEvent>((*session)->TakeEvents());
   ASSERT_EQ(late.size(), 1u);
   EXPECT_EQ(late[0].sensor, Sensor::kCamera);
@@ -105,8 +105,8 @@ TEST(SessionLatenessTest, WaitsNoLongerThanTheLateness) {
   options.lateness.camera_s = 0.05;
   Result<std::unique_ptr<Session>> session = Session::Make(EstimatorConfig(), dataset.rig, options);
   ASSERT_TRUE(session.ok()) << session.message();
-  const TimeNs frame_ns = dataset.tracks[0].stamp_ns;
-  (*session)->AddFrame(dataset.tracks[0]);
+  const TimeNs frame_ns = dataset.frames[0].stamp_ns;
+  (*session)->AddFrame(dataset.frames[0]);
   for (const ImuSample& sample : dataset.imu) {
     (*session)->AddImu(sample);
     const bool processed = !(*session)->TakeEvents().empty();

@@ -90,7 +90,7 @@ TEST(SessionTest, StartsByItself) {
   EXPECT_FALSE(waiting[0].reason.empty());
   EXPECT_LT(waiting.back().stamp_ns, started[0].estimate.stamp_ns);
   const auto states = Only<StateEvent>(events);
-  EXPECT_EQ(states.size() + waiting.size(), dataset.tracks.size());
+  EXPECT_EQ(states.size() + waiting.size(), dataset.frames.size());
   EXPECT_EQ(states.front().message_ns, started[0].estimate.stamp_ns);
   EXPECT_GT(states.back().statistics.features_used, 5);
   EXPECT_TRUE(Only<FailedEvent>(events).empty());
@@ -116,7 +116,7 @@ TEST(SessionTest, StartsFromAGivenState) {
       test::Stream(session.get(), dataset, test::ArrivalsOf(dataset, kLive, 1));
   ASSERT_EQ(Only<StartedEvent>(events).size(), 1u);
   EXPECT_EQ(Only<StartedEvent>(events)[0].method, "given");
-  EXPECT_EQ(test::StatesOf(events).size(), dataset.tracks.size());
+  EXPECT_EQ(test::StatesOf(events).size(), dataset.frames.size());
 }
 
 // GIVEN a camera and an IMU that fail for two seconds, THEN the loss and the new start are reported in turn,
@@ -146,7 +146,7 @@ TEST(SessionTest, ReportsLossAndRestart) {
   for (const NavEstimate& state : test::StatesOf(events)) {
     EXPECT_FALSE(state.stamp_ns > lost[0].stamp_ns && state.stamp_ns < restarted[0].estimate.stamp_ns);
   }
-  EXPECT_GT(test::StatesOf(events).back().stamp_ns, dataset.tracks.back().stamp_ns - SecondsToNs(0.2));
+  EXPECT_GT(test::StatesOf(events).back().stamp_ns, dataset.frames.back().stamp_ns - SecondsToNs(0.2));
   EXPECT_TRUE(session->running());
 }
 
@@ -190,9 +190,9 @@ TEST(SessionTest, BadMessagesAreReportedAndDoNoHarm) {
   session->AddImu(sample);
   session->AddImu(dataset.imu[5]);    // long processed
   session->AddImu(dataset.imu[490]);  // again
-  session->AddFrame(dataset.tracks[3]);
-  session->AddFrame({dataset.tracks.back().stamp_ns + SecondsToNs(1e6), {}});  // no IMU reaches it
-  TrackFrame nothing{dataset.tracks[49].stamp_ns + 1, {{1, Eigen::Vector2d(NAN, INFINITY)}}};
+  session->AddFrame(dataset.frames[3]);
+  session->AddFrame({dataset.frames.back().stamp_ns + SecondsToNs(1e6), {}});  // no IMU reaches it
+  TrackFrame nothing{dataset.frames[49].stamp_ns + 1, {{1, Eigen::Vector2d(NAN, INFINITY)}}};
   session->AddFrame(nothing);
   session->AddGnss(ObservationEpoch{before.stamp_ns, {}});
   const std::vector<SessionEvent> events = session->TakeEvents();
@@ -248,12 +248,12 @@ TEST(SessionTest, FramesThatNoImuReachesAreDroppedOldestFirst) {
   options.max_waiting = 3;
   const std::unique_ptr<Session> session = MakeSession(EstimatorConfig(), dataset, options);
   for (size_t i = 0; i < 5; ++i) {
-    session->AddFrame(dataset.tracks[i]);
+    session->AddFrame(dataset.frames[i]);
   }
   const auto skipped = Only<SkippedEvent>(session->TakeEvents());
   ASSERT_EQ(skipped.size(), 2u);
-  EXPECT_EQ(skipped[0].stamp_ns, dataset.tracks[0].stamp_ns);
-  EXPECT_EQ(skipped[1].stamp_ns, dataset.tracks[1].stamp_ns);
+  EXPECT_EQ(skipped[0].stamp_ns, dataset.frames[0].stamp_ns);
+  EXPECT_EQ(skipped[1].stamp_ns, dataset.frames[1].stamp_ns);
   EXPECT_EQ(session->held(), 3u);
 }
 

@@ -38,8 +38,8 @@ inline std::vector<Arrival> ArrivalsOf(const Dataset& dataset, const Delays& del
   for (size_t i = 0; i < dataset.imu.size(); ++i) {
     add(Sensor::kImu, i, dataset.imu[i].stamp_ns, delays.imu);
   }
-  for (size_t i = 0; i < dataset.tracks.size(); ++i) {
-    add(Sensor::kCamera, i, dataset.tracks[i].stamp_ns, delays.camera);
+  for (size_t i = 0; i < dataset.frames.size(); ++i) {
+    add(Sensor::kCamera, i, dataset.frames[i].stamp_ns, delays.camera);
   }
   for (size_t i = 0; dataset.gnss != nullptr && i < dataset.gnss->epochs.size(); ++i) {
     add(Sensor::kGnss, i, dataset.gnss->epochs[i].stamp_ns, delays.gnss);
@@ -47,7 +47,7 @@ inline std::vector<Arrival> ArrivalsOf(const Dataset& dataset, const Delays& del
   for (size_t i = 0; i < dataset.fixes.size(); ++i) {
     const PositionFix& fix = dataset.fixes[i];
     const FixSensor& sensor = dataset.rig.fixes[static_cast<size_t>(fix.sensor)];
-    add(Sensor::kFix, i, fix.stamp_ns + SecondsToNs(sensor.time_offset_s), delays.fix);
+    add(SensorOf<PositionFixEntry>(), i, fix.stamp_ns + SecondsToNs(sensor.time_offset_s), delays.fix);
   }
   std::stable_sort(arrivals.begin(), arrivals.end(),
                    [](const Arrival& a, const Arrival& b) { return a.arrival_ns < b.arrival_ns; });
@@ -60,12 +60,12 @@ inline void AddTo(Session* session, const Dataset& dataset, const Arrival& messa
       session->AddImu(dataset.imu[message.index]);
       break;
     case Sensor::kCamera:
-      session->AddFrame(dataset.tracks[message.index]);
+      session->AddFrame(dataset.frames[message.index]);
       break;
     case Sensor::kGnss:
       session->AddGnss(dataset.gnss->epochs[message.index]);
       break;
-    case Sensor::kFix:
+    default:
       session->AddFix(dataset.fixes[message.index]);
       break;
   }

@@ -79,7 +79,7 @@ TEST(RecordedMotionTest, ASequenceAlongARecordedPathFollowsIt) {
   EXPECT_EQ(again->rig.T_BC.rotation, original.rig.T_BC.rotation);
   EXPECT_EQ(again->rig.camera.intrinsics(), original.rig.camera.intrinsics());
   ASSERT_EQ(again->imu.size(), 1201u);
-  ASSERT_EQ(again->tracks.size(), 121u);
+  ASSERT_EQ(again->frames.size(), 121u);
   for (std::size_t k = 0; k < again->imu.size(); ++k) {
     ASSERT_EQ(again->imu[k].stamp_ns, original.imu[k].stamp_ns);
     const NavState& there = original.truth->points[k].nav;

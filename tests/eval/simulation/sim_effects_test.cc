@@ -182,7 +182,7 @@ TEST(SimEffects, MoreCamerasAreWrittenReadAndPartOfTheDigest) {
   config.duration_s = 2;
   config.path_m = 2.6;
   const auto digest = [](const Dataset& dataset) {
-    return DigestOf(MeasurementLog{dataset.rig, dataset.imu, dataset.tracks, dataset.extra_cameras});
+    return DigestOf(MeasurementLog{dataset.rig, dataset.imu, dataset.frames, dataset.extra_cameras});
   };
   const std::string mono = digest(Simulate(config, 1).value());
   config.camera_count = 3;

@@ -241,14 +241,14 @@ TEST(SimFaultTest, MissingFramesAndAClockThatJumpedLeaveTheOthersAlone) {
   config.fault = SimFaultKind::kCameraClock;
   config.fault_start_s = 20;
   const Result<Dataset> jumped = Simulate(config, kSeed);
-  const auto frames = static_cast<double>(clean->tracks.size());
-  EXPECT_NEAR(1 - static_cast<double>(dropped->tracks.size()) / frames, 0.1, 0.06);
-  ASSERT_EQ(jumped->tracks.size(), clean->tracks.size());
+  const auto frames = static_cast<double>(clean->frames.size());
+  EXPECT_NEAR(1 - static_cast<double>(dropped->frames.size()) / frames, 0.1, 0.06);
+  ASSERT_EQ(jumped->frames.size(), clean->frames.size());
   const TimeNs start_ns = clean->imu.front().stamp_ns;
-  for (std::size_t i = 0; i < clean->tracks.size(); ++i) {
-    const TimeNs stamp_ns = clean->tracks[i].stamp_ns;
+  for (std::size_t i = 0; i < clean->frames.size(); ++i) {
+    const TimeNs stamp_ns = clean->frames[i].stamp_ns;
     const bool later = SecondsBetween(start_ns, stamp_ns) >= 20;
-    EXPECT_EQ(jumped->tracks[i].stamp_ns, stamp_ns + (later ? SecondsToNs(1) : 0));
+    EXPECT_EQ(jumped->frames[i].stamp_ns, stamp_ns + (later ? SecondsToNs(1) : 0));
   }
 }
 

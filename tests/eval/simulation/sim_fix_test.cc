@@ -52,8 +52,8 @@ TEST(SimFix, GIVEN_no_rate_THEN_there_is_no_sensor_and_all_else_is_the_same) {
   const Dataset with = Make(Base()).dataset;
   const Dataset none = Make(without).dataset;
   EXPECT_TRUE(none.fixes.empty() && none.rig.fixes.empty());
-  EXPECT_EQ(DigestOf(MeasurementLog{none.rig, none.imu, none.tracks}),
-            DigestOf(MeasurementLog{with.rig, with.imu, with.tracks}));
+  EXPECT_EQ(DigestOf(MeasurementLog{none.rig, none.imu, none.frames}),
+            DigestOf(MeasurementLog{with.rig, with.imu, with.frames}));
 }
 
 TEST(SimFix, GIVEN_a_frame_of_its_own_and_an_offset_THEN_errors_have_the_written_covariance) {

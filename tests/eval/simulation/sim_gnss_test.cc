@@ -31,7 +31,7 @@ Dataset Simulated(const SimulatorConfig& config, unsigned seed = 1) {
 }
 
 MeasurementLog LogOf(const Dataset& dataset) {
-  return {dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss};
+  return {dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss};
 }
 
 TEST(SimGnssTest, WHEN_written_and_read_THEN_the_log_is_the_same) {

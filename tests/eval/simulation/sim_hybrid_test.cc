@@ -33,7 +33,7 @@ double MedianReprojectionError(const SimulatorConfig& config, const Dataset& dat
   const SimulatedTracks tracks = SimulateTracks(config, recorded.motion, dataset.rig, landmarks,
                                                 recorded.motion.start_ns(), dataset.camera_stamps, seed);
   std::vector<double> errors;
-  for (const TrackFrame& frame : dataset.tracks) {
+  for (const TrackFrame& frame : dataset.frames) {
     // Straight and evenly turning between the rows, so independent of the spline.
     const Result<TrajectoryPoint> truth =
         InterpolateTruth(*dataset.truth, frame.stamp_ns + SecondsToNs(dataset.rig.camera_time_offset_s));
@@ -50,7 +50,7 @@ double MedianReprojectionError(const SimulatorConfig& config, const Dataset& dat
     }
     errors.push_back(std::sqrt(squares / static_cast<double>(frame.observations.size())));
   }
-  EXPECT_GT(errors.size() + 2, dataset.tracks.size());
+  EXPECT_GT(errors.size() + 2, dataset.frames.size());
   std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
                    errors.end());
   return errors[errors.size() / 2];
@@ -70,7 +70,7 @@ void CheckRealHybrid(const std::string& folder, const Expectation& expected) {
   ASSERT_TRUE(hybrid.ok()) << hybrid.message();
   const Dataset real = ReadDataset(folder).value();
 
-  EXPECT_NEAR(SecondsBetween(hybrid->tracks.front().stamp_ns, hybrid->tracks.back().stamp_ns),
+  EXPECT_NEAR(SecondsBetween(hybrid->frames.front().stamp_ns, hybrid->frames.back().stamp_ns),
               expected.duration_s, 0.2);
   EXPECT_EQ(hybrid->rig.T_BC.rotation, real.rig.T_BC.rotation);
   EXPECT_EQ(hybrid->rig.camera.intrinsics(), real.rig.camera.intrinsics());
@@ -84,8 +84,8 @@ void CheckRealHybrid(const std::string& folder, const Expectation& expected) {
     ASSERT_EQ(sample.gyro, real.imu[k].gyro);
     ASSERT_EQ(sample.accel, real.imu[k].accel);
   }
-  EXPECT_LE(hybrid->imu.front().stamp_ns, hybrid->tracks.front().stamp_ns);
-  EXPECT_GE(hybrid->imu.back().stamp_ns, hybrid->tracks.back().stamp_ns);
+  EXPECT_LE(hybrid->imu.front().stamp_ns, hybrid->frames.front().stamp_ns);
+  EXPECT_GE(hybrid->imu.back().stamp_ns, hybrid->frames.back().stamp_ns);
 
   const RecordedMotion recorded = LoadRecordedMotion(folder, *config).value();
   const GyroAgreement gyro = CompareGyro(recorded.motion, recorded.motion.start_ns(), real.imu).value();
@@ -137,7 +137,7 @@ class SimHybridFolderTest : public ::testing::Test {
 
 TEST_F(SimHybridFolderTest, IsDeterministicAndSeeded) {
   const Dataset first = Simulate(config_, 3).value();
-  const auto digest = [](const Dataset& d) { return DigestOf({d.rig, d.imu, d.tracks}); };
+  const auto digest = [](const Dataset& d) { return DigestOf({d.rig, d.imu, d.frames}); };
   EXPECT_EQ(digest(first), digest(Simulate(config_, 3).value()));
   EXPECT_NE(digest(first), digest(Simulate(config_, 4).value()));
   EXPECT_EQ(first.imu.size(), 1193u) << "up to the last exposure";
@@ -150,10 +150,10 @@ TEST_F(SimHybridFolderTest, FramesLieWithinTheTruth) {
   ASSERT_TRUE(WriteDataset(original_, folder_.path()).ok());
   const Result<Dataset> hybrid = Simulate(config_, 3);
   ASSERT_TRUE(hybrid.ok()) << hybrid.message();
-  EXPECT_EQ(hybrid->tracks.front().stamp_ns, 1002000000000);
-  EXPECT_EQ(hybrid->tracks.back().stamp_ns, 1011900000000)
+  EXPECT_EQ(hybrid->frames.front().stamp_ns, 1002000000000);
+  EXPECT_EQ(hybrid->frames.back().stamp_ns, 1011900000000)
       << "the exposure of the last frame is after the truth";
-  EXPECT_EQ(hybrid->camera_stamps.size(), hybrid->tracks.size());
+  EXPECT_EQ(hybrid->camera_stamps.size(), hybrid->frames.size());
   EXPECT_EQ(hybrid->imu.front().stamp_ns, 1000000000000) << "the rest before serves initialisation";
   EXPECT_EQ(hybrid->imu.back().stamp_ns, 1011920000000) << "the first sample after 11.913 s";
   EXPECT_EQ(hybrid->truth->points.front().stamp_ns, 1002010000000);
@@ -175,7 +175,7 @@ TEST_F(SimHybridFolderTest, ShortTracksOnDemand) {
   const Dataset hybrid = Simulate(config_, 3).value();
   double observations = 0;
   std::int64_t tracks = 0;
-  for (const TrackFrame& frame : hybrid.tracks) {
+  for (const TrackFrame& frame : hybrid.frames) {
     observations += static_cast<double>(frame.observations.size());
     tracks = std::max(tracks, frame.observations.back().track_id + 1);
   }

@@ -30,7 +30,7 @@ std::string BytesOf(const Dataset& dataset) {
     append(sample.gyro.data(), sizeof(double) * 3);
     append(sample.accel.data(), sizeof(double) * 3);
   }
-  for (const TrackFrame& frame : dataset.tracks) {
+  for (const TrackFrame& frame : dataset.frames) {
     append(&frame.stamp_ns, sizeof frame.stamp_ns);
     for (const TrackObservation& observation : frame.observations) {
       append(&observation.track_id, sizeof observation.track_id);
@@ -69,11 +69,11 @@ TEST(SimulatorTest, SensorsDoNotDisturbEachOther) {
   config.imu_rate_hz = 200;
   config.imu_noise.gyro_noise_density_radps_sqrthz = 1e-2;
   const Dataset other_imu = Simulate(config, 5).value();
-  ASSERT_EQ(plain.tracks.size(), other_imu.tracks.size());
-  for (std::size_t k = 0; k < plain.tracks.size(); ++k) {
-    ASSERT_EQ(plain.tracks[k].observations.size(), other_imu.tracks[k].observations.size());
-    for (std::size_t i = 0; i < plain.tracks[k].observations.size(); ++i) {
-      ASSERT_EQ(plain.tracks[k].observations[i].pixel, other_imu.tracks[k].observations[i].pixel);
+  ASSERT_EQ(plain.frames.size(), other_imu.frames.size());
+  for (std::size_t k = 0; k < plain.frames.size(); ++k) {
+    ASSERT_EQ(plain.frames[k].observations.size(), other_imu.frames[k].observations.size());
+    for (std::size_t i = 0; i < plain.frames[k].observations.size(); ++i) {
+      ASSERT_EQ(plain.frames[k].observations[i].pixel, other_imu.frames[k].observations[i].pixel);
     }
   }
 }
@@ -85,11 +85,11 @@ TEST(SimulatorTest, OutliersLeaveEveryOtherObservationAsItWas) {
   const Dataset spoiled = Simulate(config, 5).value();
   double changed = 0;
   double count = 0;
-  for (std::size_t k = 0; k < clean.tracks.size(); ++k) {
-    ASSERT_EQ(clean.tracks[k].observations.size(), spoiled.tracks[k].observations.size());
-    for (std::size_t i = 0; i < clean.tracks[k].observations.size(); ++i) {
-      ASSERT_EQ(clean.tracks[k].observations[i].track_id, spoiled.tracks[k].observations[i].track_id);
-      changed += clean.tracks[k].observations[i].pixel == spoiled.tracks[k].observations[i].pixel ? 0 : 1;
+  for (std::size_t k = 0; k < clean.frames.size(); ++k) {
+    ASSERT_EQ(clean.frames[k].observations.size(), spoiled.frames[k].observations.size());
+    for (std::size_t i = 0; i < clean.frames[k].observations.size(); ++i) {
+      ASSERT_EQ(clean.frames[k].observations[i].track_id, spoiled.frames[k].observations[i].track_id);
+      changed += clean.frames[k].observations[i].pixel == spoiled.frames[k].observations[i].pixel ? 0 : 1;
       count += 1;
     }
   }
@@ -99,7 +99,7 @@ TEST(SimulatorTest, OutliersLeaveEveryOtherObservationAsItWas) {
 TEST(SimulatorTest, StreamsAreAlignedAndComplete) {
   const Dataset dataset = Simulate(ShortConfig(), 5).value();
   ASSERT_EQ(dataset.imu.size(), 2001u);
-  ASSERT_EQ(dataset.tracks.size(), 201u);
+  ASSERT_EQ(dataset.frames.size(), 201u);
   ASSERT_EQ(dataset.camera_stamps.size(), 201u);
   ASSERT_TRUE(dataset.truth.has_value());
   ASSERT_EQ(dataset.truth->points.size(), 2001u);
@@ -111,10 +111,10 @@ TEST(SimulatorTest, StreamsAreAlignedAndComplete) {
     EXPECT_EQ(dataset.imu[k].stamp_ns, dataset.truth->points[k].stamp_ns);
     imu_stamps.insert(dataset.imu[k].stamp_ns);
   }
-  EXPECT_EQ(dataset.tracks.front().stamp_ns, dataset.imu.front().stamp_ns);
-  for (std::size_t k = 0; k < dataset.tracks.size(); ++k) {
-    EXPECT_EQ(imu_stamps.count(dataset.tracks[k].stamp_ns), 1u);
-    EXPECT_EQ(dataset.tracks[k].stamp_ns, dataset.camera_stamps[k]);
+  EXPECT_EQ(dataset.frames.front().stamp_ns, dataset.imu.front().stamp_ns);
+  for (std::size_t k = 0; k < dataset.frames.size(); ++k) {
+    EXPECT_EQ(imu_stamps.count(dataset.frames[k].stamp_ns), 1u);
+    EXPECT_EQ(dataset.frames[k].stamp_ns, dataset.camera_stamps[k]);
   }
 }
 

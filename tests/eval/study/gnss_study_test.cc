@@ -44,11 +44,14 @@ RunResult RunOff(const Trajectory& truth, const Error& error_m) {
 }
 
 GnssScenario Scenario() {
-  SimGnssConfig config;
-  config.outage_start_s = 20;
-  config.outage_s = 10;
-  config.clock_jump_at_s = 45;
-  return ScenarioOf(config, 2, 60);
+  SimulatorConfig config;
+  config.rest_s = 2;
+  config.gnss.rate_hz = 1;
+  config.gnss.outage_start_s = 20;
+  config.gnss.outage_s = 10;
+  config.gnss.clock_jump_at_s = 45;
+  config.fix.outage_start_s = 40;
+  return ScenarioOf(config, 60);
 }
 
 /// 0.1 m; growing to 0.35 m in the outage, 0.2 m for 5 s after it; a step of 0.05 m and back at the jump.
@@ -62,12 +65,22 @@ double Error(double t) {
   return t >= 45 && t < 45.15 ? 0.15 : 0.1;
 }
 
-TEST(GnssStudyTest, JudgesAGlobalRunByItsErrorsAsTheyStand) {
+TEST(GnssStudyTest, GivenNoReceiverThenTheOutageIsThatOfTheFixes) {
+  SimulatorConfig config;
+  config.fix.outage_start_s = 50;
+  config.fix.outage_s = 30;
+  config.gnss.outage_start_s = 20;
+  const GnssScenario scenario = ScenarioOf(config, 60);
+  EXPECT_EQ(scenario.outage_start_s, 50);
+  EXPECT_EQ(scenario.outage_end_s, 60);
+}
+
+TEST(GnssStudyTest, ScoresAGlobalRunByItsErrorsAsTheyStand) {
   const Trajectory truth = Truth();
   RunResult run = RunOff(truth, Error);
-  EXPECT_TRUE(std::isnan(JudgeGlobalRun(run, truth, kStart, Scenario()).rmse_m)) << "not aligned";
+  EXPECT_TRUE(std::isnan(ScoreGlobalRun(run, truth, kStart, Scenario()).rmse_m)) << "not aligned";
   run.global.emplace().stamp_ns = kStart + 3 * kSecondNs;
-  const GnssRunFigures figures = JudgeGlobalRun(run, truth, kStart, Scenario());
+  const GnssRunFigures figures = ScoreGlobalRun(run, truth, kStart, Scenario());
   EXPECT_NEAR(figures.aligned_after_s, 1, 1e-9) << "motion starts after 2 s";
   EXPECT_NEAR(figures.early_m, std::sqrt((170 * 0.01 + 20 * 0.0128) / 190), 0.003);
   EXPECT_NEAR(figures.late_m, 0.1, 0.002);
@@ -87,7 +100,7 @@ TEST(GnssStudyTest, AnErrorWithinThreeDeviationsIsCovered) {
   const Trajectory truth = Truth();
   RunResult run = RunOff(truth, [](double) { return 0.29; });
   run.global.emplace().stamp_ns = kStart;
-  const GnssRunFigures figures = JudgeGlobalRun(run, truth, kStart, Scenario());
+  const GnssRunFigures figures = ScoreGlobalRun(run, truth, kStart, Scenario());
   EXPECT_EQ(figures.return_covered, 1);
   EXPECT_EQ(figures.aligned_after_s, 0);
   EXPECT_NEAR(figures.rmse_m, 0.29, 1e-9);
@@ -103,10 +116,10 @@ TEST(GnssStudyTest, OdometryIsJudgedFromTheStartOfTheOutage) {
     record.estimate.nav.R_WB = turn * record.estimate.nav.R_WB;
     record.estimate.nav.p_WB = turn * record.estimate.nav.p_WB + Vector3d(5, 6, 7);
   }
-  const GnssRunFigures figures = JudgeOdometry(run, truth, kStart, Scenario());
+  const GnssRunFigures figures = ScoreOdometry(run, truth, kStart, Scenario());
   EXPECT_NEAR(figures.return_error_m, 0.01 * 9.9, 1e-9);
   EXPECT_TRUE(std::isnan(figures.rmse_m)) << "its world is its own";
-  EXPECT_TRUE(std::isnan(JudgeOdometry(run, truth, kStart, GnssScenario()).return_error_m));
+  EXPECT_TRUE(std::isnan(ScoreOdometry(run, truth, kStart, GnssScenario()).return_error_m));
 }
 
 TEST(GnssStudyTest, SinglePointsOfANoiseFreeReceiverAreTheTruth) {
@@ -119,7 +132,7 @@ TEST(GnssStudyTest, SinglePointsOfANoiseFreeReceiverAreTheTruth) {
   sim.gnss.pseudorange_noise_m = 0;
   const auto rmse = [&] {
     const Dataset dataset = test::SimulateOrDie(sim, 1);
-    const MeasurementLog log{dataset.rig, dataset.imu, dataset.tracks, {}, dataset.gnss};
+    const MeasurementLog log{dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss};
     return SinglePointRmse(GnssConfig(), log, *dataset.truth);
   };
   EXPECT_LT(rmse(), 0.01);

@@ -54,7 +54,7 @@ TEST_F(RefineDatasetTest, WritesASequenceWithATruthThatHasCovariances) {
   const Result<Dataset> read = ReadDataset(output.path());
   ASSERT_TRUE(read.ok()) << read.message();
   EXPECT_EQ(read->imu.size(), dataset_.imu.size());
-  EXPECT_EQ(read->tracks.size(), dataset_.tracks.size());
+  EXPECT_EQ(read->frames.size(), dataset_.frames.size());
   ASSERT_TRUE(read->truth->has_covariance && read->truth->has_velocity && read->truth->has_bias);
   EXPECT_TRUE(std::filesystem::is_symlink(output.File("mav0/cam0/data")));
   EXPECT_TRUE(std::filesystem::exists(output.File("mav0/cam0/data/1.png")));

@@ -44,7 +44,7 @@ Tally StartOften(int sequences, int starts_each, double outlier_rate, const Scal
   for (int sequence = 0; sequence < sequences; ++sequence) {
     const Dataset dataset = MovingSequence(500 + static_cast<unsigned>(sequence), outlier_rate);
     for (int i = 0; i < starts_each; ++i) {
-      const TimeNs start = dataset.tracks.front().stamp_ns + SecondsToNs(start_s(random));
+      const TimeNs start = dataset.frames.front().stamp_ns + SecondsToNs(start_s(random));
       const StartOutcome outcome = StartAt(DynamicConfig(), dataset, start, 8, demand);
       ++tally.starts;
       tally.slowest_ms = std::max(tally.slowest_ms, outcome.slowest_ms);
@@ -119,7 +119,7 @@ TEST(DynamicInitializer, GIVEN_motion_slow_for_its_size_THEN_more_data_give_a_sc
   int found = 0;
   for (const double start_s : {2.0, 20.0, 40.0, 60.0}) {
     SCOPED_TRACE(start_s);
-    const TimeNs start = dataset.tracks.front().stamp_ns + SecondsToNs(start_s);
+    const TimeNs start = dataset.frames.front().stamp_ns + SecondsToNs(start_s);
     const StartOutcome outcome = StartAt(DynamicConfig(), dataset, start, 16);
     if (!outcome.ok) {
       std::cout << "  refused: " << outcome.message << "\n";
@@ -138,8 +138,8 @@ TEST(DynamicInitializer, GIVEN_motion_slow_for_its_size_THEN_more_data_give_a_sc
 
 TEST(DynamicInitializer, WHEN_run_twice_THEN_the_bits_are_equal) {
   const Dataset dataset = MovingSequence(500, 0.05);
-  const StartOutcome first = StartAt(DynamicConfig(), dataset, dataset.tracks[20].stamp_ns, 8);
-  const StartOutcome second = StartAt(DynamicConfig(), dataset, dataset.tracks[20].stamp_ns, 8);
+  const StartOutcome first = StartAt(DynamicConfig(), dataset, dataset.frames[20].stamp_ns, 8);
+  const StartOutcome second = StartAt(DynamicConfig(), dataset, dataset.frames[20].stamp_ns, 8);
   ASSERT_TRUE(first.ok);
   EXPECT_EQ(first.estimate.nav.R_WB, second.estimate.nav.R_WB);
   EXPECT_EQ(first.estimate.covariance, second.estimate.covariance);
@@ -150,17 +150,17 @@ TEST(DynamicInitializer, WHEN_auto_meets_motion_THEN_it_goes_the_dynamic_way) {
   const Dataset dataset = MovingSequence(501, 0);
   EstimatorConfig config;
   config.init.method = InitMethod::kAuto;
-  const StartOutcome outcome = StartAt(config, dataset, dataset.tracks[30].stamp_ns, 8);
+  const StartOutcome outcome = StartAt(config, dataset, dataset.frames[30].stamp_ns, 8);
   ASSERT_TRUE(outcome.ok) << outcome.message;
   EXPECT_EQ(outcome.method, "dynamic");
 }
 
 TEST(DynamicInitializer, WHEN_the_time_is_too_short_THEN_it_says_how_much_is_missing) {
   const Dataset dataset = MovingSequence(501, 0);
-  const StartOutcome few = StartAt(DynamicConfig(), dataset, dataset.tracks[30].stamp_ns, 0.4);
+  const StartOutcome few = StartAt(DynamicConfig(), dataset, dataset.frames[30].stamp_ns, 0.4);
   ASSERT_FALSE(few.ok);
   EXPECT_THAT(few.message, HasSubstr("frames of 6"));
-  const StartOutcome brief = StartAt(DynamicConfig(), dataset, dataset.tracks[30].stamp_ns, 1.2);
+  const StartOutcome brief = StartAt(DynamicConfig(), dataset, dataset.frames[30].stamp_ns, 1.2);
   ASSERT_FALSE(brief.ok);
   EXPECT_THAT(brief.message, HasSubstr("0.90 s of 1.60 s collected"));
 }
@@ -169,7 +169,7 @@ TEST(DynamicInitializer, WHEN_the_time_is_too_short_THEN_it_says_how_much_is_mis
 Dataset OnTheSpot(double sway_m, double rate_radps) {
   Dataset dataset = MovingSequence(502, 0);
   dataset.imu.clear();
-  dataset.tracks.clear();
+  dataset.frames.clear();
   dataset.rig.T_BC.translation.setZero();
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
@@ -198,28 +198,28 @@ Dataset OnTheSpot(double sway_m, double rate_radps) {
         frame.observations.push_back({static_cast<std::int64_t>(i), pixel + noise});
       }
     }
-    dataset.tracks.push_back(std::move(frame));
+    dataset.frames.push_back(std::move(frame));
   }
   return dataset;
 }
 
 TEST(DynamicInitializer, WHEN_the_camera_only_rotates_THEN_it_refuses_for_want_of_parallax) {
   const Dataset dataset = OnTheSpot(0, 0.6);
-  const StartOutcome outcome = StartAt(DynamicConfig(), dataset, dataset.tracks.front().stamp_ns, 8);
+  const StartOutcome outcome = StartAt(DynamicConfig(), dataset, dataset.frames.front().stamp_ns, 8);
   ASSERT_FALSE(outcome.ok) << outcome.message;
   EXPECT_THAT(outcome.message, HasSubstr("parallax"));
 }
 
 TEST(DynamicInitializer, WHEN_the_motion_is_too_small_to_see_THEN_it_refuses_for_want_of_parallax) {
   const Dataset dataset = OnTheSpot(0.02, 0);
-  const StartOutcome outcome = StartAt(DynamicConfig(), dataset, dataset.tracks.front().stamp_ns, 8);
+  const StartOutcome outcome = StartAt(DynamicConfig(), dataset, dataset.frames.front().stamp_ns, 8);
   ASSERT_FALSE(outcome.ok) << outcome.message;
   EXPECT_THAT(outcome.message, HasSubstr("parallax"));
 }
 
 TEST(DynamicInitializer, WHEN_the_imu_was_silent_THEN_the_window_begins_after_it) {
   Dataset dataset = MovingSequence(504, 0);
-  const TimeNs start = dataset.tracks[20].stamp_ns;
+  const TimeNs start = dataset.frames[20].stamp_ns;
   const TimeNs silent_from = start + SecondsToNs(0.5);
   const TimeNs silent_to = start + SecondsToNs(1.5);
   std::erase_if(dataset.imu, [&](const ImuSample& sample) {

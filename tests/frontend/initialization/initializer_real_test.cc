@@ -20,12 +20,12 @@ Dataset ReadSequence(const std::string& name) {
   if (!dataset.ok()) {
     return {};
   }
-  if (dataset->tracks.empty()) {
+  if (dataset->frames.empty()) {
     for (const TimeNs stamp : dataset->camera_stamps) {
-      dataset.value().tracks.push_back({stamp, {}, 0});
+      dataset.value().frames.push_back({stamp, {}, 0});
     }
     for (const ImageEntry& image : dataset->images) {
-      dataset.value().tracks.push_back({image.stamp_ns, {}, 0});
+      dataset.value().frames.push_back({image.stamp_ns, {}, 0});
     }
   }
   return *std::move(dataset);
@@ -36,7 +36,7 @@ StartOutcome AutoStart(const Dataset& dataset, double at_s, double accel_bias_st
   config.init.method = InitMethod::kAuto;
   config.init.accel_bias_std_mps2 = accel_bias_std_mps2;
   const StartOutcome outcome =
-      StartAt(config, dataset, dataset.tracks.front().stamp_ns + SecondsToNs(at_s), 12);
+      StartAt(config, dataset, dataset.frames.front().stamp_ns + SecondsToNs(at_s), 12);
   std::cout << "  " << dataset.name << " + " << at_s << " s: " << outcome.method << " after "
             << outcome.waited_s << " s, tilt error " << outcome.tilt_error_rad << " rad, velocity error "
             << outcome.velocity_error_mps << " m/s, scale error " << outcome.scale_error << "; "
@@ -49,7 +49,7 @@ class RestingStart : public testing::TestWithParam<std::string> {};
 TEST_P(RestingStart, THEN_the_static_way_finds_gravity_and_the_gyro_bias) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   const Dataset dataset = ReadSequence(GetParam());
-  ASSERT_FALSE(dataset.tracks.empty());
+  ASSERT_FALSE(dataset.frames.empty());
   const StartOutcome outcome = AutoStart(dataset, 0, 0.1);
   ASSERT_TRUE(outcome.ok) << outcome.message;
   EXPECT_EQ(outcome.method, "static");
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(EuRoC, RestingStart,
 TEST(RealStart, GIVEN_sparse_keyframes_in_flight_THEN_the_dynamic_way_finds_the_scale) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   const Dataset dataset = ReadSequence("tracks/euroc_v1_01_keyframes");
-  ASSERT_FALSE(dataset.tracks.empty());
+  ASSERT_FALSE(dataset.frames.empty());
   for (const double at_s : {20.0, 60.0, 80.0}) {
     const StartOutcome outcome = AutoStart(dataset, at_s, 0.1);
     ASSERT_TRUE(outcome.ok) << outcome.message;
@@ -86,7 +86,7 @@ TEST(RealStart,
      GIVEN_a_wide_phone_camera_THEN_rest_is_taken_statically_and_motion_finds_the_large_accel_bias) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   const Dataset dataset = ReadSequence("tracks/tango_7hz");
-  ASSERT_FALSE(dataset.tracks.empty());
+  ASSERT_FALSE(dataset.frames.empty());
   const StartOutcome rest = AutoStart(dataset, 0, 0.5);
   ASSERT_TRUE(rest.ok) << rest.message;
   EXPECT_EQ(rest.method, "static");

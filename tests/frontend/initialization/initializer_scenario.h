@@ -76,7 +76,7 @@ inline StartOutcome StartAt(const EstimatorConfig& config, const Dataset& datase
   auto sample = std::lower_bound(dataset.imu.begin(), dataset.imu.end(), start_ns - 20'000'000,
                                  [](const ImuSample& s, TimeNs stamp) { return s.stamp_ns < stamp; });
   TimeNs first_ns = 0;
-  for (const TrackFrame& frame : dataset.tracks) {
+  for (const TrackFrame& frame : dataset.frames) {
     if (frame.stamp_ns < start_ns) {
       continue;
     }

@@ -23,7 +23,7 @@ alidade::Result<alidade::Evaluation> RunFilter(const std::string& configs) {
       alidade::LoadEstimatorConfig(configs + "/estimators/alidade_filter.yaml", {"init.method=truth"});
   ALIDADE_RETURN_IF_ERROR(config.status());
 
-  const alidade::MeasurementLog log{dataset->rig, dataset->imu, dataset->tracks};
+  const alidade::MeasurementLog log{dataset->rig, dataset->imu, dataset->frames};
   alidade::RunOptions options;
   options.truth = &*dataset->truth;
   alidade::FilterEstimator filter(*config, log.rig);

@@ -29,7 +29,7 @@ TEST(BatchEstimatorTest, ExactDataGivesTheTruthInEveryFrame) {
   const Dataset dataset = MakeBatchDataset({.exact = true});
   const BatchRun run = RunBatch(dataset, BatchTestConfig(), 0);
   ASSERT_TRUE(run.frames.ok()) << run.frames.message();
-  ASSERT_EQ(run.frames->size(), dataset.tracks.size());
+  ASSERT_EQ(run.frames->size(), dataset.frames.size());
   for (const FinalizedFrame& frame : *run.frames) {
     const Vector15d error = test::ErrorOf(dataset, frame.estimate);
     // What is left is the midpoint rule's at 400 Hz.
@@ -166,7 +166,7 @@ TEST(BatchEstimatorTest, BadInputIsAStatus) {
   const Dataset dataset = MakeBatchDataset({.duration_s = 2});
   const EstimatorConfig config = BatchTestConfig();
   BatchEstimator estimator(config, dataset.rig, MakeSmoother(config, dataset.rig));
-  EXPECT_EQ(estimator.AddFrame(dataset.tracks.front()).code(), StatusCode::kDiverged);
+  EXPECT_EQ(estimator.AddFrame(dataset.frames.front()).code(), StatusCode::kDiverged);
   NavEstimate bad = test::DrawInitialState(dataset, 1, 0);
   bad.nav.p_WB.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(estimator.Initialize(bad).code(), StatusCode::kInput);
@@ -174,7 +174,7 @@ TEST(BatchEstimatorTest, BadInputIsAStatus) {
   ImuSample sample = dataset.imu.front();
   sample.gyro.x() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(estimator.AddImu(sample).code(), StatusCode::kInput);
-  EXPECT_EQ(estimator.AddFrame(dataset.tracks[1]).code(), StatusCode::kInput) << "no IMU reaches the frame";
+  EXPECT_EQ(estimator.AddFrame(dataset.frames[1]).code(), StatusCode::kInput) << "no IMU reaches the frame";
   const Result<std::vector<FinalizedFrame>> nothing = estimator.TakeFinalized(nullptr);
   ASSERT_TRUE(nothing.ok()) << nothing.message();
   EXPECT_TRUE(nothing->empty());

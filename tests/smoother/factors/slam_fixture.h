@@ -91,7 +91,7 @@ struct SlamFixture : WindowFixture {
     const FrameGeometry& after = geometry[static_cast<size_t>(to->index)];
     const AnchorPlanes planes{track->plane(), PlaneInAnchor(before, track->plane(), after, track->landmark)};
     AnchorChange moved;
-    ASSERT_TRUE(ChangeAnchor(before, after, track->landmark, &moved, nullptr, planes));
+    ASSERT_TRUE(ChangeAnchor(before, after, track->landmark, &moved, {}, planes));
     track->landmark = moved.to;
     track->anchor = to;
     track->anchor_plane = planes.to;

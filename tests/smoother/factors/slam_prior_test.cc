@@ -54,7 +54,7 @@ TEST_P(SlamPriorTest, RowsOfAnAnchoredViewAgainstDifferences) {
       FrameGeometry row;
       ASSERT_TRUE(LinearizeAnchoredView(geometry[static_cast<size_t>(track->anchor->index)],
                                         AtRow(geometry, view, &row), view.observation, {}, track->landmark,
-                                        &rows, true, &fixture.calibration, track->plane()));
+                                        &rows, true, fixture.calibration, track->plane()));
       MatrixXd analytic(2, size);
       analytic << rows.anchor * ChartJacobian(convention(), track->anchor->nav_state().T_WB()),
           rows.view * ChartJacobian(convention(), view.frame->nav_state().T_WB()), rows.landmark,
@@ -82,12 +82,12 @@ TEST_P(SlamPriorTest, ChangeOfAnchorAgainstDifferences) {
     const FrameGeometry to_now = geometry(to, none.head<6>(), none);
     const AnchorPlanes planes{track.plane(), PlaneInAnchor(from_now, track.plane(), to_now, track.landmark)};
     AnchorChange change;
-    ASSERT_TRUE(ChangeAnchor(from_now, to_now, track.landmark, &change, &fixture.calibration.layout, planes));
+    ASSERT_TRUE(ChangeAnchor(from_now, to_now, track.landmark, &change, fixture.calibration.layout, planes));
     const auto old_coordinates = [&](const VectorXd& delta) -> VectorXd {
       AnchorChange back;
       EXPECT_TRUE(ChangeAnchor(geometry(to, delta.segment<6>(6), delta),
                                geometry(from, delta.head<6>(), delta), change.to + delta.segment<3>(12),
-                               &back, nullptr, {planes.to, planes.from}));
+                               &back, {}, {planes.to, planes.from}));
       return back.to;
     };
     EXPECT_LT((old_coordinates(none) - track.landmark).norm(), 1e-12);
@@ -162,7 +162,7 @@ TEST_P(SlamPriorTest, AnchorsThatLeaveAndLostFeaturesGiveTheSchurComplement) {
         AnchorChange back;
         EXPECT_TRUE(ChangeAnchor(fixture.MovedGeometry(to, delta.segment<6>(6), delta.tail(cameras)),
                                  fixture.MovedGeometry(from, delta.head<6>(), delta.tail(cameras)),
-                                 track.landmark + delta.segment<3>(12), &back, nullptr,
+                                 track.landmark + delta.segment<3>(12), &back, {},
                                  {track.plane(), old_plane}));
         return back.to;
       };
@@ -258,7 +258,7 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
       FrameGeometry row;
       if (track->anchor != nullptr) {
         EXPECT_TRUE(ChangeAnchor(geometry[static_cast<size_t>(track->anchor->index)],
-                                 AtRow(geometry, track->views.front(), &row), track->landmark, &back, nullptr,
+                                 AtRow(geometry, track->views.front(), &row), track->landmark, &back, {},
                                  {track->plane(), track->views.front().observation.plane}));
         landmark = back.to;
       }

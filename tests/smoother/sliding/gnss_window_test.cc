@@ -87,7 +87,9 @@ TEST(GnssWindowTest, RowsOfASuspectEpochAreScaledToTheGate) {
     PackNavState(away, frame.nav.data());
   }
   FrameStatistics statistics;
-  gnss.Gate(&fixture.window, &statistics);
+  for (int i = 0; i < fixture.window.size(); ++i) {
+    gnss.Gate(&fixture.window.frame(i), &statistics);
+  }
   const double gate = ChiSquareQuantile(1, GnssTestConfig().gate_probability);
   int at_the_gate = 0;
   for (int i = 0; i < fixture.window.size(); ++i) {

@@ -155,7 +155,7 @@ TEST(SmootherEstimatorTest, ARefusedSlamFeatureIsNotCountedAsUsed) {
   ASSERT_TRUE(estimator.Initialize(test::DrawInitialState(dataset, 3)).ok());
   size_t next = 0;
   int refused = 0;
-  for (const TrackFrame& frame : dataset.tracks) {
+  for (const TrackFrame& frame : dataset.frames) {
     while (next < dataset.imu.size() && (next == 0 || dataset.imu[next - 1].stamp_ns < frame.stamp_ns)) {
       ASSERT_TRUE(estimator.AddImu(dataset.imu[next++]).ok());
     }
@@ -310,7 +310,7 @@ TEST(SmootherEstimatorTest, DoesNotDriftAtRestBeforeAnyTrackHasParallax) {
     }
     ASSERT_TRUE(estimator.Initialize(start).ok());
     for (size_t i = 0; i < 40; ++i) {
-      ASSERT_TRUE(estimator.AddFrame(dataset.tracks[i]).ok());
+      ASSERT_TRUE(estimator.AddFrame(dataset.frames[i]).ok());
     }
     EXPECT_LT((estimator.Latest().nav.p_WB - start.nav.p_WB).norm(), 0.05);
     EXPECT_GT(estimator.last_statistics().features_used, 15);
@@ -328,8 +328,8 @@ TEST(SmootherEstimatorTest, FramesThatAreNotKeyframesLeaveTheWindow) {
   }
   ASSERT_TRUE(estimator.Initialize(test::DrawInitialState(dataset, 1, 0)).ok());
   for (int i = 0; i < 8; ++i) {
-    ASSERT_TRUE(estimator.AddFrame(dataset.tracks[static_cast<size_t>(i)]).ok());
-    EXPECT_EQ(estimator.Latest().stamp_ns, dataset.tracks[static_cast<size_t>(i)].stamp_ns);
+    ASSERT_TRUE(estimator.AddFrame(dataset.frames[static_cast<size_t>(i)]).ok());
+    EXPECT_EQ(estimator.Latest().stamp_ns, dataset.frames[static_cast<size_t>(i)].stamp_ns);
   }
   ASSERT_EQ(estimator.window().size(), 3);
   const WindowFrame& newest = estimator.window().newest();
@@ -343,7 +343,7 @@ TEST(SmootherEstimatorTest, BadInputIsAStatusAndLeavesTheStateAlone) {
   const Dataset dataset = MakeSequence({.duration_s = 2});
   const EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);
   SmootherEstimator estimator(config, dataset.rig);
-  EXPECT_EQ(estimator.AddFrame(dataset.tracks.front()).code(), StatusCode::kDiverged);
+  EXPECT_EQ(estimator.AddFrame(dataset.frames.front()).code(), StatusCode::kDiverged);
 
   const NavEstimate good = test::DrawInitialState(dataset, 1, 0);
   NavEstimate bad = good;
@@ -361,7 +361,7 @@ TEST(SmootherEstimatorTest, BadInputIsAStatusAndLeavesTheStateAlone) {
   EXPECT_FALSE(estimator.initialized());
 
   ASSERT_TRUE(estimator.Initialize(good).ok());
-  TrackFrame late = dataset.tracks[1];
+  TrackFrame late = dataset.frames[1];
   EXPECT_EQ(estimator.AddFrame(late).code(), StatusCode::kInput) << "no IMU reaches the frame";
   EXPECT_TRUE(estimator.initialized());
   EXPECT_EQ(estimator.Latest().stamp_ns, good.stamp_ns);
@@ -371,7 +371,7 @@ TEST(SmootherEstimatorTest, BadInputIsAStatusAndLeavesTheStateAlone) {
   ASSERT_TRUE(estimator.AddFrame(late).ok());
   EXPECT_EQ(estimator.AddFrame(late).code(), StatusCode::kInput) << "the same frame again";
   EXPECT_EQ(estimator.Latest().stamp_ns, late.stamp_ns);
-  TrackFrame invalid = dataset.tracks[2];
+  TrackFrame invalid = dataset.frames[2];
   invalid.observations.front().pixel.x() = std::numeric_limits<double>::quiet_NaN();
   ASSERT_TRUE(estimator.AddFrame(invalid).ok());
   EXPECT_EQ(estimator.last_statistics().observations_invalid, 1);

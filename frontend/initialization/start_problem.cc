@@ -1,4 +1,4 @@
-#include "frontend/initialization/alignment_problem.h"
+#include "frontend/initialization/start_problem.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -22,10 +22,10 @@ constexpr double kMinDepthM = 1e-3;
 
 }  // namespace
 
-AlignmentProblem::AlignmentProblem(const DynamicWindow& window, const std::vector<bool>& inlier,
-                                   const std::vector<Preintegration>& preintegrations,
-                                   const std::vector<NavState>& states, const ImuBias& bias,
-                                   const RefinementSettings& settings)
+StartProblem::StartProblem(const DynamicWindow& window, const std::vector<bool>& inlier,
+                           const std::vector<Preintegration>& preintegrations,
+                           const std::vector<NavState>& states, const ImuBias& bias,
+                           const RefinementSettings& settings)
     : tracks_(window.tracks),
       preintegrations_(preintegrations),
       settings_(settings),
@@ -42,7 +42,7 @@ AlignmentProblem::AlignmentProblem(const DynamicWindow& window, const std::vecto
   InitializeLandmarks();
 }
 
-std::vector<Pose> AlignmentProblem::Cameras(const Variables& variables, const SharedTrack& track) const {
+std::vector<Pose> StartProblem::Cameras(const Variables& variables, const SharedTrack& track) const {
   std::vector<Pose> cameras;
   cameras.reserve(track.frames.size());
   for (const int frame : track.frames) {
@@ -51,8 +51,7 @@ std::vector<Pose> AlignmentProblem::Cameras(const Variables& variables, const Sh
   return cameras;
 }
 
-bool AlignmentProblem::TrackResiduals(const Variables& variables, size_t t,
-                                      std::vector<double>* squared) const {
+bool StartProblem::TrackResiduals(const Variables& variables, size_t t, std::vector<double>* squared) const {
   const SharedTrack& track = tracks_[t];
   const std::vector<Pose> cameras = Cameras(variables, track);
   squared->clear();
@@ -71,7 +70,7 @@ bool AlignmentProblem::TrackResiduals(const Variables& variables, size_t t,
   return in_front;
 }
 
-double AlignmentProblem::TrackCost(const Variables& variables, size_t t) const {
+double StartProblem::TrackCost(const Variables& variables, size_t t) const {
   std::vector<double> squared;
   TrackResiduals(variables, t, &squared);
   double cost = 0;
@@ -81,7 +80,7 @@ double AlignmentProblem::TrackCost(const Variables& variables, size_t t) const {
   return cost;
 }
 
-double AlignmentProblem::InertialCost(const Variables& variables) const {
+double StartProblem::InertialCost(const Variables& variables) const {
   double cost = 0;
   for (size_t k = 0; k < preintegrations_.size(); ++k) {
     Vector15d residual;
@@ -93,13 +92,13 @@ double AlignmentProblem::InertialCost(const Variables& variables) const {
   return cost;
 }
 
-double AlignmentProblem::PriorCost(const Variables& variables) const {
+double StartProblem::PriorCost(const Variables& variables) const {
   const double gyro = variables.biases.front().gyro.norm() / settings_.gyro_bias_std_radps;
   const double accel = variables.biases.front().accel.norm() / settings_.accel_bias_std_mps2;
   return gyro * gyro + accel * accel;
 }
 
-void AlignmentProblem::AddTrack(size_t t) {
+void StartProblem::AddTrack(size_t t) {
   const SharedTrack& track = tracks_[t];
   landmark_rows_[t] = LandmarkRows();
   std::vector<double> squared;
@@ -144,7 +143,7 @@ void AlignmentProblem::AddTrack(size_t t) {
   }
 }
 
-Eigen::Matrix<double, 15, 30> AlignmentProblem::InertialJacobian(size_t k, Vector15d* residual) const {
+Eigen::Matrix<double, 15, 30> StartProblem::InertialJacobian(size_t k, Vector15d* residual) const {
   Matrix15d jacobian_i;
   Matrix15d jacobian_j;
   PreintegrationModel{&preintegrations_[k], gravity_W_}.Evaluate(
@@ -156,7 +155,7 @@ Eigen::Matrix<double, 15, 30> AlignmentProblem::InertialJacobian(size_t k, Vecto
   return jacobian;
 }
 
-void AlignmentProblem::AddInertial() {
+void StartProblem::AddInertial() {
   for (size_t k = 0; k < preintegrations_.size(); ++k) {
     Vector15d residual;
     const Eigen::Matrix<double, 15, 30> jacobian = InertialJacobian(k, &residual);
@@ -166,7 +165,7 @@ void AlignmentProblem::AddInertial() {
   }
 }
 
-void AlignmentProblem::AddPriors() {
+void StartProblem::AddPriors() {
   const double gyro = 1 / (settings_.gyro_bias_std_radps * settings_.gyro_bias_std_radps);
   const double accel = 1 / (settings_.accel_bias_std_mps2 * settings_.accel_bias_std_mps2);
   information_.diagonal().segment<3>(9).array() += gyro;
@@ -181,7 +180,7 @@ void AlignmentProblem::AddPriors() {
   gauge_.diagonal().segment<3>(3).setConstant(1 / (settings_.position_std_m * settings_.position_std_m));
 }
 
-double AlignmentProblem::Linearize() {
+double StartProblem::Linearize() {
   const Eigen::Index size = 15 * static_cast<Eigen::Index>(current_.states.size());
   information_.setZero(size, size);
   gradient_.setZero(size);
@@ -198,7 +197,7 @@ double AlignmentProblem::Linearize() {
   return cost;
 }
 
-int AlignmentProblem::DropAbove(double squared_residual) {
+int StartProblem::DropAbove(double squared_residual) {
   int dropped = 0;
   std::vector<double> squared;
   for (size_t t = 0; t < active_.size(); ++t) {
@@ -224,7 +223,7 @@ int AlignmentProblem::DropAbove(double squared_residual) {
   return dropped;
 }
 
-int AlignmentProblem::active_tracks() const {
+int StartProblem::active_tracks() const {
   return static_cast<int>(std::count(active_.begin(), active_.end(), true));
 }
 

@@ -1,4 +1,5 @@
-// Where the landmarks of the alignment problem begin, and trial steps of states and landmarks.
+// Where the landmarks of the least-squares problem of the start begin, and trial steps of states and
+// landmarks.
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -6,7 +7,7 @@
 
 #include "core/landmark_solver.h"
 #include "core/robust.h"
-#include "frontend/initialization/alignment_problem.h"
+#include "frontend/initialization/start_problem.h"
 
 namespace alidade {
 namespace {
@@ -16,12 +17,12 @@ using Eigen::Vector3d;
 constexpr double kStartDepthM = 5.0;
 constexpr double kMaxStartDepthM = 100.0;
 constexpr int kLandmarkIterations = 3;
-// Of a landmark's own rows: a depth that they do not tell.
+// Of a landmark's own rows: a depth that they do not determine.
 constexpr double kMinPivotRatio = 1e-6;
 
 }  // namespace
 
-void AlignmentProblem::InitializeLandmarks() {
+void StartProblem::InitializeLandmarks() {
   for (size_t t = 0; t < tracks_.size(); ++t) {
     if (!active_[t]) {
       continue;
@@ -38,7 +39,7 @@ void AlignmentProblem::InitializeLandmarks() {
   }
 }
 
-bool AlignmentProblem::StepLandmark(size_t t, const Eigen::VectorXd& step, Vector3d* landmark) const {
+bool StartProblem::StepLandmark(size_t t, const Eigen::VectorXd& step, Vector3d* landmark) const {
   const LandmarkRows& rows = landmark_rows_[t];
   const Vector3d pivots = rows.R.diagonal().cwiseAbs();
   if (!(pivots.minCoeff() > kMinPivotRatio * pivots.maxCoeff())) {
@@ -53,7 +54,7 @@ bool AlignmentProblem::StepLandmark(size_t t, const Eigen::VectorXd& step, Vecto
   return true;
 }
 
-double AlignmentProblem::TryStep(double damping) {
+double StartProblem::TryStep(double damping) {
   Eigen::MatrixXd damped = information_;
   damped.bottomRightCorner<15, 15>() += gauge_;
   damped.diagonal() *= 1 + damping;
@@ -102,7 +103,7 @@ double AlignmentProblem::TryStep(double damping) {
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
-void AlignmentProblem::AcceptStep() {
+void StartProblem::AcceptStep() {
   std::swap(current_, trial_);
 }
 

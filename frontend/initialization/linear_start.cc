@@ -1,4 +1,4 @@
-#include "frontend/initialization/linear_alignment.h"
+#include "frontend/initialization/linear_start.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -176,28 +176,28 @@ void Reweigh(const std::vector<FramePrediction>& frames, const Vector6d& solutio
 }
 
 /// Turns the first body frame into a world with z up and no yaw.
-LinearAlignment ToWorld(const std::vector<FramePrediction>& frames, const Vector6d& solution,
-                        const ImuBias& bias) {
+LinearStart ToWorld(const std::vector<FramePrediction>& frames, const Vector6d& solution,
+                    const ImuBias& bias) {
   const Vector3d v = solution.head<3>();
   const Vector3d g = solution.tail<3>();
   const Matrix3d R_W0 = so3::Between(-g, Vector3d::UnitZ());
-  LinearAlignment alignment;
-  alignment.bias = bias;
+  LinearStart start;
+  start.bias = bias;
   for (const FramePrediction& frame : frames) {
     NavState state;
     state.R_WB = R_W0 * frame.motion.gamma;
     state.p_WB = R_W0 * (frame.PositionJacobian() * solution + frame.motion.alpha);
     state.v_WB = R_W0 * (v + g * frame.motion.duration_s + frame.motion.beta);
-    alignment.states.push_back(state);
+    start.states.push_back(state);
   }
-  return alignment;
+  return start;
 }
 
 }  // namespace
 
-Result<LinearAlignment> AlignLinear(const DynamicWindow& window,
-                                    const std::vector<Preintegration>& preintegrations, const ImuBias& bias,
-                                    const std::vector<bool>& inlier, const Pose& T_BC, double gravity_mps2) {
+Result<LinearStart> SolveLinearStart(const DynamicWindow& window,
+                                     const std::vector<Preintegration>& preintegrations, const ImuBias& bias,
+                                     const std::vector<bool>& inlier, const Pose& T_BC, double gravity_mps2) {
   const std::vector<FramePrediction> frames = ChainFrames(preintegrations, bias);
   std::vector<RayBundle> bundles = CollectBundles(window, frames, inlier, T_BC.rotation);
   if (static_cast<int>(bundles.size()) < kMinConsistentTracks) {
@@ -213,9 +213,9 @@ Result<LinearAlignment> AlignLinear(const DynamicWindow& window,
     }
     Reweigh(frames, solution, T_BC.translation, &bundles);
   }
-  LinearAlignment alignment = ToWorld(frames, solution, bias);
-  alignment.free_gravity_mps2 = free_gravity;
-  return alignment;
+  LinearStart start = ToWorld(frames, solution, bias);
+  start.free_gravity_mps2 = free_gravity;
+  return start;
 }
 
 }  // namespace alidade

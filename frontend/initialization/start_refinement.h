@@ -8,7 +8,7 @@
 namespace alidade {
 
 /// States of the window after maximum likelihood, how well they fit and how well they are determined.
-struct RefinedAlignment {
+struct RefinedStart {
   NavEstimate newest;             ///< yaw 0 and position 0 at this state; covariance with the gauge prior
   std::vector<NavState> states;   ///< of the window, in the world of `newest`
   double relative_scale_std = 0;  ///< standard deviation of the window's size over its size
@@ -28,9 +28,9 @@ struct RefinedAlignment {
 /// theirs, too) and the rest refined again. The covariance is the newest state's marginal of the information
 /// matrix at the end, times the reprojection chi-square where that exceeds 1. Error (kDiverged): no
 /// minimum within thirty iterations, fewer than eight tracks survive, or the information is singular.
-Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std::vector<bool>& inlier,
-                                         const std::vector<Preintegration>& preintegrations,
-                                         const std::vector<NavState>& states, const ImuBias& bias,
-                                         const RefinementSettings& settings);
+Result<RefinedStart> RefineStart(const DynamicWindow& window, const std::vector<bool>& inlier,
+                                 const std::vector<Preintegration>& preintegrations,
+                                 const std::vector<NavState>& states, const ImuBias& bias,
+                                 const RefinementSettings& settings);
 
 }  // namespace alidade

@@ -1,6 +1,6 @@
 // The chi-squares by which the refinement judges a solution.
 
-#include "frontend/initialization/alignment_refinement.h"
+#include "frontend/initialization/start_refinement.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include "core/imu_buffer.h"
 #include "eval/simulation/simulator.h"
 #include "frontend/initialization/dynamic_initializer.h"
-#include "frontend/initialization/gyro_alignment.h"
-#include "frontend/initialization/linear_alignment.h"
+#include "frontend/initialization/gyro_bias_fit.h"
+#include "frontend/initialization/linear_start.h"
 
 namespace alidade {
 namespace {
@@ -31,10 +31,10 @@ Dataset MovingSequence() {
 
 std::deque<TrackFrame> FramesFrom(const Dataset& dataset, size_t first) {
   std::deque<TrackFrame> frames;
-  for (size_t i = first; i < dataset.tracks.size() && SecondsBetween(dataset.tracks[first].stamp_ns,
-                                                                     dataset.tracks[i].stamp_ns) <= kWindowS;
+  for (size_t i = first; i < dataset.frames.size() && SecondsBetween(dataset.frames[first].stamp_ns,
+                                                                     dataset.frames[i].stamp_ns) <= kWindowS;
        ++i) {
-    frames.push_back(dataset.tracks[i]);
+    frames.push_back(dataset.frames[i]);
   }
   return frames;
 }
@@ -47,7 +47,7 @@ ImuBuffer AllSamples(const Dataset& dataset) {
   return imu;
 }
 
-TEST(AlignmentRefinement, GIVEN_the_sheets_noise_THEN_both_chi_squares_are_about_one_in_the_mean) {
+TEST(StartRefinement, GIVEN_the_sheets_noise_THEN_both_chi_squares_are_about_one_in_the_mean) {
   const Dataset dataset = MovingSequence();
   ImuBuffer imu = AllSamples(dataset);
   const EstimatorConfig config;
@@ -57,21 +57,21 @@ TEST(AlignmentRefinement, GIVEN_the_sheets_noise_THEN_both_chi_squares_are_about
   double inertial = 0;
   double reprojection = 0;
   int windows = 0;
-  for (size_t first = 0; first + 22 < dataset.tracks.size(); first += 12) {
+  for (size_t first = 0; first + 22 < dataset.frames.size(); first += 12) {
     SCOPED_TRACE(first);
     DynamicWindow window;
     ASSERT_TRUE(
         BuildDynamicWindow(config, dataset.rig.camera, FramesFrom(dataset, first), kWindowS, &imu, &window)
             .ok());
     std::vector<Preintegration> steps = PreintegrateWindow(window, ImuBias(), dataset.rig.imu_noise);
-    const GyroAlignment gyro = AlignGyro(window, steps, dataset.rig);
+    const GyroBiasFit gyro = FitGyroBias(window, steps, dataset.rig);
     const ImuBias bias{gyro.gyro_bias, Eigen::Vector3d::Zero()};
     steps = PreintegrateWindow(window, bias, dataset.rig.imu_noise);
-    const Result<LinearAlignment> linear =
-        AlignLinear(window, steps, bias, gyro.inlier, dataset.rig.T_BC, config.imu.gravity_mps2);
+    const Result<LinearStart> linear =
+        SolveLinearStart(window, steps, bias, gyro.inlier, dataset.rig.T_BC, config.imu.gravity_mps2);
     ASSERT_TRUE(linear.ok()) << linear.message();
-    const Result<RefinedAlignment> refined =
-        RefineAlignment(window, gyro.inlier, steps, linear->states, linear->bias, settings);
+    const Result<RefinedStart> refined =
+        RefineStart(window, gyro.inlier, steps, linear->states, linear->bias, settings);
     if (refined.ok()) {
       inertial += refined->inertial_chi2;
       reprojection += refined->reprojection_chi2;
@@ -89,7 +89,7 @@ TEST(AlignmentRefinement, GIVEN_the_sheets_noise_THEN_both_chi_squares_are_about
   EXPECT_NEAR(reprojection, 1, 0.1);
 }
 
-TEST(AlignmentRefinement, GIVEN_specific_force_that_vision_contradicts_THEN_the_start_is_refused) {
+TEST(StartRefinement, GIVEN_specific_force_that_vision_contradicts_THEN_the_start_is_refused) {
   Dataset dataset = MovingSequence();
   for (ImuSample& sample : dataset.imu) {
     const double t = SecondsBetween(dataset.imu.front().stamp_ns, sample.stamp_ns);

@@ -1,15 +1,15 @@
-// What the alignment problem says about its solution: covariance, scale, fit.
+// What the least-squares problem of the start says about its solution: covariance, scale, fit.
 
 #include <cmath>
 
 #include "core/dense_solvers.h"
-#include "frontend/initialization/alignment_problem.h"
+#include "frontend/initialization/start_problem.h"
 
 namespace alidade {
 
 using Eigen::Vector3d;
 
-bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covariance) const {
+bool StartProblem::NewestCovariance(double variance_factor, Matrix15d* covariance) const {
   const Eigen::Index rest = information_.rows() - 15;
   const SymmetricSolver factor(information_.topLeftCorner(rest, rest));
   if (!(factor.min_pivot() > 0)) {
@@ -28,7 +28,7 @@ bool AlignmentProblem::NewestCovariance(double variance_factor, Matrix15d* covar
   return covariance->allFinite();
 }
 
-bool AlignmentProblem::Judge(double* relative_scale_std, double* inertial_chi2) const {
+bool StartProblem::Assess(double* relative_scale_std, double* inertial_chi2) const {
   Eigen::MatrixXd full = information_;
   full.bottomRightCorner<15, 15>() += gauge_;
   const Eigen::LLT<Eigen::MatrixXd> factor(full);
@@ -36,7 +36,7 @@ bool AlignmentProblem::Judge(double* relative_scale_std, double* inertial_chi2) 
          InertialChi2(factor, inertial_chi2);
 }
 
-bool AlignmentProblem::RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& factor, double* deviation) const {
+bool StartProblem::RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& factor, double* deviation) const {
   Eigen::VectorXd functional = Eigen::VectorXd::Zero(information_.rows());
   double extent = 0;
   for (size_t k = 0; k + 1 < current_.states.size(); ++k) {
@@ -53,7 +53,7 @@ bool AlignmentProblem::RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& facto
   return std::isfinite(*deviation);
 }
 
-bool AlignmentProblem::InertialChi2(const Eigen::LLT<Eigen::MatrixXd>& factor, double* chi2) const {
+bool StartProblem::InertialChi2(const Eigen::LLT<Eigen::MatrixXd>& factor, double* chi2) const {
   const Eigen::Index rows = 15 * static_cast<Eigen::Index>(preintegrations_.size());
   Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(information_.rows(), rows);
   double cost = 0;
@@ -69,7 +69,7 @@ bool AlignmentProblem::InertialChi2(const Eigen::LLT<Eigen::MatrixXd>& factor, d
   return freedom > 0;
 }
 
-double AlignmentProblem::ReprojectionChi2() const {
+double StartProblem::ReprojectionChi2() const {
   double sum = 0;
   double dof = 0;
   std::vector<double> squared;

@@ -1,4 +1,4 @@
-#include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_alignment.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -60,9 +60,10 @@ AlignmentTransform AnchorAtFirst(const std::vector<StatePair>& pairs) {
   return transform;
 }
 
-std::optional<Alignment> ParseAlignment(std::string_view name) {
-  for (const Alignment alignment :
-       {Alignment::kNone, Alignment::kPos, Alignment::kPosYaw, Alignment::kSe3, Alignment::kSim3}) {
+std::optional<TrajectoryAlignment> ParseTrajectoryAlignment(std::string_view name) {
+  for (const TrajectoryAlignment alignment :
+       {TrajectoryAlignment::kNone, TrajectoryAlignment::kPos, TrajectoryAlignment::kPosYaw,
+        TrajectoryAlignment::kSe3, TrajectoryAlignment::kSim3}) {
     if (name == ToString(alignment)) {
       return alignment;
     }
@@ -70,35 +71,35 @@ std::optional<Alignment> ParseAlignment(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view ToString(Alignment alignment) {
+std::string_view ToString(TrajectoryAlignment alignment) {
   switch (alignment) {
-    case Alignment::kNone:
+    case TrajectoryAlignment::kNone:
       return "none";
-    case Alignment::kPos:
+    case TrajectoryAlignment::kPos:
       return "pos";
-    case Alignment::kPosYaw:
+    case TrajectoryAlignment::kPosYaw:
       return "posyaw";
-    case Alignment::kSe3:
+    case TrajectoryAlignment::kSe3:
       return "se3";
-    case Alignment::kSim3:
+    case TrajectoryAlignment::kSim3:
       return "sim3";
   }
   return "none";
 }
 
-AlignmentTransform Align(const std::vector<StatePair>& pairs, Alignment alignment) {
+AlignmentTransform Align(const std::vector<StatePair>& pairs, TrajectoryAlignment alignment) {
   AlignmentTransform transform;
-  if (pairs.empty() || alignment == Alignment::kNone) {
+  if (pairs.empty() || alignment == TrajectoryAlignment::kNone) {
     return transform;
   }
   const Eigen::Matrix3Xd truth = Positions(pairs, &StatePair::truth);
   const Eigen::Matrix3Xd estimate = Positions(pairs, &StatePair::estimate);
-  if (alignment == Alignment::kSe3 || alignment == Alignment::kSim3) {
-    return AlignUmeyama(truth, estimate, alignment == Alignment::kSim3);
+  if (alignment == TrajectoryAlignment::kSe3 || alignment == TrajectoryAlignment::kSim3) {
+    return AlignUmeyama(truth, estimate, alignment == TrajectoryAlignment::kSim3);
   }
   const Eigen::Vector3d truth_mean = truth.rowwise().mean();
   const Eigen::Vector3d estimate_mean = estimate.rowwise().mean();
-  if (alignment == Alignment::kPosYaw) {
+  if (alignment == TrajectoryAlignment::kPosYaw) {
     transform.rotation = BestYaw(truth.colwise() - truth_mean, estimate.colwise() - estimate_mean);
   }
   transform.translation = truth_mean - transform.rotation * estimate_mean;

@@ -1,4 +1,4 @@
-#include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_alignment.h"
 
 #include <gtest/gtest.h>
 
@@ -17,17 +17,17 @@ using test::DrawVector;
 using test::PerfectPairs;
 
 /// The transform class that each alignment may undo, drawn at random.
-AlignmentTransform DrawTransform(Alignment alignment, std::mt19937_64& random) {
+AlignmentTransform DrawTransform(TrajectoryAlignment alignment, std::mt19937_64& random) {
   AlignmentTransform transform;
-  if (alignment != Alignment::kNone) {
+  if (alignment != TrajectoryAlignment::kNone) {
     transform.translation = DrawVector(random, 20);
   }
-  if (alignment == Alignment::kPosYaw) {
+  if (alignment == TrajectoryAlignment::kPosYaw) {
     transform.rotation = so3::Exp({0, 0, std::uniform_real_distribution<double>(-3.1, 3.1)(random)});
-  } else if (alignment == Alignment::kSe3 || alignment == Alignment::kSim3) {
+  } else if (alignment == TrajectoryAlignment::kSe3 || alignment == TrajectoryAlignment::kSim3) {
     transform.rotation = DrawRotation(random);
   }
-  if (alignment == Alignment::kSim3) {
+  if (alignment == TrajectoryAlignment::kSim3) {
     transform.scale = std::uniform_real_distribution<double>(0.2, 4)(random);
   }
   return transform;
@@ -46,7 +46,7 @@ std::vector<StatePair> MovedAway(const std::vector<StatePair>& pairs, const Alig
   return moved;
 }
 
-class EveryAlignment : public testing::TestWithParam<Alignment> {};
+class EveryAlignment : public testing::TestWithParam<TrajectoryAlignment> {};
 
 TEST_P(EveryAlignment, RecoversAKnownTransformAndLeavesNoError) {
   std::mt19937_64 random(7);
@@ -77,15 +77,15 @@ TEST_P(EveryAlignment, IsAMinimumOfThePositionErrorAmongItsOwnTransforms) {
   }
   const AlignmentTransform best = Align(pairs, GetParam());
   const double least = ComputeAte(ApplyAlignment(pairs, best)).pos_m;
-  for (int trial = 0; trial < 50 && GetParam() != Alignment::kNone; ++trial) {
+  for (int trial = 0; trial < 50 && GetParam() != TrajectoryAlignment::kNone; ++trial) {
     AlignmentTransform other = best;
     other.translation += DrawVector(random, 0.05);
-    if (GetParam() == Alignment::kPosYaw) {
+    if (GetParam() == TrajectoryAlignment::kPosYaw) {
       other.rotation = so3::Exp({0, 0, 0.02 * (trial - 25)}) * best.rotation;
-    } else if (GetParam() != Alignment::kPos) {
+    } else if (GetParam() != TrajectoryAlignment::kPos) {
       other.rotation = so3::Exp(DrawVector(random, 0.02)) * best.rotation;
     }
-    if (GetParam() == Alignment::kSim3) {
+    if (GetParam() == TrajectoryAlignment::kSim3) {
       other.scale *= 1 + 0.002 * (trial - 25);
     }
     EXPECT_GE(ComputeAte(ApplyAlignment(pairs, other)).pos_m, least);
@@ -109,40 +109,41 @@ TEST_P(EveryAlignment, StaysFiniteAndRigidOnDegenerateClouds) {
 }
 
 TEST_P(EveryAlignment, NameReadsBack) {
-  EXPECT_EQ(ParseAlignment(ToString(GetParam())), GetParam());
+  EXPECT_EQ(ParseTrajectoryAlignment(ToString(GetParam())), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryAlignment,
-                         testing::Values(Alignment::kNone, Alignment::kPos, Alignment::kPosYaw,
-                                         Alignment::kSe3, Alignment::kSim3),
+                         testing::Values(TrajectoryAlignment::kNone, TrajectoryAlignment::kPos,
+                                         TrajectoryAlignment::kPosYaw, TrajectoryAlignment::kSe3,
+                                         TrajectoryAlignment::kSim3),
                          [](const auto& test) { return std::string(ToString(test.param)); });
 
-TEST(Alignment, UnknownNameIsNoAlignment) {
-  EXPECT_EQ(ParseAlignment("SE3"), std::nullopt);
-  EXPECT_EQ(ParseAlignment(""), std::nullopt);
+TEST(TrajectoryAlignment, UnknownNameIsNoAlignment) {
+  EXPECT_EQ(ParseTrajectoryAlignment("SE3"), std::nullopt);
+  EXPECT_EQ(ParseTrajectoryAlignment(""), std::nullopt);
 }
 
-TEST(Alignment, YawAlignmentKeepsATiltVisible) {
+TEST(TrajectoryAlignment, YawAlignmentKeepsATiltVisible) {
   const double tilt_rad = 0.05;
   AlignmentTransform tilt;
   tilt.rotation = so3::Exp({tilt_rad, 0, 0});
   const std::vector<StatePair> pairs = MovedAway(PerfectPairs(200), tilt);
   const double degrees = tilt_rad * 180 / M_PI;
-  EXPECT_NEAR(ComputeAte(ApplyAlignment(pairs, Align(pairs, Alignment::kPosYaw))).ori_deg, degrees,
+  EXPECT_NEAR(ComputeAte(ApplyAlignment(pairs, Align(pairs, TrajectoryAlignment::kPosYaw))).ori_deg, degrees,
               0.1 * degrees);
-  EXPECT_LT(ComputeAte(ApplyAlignment(pairs, Align(pairs, Alignment::kSe3))).ori_deg, 1e-5);
+  EXPECT_LT(ComputeAte(ApplyAlignment(pairs, Align(pairs, TrajectoryAlignment::kSe3))).ori_deg, 1e-5);
 }
 
-TEST(Alignment, NeverMirrors) {
+TEST(TrajectoryAlignment, NeverMirrors) {
   std::vector<StatePair> pairs = PerfectPairs(100);
   for (StatePair& pair : pairs) {
     pair.estimate.nav.p_WB.y() *= -1;
   }
-  EXPECT_NEAR(Align(pairs, Alignment::kSe3).rotation.determinant(), 1, 1e-9);
-  EXPECT_NEAR(Align(pairs, Alignment::kSim3).rotation.determinant(), 1, 1e-9);
+  EXPECT_NEAR(Align(pairs, TrajectoryAlignment::kSe3).rotation.determinant(), 1, 1e-9);
+  EXPECT_NEAR(Align(pairs, TrajectoryAlignment::kSim3).rotation.determinant(), 1, 1e-9);
 }
 
-TEST(Alignment, CovarianceTurnsWithTheWorldSoThatNeesOfAConsistentlyMovedPairIsUnchanged) {
+TEST(TrajectoryAlignment, CovarianceTurnsWithTheWorldSoThatNeesOfAConsistentlyMovedPairIsUnchanged) {
   std::mt19937_64 random(5);
   std::vector<StatePair> pairs = PerfectPairs(20);
   for (StatePair& pair : pairs) {
@@ -153,7 +154,7 @@ TEST(Alignment, CovarianceTurnsWithTheWorldSoThatNeesOfAConsistentlyMovedPairIsU
     pair.estimate.nav.R_WB *= so3::Exp(DrawVector(random, 0.1));
   }
   const NeesResult before = ComputeNees(pairs);
-  const AlignmentTransform transform = DrawTransform(Alignment::kSim3, random);
+  const AlignmentTransform transform = DrawTransform(TrajectoryAlignment::kSim3, random);
   std::vector<StatePair> moved = ApplyAlignment(pairs, transform);
   for (StatePair& pair : moved) {  // the truth moves along
     pair.truth.nav.R_WB = (transform.rotation * pair.truth.nav.R_WB).eval();

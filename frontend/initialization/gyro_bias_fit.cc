@@ -1,4 +1,4 @@
-#include "frontend/initialization/gyro_alignment.h"
+#include "frontend/initialization/gyro_bias_fit.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -121,7 +121,7 @@ std::vector<PairRays> CollectPairs(const DynamicWindow& window,
 }
 
 /// A track is an inlier unless it disagrees in most of its pairs.
-std::vector<bool> JudgeTracks(const std::vector<PairRays>& pairs, size_t tracks) {
+std::vector<bool> ConsistentTracks(const std::vector<PairRays>& pairs, size_t tracks) {
   std::vector<int> votes(tracks, 0);
   std::vector<int> against(tracks, 0);
   std::vector<double> weights;
@@ -143,16 +143,16 @@ std::vector<bool> JudgeTracks(const std::vector<PairRays>& pairs, size_t tracks)
 
 /// Median over the inliers of three or more views of the angle between first and last ray, rotation removed.
 double MedianParallax(const DynamicWindow& window, const std::vector<Preintegration>& preintegrations,
-                      const RigCalibration& rig, const GyroAlignment& alignment) {
+                      const RigCalibration& rig, const GyroBiasFit& fit) {
   const Matrix3d& R_BC = rig.T_BC.rotation;
   std::vector<double> parallax;
   for (size_t t = 0; t < window.tracks.size(); ++t) {
     const SharedTrack& track = window.tracks[t];
-    if (!alignment.inlier[t] || track.frames.size() < 3) {
+    if (!fit.inlier[t] || track.frames.size() < 3) {
       continue;
     }
     const PairRotation rotation =
-        RotationOver(preintegrations, track.frames.front(), track.frames.back(), alignment.gyro_bias);
+        RotationOver(preintegrations, track.frames.front(), track.frames.back(), fit.gyro_bias);
     const Vector3d first = R_BC * BearingOf(track.observations.front());
     const Vector3d last = rotation.R_ij * R_BC * BearingOf(track.observations.back());
     parallax.push_back(std::atan2(first.cross(last).norm(), first.dot(last)) * rig.camera.mean_focal_px());
@@ -167,27 +167,27 @@ double MedianParallax(const DynamicWindow& window, const std::vector<Preintegrat
 
 }  // namespace
 
-GyroAlignment AlignGyro(const DynamicWindow& window, const std::vector<Preintegration>& preintegrations,
+GyroBiasFit FitGyroBias(const DynamicWindow& window, const std::vector<Preintegration>& preintegrations,
                         const RigCalibration& rig) {
   const Matrix3d& R_BC = rig.T_BC.rotation;
-  GyroAlignment alignment;
+  GyroBiasFit fit;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     BiasEquations equations;
     equations.information = Matrix3d::Identity() / (kBiasPriorRadps * kBiasPriorRadps);
-    equations.gradient = equations.information * alignment.gyro_bias;
-    for (const PairRays& pair : CollectPairs(window, preintegrations, R_BC, alignment.gyro_bias)) {
+    equations.gradient = equations.information * fit.gyro_bias;
+    for (const PairRays& pair : CollectPairs(window, preintegrations, R_BC, fit.gyro_bias)) {
       AddPair(pair, &equations);
     }
     const Vector3d step = SolveSymmetric(equations.information, equations.gradient);
-    alignment.gyro_bias -= step;
+    fit.gyro_bias -= step;
     if (step.norm() < kConvergedRadps) {
       break;
     }
   }
-  alignment.inlier =
-      JudgeTracks(CollectPairs(window, preintegrations, R_BC, alignment.gyro_bias), window.tracks.size());
-  alignment.median_parallax_px = MedianParallax(window, preintegrations, rig, alignment);
-  return alignment;
+  fit.inlier =
+      ConsistentTracks(CollectPairs(window, preintegrations, R_BC, fit.gyro_bias), window.tracks.size());
+  fit.median_parallax_px = MedianParallax(window, preintegrations, rig, fit);
+  return fit;
 }
 
 }  // namespace alidade

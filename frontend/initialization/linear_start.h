@@ -8,7 +8,7 @@ namespace alidade {
 
 /// A first guess of every state of the window, in a world whose z is up and whose origin is the first body
 /// position.
-struct LinearAlignment {
+struct LinearStart {
   std::vector<NavState> states;
   ImuBias bias;
   double free_gravity_mps2 = 0;  ///< |g| when its magnitude is not imposed: a check, noisy over short windows
@@ -22,8 +22,8 @@ struct LinearAlignment {
 /// weights of the last round. The accelerometer bias is NOT solved for: rays of unknown depth are happiest
 /// when everything shrinks, and a free bias lets it. Error (kDiverged): fewer than eight usable tracks, or a
 /// singular system.
-Result<LinearAlignment> AlignLinear(const DynamicWindow& window,
-                                    const std::vector<Preintegration>& preintegrations, const ImuBias& bias,
-                                    const std::vector<bool>& inlier, const Pose& T_BC, double gravity_mps2);
+Result<LinearStart> SolveLinearStart(const DynamicWindow& window,
+                                     const std::vector<Preintegration>& preintegrations, const ImuBias& bias,
+                                     const std::vector<bool>& inlier, const Pose& T_BC, double gravity_mps2);
 
 }  // namespace alidade

@@ -1,11 +1,11 @@
-#include "frontend/initialization/alignment_refinement.h"
+#include "frontend/initialization/start_refinement.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/format.h"
 #include "core/imu_propagation.h"
-#include "frontend/initialization/alignment_problem.h"
+#include "frontend/initialization/start_problem.h"
 
 namespace alidade {
 namespace {
@@ -21,8 +21,8 @@ constexpr double kMaxSquaredResidual = 15.0;
 /// Where a minimisation begins and what it must reach; dampings are relative to the diagonal.
 struct Round {
   double first_damping;
-  /// The largest damping at which a small gain tells the minimum. The information of the scale is 1e-10 of a
-  /// position's own and less, so with more damping a step hardly moves along it.
+  /// The largest damping at which a small gain indicates the minimum. The information of the scale is 1e-10
+  /// of a position's own and less, so with more damping a step hardly moves along it.
   double last_damping;
 };
 // Tracks that do not fit can block the way along the scale: it is sought once they are dropped.
@@ -33,7 +33,7 @@ constexpr double kLeastDamping = 1e-16;
 
 /// Levenberg-Marquardt until the cost stands still to a fiftieth of a squared deviation; false when it does
 /// not within kMaxIterations. Adds to the iterations taken.
-bool Minimize(const Round& round, AlignmentProblem* problem, int* iterations) {
+bool Minimize(const Round& round, StartProblem* problem, int* iterations) {
   double damping = round.first_damping;
   double cost = problem->Linearize();
   int failures = 0;
@@ -60,7 +60,7 @@ bool Minimize(const Round& round, AlignmentProblem* problem, int* iterations) {
 }
 
 /// Moves world and covariance so that the newest state has yaw 0 and position 0.
-void ApplyGauge(RefinedAlignment* refined) {
+void ApplyGauge(RefinedStart* refined) {
   const Matrix3d& R = refined->newest.nav.R_WB;
   const double yaw = std::atan2(R(1, 0), R(0, 0));
   const Matrix3d turn = so3::Exp(Vector3d(0, 0, -yaw));
@@ -81,17 +81,17 @@ void ApplyGauge(RefinedAlignment* refined) {
 
 }  // namespace
 
-Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std::vector<bool>& inlier,
-                                         const std::vector<Preintegration>& preintegrations,
-                                         const std::vector<NavState>& states, const ImuBias& bias,
-                                         const RefinementSettings& settings) {
-  AlignmentProblem problem(window, inlier, preintegrations, states, bias, settings);
+Result<RefinedStart> RefineStart(const DynamicWindow& window, const std::vector<bool>& inlier,
+                                 const std::vector<Preintegration>& preintegrations,
+                                 const std::vector<NavState>& states, const ImuBias& bias,
+                                 const RefinementSettings& settings) {
+  StartProblem problem(window, inlier, preintegrations, states, bias, settings);
   if (!problem.valid()) {
     return Status::Diverged(
         "moving: the IMU's noise covariance is not positive definite; the four noise densities must be "
         "positive");
   }
-  RefinedAlignment refined;
+  RefinedStart refined;
   bool settled = Minimize(kRough, &problem, &refined.iterations);
   for (int round = 0; settled && round < kMaxSharpRounds; ++round) {
     if (problem.DropAbove(kMaxSquaredResidual) == 0 && round > 0) {
@@ -112,7 +112,7 @@ Result<RefinedAlignment> RefineAlignment(const DynamicWindow& window, const std:
   // Worse residuals than announced: the pixel noise was set too low.
   const double variance_factor = std::max(1.0, refined.reprojection_chi2);
   if (!problem.NewestCovariance(variance_factor, &refined.newest.covariance) ||
-      !problem.Judge(&refined.relative_scale_std, &refined.inertial_chi2)) {
+      !problem.Assess(&refined.relative_scale_std, &refined.inertial_chi2)) {
     return Status::Diverged("moving: the window's information is singular");
   }
   refined.relative_scale_std *= std::sqrt(variance_factor);

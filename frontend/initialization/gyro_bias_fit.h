@@ -6,7 +6,7 @@
 namespace alidade {
 
 /// What the epipolar geometry says about the gyroscope.
-struct GyroAlignment {
+struct GyroBiasFit {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   std::vector<bool> inlier;  ///< one a track of the window
   double median_parallax_px =
@@ -20,7 +20,7 @@ struct GyroAlignment {
 /// weights; tracks that disagree in most of their pairs are marked. Prior on the bias: zero, 0.1 rad/s. Works
 /// without parallax too (then only the marks mean little). preintegrations: of the window, about any bias
 /// near the truth. Needs at least two frames.
-[[nodiscard]] GyroAlignment AlignGyro(const DynamicWindow& window,
+[[nodiscard]] GyroBiasFit FitGyroBias(const DynamicWindow& window,
                                       const std::vector<Preintegration>& preintegrations,
                                       const RigCalibration& rig);
 

@@ -9,13 +9,13 @@
 
 namespace alidade {
 
-/// The nonlinear least-squares problem of RefineAlignment: cost, normal equations over 15 M columns and trial
+/// The nonlinear least-squares problem of RefineStart: cost, normal equations over 15 M columns and trial
 /// steps.
-class AlignmentProblem {
+class StartProblem {
  public:
-  AlignmentProblem(const DynamicWindow& window, const std::vector<bool>& inlier,
-                   const std::vector<Preintegration>& preintegrations, const std::vector<NavState>& states,
-                   const ImuBias& bias, const RefinementSettings& settings);
+  StartProblem(const DynamicWindow& window, const std::vector<bool>& inlier,
+               const std::vector<Preintegration>& preintegrations, const std::vector<NavState>& states,
+               const ImuBias& bias, const RefinementSettings& settings);
 
   /// False when the noise of a preintegration is singular; nothing else may be called then.
   [[nodiscard]] bool valid() const { return valid_; }
@@ -37,7 +37,7 @@ class AlignmentProblem {
   /// p_i - p_newest -> (1 + s) (p_i - p_newest). `inertial_chi2`: of the preintegrations' residuals, a degree
   /// of freedom that the fit leaves them: their rows less the trace of their share in the information, most
   /// of which the states take up.
-  bool Judge(double* relative_scale_std, double* inertial_chi2) const;
+  bool Assess(double* relative_scale_std, double* inertial_chi2) const;
   [[nodiscard]] double ReprojectionChi2() const;
 
   [[nodiscard]] int active_tracks() const;
