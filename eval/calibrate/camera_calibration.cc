@@ -196,7 +196,7 @@ class Calibration {
     }
     const Vector3d variances = early->second.cwiseAbs2() + late->second.cwiseAbs2();
     const double squares = ((early->first - late->first).cwiseAbs2().array() / variances.array()).mean();
-    LeverArm arm{
+    CameraLeverArm arm{
         whole->first, whole->second * std::sqrt(std::max(1.0, squares)), {early->first, late->first}};
     if (arm.deviations.maxCoeff() > kPriorM / 2) {
       result_.remarks.push_back(

@@ -14,7 +14,7 @@
 namespace alidade {
 
 /// Position of the camera on the body, as an estimator found it along the motion.
-struct LeverArm {
+struct CameraLeverArm {
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();        ///< [m]
   Eigen::Vector3d deviations = Eigen::Vector3d::Zero();  ///< [m], with what the halves say of them
   std::array<Eigen::Vector3d, 2> halves;                 ///< of the first and the second half alone
@@ -26,8 +26,8 @@ struct CalibratedCamera {
   /// Largest difference of the halves over its deviation, and the name of the coordinate; 0 without halves.
   double halves_sigma = 0;
   std::string halves_coordinate;
-  std::optional<LeverArm> lever_arm;  ///< empty where it is not observable or not asked for
-  RigCalibration rig;                 ///< the log's, with what was found
+  std::optional<CameraLeverArm> lever_arm;  ///< empty where it is not observable or not asked for
+  RigCalibration rig;                       ///< the log's, with what was found
   std::vector<std::string> remarks;
 };
 

@@ -30,7 +30,7 @@ Changes ChangesOf(const CalibratedCamera& camera, const RigCalibration& given) {
   return changes;
 }
 
-Json LeverArmJson(const LeverArm& arm) {
+Json LeverArmJson(const CameraLeverArm& arm) {
   Json json;
   const auto list = [](const Eigen::Vector3d& v) {
     return Json{RoundedJson(v.x(), kDigits), RoundedJson(v.y(), kDigits), RoundedJson(v.z(), kDigits)};

@@ -67,7 +67,7 @@ TEST_F(CalibratedFigureEight, TheCameraIsFoundWithinItsDeviations) {
 TEST_F(CalibratedFigureEight, TheLeverArmIsFoundWithinItsDeviations) {
   ASSERT_TRUE(camera_->ok()) << camera_->message();
   ASSERT_TRUE((*camera_)->lever_arm.has_value());
-  const LeverArm& arm = *(*camera_)->lever_arm;
+  const CameraLeverArm& arm = *(*camera_)->lever_arm;
   const Eigen::Vector3d error = arm.p_BC - dataset_->true_rig->T_BC.translation;
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LT(std::abs(error[axis]), 4 * arm.deviations[axis]) << axis;
