@@ -19,8 +19,12 @@
     }).join('');
   }
 
+  function shownColumns(map) {
+    return d3.range(map.labels.length).filter(function (i) { return !report.state.off[map.labels[i]]; });
+  }
+
   function heatTable(map) {
-    const columns = d3.range(map.labels.length).filter(function (i) { return !report.state.off[map.labels[i]]; });
+    const columns = shownColumns(map);
     return '<figure><figcaption>' + escape(map.title) + '</figcaption><p class="note">' + escape(map.reading) + '</p>' +
       '<p class="heat-legend">' + map.legend.map(function (step) {
         return '<span style="background:' + step[0] + ';color:' + step[1] + '">' + escape(step[2]) + '</span>';
@@ -31,6 +35,8 @@
 
   report.drawMaps = function () {
     document.getElementById('map').hidden = !report.data.maps.length;
-    document.getElementById('map-tables').innerHTML = report.data.maps.map(heatTable).join('');
+    const tables = document.getElementById('map-tables');
+    tables.classList.toggle('stacked', report.data.maps.some(function (map) { return shownColumns(map).length > 4; }));
+    tables.innerHTML = report.data.maps.map(heatTable).join('');
   };
 })();
