@@ -4,17 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "eval/comparison/comparison.h"
+#include "eval/comparison/cell_report.h"
 
 namespace alidade {
-
-/// What a cell leaves for the tables, which another process or another machine may write.
-struct CellReport {
-  CellResult result;
-  bool reused = false;                      ///< an earlier run was kept
-  std::optional<FrontendSummary> frontend;  ///< of its input, where images were tracked
-  std::vector<std::string> remarks;         ///< of the reader of its input
-};
 
 /// Writes a report as CBOR: numbers keep every bit. kOutput: cannot be written.
 Status WriteCellFile(const CellReport& report, const std::string& path);

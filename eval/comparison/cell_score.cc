@@ -10,8 +10,10 @@
 #include "core/error_convention.h"
 #include "core/format.h"
 #include "core/numbers.h"
+#include "eval/comparison/innovations.h"
 #include "eval/comparison/series_rows.h"
 #include "eval/comparison/sky_tracks.h"
+#include "eval/metrics/error_statistics.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/silent_failure.h"
 #include "eval/metrics/trajectory_alignment.h"
@@ -35,17 +37,6 @@ std::optional<double> Mean(const std::vector<double>& values) {
     sum += value;
   }
   return values.empty() ? std::nullopt : std::optional(sum / static_cast<double>(values.size()));
-}
-
-/// Nearest-rank percentile.
-std::optional<double> Percentile(std::vector<double> values, double share) {
-  if (values.empty()) {
-    return std::nullopt;
-  }
-  const size_t rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const size_t index = std::min(values.size() - 1, rank == 0 ? 0 : rank - 1);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
-  return values[index];
 }
 
 void FillFigures(const Evaluation& evaluation, CellResult* cell) {
@@ -86,31 +77,6 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
   return series;
 }
 
-/// A sensor's innovations in a frame's statistics.
-struct Innovations {
-  double nis = 0;
-  int dof = 0;
-
-  [[nodiscard]] double Ratio() const { return dof > 0 ? nis / dof : kNan; }
-};
-
-Innovations InnovationsOf(Sensor sensor, const FrameStatistics& frame) {
-  if (sensor == Sensor::kCamera) {
-    return {frame.nis, frame.nis_dof};
-  }
-  if (sensor == Sensor::kGnss) {
-    return {frame.gnss_nis, frame.gnss_nis_dof};
-  }
-  return {frame.sensors[sensor].nis, frame.sensors[sensor].nis_dof};
-}
-
-/// GNSS, and those of SensorEntries.
-std::vector<Sensor> SensorsBetweenFrames() {
-  std::vector<Sensor> sensors = {Sensor::kGnss};
-  ForEachSensorEntry([&](auto, Sensor sensor) { sensors.push_back(sensor); });
-  return sensors;
-}
-
 /// Stamp of a pair in the run itself.
 TimeNs RunStamp(const Evaluation& evaluation, const StatePair& pair) {
   return pair.estimate.stamp_ns - SecondsToNs(evaluation.options.association.time_offset_s);
@@ -141,7 +107,7 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
   }
 }
 
-/// Whether the run told its errors.
+/// How long errors were large while the status was ok.
 void FillSilentFailure(const Evaluation& evaluation, const RunResult& run, CellResult* cell) {
   if (!evaluation.nees) {
     return;
@@ -160,8 +126,8 @@ void FillSilentFailure(const Evaluation& evaluation, const RunResult& run, CellR
   cell->alarm_inside_share = Known(failure.alarm_inside_share);
 }
 
-/// The newest GNSS innovations of each pair: GNSS is slower than the camera, and what is thinned would miss
-/// them.
+/// The newest innovations of a sensor at each pair: a sensor slower than the camera would be lost when rows
+/// are thinned.
 void FillInnovations(Sensor sensor, const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
   std::vector<double> ratios;
   double newest = kNan;
@@ -181,32 +147,6 @@ void FillInnovations(Sensor sensor, const Evaluation& evaluation, const RunResul
   if (!std::isnan(newest)) {
     series->sensor_nis_ratio.emplace(ToString(sensor), std::move(ratios));
   }
-}
-
-InnovationSummary Summarize(Sensor sensor, const std::vector<RunRecord>& records) {
-  std::map<int, std::pair<double, double>> bands;  // of a sum of squares, by its number
-  std::vector<double> rows;
-  double nis = 0, dof = 0, inside = 0;
-  for (const RunRecord& record : records) {
-    const auto [squared, count] = InnovationsOf(sensor, record.statistics);
-    if (count > 0) {
-      const auto [band, added] = bands.try_emplace(count);
-      band->second = added ? NeesBand(count, 1) : band->second;
-      inside += squared >= band->second.first && squared <= band->second.second ? 1 : 0;
-      nis += squared;
-      dof += count;
-      rows.push_back(count);
-    }
-  }
-  InnovationSummary summary;
-  if (!rows.empty()) {
-    summary.ratio = nis / dof;
-    summary.inside = inside / static_cast<double>(rows.size());
-    const double median = *Percentile(rows, 0.5);
-    const std::pair<double, double> band = bands.at(static_cast<int>(median));
-    summary.band.emplace(band.first / median, band.second / median);
-  }
-  return summary;
 }
 
 /// Root mean squares of predicted deviations.
@@ -292,9 +232,9 @@ void ScoreRun(const Trajectory* truth, const RunResult& run, const EvaluationOpt
   ScoreTimes(frontend_ms, backend_ms, cell);
   cell->propagate_ms = Mean(propagate_ms);
   cell->update_ms = Mean(update_ms);
-  cell->innovations = Summarize(Sensor::kCamera, run.records);
+  cell->innovations = SummarizeInnovations(Sensor::kCamera, run.records);
   for (const Sensor sensor : SensorsBetweenFrames()) {
-    const InnovationSummary summary = Summarize(sensor, run.records);
+    const InnovationSummary summary = SummarizeInnovations(sensor, run.records);
     if (summary.ratio) {
       cell->sensor_innovations.emplace(ToString(sensor), summary);
     }

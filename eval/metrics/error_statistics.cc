@@ -32,4 +32,14 @@ ErrorStatistics ComputeErrorStatistics(std::vector<double> errors) {
   return statistics;
 }
 
+std::optional<double> Percentile(std::vector<double> values, double share) {
+  if (values.empty()) {
+    return std::nullopt;
+  }
+  const size_t rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const size_t index = std::min(values.size() - 1, rank == 0 ? 0 : rank - 1);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
+  return values[index];
+}
+
 }  // namespace alidade

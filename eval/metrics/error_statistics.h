@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace alidade {
@@ -19,5 +20,8 @@ struct ErrorStatistics {
   double sse = 0;  ///< sum of the squares
 };
 [[nodiscard]] ErrorStatistics ComputeErrorStatistics(std::vector<double> errors);
+
+/// Nearest-rank percentile, `share` of 0 to 1; nothing without values.
+[[nodiscard]] std::optional<double> Percentile(std::vector<double> values, double share);
 
 }  // namespace alidade

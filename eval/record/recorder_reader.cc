@@ -2,12 +2,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "eval/files/csv.h"
 #include "eval/files/input_file.h"
 #include "eval/record/recorder_covariance.h"
+#include "eval/record/recorder_json.h"
 #include "eval/record/recorder_sensors.h"
 #include "eval/trajectory/trajectory_reader.h"
 
@@ -31,56 +31,6 @@ Result<Json> ReadRunJson(const std::string& folder) {
     return Status::Input(path + ": is not a JSON object");
   }
   return json;
-}
-
-/// A member of the expected type, or its default: what an older version did not write.
-template <typename T>
-T Get(const Json& json, const char* key, T fallback) {
-  try {
-    return json.is_object() ? json.value(key, fallback) : fallback;
-  } catch (const Json::exception&) {
-    return fallback;
-  }
-}
-
-Eigen::Vector3d GetVector(const Json& json, const char* key) {
-  const std::vector<double> values = Get(json, key, std::vector<double>());
-  return values.size() == 3 ? Eigen::Vector3d(values.data()) : Eigen::Vector3d::Zero();
-}
-
-/// The sensor that aligned the run, by run.json.
-std::optional<Sensor> AligningSensor(const Json& run) {
-  const auto aligned = [&](std::string_view key) {
-    const Json section = Get(run, std::string(key).c_str(), Json::object());
-    return Get(section, "aligned", false) && section.contains("aligned_ns");
-  };
-  if (aligned("gnss")) {
-    return Sensor::kGnss;
-  }
-  std::optional<Sensor> source;
-  ForEachSensorEntry(
-      [&](auto entry, Sensor sensor) { source = !source && aligned(entry.kKey) ? sensor : source; });
-  return source;
-}
-
-/// How the run came to stand in the ENU frame or in that of a position sensor, if it did.
-std::optional<GlobalFrame> ReadGlobalFrame(const Json& run) {
-  const std::optional<Sensor> source = AligningSensor(run);
-  if (!source) {
-    return std::nullopt;
-  }
-  const Json json = Get(run, std::string(ToString(*source)).c_str(), Json::object());
-  GlobalFrame global;
-  if (json.contains("anchor_E")) {
-    global.enu = EnuFrame::At(GetVector(json, "anchor_E"));
-  }
-  global.source = *source;
-  global.p_BA = GetVector(json, "lever_arm_m");
-  global.stamp_ns = Get(json, "aligned_ns", TimeNs{0});
-  global.time_offset_s = Get(json, "time_offset_s", 0.0);
-  global.yaw_rad = Get(json, "yaw_rad", 0.0);
-  global.yaw_std_rad = Get(json, "yaw_std_rad", 0.0);
-  return global;
 }
 
 Status StatusFromWord(const std::string& word, const std::string& message) {
@@ -256,34 +206,35 @@ Result<RunResult> ReadRun(const std::string& folder) {
     return json.status();
   }
   RunResult result;
-  const std::string word = Get(*json, "status", std::string("failed"));
-  result.status = StatusFromWord(word, Get(*json, "message", std::string()));
+  const std::string word = JsonMember(*json, "status", std::string("failed"));
+  result.status = StatusFromWord(word, JsonMember(*json, "message", std::string()));
   result.interrupted = word == "interrupted";
-  const Json initialization = Get(*json, "initialization", Json::object());
-  result.init_method = Get(initialization, "method", std::string());
-  result.init_report = Get(initialization, "report", std::string());
-  result.init_stamp_ns = Get(initialization, "stamp_ns", TimeNs{0});
-  result.skip_report = Get(*json, "skip_report", std::string());
+  const Json initialization = JsonMember(*json, "initialization", Json::object());
+  result.init_method = JsonMember(initialization, "method", std::string());
+  result.init_report = JsonMember(initialization, "report", std::string());
+  result.init_stamp_ns = JsonMember(initialization, "stamp_ns", TimeNs{0});
+  result.skip_report = JsonMember(*json, "skip_report", std::string());
   ForEachSensorEntry([&](auto entry, Sensor sensor) {
-    result.skipped[sensor] = Get(Get(*json, entry.kKey, Json::object()), "skipped", 0);
+    result.skipped[sensor] = JsonMember(JsonMember(*json, entry.kKey, Json::object()), "skipped", 0);
   });
-  const Json counts = Get(*json, "counts", Json::object());
-  result.frames_skipped = Get(counts, "frames_skipped", 0);
-  result.imu_rejected = Get(counts, "imu_rejected", 0);
+  const Json counts = JsonMember(*json, "counts", Json::object());
+  result.frames_skipped = JsonMember(counts, "frames_skipped", 0);
+  result.imu_rejected = JsonMember(counts, "imu_rejected", 0);
   result.global = ReadGlobalFrame(*json);
-  for (const Json& restart : Get(*json, "restarts", Json::array())) {
-    result.restarts.push_back({Get(restart, "lost_ns", TimeNs{0}), Get(restart, "reason", std::string()),
-                               Get(restart, "restarted_ns", TimeNs{0}),
-                               Get(restart, "report", std::string())});
+  for (const Json& restart : JsonMember(*json, "restarts", Json::array())) {
+    result.restarts.push_back(
+        {JsonMember(restart, "lost_ns", TimeNs{0}), JsonMember(restart, "reason", std::string()),
+         JsonMember(restart, "restarted_ns", TimeNs{0}), JsonMember(restart, "report", std::string())});
   }
-  if (const Json error = Get(*json, "calibration_error", Json()); error.is_object()) {
-    result.calibration_error = {Get(error, "rotation_rad", 0.0), Get(error, "translation_m", 0.0),
-                                Get(error, "time_offset_s", 0.0), Get(error, "focal_px", 0.0)};
+  if (const Json error = JsonMember(*json, "calibration_error", Json()); error.is_object()) {
+    result.calibration_error = {JsonMember(error, "rotation_rad", 0.0),
+                                JsonMember(error, "translation_m", 0.0),
+                                JsonMember(error, "time_offset_s", 0.0), JsonMember(error, "focal_px", 0.0)};
   }
-  const Json times = Get(*json, "times", Json::object());
-  result.wall_s = Get(times, "wall_s", 0.0);
-  result.cpu_s = Get(times, "cpu_s", 0.0);
-  if (Get(counts, "frames_processed", 0) == 0) {
+  const Json times = JsonMember(*json, "times", Json::object());
+  result.wall_s = JsonMember(times, "wall_s", 0.0);
+  result.cpu_s = JsonMember(times, "cpu_s", 0.0);
+  if (JsonMember(counts, "frames_processed", 0) == 0) {
     return result;  // tables of a header alone
   }
   ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
@@ -293,7 +244,7 @@ Result<RunResult> ReadRun(const std::string& folder) {
   }
   ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
   ALIDADE_RETURN_IF_ERROR(ReadStatusTable(folder, *json, &result));
-  if (Get(*json, "audited", false)) {
+  if (JsonMember(*json, "audited", false)) {
     ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
   }
   if (MayExist(In(folder, "gnss.csv"))) {
@@ -307,13 +258,14 @@ Result<RunResult> ReadRun(const std::string& folder) {
 
 bool HoldsRun(const std::string& folder, const RunIdentity& identity) {
   const Result<Json> json = ReadRunJson(folder);
-  const std::string word = json.ok() ? Get(*json, "status", std::string("failed")) : "failed";
-  return json.ok() && Get(*json, "version", std::string()) == ALIDADE_VERSION &&
-         Get(*json, "config_digest", std::string()) == DigestOf(identity.config) &&
-         Get(*json, "input_digest", std::string()) == identity.input_digest &&
-         Get(*json, "dataset_digest", std::string()) == identity.dataset_digest &&
-         Get(*json, "seed", std::uint64_t{0}) == identity.seed &&
-         (!identity.audited || Get(*json, "audited", false)) && word != "interrupted" && word != "failed";
+  const std::string word = json.ok() ? JsonMember(*json, "status", std::string("failed")) : "failed";
+  return json.ok() && JsonMember(*json, "version", std::string()) == ALIDADE_VERSION &&
+         JsonMember(*json, "config_digest", std::string()) == DigestOf(identity.config) &&
+         JsonMember(*json, "input_digest", std::string()) == identity.input_digest &&
+         JsonMember(*json, "dataset_digest", std::string()) == identity.dataset_digest &&
+         JsonMember(*json, "seed", std::uint64_t{0}) == identity.seed &&
+         (!identity.audited || JsonMember(*json, "audited", false)) && word != "interrupted" &&
+         word != "failed";
 }
 
 }  // namespace alidade
