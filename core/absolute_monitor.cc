@@ -6,12 +6,16 @@
 
 namespace alidade {
 
-void AbsoluteMonitor::Add(const AbsoluteComparison& comparison) {
-  history_.push_back(comparison);
-  const TimeNs now_ns = comparison.stamp_ns;
-  while (SecondsBetween(history_.front().stamp_ns, now_ns) > kWindowsS.back()) {
+void AbsoluteMonitor::AddCorrection(const AbsoluteComparison& of_another) {
+  history_.push_back(of_another);
+  while (SecondsBetween(history_.front().stamp_ns, of_another.stamp_ns) > kWindowsS.back()) {
     history_.pop_front();
   }
+}
+
+void AbsoluteMonitor::Add(const AbsoluteComparison& comparison) {
+  AddCorrection(comparison);
+  const TimeNs now_ns = comparison.stamp_ns;
   contradiction_.reset();
   sigmas_ = 0;
   Eigen::Vector3d distance = comparison.left;

@@ -12,6 +12,7 @@ namespace alidade {
 /// A measurement of absolute position beside an estimate that it has corrected.
 struct AbsoluteComparison {
   TimeNs stamp_ns = 0;
+  int index = 0;                                                ///< which of the sensors of its kind
   Eigen::Vector3d change = Eigen::Vector3d::Zero();             ///< AbsoluteCorrection
   Eigen::Matrix3d change_covariance = Eigen::Matrix3d::Zero();  ///< AbsoluteCorrection
   /// Measured less estimated position of the antenna, after the correction [m], and the covariance of what
@@ -48,8 +49,10 @@ class AbsoluteMonitor {
   static constexpr double kLeastRunS = 2;
   static constexpr std::array<double, 4> kWindowsS = {8, 16, 32, 64};
 
-  /// In order of time.
+  /// In order of time, those of one sensor.
   void Add(const AbsoluteComparison& comparison);
+  /// The correction by another sensor, in order of time with the others: it moves the estimate as well.
+  void AddCorrection(const AbsoluteComparison& of_another);
   /// As of the last comparison; nothing: none.
   [[nodiscard]] const std::optional<Contradiction>& contradiction() const { return contradiction_; }
   /// The largest statistic of the last comparison, whatever its run.

@@ -31,10 +31,15 @@ Status EstimatorConfig::Validate() const {
     return Status::Config("frontend.template_px: " + std::to_string(frontend.template_px) +
                           " px do not tell how they are deformed; expected 0, or at least 5");
   }
+  if (calibration.line_delay && !vision.rolling_shutter) {
+    return Status::Config(
+        "calibration.line_delay: true, but without a rolling shutter there is none; expected false, or "
+        "vision.rolling_shutter: true");
+  }
   if (calibration.any() && backend == Backend::kBatch) {
     return Status::Config(
-        "calibration: the batch back end takes the camera as given; expected extrinsics, time_offset and "
-        "intrinsics false, or backend: filter or smoother");
+        "calibration: the batch back end takes the camera as given; expected extrinsics, time_offset, "
+        "line_delay and intrinsics false, or backend: filter or smoother");
   }
   if (const Status systems = gnss.corrections.Validate(); !systems.ok()) {
     return Status::Config("gnss." + systems.message());

@@ -47,10 +47,10 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
                        {"keep_bases", ClonePolicy::kKeepBases},
                        {"alternate", ClonePolicy::kAlternate},
                        {"spread", ClonePolicy::kSpread}});
-  visitor.Integer(
-      {"refine_iterations", "-",
-       "largest number of Gauss-Newton steps on the landmark; landmark msckf and slam_features only"},
-      &refine_iterations, 0, 50);
+  visitor.Integer({"refine_iterations", "-",
+                   "largest number of Gauss-Newton steps on the landmark; landmark msckf, slam_features and "
+                   "track_memory only"},
+                  &refine_iterations, 0, 50);
   visitor.Integer({"update_iterations", "-",
                    "largest number of linearisations of a visual update; more than one only where the "
                    "correction is too large for one"},

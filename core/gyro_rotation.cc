@@ -19,22 +19,19 @@ bool GyroRotation::Add(const ImuSample& sample) {
 }
 
 bool GyroRotation::Covers(TimeNs t0_ns, TimeNs t1_ns) const {
-  if (samples_.empty()) {
-    return false;
-  }
-  TimeNs covered_until = t0_ns;
+  // The samples around t0 and t1 are part of it: the rate is interpolated between them.
+  TimeNs before_ns = INT64_MIN;
   for (const ImuSample& sample : samples_) {
-    if (sample.stamp_ns <= t0_ns) {
-      continue;
-    }
-    const TimeNs reached = std::min(sample.stamp_ns, t1_ns);
-    if (SecondsBetween(covered_until, reached) > kMaxGapS) {
+    if (sample.stamp_ns > t0_ns &&
+        SecondsBetween(before_ns == INT64_MIN ? t0_ns : before_ns, sample.stamp_ns) > kMaxGapS) {
       return false;
     }
-    covered_until = reached;
+    before_ns = sample.stamp_ns;
+    if (before_ns >= t1_ns) {
+      return true;
+    }
   }
-  return SecondsBetween(covered_until, t1_ns) <= kMaxGapS &&
-         SecondsBetween(samples_.back().stamp_ns, t1_ns) <= kMaxGapS;
+  return before_ns != INT64_MIN && SecondsBetween(before_ns, t1_ns) <= kMaxGapS;
 }
 
 Vector3d GyroRotation::RateAt(TimeNs t_ns) const {

@@ -15,8 +15,8 @@ class GyroRotation {
   bool Add(const ImuSample& sample);
 
   /// R_B0B1: p_B0 = R_B0B1 p_B1 between IMU times t0 < t1, rate less `bias` [rad/s] linear between samples
-  /// and held beyond the last one. Empty when samples leave more than kMaxGapS of [t0, t1] uncovered in one
-  /// piece.
+  /// and held beyond the first and the last one. Empty where samples that [t0, t1] reaches are more than
+  /// kMaxGapS apart, or it reaches so far beyond them.
   [[nodiscard]] std::optional<Eigen::Matrix3d> Between(
       TimeNs t0_ns, TimeNs t1_ns, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero()) const;
   /// Forgets what rotations from t0 on do not need.

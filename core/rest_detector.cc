@@ -56,6 +56,12 @@ void RestDetector::AddImu(std::span<const ImuSample> samples) {
       imu_.push_back(sample);
     }
   }
+  // Without frames for longer than any verdict looks back, those that are kept tell nothing any more.
+  const double held_s = imu_.empty() ? 0 : SecondsBetween(imu_.front().stamp_ns, imu_.back().stamp_ns);
+  if (held_s > 2 * kWindowsInDoubt * vision_.rest_window_s) {
+    Clear();
+    imu_.assign(1, samples.back());
+  }
 }
 
 void RestDetector::Turn(const Vector3d& gyro_bias_radps) {

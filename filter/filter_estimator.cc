@@ -89,7 +89,9 @@ Status FilterEstimator::PropagateTo(TimeNs stamp_ns) {
     return Status::Diverged("filter: up to " + FormatSeconds(stamp_ns) + " s " + propagated.message());
   }
   imu_.DropBefore(stamp_ns, read_out_span_s_);
-  rest_.AddImu(interval_);
+  if (config_.vision.rest_updates) {
+    rest_.AddImu(interval_);
+  }
   return Status::Ok();
 }
 
@@ -206,6 +208,9 @@ void FilterEstimator::Correct() {
     if (track.memory.active) {
       update_.keeper().Correct(state_, Correction(), &track.memory);
     }
+  }
+  if (gnss_.aligned()) {
+    gnss_.Correct(Correction(), state_);
   }
   state_.Correct(Correction());
   if (state_.layout().intrinsics() >= 0) {

@@ -1,5 +1,6 @@
 #include "filter/gnss_update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,7 +32,10 @@ void GnssUpdate::Align(const GnssAlignment& alignment, FilterState* state) {
 }
 
 ClockState GnssUpdate::Clock(const FilterState& state) const {
-  return {clock_, state.covariance().PoseBlock(state.ClockOffset(), state.ClockOffset())};
+  const double since_s = std::max(0.0, SecondsBetween(clock_stamp_ns_, state.stamp_ns()));
+  const ClockTransition transition = PropagateClock(config_, since_s);
+  const Matrix6d covariance = state.covariance().PoseBlock(state.ClockOffset(), state.ClockOffset());
+  return {transition.phi * clock_, transition.phi * covariance * transition.phi.transpose() + transition.q};
 }
 
 void GnssUpdate::PropagateClockTo(TimeNs stamp_ns, FilterState* state) {
@@ -92,8 +96,11 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
     return false;
   }
   statistics->gnss_nis += discarded;
-  clock_ += correction.segment<6>(state->ClockOffset());
-  return clock_.allFinite();
+  return correction.segment<6>(state->ClockOffset()).allFinite();
+}
+
+void GnssUpdate::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction, const FilterState& state) {
+  clock_ += correction.segment<6>(state.ClockOffset());
 }
 
 void GnssUpdate::FillRows(const FilterState& state) {

@@ -32,11 +32,15 @@ class GnssUpdate {
   /// Back to a local world.
   void Reset() { mount_.reset(); }
 
-  /// Updates covariance and clock with an epoch at the state's stamp; `correction` (the error's dimension) is
-  /// what the caller then corrects the state by. False when a number is not finite.
+  /// Updates the covariance with an epoch at the state's stamp; `correction` (the error's dimension) is what
+  /// the caller then corrects state and clock by. False when a number is not finite.
   bool Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps, FilterState* state,
              Eigen::Ref<Eigen::VectorXd> correction, FrameStatistics* statistics);
 
+  /// What any update of the filter says of the clock: `correction` of the whole error.
+  void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction, const FilterState& state);
+
+  /// At the state's stamp.
   [[nodiscard]] ClockState Clock(const FilterState& state) const;
   [[nodiscard]] const GnssResiduals& residuals() const { return residuals_; }
 

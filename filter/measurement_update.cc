@@ -58,7 +58,7 @@ bool MeasurementUpdate::Apply(const WhitenedMeasurement& measurement, FilterStat
         const double weight = gates_.Weigh(sensor, nis);
         if (!(weight > 0)) {
           ++counts.gated;
-          return std::isfinite(nis);
+          return true;
         }
         rows.jacobian *= std::sqrt(weight);
         rows.innovation *= std::sqrt(weight);

@@ -1,11 +1,19 @@
 #include "eval/run/degradation.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/format.h"
 #include "core/imu_gap.h"
 
 namespace alidade {
+namespace {
+
+const char* Contradicts(const AbsoluteSource& source) {
+  return source.first == Sensor::kGnss ? "GNSS contradicts" : "position fixes contradict";
+}
+
+}  // namespace
 
 void Degradation::OnImu(TimeNs stamp_ns) {
   if (last_imu_ns_ != INT64_MIN && SecondsBetween(last_imu_ns_, stamp_ns) > imu_gap::kMinGapS) {
@@ -34,21 +42,31 @@ bool Degradation::IsFrozen(const TrackFrame& frame) {
 }
 
 void Degradation::OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison) {
-  absolute_sensor_ = sensor;
-  absolute_.Add(comparison);
-}
-
-const char* Degradation::AbsoluteName() const {
-  return absolute_sensor_ == Sensor::kGnss ? "GNSS contradicts" : "position fixes contradict";
+  absolute_.try_emplace({sensor, comparison.index});
+  for (auto& [source, monitor] : absolute_) {
+    if (source == AbsoluteSource(sensor, comparison.index)) {
+      monitor.Add(comparison);
+    } else {
+      monitor.AddCorrection(comparison);
+    }
+  }
 }
 
 std::string Degradation::AgainstSensors(const char* by) const {
-  const std::optional<Contradiction>& found = absolute_.contradiction();
-  if (!found) {
-    return {};
+  for (const auto& [source, monitor] : absolute_) {
+    if (const std::optional<Contradiction>& found = monitor.contradiction()) {
+      return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s", Contradicts(source), by,
+                    found->distance_m, found->sigmas, found->window_s);
+    }
   }
-  return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s", AbsoluteName(), by,
-                found->distance_m, found->sigmas, found->window_s);
+  return {};
+}
+
+std::string Degradation::AbsoluteHint() const {
+  const auto found = std::find_if(absolute_.begin(), absolute_.end(),
+                                  [](const auto& entry) { return entry.second.sigmas() > kHintSigmas; });
+  return found == absolute_.end() ? std::string()
+                                  : std::string("; or ") + Contradicts(found->first) + " vision and IMU";
 }
 
 std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics) {
@@ -90,8 +108,7 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   if (doubted && doubt->pose_sigmas >= kMaxPoseSigmas) {
     return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",
                   doubt->parameter, doubt->error, doubt->unit, doubt->sigmas, doubt->pose_sigmas) +
-           (absolute_.sigmas() > kHintSigmas ? std::string("; or ") + AbsoluteName() + " vision and IMU"
-                                             : "");
+           AbsoluteHint();
   }
   if (innovations) {
     const std::string cause =

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/absolute_monitor.h"
 #include "core/calibration_watch.h"
@@ -9,6 +11,9 @@
 #include "core/track_frame.h"
 
 namespace alidade {
+
+/// Who measures positions: the kind of the sensor, and which of those the rig has.
+using AbsoluteSource = std::pair<Sensor, int>;
 
 /// Tells when an estimate goes on without what it needs, though nothing contradicts it: frames without
 /// tracks, images that do not change, an IMU that was silent; or with a model that does not hold: a camera
@@ -57,17 +62,16 @@ class Degradation {
   void Reset() {
     sighted_ns_ = INT64_MIN;
     nis_ = dof_ = 0;
-    absolute_.Reset();
+    absolute_.clear();
   }
 
  private:
-  /// Who contradicts.
-  [[nodiscard]] const char* AbsoluteName() const;
+  /// Who may contradict, where the monitors are not sure; else empty.
+  [[nodiscard]] std::string AbsoluteHint() const;
   /// The mean of kInnovationsS where it is larger than chance makes it, else nothing.
   std::optional<double> LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics);
 
-  AbsoluteMonitor absolute_;
-  Sensor absolute_sensor_ = Sensor::kGnss;
+  std::map<AbsoluteSource, AbsoluteMonitor> absolute_;
   TimeNs last_imu_ns_ = INT64_MIN;
   TimeNs silent_until_ns_ = INT64_MIN;
   double silence_s_ = 0;

@@ -81,8 +81,12 @@ std::optional<AbsoluteComparison> FixRun::Compare(const PositionFix& fix) const 
     return std::nullopt;
   }
   const PositionFixModel model{sensors_[static_cast<std::size_t>(fix.sensor)].p_BA, fix.p_A};
-  return AbsoluteComparison{fix.stamp_ns, correction->change, correction->covariance,
-                            fix.p_A - model.Predict(correction->nav), fix.covariance};
+  return AbsoluteComparison{fix.stamp_ns,
+                            fix.sensor,
+                            correction->change,
+                            correction->covariance,
+                            fix.p_A - model.Predict(correction->nav),
+                            fix.covariance};
 }
 
 Result<std::optional<GnssAlignment>> FixRun::Align(TimeNs stamp_ns) {
@@ -123,8 +127,11 @@ void FixRun::AlignedByAnother(const std::optional<EnuFrame>& enu) {
 }
 
 Status FixRun::Realign() {
-  return alignment_ ? estimator_.Align(AlreadyAligned(*alignment_, estimator_.Latest().stamp_ns))
-                    : Status::Ok();
+  if (!alignment_) {
+    aligner_.ForgetEstimate();
+    return Status::Ok();
+  }
+  return estimator_.Align(AlreadyAligned(*alignment_, estimator_.Latest().stamp_ns));
 }
 
 }  // namespace alidade

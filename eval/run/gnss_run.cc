@@ -103,7 +103,11 @@ std::optional<AbsoluteComparison> GnssRun::Compare(TimeNs stamp_ns) const {
   const Eigen::Matrix3d R_NE = enu().R_EN.transpose();
   const Eigen::Vector3d left_E = solution->position_E - mount.Position(correction->nav, nullptr);
   return AbsoluteComparison{
-      stamp_ns, correction->change, correction->covariance, R_NE * left_E,
+      stamp_ns,
+      0,
+      correction->change,
+      correction->covariance,
+      R_NE * left_E,
       ScatterShare(*solution) * R_NE * solution->position_covariance_E * R_NE.transpose()};
 }
 
@@ -163,6 +167,7 @@ void GnssRun::ReportAligned(const GnssAlignment& alignment, TimeNs stamp_ns, dou
 
 Status GnssRun::Realign() {
   if (!alignment_) {
+    aligner_.ForgetEstimate();
     return Status::Ok();
   }
   GnssAlignment identity = AlreadyAligned(*alignment_, clock_ns_);

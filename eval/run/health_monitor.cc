@@ -19,10 +19,10 @@ std::string Exceeds(const char* what, double value, const char* unit, double lim
   return value <= limit ? std::string() : Format("%s %.3g %s, limit %.3g", what, value, unit, limit);
 }
 
-/// Heading of the body's x axis, or of its y axis where x stands upright.
-double Yaw(const Matrix3d& R_WB) {
-  const bool upright = std::abs(R_WB(2, 0)) > 0.9;
-  return upright ? std::atan2(-R_WB(0, 1), R_WB(1, 1)) : std::atan2(R_WB(1, 0), R_WB(0, 0));
+/// The turn about the vertical that brings R_WB closest to `base` (in the Frobenius norm).
+double YawTo(const Matrix3d& base, const Matrix3d& R_WB) {
+  const Matrix3d turn = base * R_WB.transpose();
+  return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
 }
 
 /// A rotation about the vertical through the position, and a shift, in the canonical chart of a state: 15
@@ -80,7 +80,7 @@ NavEstimate ContinueFrom(const NavEstimate& sound, const NavEstimate& reckoned, 
     turn_std = kUnknownYawRad;
   }
   NavEstimate moved = start;
-  const double turn = Yaw(base.nav.R_WB) - Yaw(start.nav.R_WB);
+  const double turn = YawTo(base.nav.R_WB, start.nav.R_WB);
   const Matrix3d R = so3::Exp(Vector3d(0, 0, turn));
   moved.nav.R_WB = R * start.nav.R_WB;
   moved.nav.v_WB = R * start.nav.v_WB;

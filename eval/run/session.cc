@@ -47,6 +47,37 @@ void Session::AddImu(const ImuSample& sample) {
     Skip(Sensor::kImu, sample.stamp_ns, "not finite");
     return;
   }
+  if (!HoldLeap(sample)) {
+    TakeImu(sample);
+  }
+}
+
+bool Session::HoldLeap(const ImuSample& sample) {
+  const auto leaps = [&](TimeNs from_ns) {
+    return from_ns != INT64_MIN && SecondsBetween(from_ns, sample.stamp_ns) > kMaxImuLeapS;
+  };
+  if (leap_ && sample.stamp_ns == leap_->stamp_ns) {
+    Skip(Sensor::kImu, sample.stamp_ns, "there is one with this stamp already");
+    return true;
+  }
+  if (leap_) {
+    const ImuSample held = *std::exchange(leap_, std::nullopt);
+    if (sample.stamp_ns > held.stamp_ns && !leaps(held.stamp_ns)) {
+      TakeImu(held);
+      return false;
+    }
+    Skip(Sensor::kImu, held.stamp_ns,
+         Format("it lies %.3f s after the one before, and none comes soon after it",
+                SecondsBetween(loop_.imu().newest_ns(), held.stamp_ns)));
+  }
+  if (options_.live && leaps(loop_.imu().newest_ns())) {
+    leap_ = sample;
+    return true;
+  }
+  return false;
+}
+
+void Session::TakeImu(const ImuSample& sample) {
   switch (loop_.imu().Add(sample)) {
     case ImuStream::Arrival::kTwice:
       Skip(Sensor::kImu, sample.stamp_ns, "there is one with this stamp already");
@@ -137,6 +168,9 @@ void Session::AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCata
 
 void Session::AdvanceTo(TimeNs imu_ns) {
   advanced_ns_ = std::max(advanced_ns_, imu_ns);
+  if (leap_ && leap_->stamp_ns <= imu_ns) {
+    TakeImu(*std::exchange(leap_, std::nullopt));  // nothing before it is awaited any more
+  }
   Process();
 }
 
@@ -268,7 +302,7 @@ Result<NewestState> Session::Newest() {
 }
 
 size_t Session::held() {
-  size_t count = loop_.imu().size() + frames_.size() + events_.size();
+  size_t count = loop_.imu().size() + (leap_ ? 1 : 0) + frames_.size() + events_.size();
   for (const SensorRun* sensor : loop_.sensors()) {
     count += sensor->waiting();
   }

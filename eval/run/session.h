@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "eval/run/camera_clock.h"
@@ -45,6 +46,9 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  /// In a live session a sample more than kMaxImuLeapS after the newest one is held until the next confirms
+  /// it, else skipped: taken in, a single wrong stamp would make all that follows late.
+  static constexpr double kMaxImuLeapS = 1;
   void AddImu(const ImuSample& sample);
   /// Tracks of one image; stamp in camera time.
   void AddFrame(TrackFrame frame);
@@ -70,7 +74,7 @@ class Session {
   /// The estimator is not disturbed. kDiverged: there is no estimate now.
   [[nodiscard]] Result<NewestState> Newest();
 
-  /// IMU time of a camera stamp, as far as the time offset is known now.
+  /// IMU time of a camera stamp as the driver gives it, as far as the time offset is known now.
   [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const { return loop_.ImuTime(camera_ns - camera_jump_ns_); }
   [[nodiscard]] bool running() const { return loop_.running(); }
   /// After a FailedEvent; messages are then ignored.
@@ -85,6 +89,10 @@ class Session {
     TimeNs imu_ns = INT64_MAX;
   };
 
+  /// Takes a sample in, in order.
+  void TakeImu(const ImuSample& sample);
+  /// Holds the sample back when it leaps, and deals with the one held back: true, when that is all.
+  bool HoldLeap(const ImuSample& sample);
   void Process();
   /// A message of this sensor has been taken in.
   void ProcessAfter(SensorRun* arrival);
@@ -109,6 +117,7 @@ class Session {
   std::vector<SessionEvent> events_;
   EstimatorLoop loop_;
   CameraClock camera_clock_;
+  std::optional<ImuSample> leap_;        ///< held back
   TimeNs camera_jump_ns_ = 0;            ///< by which the camera's stamps are off
   std::map<TimeNs, TrackFrame> frames_;  ///< waiting, by camera stamp less the jump
   TimeNs frame_offset_ns_;               ///< IMU time less camera time after the last frame

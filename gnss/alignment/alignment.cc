@@ -76,6 +76,16 @@ void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>
     any_epoch_ = true;
   }
   MatchEpochs();
+  // Without a state there is nothing to match; what waits is bounded all the same.
+  while (!pending_.empty() &&
+         SecondsBetween(pending_.front().stamp_ns, epoch.stamp_ns) > config_.align_window_s) {
+    pending_.pop_front();
+  }
+}
+
+void GnssAligner::ForgetEstimate() {
+  states_ = StateHistory();
+  samples_.clear();
 }
 
 /// Moves pending epochs that two states embrace to the samples, with the state interpolated between them.
@@ -190,7 +200,7 @@ std::optional<GnssAlignment> GnssAligner::AcceptFit(const AlignmentGuess& guess,
     report_ += Format(", expected below %.3f rad: too little motion", config_.align_max_yaw_std_rad);
     return std::nullopt;
   }
-  alignment.stamp_ns = newest;
+  alignment.stamp_ns = newest + SecondsToNs(guess.time_offset_s);
   alignment.enu = enu_;
   alignment.yaw_rad = guess.yaw_rad;
   alignment.p_NW = guess.p_NW;

@@ -58,6 +58,9 @@ class GnssAligner {
   void AddEpoch(const GnssEpoch& epoch, const std::optional<Eigen::Vector3d>& approximate_E,
                 const std::optional<SinglePointSolution>& solution = std::nullopt);
 
+  /// The estimate was lost, and the next one stands elsewhere.
+  void ForgetEstimate();
+
   /// The alignment once it is good enough; report() says what is missing.
   std::optional<GnssAlignment> TryAlign();
   [[nodiscard]] const std::string& report() const { return report_; }

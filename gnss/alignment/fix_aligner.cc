@@ -84,6 +84,11 @@ void FixAligner::AddFix(const PositionFix& fix) {
   }
 }
 
+void FixAligner::ForgetEstimate() {
+  states_ = StateHistory();
+  samples_.clear();
+}
+
 void FixAligner::MatchFixes() {
   while (!pending_.empty() && states_.Reaches(pending_.front().stamp_ns)) {
     const PositionFix& fix = pending_.front();

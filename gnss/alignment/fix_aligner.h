@@ -33,6 +33,8 @@ class FixAligner {
   /// A fix in IMU time and in N; rising stamps. One that is no measurement (MakeFixMeasurement) is passed
   /// over.
   void AddFix(const PositionFix& fix);
+  /// The estimate was lost, and the next one stands elsewhere.
+  void ForgetEstimate();
 
   /// The alignment, without a clock, once its yaw is known well enough; report() says what is missing.
   std::optional<GnssAlignment> TryAlign();

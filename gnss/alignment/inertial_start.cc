@@ -30,6 +30,25 @@ Matrix3d InformationRoot(const Matrix3d& covariance, double floor) {
   return Whitener(widened);
 }
 
+/// The solution's clock as a ClockState's mean, which refers to GPS whatever the solution's datum is. The
+/// clock of a GPS that was not seen is taken to be the datum's.
+Vector6d ClockOfGps(const SinglePointSolution& solution) {
+  const auto bias = [&](GnssSystem system) {
+    return solution.inter_system_bias_m[SystemIndex(system)].value_or(0);
+  };
+  const double gps = bias(GnssSystem::kGps);
+  Vector6d clock = Vector6d::Zero();
+  clock[ClockState::kClock] = solution.clock_m + gps;
+  clock[ClockState::kDrift] = solution.drift_mps;
+  for (int i = 0; i < kGnssSystems; ++i) {
+    const auto system = static_cast<GnssSystem>(i);
+    if (const int index = ClockBiasIndex(system); index >= 0) {
+      clock[index] = bias(system) - gps;
+    }
+  }
+  return clock;
+}
+
 /// The rotation that turns the vectors `from` into `to` best (Kabsch).
 Matrix3d RotationBetween(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to) {
   Matrix3d sum = Matrix3d::Zero();
@@ -92,6 +111,7 @@ void GnssInertialStart::AddImu(const ImuSample& sample) {
 
 void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<SinglePointSolution>& solution) {
   left_out_.Add(epoch.measurements.left_out);
+  ForgetOld(epoch.stamp_ns);
   if (!solution || !solution->has_velocity ||
       (!fixes_.empty() && SecondsBetween(fixes_.back().stamp_ns, epoch.stamp_ns) < kMinSpacingS)) {
     return;
@@ -105,23 +125,26 @@ void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<Sin
   fix.velocity_E = solution->velocity_E;
   fix.position_root = InformationRoot(solution->position_covariance_E, kPositionFloorM);
   fix.velocity_root = InformationRoot(solution->velocity_covariance_E, kVelocityFloorMps);
-  fix.clock.setZero();
-  fix.clock[ClockState::kClock] = solution->clock_m;
-  fix.clock[ClockState::kDrift] = solution->drift_mps;
-  for (int i = 0; i < kGnssSystems; ++i) {
-    const int index = ClockBiasIndex(static_cast<GnssSystem>(i));
-    if (index >= 0) {
-      fix.clock[index] = solution->inter_system_bias_m[static_cast<std::size_t>(i)].value_or(0);
-    }
-  }
+  fix.clock = ClockOfGps(*solution);
   fixes_.push_back(fix);
-  const TimeNs oldest = epoch.stamp_ns - SecondsToNs(config_.align_window_s);
-  while (fixes_.front().stamp_ns < oldest) {
+}
+
+void GnssInertialStart::ForgetOld(TimeNs newest_ns) {
+  const TimeNs oldest = newest_ns - SecondsToNs(config_.align_window_s);
+  while (!fixes_.empty() && fixes_.front().stamp_ns < oldest) {
     fixes_.pop_front();
   }
-  const TimeNs needed = fixes_.front().stamp_ns - SecondsToNs(config_.max_time_offset_s) - kSecondNs;
+  const TimeNs first = fixes_.empty() ? newest_ns : fixes_.front().stamp_ns;
+  const TimeNs needed = first - SecondsToNs(config_.max_time_offset_s) - kSecondNs;
   while (imu_.size() > 2 && imu_[1].stamp_ns < needed) {
     imu_.pop_front();
+  }
+}
+
+void GnssInertialStart::ForgetUnreached() {
+  const TimeNs reach = SecondsToNs(config_.estimate_time_offset ? config_.max_time_offset_s : 0);
+  while (!fixes_.empty() && (imu_.empty() || fixes_.front().stamp_ns - reach < imu_.front().stamp_ns)) {
+    fixes_.pop_front();
   }
 }
 
@@ -221,6 +244,7 @@ GnssInertialStart::Fit GnssInertialStart::Solve(double offset_s) const {
 }
 
 std::optional<GnssInertialStart::Start> GnssInertialStart::TryStart() {
+  ForgetUnreached();
   if (static_cast<int>(fixes_.size()) < config_.align_min_epochs) {
     report_ =
         Format("%zu single points with velocity, expected %d", fixes_.size(), config_.align_min_epochs) +

@@ -46,6 +46,10 @@ class GnssInertialStart {
   struct Fit;
   struct Equations;
 
+  /// What no start at or after this epoch needs.
+  void ForgetOld(TimeNs newest_ns);
+  /// Epochs before the first IMU sample, whatever the time offset.
+  void ForgetUnreached();
   [[nodiscard]] Fit Solve(double offset_s) const;
   /// The IMU between the epochs, integrated with the fit's biases; false when it does not reach them.
   bool Integrate(double offset_s, Fit* fit) const;

@@ -12,9 +12,9 @@ namespace {
 
 constexpr TimeNs kGpsEpochNs = 315'964'800 * kSecondNs;       // 1980-01-06
 constexpr TimeNs kBeidouEpochNs = 1'136'073'600 * kSecondNs;  // 2006-01-01, a label of BDT
-constexpr TimeNs kBeidouOffsetNs = 14 * kSecondNs;            // GPST - BDT
-constexpr TimeNs kTaiOffsetNs = 19 * kSecondNs;               // TAI - GPST
-constexpr TimeNs kMoscowOffsetNs = 3 * 3600 * kSecondNs;      // GLONASST - UTC
+constexpr TimeNs kBeidouOffsetNs = kGpstLessBdtS * kSecondNs;
+constexpr TimeNs kTaiOffsetNs = 19 * kSecondNs;           // TAI - GPST
+constexpr TimeNs kMoscowOffsetNs = 3 * 3600 * kSecondNs;  // GLONASST - UTC
 
 /// UTC dates from which GPST - UTC grew by one second.
 struct LeapDate {

@@ -14,6 +14,9 @@ namespace alidade {
 // 00:00:00, so that t = (315964800 + 604800 week + seconds of week) 1e9, without leap seconds. It is what a
 // converter makes of a RINEX epoch that it takes for a UTC calendar date; UTC itself is LeapSeconds() less.
 
+/// GPST - BDT.
+constexpr int kGpstLessBdtS = 14;
+
 /// Time scales of GNSS files.
 ///   kGps      GPST, no leap seconds, week 0 begins 1980-01-06
 ///   kGalileo  GST, taken equal to GPST (broadcast GGTO, some ns, is left to the inter-system biases)

@@ -136,6 +136,10 @@ Status ObservationHeaderParser::ParseLine(const LineReader& lines) {
     }
   } else if (label == "LEAP SECONDS") {
     file_->leap_seconds = ParseInteger(Field(line, 0, 6));
+    const std::string_view counted_in = Field(line, 24, 3);
+    if (file_->leap_seconds && (counted_in == "BDS" || counted_in == "BDT")) {
+      *file_->leap_seconds += kGpstLessBdtS;
+    }
   }
   return Status::Ok();
 }

@@ -90,7 +90,7 @@ double BeidouKlobucharDelayL1(const KlobucharParameters& parameters, const Geode
   const double semicircles = std::abs(latitude) / M_PI;
   const double amplitude = std::max(Polynomial(parameters.alpha, semicircles), 0.0);
   const double period = std::clamp(Polynomial(parameters.beta, semicircles), 72000.0, 172800.0);
-  constexpr TimeNs kBdtOffsetNs = 14 * kSecondNs;
+  constexpr TimeNs kBdtOffsetNs = kGpstLessBdtS * kSecondNs;
   const double time = WrapDay(SecondsOfDay(stamp_ns - kBdtOffsetNs) + longitude * 43200 / M_PI);
   const double apart = time - 50400;
   const double day = std::abs(apart) < period / 4 ? amplitude * std::cos(2 * M_PI * apart / period) : 0;

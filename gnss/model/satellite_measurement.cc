@@ -64,15 +64,25 @@ const SignalObservation* InBand(const SatelliteObservation& observed, char band,
   return best;
 }
 
+bool HasDoppler(const SignalObservation& signal) {
+  return signal.doppler_hz && std::isfinite(*signal.doppler_hz);
+}
+
 /// Doppler of the chosen signal, else of another one of its band.
 const SignalObservation* WithDoppler(const SatelliteObservation& observed, const SignalObservation& chosen) {
-  const SignalObservation* found = chosen.doppler_hz ? &chosen : nullptr;
+  const SignalObservation* found = HasDoppler(chosen) ? &chosen : nullptr;
   for (const SignalObservation& signal : observed.signals) {
-    if (found == nullptr && signal.signal.band == chosen.signal.band && signal.doppler_hz) {
+    if (found == nullptr && signal.signal.band == chosen.signal.band && HasDoppler(signal)) {
       found = &signal;
     }
   }
   return found;
+}
+
+/// A deviation that a receiver reports, times `scale`; nothing where it is none.
+std::optional<double> ReportedDeviation(const std::optional<double>& reported, double scale) {
+  return reported && std::isfinite(*reported) && *reported > 0 ? std::optional(scale * *reported)
+                                                               : std::nullopt;
 }
 
 }  // namespace
@@ -163,7 +173,7 @@ std::optional<SatelliteMeasurement> MeasurementBuilder::PrepareSatellite(TimeNs 
   m.pseudorange_m = *first.pseudorange_m;
   m.cn0_dbhz = first.cn0_dbhz.value_or(0);
   m.state = fix.state;
-  m.reported_std_m = first.pseudorange_std_m;
+  m.reported_std_m = ReportedDeviation(first.pseudorange_std_m, 1);
   GroupDelay delay = GroupDelayOf(fix, m.satellite, m.signal);
   if (choice.second != nullptr) {
     // P_if = a1 P1 + a2 P2 with a1 = f1^2 / (f1^2 - f2^2), a2 = 1 - a1.
@@ -180,9 +190,7 @@ std::optional<SatelliteMeasurement> MeasurementBuilder::PrepareSatellite(TimeNs 
   if (const SignalObservation* doppler = WithDoppler(observed, first)) {
     const double wavelength = kSpeedOfLight / choice.f1;
     m.range_rate_mps = -wavelength * *doppler->doppler_hz;
-    if (doppler->doppler_std_hz) {
-      m.reported_rate_std_mps = wavelength * *doppler->doppler_std_hz;
-    }
+    m.reported_rate_std_mps = ReportedDeviation(doppler->doppler_std_hz, wavelength);
   }
   return m;
 }

@@ -116,6 +116,12 @@ Status SinglePointSolver::Arrange(const EpochMeasurements& epoch, SinglePointSta
   column.fill(-1);
   const auto first = std::find_if(count.begin(), count.end(), [](int n) { return n > 0; });
   state->datum = datum_.value_or(static_cast<GnssSystem>(first - count.begin()));
+  const double moved_m =
+      state->bias_m[SystemIndex(state->datum)];  // 0 unless another datum's satellites went
+  state->clock_m += moved_m;
+  for (double& bias_m : state->bias_m) {
+    bias_m -= moved_m;
+  }
   state->unknowns = 4;
   for (int i = 0; i < kGnssSystems; ++i) {
     const auto k = static_cast<std::size_t>(i);

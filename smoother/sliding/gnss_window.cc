@@ -47,6 +47,7 @@ void GnssWindow::Align(const GnssAlignment& alignment, WindowFrame* frame, Linea
   context_ = GnssFactorContext{config_, {*alignment.enu, receiver_.p_BA}, gravity_W_};
   removed_jumps_m_ = 0;
   clock_lost_ = false;
+  clock_known_ns_ = alignment.stamp_ns;
   const double since_s = SecondsBetween(alignment.stamp_ns, frame->stamp_ns);
   const ClockState fresh = FreshClock(config_, PropagateClock(config_, since_s).phi * *alignment.clock);
   frame->clock.emplace();
@@ -107,13 +108,17 @@ bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
       LinearizeEpoch(config_, context_->mount, point, epoch->measurements, &ignored);
   const double step = CommonStep(rows);
   step_m_ = step;
-  constexpr double kPredictedStdM = kFreshClockStdM;
-  if (!IsClockJump(config_, rows, step, kPredictedStdM)) {
+  const double since_s = std::max(0.0, SecondsBetween(clock_known_ns_, epoch->stamp_ns));
+  const double walk = PropagateClock(config_, since_s).q(ClockState::kClock, ClockState::kClock);
+  clock_known_ns_ = rows.empty() ? clock_known_ns_ : epoch->stamp_ns;
+  if (!IsClockJump(config_, rows, step, std::sqrt(kFreshClockStdM * kFreshClockStdM + walk))) {
     return !clock_lost_;
   }
   jumped_ = true;
   const double whole = std::round(step / kMillisecondM) * kMillisecondM;
   if (whole == 0 || std::abs(step - whole) > kSureM) {
+    // Taken off what follows: the clock begins anew where it was, known to kFreshClockStdM.
+    removed_jumps_m_ += step;
     clock_lost_ = true;
     return false;
   }

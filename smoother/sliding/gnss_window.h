@@ -52,7 +52,8 @@ class GnssWindow {
   Eigen::Vector3d gravity_W_;
   double gate_threshold_;
   std::optional<GnssFactorContext> context_;
-  double removed_jumps_m_ = 0;  ///< whole milliseconds taken out of the pseudoranges since
+  double removed_jumps_m_ = 0;  ///< taken out of the pseudoranges since
+  TimeNs clock_known_ns_ = 0;   ///< of the last epoch with satellites
   bool clock_lost_ = false;
   bool jumped_ = false;
   double step_m_ = 0;

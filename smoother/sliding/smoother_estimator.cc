@@ -128,7 +128,9 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
     window_.newest().turn = TurnAround(imu_.samples(), window_.newest().stamp_ns, read_out_span_s_);
   }
   imu_.DropBefore(stamp_ns, read_out_span_s_);
-  rest_.AddImu(interval_);
+  if (config_.vision.rest_updates) {
+    rest_.AddImu(interval_);
+  }
   std::unique_ptr<WindowFrame> dropped;
   if (!NewestIsKeyframe()) {
     dropped = window_.RemoveNewest();
@@ -149,6 +151,9 @@ bool SmootherEstimator::NewestIsKeyframe() const {
   // interval around it would be one of free motion, whose scale nothing fixes.
   if (window_.newest().rest) {
     return true;
+  }
+  if (window_.newest().clock_anew) {
+    return true;  // the step of the clock lies between this frame and the one before
   }
   const FrameParallax parallax =
       ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), camera().T_BC);

@@ -104,7 +104,9 @@ class SmootherEstimator final : public Estimator {
   void AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
-  bool PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track);
+  enum class Landmark { kReady, kWaiting, kDegenerate };
+  /// Triangulates a track that has no landmark yet, once it has the parallax.
+  Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) const;
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);

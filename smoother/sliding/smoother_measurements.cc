@@ -73,6 +73,7 @@ Status SmootherEstimator::AddGnss(const GnssEpoch& epoch) {
   ALIDADE_RETURN_IF_ERROR(hook.status());
   const bool attached = gnss_.Attach(epoch, std::move(hook->imu), noise_, &window_.newest());
   statistics_.clock_jump = gnss_.jumped();
+  absolute_.reset();
   if (config_.calibration.watch && attached) {
     if (hook->own_state) {
       ALIDADE_RETURN_IF_ERROR(CarryNewestUpdate());

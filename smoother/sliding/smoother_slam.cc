@@ -82,7 +82,7 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
   std::vector<WindowTrack*> candidates;
   for (auto& [id, track] : window_.tracks()) {
     if (free > 0 && track.anchor == nullptr && track.alive && track.views.size() >= kMinFeatureViews &&
-        track.views.front().frame->index == 0 && PrepareLandmark(geometry, &track) &&
+        track.views.front().frame->index == 0 && PrepareLandmark(geometry, &track) == Landmark::kReady &&
         SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
         DepthInRange(track.landmark) && DepthIsKnown(geometry, track)) {
       candidates.push_back(&track);
@@ -113,7 +113,7 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   std::vector<const WindowTrack*> leaving;
   for (auto& [id, track] : window_.tracks()) {
     if (track.anchor == nullptr && !track.views.empty() && track.views.front().frame == oldest &&
-        track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) &&
+        track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) == Landmark::kReady &&
         SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark)) {
       leaving.push_back(&track);
     }

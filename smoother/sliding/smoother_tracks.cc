@@ -19,25 +19,24 @@ constexpr size_t kMinKnownDepths = 10;
 
 }  // namespace
 
-bool SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) {
+SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry,
+                                                               WindowTrack* track) const {
   if (track->has_landmark) {
-    return true;
+    return Landmark::kReady;
   }
   Eigen::Vector3d landmark;
   if (!InitializeLandmark(track->views, geometry,
                           kParallaxSlack * config_.vision.max_relative_depth_deviation, &landmark)) {
-    ++statistics_.features_waiting;
-    return false;
+    return Landmark::kWaiting;
   }
   if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &landmark) ||
       !DepthInRange(landmark)) {
-    ++statistics_.features_degenerate;
-    return false;
+    return Landmark::kDegenerate;
   }
   track->landmark = landmark;
   track->has_landmark = true;
   track->depth_prior = {};
-  return true;
+  return Landmark::kReady;
 }
 
 bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
@@ -64,7 +63,10 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   std::vector<WindowTrack*> without_depth;
   for (auto& [id, track] : window_.tracks()) {
     if (track.anchor == nullptr && track.views.size() >= kMinViews) {
-      (PrepareLandmark(geometry, &track) ? selected : without_depth).push_back(&track);
+      const Landmark landmark = PrepareLandmark(geometry, &track);
+      statistics_.features_waiting += landmark == Landmark::kWaiting ? 1 : 0;
+      statistics_.features_degenerate += landmark == Landmark::kDegenerate ? 1 : 0;
+      (landmark == Landmark::kReady ? selected : without_depth).push_back(&track);
     }
   }
   const double typical = TypicalInverseDepth();
@@ -142,11 +144,11 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
   }
   statistics_.suspect = IsSuspect(refused.size(), tracks.size());
   for (const auto& [track, chi_square] : refused) {
+    feature_refused = feature_refused || track->anchor != nullptr;
     if (statistics_.suspect) {
       track->ScaleInformation(gate_.Threshold(track->dof()) / chi_square);
     } else {
       ++statistics_.features_gated;
-      feature_refused = feature_refused || track->anchor != nullptr;
       track->Restart();
     }
   }

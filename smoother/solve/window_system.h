@@ -18,8 +18,8 @@ struct WindowInformation {
 
 /// What a window knows of its newest frame.
 struct NewestEstimate {
-  Matrix15d covariance;       ///< of the state; canonical chart, phi dp dv dbg dba
-  Matrix6d clock_covariance;  ///< of the clock, in an aligned window
+  Matrix15d covariance = Matrix15d::Zero();      ///< of the state; canonical chart, phi dp dv dbg dba
+  Matrix6d clock_covariance = Matrix6d::Zero();  ///< of the clock, in an aligned window
   Eigen::Matrix<double, 6, 15> clock_state_covariance = Eigen::Matrix<double, 6, 15>::Zero();
   Eigen::VectorXd calibration_deviations;  ///< of what of the calibration is estimated
   WindowInformation window;                ///< with the newest frame

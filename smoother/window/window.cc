@@ -38,15 +38,16 @@ void Window::Clear() {
 WindowFrame& Window::AddFrame(std::unique_ptr<WindowFrame> frame) {
   frames_.push_back(std::move(frame));
   Renumber();
-  for (auto& [id, track] : tracks_) {
-    track.alive = false;
-  }
   return *frames_.back();
 }
 
 int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
                             const std::vector<TrackObservation>& observations) {
   int invalid = 0;
+  // A frame without an image, as that of a measurement, says nothing of tracks.
+  for (auto& [id, track] : tracks_) {
+    track.alive = false;
+  }
   for (const TrackObservation& measured : observations) {
     NormalizedObservation observation;
     if (!NormalizeObservation(camera, measured.pixel, pixel_noise_px, &observation)) {

@@ -91,5 +91,17 @@ TEST(GyroRotation, IgnoresDisorderAndNotANumber) {
   EXPECT_FALSE(gyro.Add(Sample(20, Vector3d(0, 0, std::nan("")))));
 }
 
+// A silence around the times asked for is one too, however near they are to each other.
+TEST(GyroRotation, SaysNothingWithinASilence) {
+  GyroRotation gyro;
+  gyro.Add(Sample(0, Vector3d::Zero()));
+  gyro.Add(Sample(1000 * kMs, Vector3d::Ones()));
+  EXPECT_FALSE(gyro.Between(400 * kMs, 440 * kMs).has_value());
+  GyroRotation later;
+  later.Add(Sample(1000 * kMs, Vector3d::Ones()));
+  EXPECT_FALSE(later.Between(400 * kMs, 440 * kMs).has_value()) << "held backwards";
+  EXPECT_TRUE(later.Between(960 * kMs, 1000 * kMs).has_value());
+}
+
 }  // namespace
 }  // namespace alidade

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+
 #include "core/robust.h"
 #include "filter/filter_estimator.h"
+#include "gnss/model/gnss_epoch.h"
+#include "tests/gnss/model/synthetic_sky.h"
 #include "tests/support/fix_scenario.h"
 
 namespace alidade::test {
@@ -87,6 +91,71 @@ TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_b
   ASSERT_TRUE(filter.Initialize(start).ok());
   EXPECT_EQ(filter.AddMeasurement(fix).code(), StatusCode::kDiverged)
       << "a new start stands in a local world";
+}
+
+/// Keeps what an update of position fixes has to say, as dense algebra has it.
+class DenseUpdate : public FilterObserver {
+ public:
+  void OnUpdate(const FilterState& state, const FilterRows& rows) override {
+    if (rows.source != RowSource::kMeasurement) {
+      return;
+    }
+    const Eigen::MatrixXd covariance = state.covariance().Covariance();
+    const Eigen::MatrixXd crossed = covariance * rows.jacobian.transpose();
+    Eigen::MatrixXd innovation = rows.jacobian * crossed;
+    innovation.diagonal().array() += 1;
+    const Eigen::VectorXd correction = crossed * innovation.ldlt().solve(rows.innovation);
+    clock = correction.segment<6>(state.ClockOffset());
+  }
+  Vector6d clock = Vector6d::Zero();
+};
+
+// GIVEN a clock that an epoch has correlated with the position, WHEN a fix moves the position, THEN the clock
+// moves with it.
+TEST(FixFilter, AFixCorrectsTheReceiversClock) {
+  constexpr TimeNs sky_ns = 1'700'000'100 * kSecondNs;
+  const NavigationData sky = SyntheticSky(sky_ns);
+  EstimatorConfig config;
+  config.gnss.corrections.ionosphere = IonosphereMode::kNone;
+  const auto builder = std::make_shared<const MeasurementBuilder>(std::make_shared<SatelliteCatalog>(sky),
+                                                                  config.gnss.corrections);
+  SyntheticReceiver receiver;
+  receiver.stamp_ns = sky_ns;
+  GnssEpoch epoch;
+  epoch.measurements = builder->Prepare(Observe(sky, receiver));
+  epoch.stamp_ns = sky_ns;
+  epoch.builder = builder;
+  SimulatorConfig scene;
+  scene.duration_s = 1;
+  scene.path_m = 1;
+  scene.fix.rate_hz = 1;
+  RigCalibration rig = SimulateOrDie(scene, 1).rig;
+  rig.gnss = GnssReceiver();
+  FilterEstimator filter(config, rig);
+  DenseUpdate dense;
+  filter.SetObserver(&dense);
+  NavEstimate start;
+  start.stamp_ns = sky_ns;
+  start.covariance = Matrix15d::Identity();
+  ASSERT_TRUE(filter.Initialize(start).ok());
+  for (int i = 0; i <= 20; ++i) {
+    ASSERT_TRUE(filter.AddImu({sky_ns + i * 10'000'000LL, Eigen::Vector3d::Zero(), {0, 0, 9.81}}).ok());
+  }
+  GnssAlignment alignment = IdentityAlignment(sky_ns);
+  alignment.enu = EnuFrame::At(receiver.position_E);
+  alignment.clock = Vector6d::Zero();
+  (*alignment.clock)[ClockState::kClock] = receiver.clock_m;
+  ASSERT_TRUE(filter.Align(alignment).ok());
+  ASSERT_TRUE(filter.AddGnss(epoch).ok());
+  ASSERT_GT(filter.last_statistics().satellites_used, 4);
+  const Vector6d before = filter.LatestClock()->mean;
+  const Eigen::Vector3d p_BA = rig.fixes[0].p_BA;
+  PositionFix fix{sky_ns, 0, filter.Latest().nav.p_WB + p_BA + Eigen::Vector3d(0, 0, 1.5),
+                  1e-4 * Eigen::Matrix3d::Identity()};
+  ASSERT_TRUE(filter.AddMeasurement(fix).ok());
+  const Vector6d moved = filter.LatestClock()->mean - before;
+  EXPECT_GT(dense.clock.norm(), 0.1);
+  EXPECT_LT((moved - dense.clock).norm(), 1e-6 * dense.clock.norm());
 }
 
 }  // namespace

@@ -136,5 +136,28 @@ TEST(DegradationTest, OneFrameOfLargeInnovationsIsForgotten) {
   EXPECT_LT(told, 20);
 }
 
+/// A measured position that is `off_m` away, known to 0.1 m, beside an estimate that it does not move.
+AbsoluteComparison Beside(double second, double off_m) {
+  AbsoluteComparison comparison;
+  comparison.stamp_ns = SecondsToNs(second);
+  comparison.change_covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  comparison.left = Eigen::Vector3d(off_m, 0, 0);
+  comparison.left_covariance = 0.01 * Eigen::Matrix3d::Identity();
+  return comparison;
+}
+
+// GIVEN a sensor that is pulled away and a faster one that is not, THEN the first is told, by its name.
+TEST(DegradationTest, AGoodSensorDoesNotHideABadOne) {
+  Degradation degradation;
+  for (int i = 0; i < 100; ++i) {
+    if (i % 5 == 0) {
+      degradation.OnAbsolute(Sensor::kGnss, Beside(0.2 * i, 0.5 * i));
+    } else {
+      degradation.OnAbsolute(SensorOf<PositionFixEntry>(), Beside(0.2 * i, 0));
+    }
+  }
+  EXPECT_THAT(degradation.AgainstSensors("vision and IMU"), HasSubstr("GNSS contradicts"));
+}
+
 }  // namespace
 }  // namespace alidade

@@ -106,5 +106,18 @@ TEST(ContinueFromTest, DisagreementIsUncertaintyAndAFailedReckoningIsDropped) {
   EXPECT_GT(held.covariance(2, 2), 0.9);
 }
 
+// The turn between two worlds does not depend on how the body stands: here with its x axis near the vertical,
+// rolled, and with a tilt that differs by little.
+TEST(ContinueFromTest, TheYawIsRightWhereTheBodysAxisIsUpright) {
+  NavEstimate reckoned = Sound(SecondsToNs(3));
+  reckoned.nav.R_WB = so3::Exp(Eigen::Vector3d(0, -1.1206, 0)) * so3::Exp(Eigen::Vector3d(0.35, 0, 0));
+  NavEstimate start = reckoned;
+  start.nav.R_WB = so3::Exp(Eigen::Vector3d(0, -1.1186, 0)) * so3::Exp(Eigen::Vector3d(0.35, 0, 0));
+  ASSERT_GT(std::abs(reckoned.nav.R_WB(2, 0)), 0.9);
+  ASSERT_LT(std::abs(start.nav.R_WB(2, 0)), 0.9);
+  const NavEstimate moved = ContinueFrom(Sound(0), reckoned, start);
+  EXPECT_LT(so3::Log(moved.nav.R_WB.transpose() * reckoned.nav.R_WB).norm(), 0.004);
+}
+
 }  // namespace
 }  // namespace alidade

@@ -1,11 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "eval/config/config_yaml.h"
 #include "eval/record/runner.h"
 #include "eval/record/truth_start.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
+#include "eval/trajectory/trajectory_interpolation.h"
 #include "tests/eval/run/stream.h"
 
 // Sessions with GNSS.
@@ -136,6 +140,79 @@ TEST(SessionCatalogTest, EphemeridesMayComeLater) {
   const auto aligned = Only<AlignedEvent>(events);
   ASSERT_EQ(aligned.size(), 1u);
   EXPECT_GT(aligned[0].global.stamp_ns, from_ns);
+}
+
+// GIVEN epochs with numbers that are none, THEN those are left out, and the estimate goes on.
+TEST(SessionGnssNumbersTest, WhatIsNoNumberIsLeftOut) {
+  Dataset dataset = Walk();
+  auto gnss = std::make_shared<GnssLog>(*dataset.gnss);
+  int spoilt = 0;
+  for (size_t i = 0; i < gnss->epochs.size(); i += 3) {
+    for (SatelliteObservation& satellite : gnss->epochs[i].satellites) {
+      for (SignalObservation& signal : satellite.signals) {
+        switch (spoilt++ % 5) {
+          case 0:
+            signal.doppler_hz = std::nan("");
+            break;
+          case 1:
+            signal.doppler_std_hz = 0;
+            break;
+          case 2:
+            signal.pseudorange_std_m = std::nan("");
+            break;
+          case 3:
+            signal.pseudorange_m = INFINITY;
+            break;
+          default:
+            signal.cn0_dbhz = std::nan("");
+            break;
+        }
+      }
+    }
+  }
+  ASSERT_GT(spoilt, 50);
+  dataset.gnss = gnss;
+  for (const char* name : {"gvio", "gvins_class"}) {
+    const EstimatorConfig config = Preset(name);
+    const std::vector<SessionEvent> events = StreamOf(config, dataset, Options(config, dataset), 1);
+    EXPECT_EQ(Only<AlignedEvent>(events).size(), 1u) << name;
+    EXPECT_TRUE(Only<LostEvent>(events).empty()) << name;
+    EXPECT_TRUE(Only<FailedEvent>(events).empty()) << name;
+    EXPECT_FALSE(Only<SatellitesEvent>(events).empty()) << name;
+  }
+}
+
+// GIVEN a receiver whose clock steps by what is no whole number of milliseconds, THEN GNSS is in use again
+// after it, in either back end.
+TEST(SessionGnssClockTest, AStepOfAnySizeIsSurvived) {
+  Dataset dataset = Walk();
+  auto gnss = std::make_shared<GnssLog>(*dataset.gnss);
+  for (size_t i = 3 * gnss->epochs.size() / 4; i < gnss->epochs.size(); ++i) {
+    for (SatelliteObservation& satellite : gnss->epochs[i].satellites) {
+      for (SignalObservation& signal : satellite.signals) {
+        if (signal.pseudorange_m) {
+          *signal.pseudorange_m += 40123.4;
+        }
+      }
+    }
+  }
+  dataset.gnss = gnss;
+  for (const char* name : {"gvio", "gvins_class"}) {
+    const EstimatorConfig config = Preset(name);
+    const std::vector<SessionEvent> events = StreamOf(config, dataset, Options(config, dataset), 1);
+    const auto judged = Only<SatellitesEvent>(events);
+    ASSERT_FALSE(judged.empty()) << name;
+    const auto& last = judged.back().residuals;
+    EXPECT_GT(SecondsBetween(dataset.frames.front().stamp_ns, last.stamp_ns), 11) << name;
+    const auto used = std::count_if(last.satellites.begin(), last.satellites.end(),
+                                    [](const SatelliteResidual& satellite) { return satellite.used; });
+    EXPECT_GT(used, 5) << name;
+    EXPECT_TRUE(Only<LostEvent>(events).empty()) << name;
+    const NavEstimate end = test::StatesOf(events).back();
+    const Result<TrajectoryPoint> truth = InterpolateTruth(*dataset.truth, end.stamp_ns);
+    ASSERT_TRUE(truth.ok());
+    EXPECT_LT((end.nav.p_WB - truth->nav.p_WB).norm(), 1.5) << name;
+  }
 }
 
 }  // namespace

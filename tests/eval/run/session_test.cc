@@ -257,5 +257,37 @@ TEST(SessionTest, FramesThatNoImuReachesAreDroppedOldestFirst) {
   EXPECT_EQ(session->held(), 3u);
 }
 
+// GIVEN one sample stamped an hour ahead, THEN it alone is skipped, and the estimate goes on as without it.
+TEST(SessionTest, AStampFarAheadIsSkippedAlone) {
+  const Dataset dataset = SimulateWalk(Walk(3), 1);
+  const std::vector<test::Arrival> arrivals = test::ArrivalsOf(dataset, kLive, 1);
+  const std::unique_ptr<Session> clean = MakeSession(GivenConfig(), dataset, GivenOptions(dataset));
+  const std::vector<NavEstimate> expected = test::StatesOf(test::Stream(clean.get(), dataset, arrivals));
+  const std::unique_ptr<Session> session = MakeSession(GivenConfig(), dataset, GivenOptions(dataset));
+  std::vector<SessionEvent> events;
+  for (size_t i = 0; i < arrivals.size(); ++i) {
+    if (i == arrivals.size() / 2) {
+      ImuSample wrong = dataset.imu.front();
+      wrong.stamp_ns += SecondsToNs(3600);
+      session->AddImu(wrong);
+    }
+    test::AddTo(session.get(), dataset, arrivals[i]);
+    for (SessionEvent& event : session->TakeEvents()) {
+      events.push_back(std::move(event));
+    }
+  }
+  session->Flush();
+  for (SessionEvent& event : session->TakeEvents()) {
+    events.push_back(std::move(event));
+  }
+  const auto skipped = Only<SkippedEvent>(events);
+  ASSERT_EQ(skipped.size(), 1u);
+  EXPECT_THAT(skipped[0].reason, HasSubstr("after the one before"));
+  EXPECT_TRUE(Only<TooLateEvent>(events).empty());
+  const std::vector<NavEstimate> states = test::StatesOf(events);
+  ASSERT_EQ(states.size(), expected.size());
+  EXPECT_TRUE(test::SameBits(states.back(), expected.back()));
+}
+
 }  // namespace
 }  // namespace alidade

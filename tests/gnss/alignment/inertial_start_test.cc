@@ -241,5 +241,42 @@ TEST(GnssInertialStartTest, GIVEN_epochs_without_solution_or_velocity_THEN_they_
       << start.report();
 }
 
+// GIVEN a receiver that speaks before the IMU, THEN its first epochs are left out.
+TEST(GnssInertialStartTest, GIVEN_epochs_before_the_IMU_THEN_the_start_does_without_them) {
+  const Body body = Flying();
+  GnssInertialStart start = MakeStart(Config(), body);
+  for (const double early_s : {-1.0, -0.5}) {
+    GnssEpoch epoch;
+    epoch.stamp_ns = kStart + SecondsToNs(early_s);
+    start.AddEpoch(epoch, body.SinglePoint(early_s));
+  }
+  EXPECT_TRUE(Follow(body, 20, 0.5, &start)) << start.report();
+}
+
+// GIVEN a solution whose datum is not GPS, THEN the clock of the state is still that of GPS.
+TEST(GnssInertialStartTest, GIVEN_another_datum_THEN_the_clock_refers_to_GPS) {
+  const Body body = Flying();
+  GnssInertialStart start = MakeStart(Config(), body);
+  const double margin_s = 0.5;
+  double next_s = margin_s;
+  for (int i = 0; i <= static_cast<int>(std::lround(21 * kImuHz)); ++i) {
+    const double t = i / kImuHz;
+    start.AddImu(body.Imu(t));
+    if (t > next_s + 0.3 && next_s <= 20) {
+      GnssEpoch epoch;
+      epoch.stamp_ns = kStart + SecondsToNs(next_s);
+      SinglePointSolution solution = body.SinglePoint(next_s);
+      solution.inter_system_bias_m[SystemIndex(GnssSystem::kGps)] = -30;  // the datum is Galileo
+      start.AddEpoch(epoch, solution);
+      next_s += 0.5;
+    }
+  }
+  const auto found = start.TryStart();
+  ASSERT_TRUE(found) << start.report();
+  const Vector6d& clock = *found->alignment.clock;
+  EXPECT_NEAR(clock[ClockState::kClock], 900 + 20 * 20 - 30, 1e-9);
+  EXPECT_NEAR(clock[ClockState::kBiases], 30, 1e-12) << "Galileo against GPS";
+}
+
 }  // namespace
 }  // namespace alidade
