@@ -65,6 +65,9 @@ int RunRefineTruth(const std::vector<std::string>&) {
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
+  if (const Status status = CheckRefinedOutput(*dataset, FLAGS_output); !status.ok()) {
+    return Report(status);
+  }
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }

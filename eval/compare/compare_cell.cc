@@ -13,6 +13,7 @@
 #include "eval/record/recorder_reader.h"
 #include "eval/record/run_options.h"
 #include "eval/record/runner.h"
+#include "eval/record/truth_start.h"
 
 namespace alidade {
 namespace {
@@ -83,7 +84,8 @@ bool RunOwn(const Plan& plan, const CompareOptions& options, const CompareInput:
                              cell->seed,
                              data.log.imu.size(),
                              data.log.frames.size(),
-                             plan.audit && cell->config->backend == Backend::kFilter};
+                             plan.audit && cell->config->backend == Backend::kFilter,
+                             DigestOfStartTruth(cell->config->init, data.truth ? &*data.truth : nullptr)};
   const bool kept = options.resume && HoldsRun(cell->folder, identity);
   if (!kept) {
     if (const Status status = RunAndWrite(identity, data, options, *cell); !status.ok()) {

@@ -32,8 +32,9 @@ struct ExternalOutcome {
 /// Reads the cell's trajectory file, or runs its command and reads the result. Placeholders of a command:
 /// {dataset} (the sequence's folder; for a simulation it is written), {bag} (the same as a bag, written on
 /// request), {output}, {program}, {sequence} and {seed}. external.json beside the result records command,
-/// input and times; with `resume` an unchanged command on unchanged input is not run again. Errors: those of
-/// RunExternal, WriteBag and ReadExternalTrajectory; kOutput.
+/// input and times of a run that succeeded; with `resume` it is not run again while the filled command, the
+/// name of the result and the digest of the input are the same, wherever the folders stand now. Errors: those
+/// of RunExternal, WriteBag and ReadExternalTrajectory; kOutput.
 Result<ExternalOutcome> TrajectoryOfExternal(const ExternalCell& cell, bool resume,
                                              const std::atomic<bool>* stop);
 

@@ -1,5 +1,6 @@
 #include "eval/dataset/calibration_import.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -11,6 +12,8 @@ namespace alidade {
 namespace {
 
 using Node = YAML::Node;
+
+constexpr char kLensSuffix[] = "_calib";  // of the key by which VINS names a camera's own file
 
 /// A scalar or nested list as it stands; of an OpenCV matrix its data.
 std::string Flow(const Node& node) {
@@ -88,12 +91,18 @@ class Importer {
       return Unknown(path);
     }
     bool known = false;
-    for (const char* key : {"relative_config_imu", "relative_config_imucam", "cam0_calib"}) {
+    const std::string lens_key = camera_ + kLensSuffix;
+    for (const std::string& key :
+         {std::string("relative_config_imu"), std::string("relative_config_imucam"), lens_key}) {
       if (root[key].IsDefined()) {
         const std::filesystem::path folder = std::filesystem::path(path).parent_path();
         ALIDADE_RETURN_IF_ERROR(Add((folder / Flow(root[key])).string(), depth + 1));
         known = true;
       }
+    }
+    if (!root[lens_key].IsDefined() && NamesALens(root)) {
+      lensless_place_ = path + ": " + lens_key;
+      known = true;
     }
     if (IsMap(root[camera_])) {
       ALIDADE_RETURN_IF_ERROR(AddChainCamera(path, root[camera_]));
@@ -121,6 +130,9 @@ class Importer {
   }
 
   Result<ImportedCalibration> Finish(const std::string& path) {
+    if (camera_text_.empty() && !lensless_place_.empty()) {
+      return Status::Input(lensless_place_ + ": is missing, expected the file with the lens of " + camera_);
+    }
     if (!imu_text_.empty()) {
       const Result<ImuSensor> imu = ParseImuSensor(imu_text_, imu_place_ + " as sensor.yaml");
       ALIDADE_RETURN_IF_ERROR(imu.status());
@@ -128,9 +140,8 @@ class Importer {
     }
     if (!camera_text_.empty()) {
       if (extrinsics_.empty()) {
-        return Status::Input(camera_place_ +
-                             ": holds no extrinsics, expected T_cam_imu, T_imu_cam, body_T_cam0 or "
-                             "extrinsicRotation and extrinsicTranslation by that name");
+        return Status::Input(camera_place_ + ": holds no extrinsics, expected T_cam_imu, T_imu_cam, body_T_" +
+                             camera_ + " or extrinsicRotation and extrinsicTranslation by that name");
       }
       const Result<CameraSensor> camera =
           ParseCameraSensor(camera_text_ + extrinsics_ + offset_, camera_place_ + " as sensor.yaml");
@@ -147,6 +158,14 @@ class Importer {
   static Status Unknown(const std::string& path) {
     return Status::Input(
         path + ": found none of the keys of a calibration, expected one of Kalibr, OpenVINS, VINS or Basalt");
+  }
+
+  /// Whether this configuration of VINS names the file of any camera.
+  static bool NamesALens(const Node& root) {
+    return std::any_of(root.begin(), root.end(), [](const auto& entry) {
+      const std::string key = Flow(entry.first);
+      return key.starts_with("cam") && key.ends_with(kLensSuffix);
+    });
   }
 
   Status AddChainCamera(const std::string& path, const Node& camera) {
@@ -330,6 +349,7 @@ class Importer {
   std::string camera_;
   std::string imu_text_, imu_place_;
   std::string camera_text_, camera_place_;
+  std::string lensless_place_;  ///< a key that names the lens of other cameras alone
   std::string extrinsics_, offset_;
   ImportedCalibration calibration_;
 };

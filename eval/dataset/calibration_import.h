@@ -25,6 +25,7 @@ struct ImportedCalibration {
 ///   OpenVINS    estimator_config (names the two others), kalibr_imucam_chain (T_imu_cam), kalibr_imu_chain
 ///   VINS        model_type PINHOLE, MEI or KANNALA_BRANDT; body_T_cam0 or extrinsicRotation and
 ///               extrinsicTranslation; acc_n, gyr_n, acc_w, gyr_w; td; cam0_calib names the camera's file
+///               (of cam1: body_T_cam1, cam1_calib)
 ///   Basalt      JSON (eval/dataset/basalt_calibration.h)
 ///
 /// Errors (kInput): a file that is none of these, lacks a key or holds a value that sensor.yaml would not

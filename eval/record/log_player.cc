@@ -160,9 +160,10 @@ void LogPlayer::AddImuUntil(TimeNs stamp_ns) {
   }
 }
 
-void LogPlayer::AddEpochsUntil(TimeNs tag_ns) {
+void LogPlayer::AddEpochsUntil(TimeNs imu_ns) {
+  const TimeNs offset_ns = SecondsToNs(log_.rig.gnss.time_offset_s);
   while (config_.gnss.enabled && log_.gnss != nullptr && next_epoch_ < log_.gnss->epochs.size() &&
-         log_.gnss->epochs[next_epoch_].stamp_ns < tag_ns) {
+         log_.gnss->epochs[next_epoch_].stamp_ns + offset_ns < imu_ns) {
     AddEpoch(next_epoch_++);
   }
 }

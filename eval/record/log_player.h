@@ -32,7 +32,8 @@ class LogPlayer {
   void PlayEpochs();
   /// Every sample up to and including the first one at or after `stamp_ns`.
   void AddImuUntil(TimeNs stamp_ns);
-  void AddEpochsUntil(TimeNs tag_ns);
+  /// Every epoch with a tag before `imu_ns` in IMU time.
+  void AddEpochsUntil(TimeNs imu_ns);
   void AddEpoch(size_t index);
   /// What all of SensorEntries measured at an IMU time before `imu_ns`.
   void AddMeasurementsUntil(TimeNs imu_ns);

@@ -92,6 +92,9 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   json["audited"] = identity.audited;
   json["dataset_digest"] = identity.dataset_digest;
   json["input_digest"] = identity.input_digest;
+  if (!identity.truth_digest.empty()) {
+    json["truth_digest"] = identity.truth_digest;
+  }
   json["initialization"] = {
       {"method", result.init_method}, {"report", result.init_report}, {"stamp_ns", result.init_stamp_ns}};
   json["counts"] = {{"imu_samples", identity.imu_samples},

@@ -17,7 +17,8 @@ struct RunIdentity {
   unsigned seed = 1;
   size_t imu_samples = 0;
   size_t frames = 0;
-  bool audited = false;  ///< the run carries the observability audit
+  bool audited = false;           ///< the run carries the observability audit
+  std::string truth_digest = {};  ///< DigestOfStartTruth; empty: the run takes nothing from a truth
 };
 
 /// Digest of the resolved configuration.

@@ -264,8 +264,8 @@ bool HoldsRun(const std::string& folder, const RunIdentity& identity) {
          JsonMember(*json, "input_digest", std::string()) == identity.input_digest &&
          JsonMember(*json, "dataset_digest", std::string()) == identity.dataset_digest &&
          JsonMember(*json, "seed", std::uint64_t{0}) == identity.seed &&
-         (!identity.audited || JsonMember(*json, "audited", false)) && word != "interrupted" &&
-         word != "failed";
+         JsonMember(*json, "truth_digest", std::string()) == identity.truth_digest &&
+         JsonMember(*json, "audited", false) == identity.audited && word != "interrupted" && word != "failed";
 }
 
 }  // namespace alidade

@@ -12,8 +12,8 @@ namespace alidade {
 /// status. kInput: the folder holds no complete run, or a file is not as written.
 Result<RunResult> ReadRun(const std::string& folder);
 
-/// True when `folder` holds a complete run of this identity (audited if it asks for that) that neither was
-/// interrupted nor failed for want of input.
+/// True when `folder` holds a complete run of this identity that neither was interrupted nor failed for want
+/// of input.
 [[nodiscard]] bool HoldsRun(const std::string& folder, const RunIdentity& identity);
 
 }  // namespace alidade

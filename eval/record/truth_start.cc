@@ -1,6 +1,7 @@
 #include "eval/record/truth_start.h"
 
 #include "core/random.h"
+#include "eval/dataset/log_hasher.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 
 namespace alidade {
@@ -12,6 +13,24 @@ Status CheckTruthForStart(const Trajectory& truth) {
                          " columns; expected static, dynamic or auto for this sequence");
   }
   return Status::Ok();
+}
+
+std::string DigestOfStartTruth(const InitConfig& config, const Trajectory* truth) {
+  if (config.method != InitMethod::kTruth || truth == nullptr) {
+    return {};
+  }
+  LogHasher hasher;
+  hasher.Add(std::uint64_t{truth->has_velocity});
+  hasher.Add(std::uint64_t{truth->has_bias});
+  for (const TrajectoryPoint& point : truth->points) {
+    hasher.Add(point.stamp_ns);
+    hasher.Add(point.nav.R_WB);
+    hasher.Add(point.nav.p_WB);
+    hasher.Add(point.nav.v_WB);
+    hasher.Add(point.bias.gyro);
+    hasher.Add(point.bias.accel);
+  }
+  return hasher.Hex();
 }
 
 Result<NavEstimate> StartFromTruth(const InitConfig& config, const Trajectory& truth, TimeNs stamp_ns,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/init_config.h"
 #include "eval/trajectory/trajectory.h"
 
@@ -7,6 +9,10 @@ namespace alidade {
 
 /// kInput: the truth has no velocity or no bias columns, so that no run can start from it.
 Status CheckTruthForStart(const Trajectory& truth);
+
+/// SHA-256 (hex) of what StartFromTruth may take of the truth; empty when init.method is another or there is
+/// no truth.
+[[nodiscard]] std::string DigestOfStartTruth(const InitConfig& config, const Trajectory* truth);
 
 /// The start of init.method truth: truth at `stamp_ns` with the prior of `config`, moved off the truth by an
 /// error drawn from that prior (unless config.perturb_truth is off), so that the very first NEES is a

@@ -126,6 +126,10 @@ class NmeaReader {
       return TakePosition(fields);
     }
     if (type == "RMC" && fields.size() > 9 && !fields[9].empty()) {
+      constexpr std::size_t kDateLength = 6;  // ddmmyy
+      if (fields[9].size() < kDateLength) {
+        return "expected time and date";
+      }
       return TakeDate(fields[1], fields[9].substr(0, 2), fields[9].substr(2, 2), fields[9].substr(4));
     }
     if (type == "ZDA" && fields.size() > 4 && !fields[4].empty()) {

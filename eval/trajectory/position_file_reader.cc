@@ -19,6 +19,37 @@ struct PositionLayout {
   bool utc = false;
 };
 
+/// "latitude(deg)": a name and its unit.
+bool IsLabel(std::string_view word) {
+  const std::size_t unit = word.find('(');
+  return unit != std::string_view::npos && unit > 0 && word.back() == ')';
+}
+
+/// Takes in a line of the header. What is wrong with it, or nothing.
+std::string TakeHeader(std::string_view line, PositionLayout* layout) {
+  std::string_view rest = line.substr(line.empty() ? 0 : 1);
+  const std::string_view first = NextWord(&rest);
+  const std::string_view second = NextWord(&rest);
+  const std::string_view coordinate = IsLabel(first) ? first : second;
+  if (!IsLabel(coordinate)) {  // not the line of the labels
+    layout->ecef = layout->ecef || line.find("x-ecef") != std::string_view::npos;
+    layout->utc = layout->utc || line.find(" UTC ") != std::string_view::npos;
+    return {};
+  }
+  if (!IsLabel(first)) {
+    if (first != "GPST" && first != "UTC") {
+      return "found " + Excerpt(first) + ", expected the time scale GPST or UTC";
+    }
+    layout->utc = first == "UTC";
+  }
+  if (coordinate != "latitude(deg)" && coordinate != "x-ecef(m)") {
+    return "found " + Excerpt(coordinate) +
+           ", expected latitude(deg) or x-ecef(m) as label of the first coordinate";
+  }
+  layout->ecef = coordinate == "x-ecef(m)";
+  return {};
+}
+
 /// "2020/06/25 00:00:00.000" or "2111 432000.000", taken off the front of a row.
 Result<TimeNs> TakeStamp(const PositionLayout& layout, std::string_view* row) {
   const std::string_view first = NextWord(row);
@@ -130,8 +161,9 @@ Result<std::vector<FilePosition>> ReadPositionRows(const std::string& path) {
   while (lines.Next()) {
     std::string_view row = lines.trimmed();
     if (row.empty() || row.front() == '%') {
-      layout.ecef = layout.ecef || row.find("x-ecef") != std::string_view::npos;
-      layout.utc = layout.utc || row.find(" UTC ") != std::string_view::npos;
+      if (const std::string wrong = TakeHeader(row, &layout); !wrong.empty()) {
+        return lines.Fault(wrong);
+      }
       continue;
     }
     const Result<TimeNs> stamp = TakeStamp(layout, &row);

@@ -22,8 +22,10 @@ struct FilePosition {
 /// Reads RTKLIB's .pos. The covariance is that of the row's six deviations; a row without them, or with a
 /// deviation of zero, has the deviation that its quality Q suggests: 1 (fix) 0.02 m, 2 (float) 0.3 m, 3 and 4
 /// (SBAS, DGPS) 1 m, 6 (PPP) 0.1 m, else 3 m, upwards twice that. Rows with a stamp not later than the one
-/// before are passed over (a solution that is repeated). Errors (kInput): file and line of a row that is torn
-/// or nowhere on Earth; no row at all.
+/// before are passed over (a solution that is repeated). Columns are those that the header's line of labels
+/// names, latitude(deg) or x-ecef(m) in GPST or UTC; without such a line latitude and longitude in degrees,
+/// GPST. Errors (kInput): file and line of a label that is neither, or of a row that is torn or nowhere on
+/// Earth; no row at all.
 Result<std::vector<FilePosition>> ReadPositionRows(const std::string& path);
 
 /// The same as positions in ENU at `anchor_E` (the first row when that is empty, which is then set), stamps

@@ -1,5 +1,7 @@
 #include "eval/truth/refine_dataset.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <utility>
 
@@ -39,6 +41,46 @@ Result<std::vector<fs::path>> EntriesOf(const fs::path& folder) {
                : Result<std::vector<fs::path>>(std::move(entries));
 }
 
+/// Whether `path` is `folder` or below it, whatever links lead there; `path` need not exist.
+bool LiesIn(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  for (fs::path above = fs::weakly_canonical(fs::absolute(path), error);; above = above.parent_path()) {
+    if (fs::equivalent(above, folder, error)) {
+      return true;
+    }
+    if (above == above.parent_path()) {
+      return false;
+    }
+  }
+}
+
+/// `entry` under the name `target`, a folder (images) as a link. The copy is complete before it takes the
+/// name, so that what stood there is lost to nothing but its replacement.
+Status CopyEntry(const fs::path& entry, const fs::path& target) {
+  // A name that RemoveTemporaryFiles knows.
+  const fs::path temporary = target.string() + ".tmp" + std::to_string(::getpid()) + "_0";
+  std::error_code error;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  const fs::path source = fs::canonical(entry, error);
+  if (!error && fs::is_directory(source, ignored)) {
+    fs::create_directory_symlink(source, temporary, error);
+  } else if (!error) {
+    fs::copy_file(source, temporary, error);
+  }
+  if (!error && fs::symlink_status(target, ignored).type() == fs::file_type::directory) {
+    fs::remove_all(target, error);  // rename does not replace a folder
+  }
+  if (!error) {
+    fs::rename(temporary, target, error);
+  }
+  if (error) {
+    fs::remove(temporary, ignored);
+    return In(target, error);
+  }
+  return Status::Ok();
+}
+
 /// A sensor's folder: its files, and its folders (images) as links.
 Status CopySensor(const fs::path& from, const fs::path& to) {
   std::error_code error;
@@ -49,16 +91,7 @@ Status CopySensor(const fs::path& from, const fs::path& to) {
   const Result<std::vector<fs::path>> entries = EntriesOf(from);
   ALIDADE_RETURN_IF_ERROR(entries.status());
   for (const fs::path& entry : *entries) {
-    const fs::path target = to / entry.filename();
-    fs::remove_all(target, error);
-    if (fs::is_directory(entry, error)) {
-      fs::create_directory_symlink(fs::canonical(entry, error), target, error);
-    } else {
-      fs::copy_file(entry, target, fs::copy_options::overwrite_existing, error);
-    }
-    if (error) {
-      return In(target, error);
-    }
+    ALIDADE_RETURN_IF_ERROR(CopyEntry(entry, to / entry.filename()));
   }
   return Status::Ok();
 }
@@ -94,7 +127,27 @@ Trajectory TruthOf(const RefinedTruth& refined) {
   return truth;
 }
 
+Status CheckRefinedOutput(const Dataset& dataset, const std::string& output) {
+  const fs::path from = fs::path(dataset.path) / "mav0";
+  const fs::path to = fs::path(output) / "mav0";
+  const Result<std::vector<fs::path>> entries = EntriesOf(from);
+  ALIDADE_RETURN_IF_ERROR(entries.status());
+  bool shared = LiesIn(to, from) || LiesIn(from, to);
+  for (const fs::path& entry : *entries) {
+    if (!MayBeFolder(entry.string())) {
+      continue;
+    }
+    const fs::path target = to / entry.filename();
+    shared = shared || LiesIn(target, entry) || LiesIn(entry, target);
+  }
+  return shared ? Status::Usage("refine_truth: --output: found " + output +
+                                ", which shares files with the dataset " + dataset.path +
+                                ", expected another folder")
+                : Status::Ok();
+}
+
 Status WriteRefined(const Dataset& dataset, const RefinedTruth& refined, const std::string& output) {
+  ALIDADE_RETURN_IF_ERROR(CheckRefinedOutput(dataset, output));
   const fs::path to = fs::path(output) / "mav0";
   const Result<std::vector<fs::path>> entries = EntriesOf(fs::path(dataset.path) / "mav0");
   ALIDADE_RETURN_IF_ERROR(entries.status());

@@ -199,6 +199,36 @@ TEST_F(CompareCommand, AuditedPlanRunsAgainWhatWasNotAuditedAndReportsTheFilterA
   EXPECT_THAT(report, HasSubstr("\"yaw_leak\":[]"));
 }
 
+// GIVEN runs that started from a truth WHEN another one stands in its place, or the audit is not asked for
+// any more, THEN they run again.
+TEST_F(CompareCommand, ResumeKeepsNoRunOfAnotherTruthNorAnAuditedOne) {
+  const std::string sequence = folder_.File("sequence");
+  ASSERT_EQ(Alidade("simulate --quiet --set=duration_s=5,path_m=6.5 --config=" +
+                    Source("configs/datasets/figure8_short.yaml") + " --output=" + sequence)
+                .code,
+            0);
+  std::string truth = ReadFile(sequence + "/mav0/state_groundtruth_estimate0/data.csv");
+  const std::string truth_path = folder_.Write("truth.csv", truth);
+  const std::string plan = "estimators:\n  - {config: " + Source("configs/estimators/alidade_filter.yaml") +
+                           ", name: ours, set: {init.method: truth}}\nsequences:\n  - {path: " + sequence +
+                           ", name: short, truth: " + truth_path + "}\n";
+  folder_.Write("plan.yaml", "audit: true\n" + plan);
+  ASSERT_EQ(Compare("out").code, 0);
+  const std::string cell = folder_.File("out/cells/ours/short/1/");
+  const std::string first = ReadFile(cell + "run.json");
+  EXPECT_THAT(first, HasSubstr("\"truth_digest\": "));
+  ASSERT_EQ(Compare("out", "--resume").code, 0);
+  EXPECT_EQ(ReadFile(cell + "run.json"), first);
+  truth.resize(truth.rfind('\n', truth.size() - 2) + 1);  // without its last row
+  folder_.Write("truth.csv", truth);
+  ASSERT_EQ(Compare("out", "--resume").code, 0);
+  EXPECT_NE(ReadFile(cell + "run.json"), first);
+  EXPECT_TRUE(std::filesystem::exists(cell + "observability.csv"));
+  folder_.Write("plan.yaml", plan);
+  ASSERT_EQ(Compare("out", "--resume").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(cell + "observability.csv"));
+}
+
 TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
   folder_.Write("plan.yaml",
                 "estimators:\n"

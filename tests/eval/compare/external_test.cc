@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "core/lie.h"
+#include "eval/compare/external_cell.h"
 #include "eval/compare/external_run.h"
 #include "eval/compare/external_times.h"
 #include "eval/trajectory/external_trajectory.h"
@@ -142,6 +145,91 @@ TEST(RunExternalTest, TimesSucceedsFailsAndEnds) {
   EXPECT_THAT(RunExternal("sleep 60 & wait", log, 0.2, nullptr).message(), HasSubstr("longer than 0.2 s"));
   const std::atomic<bool> stop = true;
   EXPECT_THAT(RunExternal("sleep 60", log, 60, &stop).message(), HasSubstr("stopped"));
+}
+
+/// A program on a folder, whose runs are counted.
+class ExternalCellTest : public testing::Test {
+ protected:
+  ExternalCellTest() {
+    sequence_.name = "walk";
+    sequence_.dataset.path = folder_.path();
+    Program("all/a.sh");
+    Program("all/b.sh");
+    estimator_.command.program = folder_.File("all/a.sh");
+    estimator_.command.text = "sh {program} {output} {seed}";
+  }
+
+  void Program(const std::string& name) {
+    folder_.Write(name, "echo ran >> " + folder_.File("runs") +
+                            "\nprintf '1.5 1 2 3 0 0 0 1\\n2.5 1 2 3 0 0 0 1\\n' > $1/trajectory.tum\n"
+                            "cp $1/trajectory.tum $1/other.tum\ntest ! -e " +
+                            folder_.File("fail") + "\n");
+  }
+
+  Result<ExternalOutcome> Outcome(bool resume) {
+    const ExternalCell cell{estimator_, sequence_, seed_, log_, nullptr, digest_, folder_.File(cell_)};
+    return TrajectoryOfExternal(cell, resume, nullptr);
+  }
+  bool Kept() {
+    const Result<ExternalOutcome> outcome = Outcome(true);
+    EXPECT_TRUE(outcome.ok()) << outcome.message();
+    return outcome.ok() && outcome->reused;
+  }
+
+  test::TemporaryFolder folder_;
+  PlanEstimator estimator_;
+  PlanSequence sequence_;
+  MeasurementLog log_;
+  unsigned seed_ = 1;
+  std::string digest_ = "d";
+  std::string cell_ = "all/out/cell";
+};
+
+TEST_F(ExternalCellTest, OnlyTheSameCommandIsKept) {
+  EXPECT_FALSE(Kept());
+  EXPECT_TRUE(Kept());
+  EXPECT_EQ(test::ReadFile(folder_.File("runs")), "ran\n");
+  estimator_.command.program = folder_.File("all/b.sh");
+  EXPECT_FALSE(Kept()) << "another program by the same text";
+  EXPECT_TRUE(Kept());
+  estimator_.command.result = "other.tum";
+  EXPECT_FALSE(Kept()) << "a file that happens to be there";
+  EXPECT_TRUE(Kept());
+  seed_ = 2;
+  EXPECT_FALSE(Kept());
+  EXPECT_TRUE(Kept());
+  digest_ = "e";
+  EXPECT_FALSE(Kept());
+  estimator_.command.text += " ";
+  EXPECT_FALSE(Kept());
+  EXPECT_TRUE(Kept());
+}
+
+TEST_F(ExternalCellTest, AFailedRunIsNotKeptThoughItLeftItsResult) {
+  EXPECT_FALSE(Kept());
+  folder_.Write("fail", "");
+  EXPECT_FALSE(Outcome(false).ok());
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("all/out/cell/trajectory.tum")));
+  EXPECT_FALSE(Outcome(true).ok());
+  std::filesystem::remove(folder_.File("fail"));
+  EXPECT_FALSE(Kept());
+  EXPECT_TRUE(Kept());
+}
+
+// GIVEN folders that were moved, the output alone or with the program beside it, THEN the run is kept.
+TEST_F(ExternalCellTest, AMovedRunIsKept) {
+  EXPECT_FALSE(Kept());
+  std::filesystem::rename(folder_.File("all/out"), folder_.File("moved"));
+  cell_ = "moved/cell";
+  EXPECT_TRUE(Kept());
+  estimator_.command.program = folder_.File("all/../all/a.sh");
+  EXPECT_TRUE(Kept()) << "the same place by another name";
+  std::filesystem::rename(folder_.File("moved"), folder_.File("all/out"));
+  std::filesystem::rename(folder_.File("all"), folder_.File("whole"));
+  estimator_.command.program = folder_.File("whole/a.sh");
+  cell_ = "whole/out/cell";
+  EXPECT_TRUE(Kept());
+  EXPECT_EQ(test::ReadFile(folder_.File("runs")), "ran\n");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "tests/support/temporary_folder.h"
 
@@ -210,6 +211,38 @@ TEST_F(CalibrationImport, VinsModels) {
     EXPECT_TRUE(found->imu_is_per_sample);
     EXPECT_NEAR(DensitiesOf(found->imu->noise, 200).gyro_noise_density_radps_sqrthz, 2.828427e-4, 1e-9);
   }
+}
+
+// GIVEN a configuration of two cameras, THEN lens and place are those of the camera that is asked for.
+TEST_F(CalibrationImport, VinsFollowsTheFileOfTheCamera) {
+  const auto lens = [](const std::string& focal) {
+    return "%YAML:1.0\nmodel_type: PINHOLE\nimage_width: 752\nimage_height: 480\ndistortion_parameters:\n"
+           "   k1: 0\n   k2: 0\n   p1: 0\n   p2: 0\nprojection_parameters:\n   fx: " +
+           focal + "\n   fy: 460.3\n   cx: 363.0\n   cy: 248.1\n";
+  };
+  const auto place = [](const std::string& camera, const std::string& x) {
+    return "body_T_" + camera + ": !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: d\n   data: [1, 0, 0, " +
+           x + ", 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+  };
+  folder_.Write("left.yaml", lens("461.0"));
+  const std::string right = folder_.Write("right.yaml", lens("462.0"));
+  const std::string places = "%YAML:1.0\n" + place("cam0", "0.1") + place("cam1", "0.2");
+  const std::string both =
+      folder_.Write("both.yaml", places + "cam0_calib: \"left.yaml\"\ncam1_calib: \"right.yaml\"\n");
+  for (const auto& [camera, focal, x] : {std::tuple("cam0", 461.0, 0.1), std::tuple("cam1", 462.0, 0.2)}) {
+    const Result<ImportedCalibration> found = ImportCalibration({both}, camera);
+    ASSERT_TRUE(found.ok()) << found.message();
+    EXPECT_EQ(found->camera->camera.intrinsics()[0], focal);
+    EXPECT_NEAR(found->camera->T_BC.translation.x(), x, 1e-12);
+  }
+  const std::string left_alone = folder_.Write("left_alone.yaml", places + "cam0_calib: \"left.yaml\"\n");
+  EXPECT_THAT(ImportCalibration({left_alone}, "cam1").message(),
+              testing::AllOf(HasSubstr("left_alone.yaml: cam1_calib: is missing"),
+                             HasSubstr("expected the file with the lens of cam1")));
+  const Result<ImportedCalibration> given = ImportCalibration({left_alone, right}, "cam1");
+  ASSERT_TRUE(given.ok()) << given.message();
+  EXPECT_EQ(given->camera->camera.intrinsics()[0], 462);
+  EXPECT_NEAR(given->camera->T_BC.translation.x(), 0.2, 1e-12);
 }
 
 TEST_F(CalibrationImport, NamesWhatIsWrong) {

@@ -164,6 +164,13 @@ TEST_F(RecorderTest, ResumesOnlyTheSameRun) {
   other = identity_;
   other.seed = 8;
   EXPECT_FALSE(HoldsRun(run, other));
+  other = identity_;
+  other.truth_digest = "tt";
+  EXPECT_FALSE(HoldsRun(run, other)) << "a run that does not say what truth it started from";
+  ASSERT_TRUE(WriteRun(other, result_, run).ok());
+  EXPECT_TRUE(HoldsRun(run, other));
+  other.truth_digest = "uu";
+  EXPECT_FALSE(HoldsRun(run, other));
   result_.interrupted = true;
   ASSERT_TRUE(WriteRun(identity_, result_, run).ok());
   EXPECT_FALSE(HoldsRun(run, identity_));
@@ -184,7 +191,7 @@ TEST_F(RecorderTest, AnAuditIsWrittenReadBackAndAskedForOnResume) {
   EXPECT_THAT(Written("observability.csv"),
               StartsWith("timestamp_ns,rank,yaw_leak,position_leak,yaw_gain,null_angle_rad\n"));
   EXPECT_TRUE(HoldsRun(run, audited));
-  EXPECT_TRUE(HoldsRun(run, identity_)) << "an audited run is a run";
+  EXPECT_FALSE(HoldsRun(run, identity_)) << "its times are those of an audit";
   const Result<RunResult> read = ReadRun(run);
   ASSERT_TRUE(read.ok()) << read.message();
   for (size_t i = 0; i < read->records.size(); ++i) {

@@ -217,6 +217,26 @@ TEST(TruthStart, EqualSeedsDrawEqualStarts) {
   EXPECT_NE(a.nav.p_WB, c.nav.p_WB);
 }
 
+TEST(TruthStart, TheDigestIsOfWhatAStartTakesAndOfNothingElse) {
+  const RestingScene scene;
+  const InitConfig config = TruthConfig().init;
+  const std::string digest = DigestOfStartTruth(config, &scene.truth);
+  EXPECT_EQ(digest.size(), 64u);
+  Trajectory other = scene.truth;
+  EXPECT_EQ(DigestOfStartTruth(config, &other), digest);
+  other.points[3].covariance.setIdentity();
+  EXPECT_EQ(DigestOfStartTruth(config, &other), digest);
+  other.points[3].bias.gyro.x() += 1e-9;
+  EXPECT_NE(DigestOfStartTruth(config, &other), digest);
+  other = scene.truth;
+  other.points.pop_back();
+  EXPECT_NE(DigestOfStartTruth(config, &other), digest);
+  EXPECT_EQ(DigestOfStartTruth(config, nullptr), "");
+  InitConfig another = config;
+  another.method = InitMethod::kStatic;
+  EXPECT_EQ(DigestOfStartTruth(another, &scene.truth), "");
+}
+
 TEST(TruthStart, NeverInterpolatesOverAGap) {
   RestingScene scene;
   scene.truth.points.erase(scene.truth.points.begin() + 20, scene.truth.points.begin() + 40);

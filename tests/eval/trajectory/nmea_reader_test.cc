@@ -95,6 +95,12 @@ TEST(NmeaReader, GIVEN_what_cannot_be_read_THEN_the_place_and_the_remedy_are_nam
               HasSubstr("b.nmea:2"));
   EXPECT_THAT(ReadNmeaFile(folder.Write("c.nmea", Sentence("GPGGA,120000.00,4807.038")), date).message(),
               HasSubstr("c.nmea:1"));
+  for (const char* cut : {"2", "23", "230", "2303", "23039"}) {
+    const std::string rmc = Sentence(std::string("GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,") + cut);
+    EXPECT_THAT(ReadNmeaFile(folder.Write("cut.nmea", Gga("123519") + rmc), date).message(),
+                testing::AllOf(HasSubstr("cut.nmea:2"), HasSubstr("expected time and date")))
+        << cut;
+  }
   EXPECT_THAT(ReadNmeaFile(folder.Write("d.nmea", "hello\n"), date).message(),
               HasSubstr("holds no position"));
 }

@@ -62,6 +62,31 @@ TEST_F(PositionRows, DeviationsAreTakenAndThoseThatCannotBeLoseTheirCorrelation)
   EXPECT_TRUE((*ecef)[0].covariance_E.diagonal().isApprox(Eigen::Vector3d(0.09, 0.04, 0.25), 1e-9));
 }
 
+// GIVEN labels of columns or of a time scale that are not read, THEN they are named and no row is misread.
+TEST_F(PositionRows, LabelsThatAreNotReadAreNamedByLine) {
+  const std::string row = "2023/11/14 22:13:21.000" + kPlace + "1 9\n";
+  for (const auto& [labels, message] : std::vector<std::pair<std::string, std::string>>{
+           {"%  GPST                    e-baseline(m)  n-baseline(m)  u-baseline(m)   Q  ns",
+            "a.pos:2: found 'e-baseline(m)', expected latitude(deg) or x-ecef(m)"},
+           {"%  GPST  latitude(d'\") longitude(d'\")  height(m)   Q  ns", "a.pos:2: found 'latitude(d"},
+           {"%  JST   latitude(deg) longitude(deg)  height(m)   Q  ns",
+            "a.pos:2: found 'JST', expected the time scale GPST or UTC"},
+           {"% e-baseline(m)", "a.pos:2: found 'e-baseline(m)'"}}) {
+    const auto rows = Read("% program   : RTKLIB ver.2.4.3(b34)\n" + labels + "\n" + row);
+    ASSERT_FALSE(rows.ok()) << labels;
+    EXPECT_THAT(rows.message(), HasSubstr(message));
+  }
+  // Lines of RTKLIB's header that are not labels, among them one that speaks of other axes.
+  const auto rows = Read(
+      "% program   : RTKLIB ver.2.4.3(b34)\n% obs start : 2023/11/14 22:13:21.0 GPST (week2288 252801.0s)\n"
+      "% ref pos   :   22.300000000  114.200000000     5.0000\n%\n"
+      "% (lat/lon/height=WGS84/ellipsoidal,Q=1:fix,2:float,3:sbas,4:dgps,5:single,6:ppp,ns=# of "
+      "satellites)\n%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns\n" +
+      row);
+  ASSERT_TRUE(rows.ok()) << rows.message();
+  EXPECT_EQ(rows->front().stamp_ns, GpsTimeFromWeek(TimeScale::kGps, 2288, 252'801 * kSecondNs));
+}
+
 TEST_F(PositionRows, TornOnesAreNamedByLine) {
   for (const auto& [row, message] : std::vector<std::pair<std::string, std::string>>{
            {"6000 0" + kPlace,

@@ -12,6 +12,7 @@
 #include "eval/simulation/recorded_motion.h"
 #include "eval/simulation/simulator.h"
 #include "eval/truth/refinement_report.h"
+#include "tests/support/read_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -115,6 +116,59 @@ TEST_F(RefineDatasetTest, TheReportNamesWhatWasFound) {
   EXPECT_NEAR(json["noise_position_m"]["std"].get<double>(), 1e-3, 2e-4);
   EXPECT_GT(json["fit"]["gyro"]["dof"].get<double>(), 1);
   EXPECT_THAT(FormatRefinementText(*refined), HasSubstr("lever arm of the marker [mm]"));
+}
+
+// GIVEN an output that is the dataset, leads to it by a link or lies in it, THEN it is refused and the
+// recording stays as it was.
+TEST_F(RefineDatasetTest, AnOutputThatIsTheRecordingIsRefused) {
+  namespace fs = std::filesystem;
+  const std::string imu = test::ReadFile(folder_.File("mav0/imu0/data.csv"));
+  const test::TemporaryFolder elsewhere;
+  fs::create_directory_symlink(folder_.path(), elsewhere.File("link"));
+  fs::create_directories(elsewhere.File("mav_link"));
+  fs::create_directory_symlink(folder_.File("mav0"), elsewhere.File("mav_link/mav0"));
+  fs::create_directories(elsewhere.File("sensor_link/mav0"));
+  fs::create_directory_symlink(folder_.File("mav0/imu0"), elsewhere.File("sensor_link/mav0/imu0"));
+  for (const std::string& output :
+       {folder_.path(), folder_.path() + "/", folder_.File("mav0/.."), folder_.File("mav0"),
+        folder_.File("mav0/new/deep"), elsewhere.File("link"), elsewhere.File("mav_link"),
+        elsewhere.File("sensor_link")}) {
+    const Status status = WriteRefined(dataset_, RefinedTruth(), output);
+    EXPECT_EQ(status.code(), StatusCode::kUsage) << output;
+    EXPECT_THAT(status.message(),
+                testing::AllOf(HasSubstr("--output: found " + output), HasSubstr("expected another folder")));
+  }
+  EXPECT_EQ(test::ReadFile(folder_.File("mav0/imu0/data.csv")), imu);
+  EXPECT_TRUE(fs::exists(folder_.File("mav0/cam0/data/1.png")));
+  EXPECT_FALSE(fs::exists(folder_.File("mav0/new")));
+  EXPECT_TRUE(CheckRefinedOutput(dataset_, folder_.File("refined")).ok());
+  EXPECT_TRUE(CheckRefinedOutput(dataset_, elsewhere.File("new")).ok());
+  // A dataset within the output's own sequence.
+  fs::create_directories(elsewhere.File("outer/mav0"));
+  fs::rename(folder_.File("mav0"), elsewhere.File("outer/mav0/mav0"));
+  dataset_.path = elsewhere.File("outer/mav0");
+  EXPECT_EQ(CheckRefinedOutput(dataset_, elsewhere.File("outer")).code(), StatusCode::kUsage);
+}
+
+TEST_F(RefineDatasetTest, AnEarlierOutputIsReplaced) {
+  namespace fs = std::filesystem;
+  const Result<RefinedTruth> refined = RefineDataset(dataset_, {});
+  ASSERT_TRUE(refined.ok()) << refined.message();
+  const test::TemporaryFolder output;
+  output.Write("mav0/cam0/data/old.png", "of a folder, not of a link");
+  output.Write("mav0/imu0/data.csv", "old");
+  for (int run = 0; run < 2; ++run) {
+    const Status written = WriteRefined(dataset_, *refined, output.path());
+    ASSERT_TRUE(written.ok()) << written.message();
+    EXPECT_TRUE(fs::is_symlink(output.File("mav0/cam0/data")));
+    EXPECT_FALSE(fs::exists(output.File("mav0/cam0/data/old.png")));
+    EXPECT_TRUE(fs::exists(folder_.File("mav0/cam0/data/1.png")));
+    EXPECT_EQ(test::ReadFile(output.File("mav0/imu0/data.csv")),
+              test::ReadFile(folder_.File("mav0/imu0/data.csv")));
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(output.path())) {
+    EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".tmp")));
+  }
 }
 
 TEST_F(RefineDatasetTest, GivenNoPosesThenItIsAnError) {
