@@ -51,6 +51,7 @@ Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const
   Result<MeasurementLog> log = MakeLog(*dataset, frontend, options);
   std::error_code ignored;
   std::filesystem::remove_all(staging, ignored);
+  dataset->path = FLAGS_dataset;  // what was staged is gone
   ALIDADE_RETURN_IF_ERROR(log.status());
   return RecordingToCalibrate{*std::move(dataset), *std::move(log), sequence.camera};
 }

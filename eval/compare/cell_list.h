@@ -28,10 +28,12 @@ class CellList {
   Status AddDataset(const Plan& plan, const PlanSequence& sequence, const std::string& output);
   Status AddSimulation(const Plan& plan, const PlanSequence& sequence, const std::string& output);
   void AddCells(const Plan& plan, const PlanSequence& sequence, unsigned seed, const std::string& output);
+  void DigestCells(const Plan& plan, const PlanSequence& sequence, const std::string& simulation);
 
   CompareConfigs configs_;
   std::vector<std::unique_ptr<CompareInput>> inputs_;
   std::vector<CompareCell> cells_;
+  std::vector<std::string> digests_;  ///< of the sequence that is being added, by estimator
 };
 
 }  // namespace alidade

@@ -8,6 +8,7 @@ Status ReportFault(const CompareCell& cell, const std::string& fault) {
   const RunningMark its_own(cell.report_file);  // takes the one that was left, and removes it
   CellReport report;
   report.result = cell.result;
+  report.digest = cell.digest;
   report.result.status = "failed";
   report.result.message = fault;
   return WriteCellFile(report, cell.report_file);
@@ -51,6 +52,7 @@ Status CellRunner::Run(size_t index) {
     report.frontend->seed = cell.seed;
   }
   report.result = std::move(cell.result);
+  report.digest = cell.digest;
   return WriteCellFile(report, cell.report_file);
 }
 

@@ -131,6 +131,11 @@ class Comparer {
     CompareCell& cell = cells_.at(index);
     Result<CellReport> report =
         fault.empty() ? ReadCellFile(cell.report_file) : Result<CellReport>(Status::Input(fault));
+    if (report.ok() && report->digest != cell.digest) {
+      report = Status::Input(cell.report_file +
+                             ": of another plan or configuration, expected one of this plan; --stage=cells "
+                             "runs the cell again");
+    }
     if (!report.ok()) {
       cell.result.status = "failed";
       cell.result.message = report.message();
@@ -256,7 +261,11 @@ Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart&
   ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
   std::vector<size_t> wanted;
   for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()); ++cell) {
-    if (!MayExist(cells.at(cell).report_file)) {
+    const CompareCell& candidate = cells.at(cell);
+    const Result<CellReport> earlier = MayExist(candidate.report_file)
+                                           ? ReadCellFile(candidate.report_file)
+                                           : Result<CellReport>(Status::Input("none"));
+    if (!earlier.ok() || earlier->digest != candidate.digest) {
       wanted.push_back(cell);
     }
   }

@@ -23,13 +23,14 @@ struct CompareOutcome {
 Result<CompareOutcome> Compare(const Plan& plan, const CompareOptions& options);
 
 /// The `part` of the cells of a comparison that has begun elsewhere, in options.jobs worker processes; those
-/// whose report is there are passed over.
+/// whose report is there are passed over, unless it is of another plan or configuration (CellReport::digest).
 Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part);
 
 /// Tracks the images of the inputs of these cells, in this process, each within options.limits.time_s.
 Status TrackInputs(const Plan& plan, const CompareOptions& options, const CellPart& part);
 
-/// The tables of a comparison whose cells have run elsewhere; a cell without a report has failed.
+/// The tables of a comparison whose cells have run elsewhere; a cell without a report of this plan
+/// has failed.
 Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& options);
 
 }  // namespace alidade

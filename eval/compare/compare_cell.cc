@@ -57,7 +57,8 @@ bool RunExternalCell(const Plan& plan, const CompareOptions& options, const Comp
   }
   ScoreTrajectory(truth, outcome->trajectory, plan.MetricsOf(*cell->estimator, *cell->sequence),
                   &cell->result);
-  ScoreCompletion(RowStamps(outcome->trajectory), data.log.frames, &cell->result);
+  ScoreCompletion(RowStamps(outcome->trajectory), data.log.frames, data.log.rig.camera_time_offset_s,
+                  &cell->result);
   ScoreExternalTimes(*outcome, data.log.frames, &cell->result);
   return outcome->reused;
 }
@@ -98,7 +99,7 @@ bool RunOwn(const Plan& plan, const CompareOptions& options, const CompareInput:
   if (written.ok()) {
     ScoreRun(data.truth ? &*data.truth : nullptr, *written, plan.MetricsOf(*cell->estimator, *cell->sequence),
              &cell->result);
-    ScoreProgress(written->records, data.log.frames, &cell->result);
+    ScoreProgress(written->records, data.log.frames, data.log.rig.camera_time_offset_s, &cell->result);
   } else {
     Fail(written.message(), cell);
   }

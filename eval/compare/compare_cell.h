@@ -20,6 +20,7 @@ struct CompareCell {
   unsigned seed = 0;
   std::string folder;       ///< of its outputs
   std::string report_file;  ///< of its CellReport (eval/comparison/cell_file.h)
+  std::string digest;       ///< of its CellReport
   CellResult result;
 };
 

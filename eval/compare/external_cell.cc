@@ -28,8 +28,9 @@ ExternalContext ContextOf(const ExternalCell& cell) {
   const GnssReceiver& receiver = cell.log.rig.gnss;
   context.anchor_E = receiver.anchor_E;
   context.gnss_time_offset_s = receiver.time_offset_s;
+  const TimeNs offset_ns = SecondsToNs(cell.log.rig.camera_time_offset_s);
   for (const TrackFrame& frame : cell.log.frames) {
-    context.camera_stamps.push_back(frame.stamp_ns);
+    context.camera_stamps.push_back(frame.stamp_ns + offset_ns);
   }
   if (cell.estimator.camera_frame) {
     context.T_BC = cell.log.rig.T_BC;

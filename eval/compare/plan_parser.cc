@@ -21,6 +21,13 @@ std::string Stem(const std::string& path) {
   return std::filesystem::path(path).stem().string();
 }
 
+/// The name of the folder that `path` leads to, also from "..".
+std::string FolderOf(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, error).lexically_normal();
+  return (absolute.has_filename() ? absolute : absolute.parent_path()).filename().string();
+}
+
 /// Fills one Plan from its file, section by section.
 class PlanParser {
  public:
@@ -116,6 +123,7 @@ class PlanParser {
     }
     if (estimator.name.empty()) {
       estimator.name = Stem(estimator.config);
+      ALIDADE_RETURN_IF_ERROR(reader_.CheckFolderName(node, "estimators", estimator.name));
     }
     std::error_code ignored;
     if (!estimator.command.program.empty() &&
@@ -194,11 +202,10 @@ class PlanParser {
                            "`topics`, `calibration` and `camera` only with the `path` of a bag");
     }
     if (sequence.name.empty()) {
-      const std::filesystem::path source =
-          sequence.dataset.path.empty() ? sequence.config : sequence.dataset.path;
       sequence.name = sequence.dataset.path.empty() || is_bag
-                          ? source.stem().string()
-                          : (source.has_filename() ? source : source.parent_path()).filename().string();
+                          ? Stem(sequence.dataset.path.empty() ? sequence.config : sequence.dataset.path)
+                          : FolderOf(sequence.dataset.path);
+      ALIDADE_RETURN_IF_ERROR(reader_.CheckFolderName(node, "sequences", sequence.name));
     }
     if (!sequence.dataset.path.empty() && !PlanReader::IsDataset(sequence.dataset.path)) {
       plan_.absent.emplace_back(sequence.name, sequence.dataset.path);

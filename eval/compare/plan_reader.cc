@@ -34,6 +34,10 @@ bool IsFolderCharacter(char c) {
          c == '-' || c == '+';
 }
 
+bool IsFolderName(const std::string& name) {
+  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), IsFolderCharacter);
+}
+
 }  // namespace
 
 PlanReader::PlanReader(std::string path, std::string data_root)
@@ -91,10 +95,21 @@ Status PlanReader::Text(const YAML::Node& node, const std::string& name, std::st
 
 Status PlanReader::FolderName(const YAML::Node& node, const std::string& name, std::string* value) const {
   ALIDADE_RETURN_IF_ERROR(Text(node, name, value));
-  if (value->front() == '.' || !std::all_of(value->begin(), value->end(), IsFolderCharacter)) {
+  if (!IsFolderName(*value)) {
     return Fault(node, name, "letters, digits, '.', '_', '-' and '+' only: it names a folder of the output");
   }
   return Status::Ok();
+}
+
+Status PlanReader::CheckFolderName(const YAML::Node& node, const std::string& name,
+                                   const std::string& derived) const {
+  if (IsFolderName(derived)) {
+    return Status::Ok();
+  }
+  return Fault(node, name,
+               "a `name` beside it: '" + derived +
+                   "', which follows from the path, is no name of a folder of the output (letters, digits, "
+                   "'.', '_', '-' and '+', not starting with '.')");
 }
 
 Status PlanReader::SubstituteData(const YAML::Node& node, const std::string& name, std::string* text) const {

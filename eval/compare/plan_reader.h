@@ -32,6 +32,9 @@ class PlanReader {
   Status Text(const YAML::Node& node, const std::string& name, std::string* value) const;
   /// A name that is valid as a folder name: letters, digits, '.', '_', '-', '+'; not starting with '.'.
   Status FolderName(const YAML::Node& node, const std::string& name, std::string* value) const;
+  /// The same rule for a name that follows from the path of `node`.
+  [[nodiscard]] Status CheckFolderName(const YAML::Node& node, const std::string& name,
+                                       const std::string& derived) const;
   /// A path, resolved: ${data} replaced, relative to the plan's folder.
   Status Path(const YAML::Node& node, const std::string& name, std::string* value) const;
   /// The path of a dataset: a folder, or a bag.

@@ -129,6 +129,7 @@ void Fields(T& x, auto&& field) {
 template <Is<CellReport> T>
 void Fields(T& x, auto&& field) {
   field("result", x.result);
+  field("digest", x.digest);
   field("reused", x.reused);
   field("frontend", x.frontend);
   field("remarks", x.remarks);

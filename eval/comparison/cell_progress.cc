@@ -5,9 +5,11 @@
 namespace alidade {
 
 void ScoreCompletion(const std::vector<TimeNs>& rows_ns, const std::vector<TrackFrame>& frames,
-                     CellResult* cell) {
+                     double camera_time_offset_s, CellResult* cell) {
   if (!frames.empty()) {
-    cell->completion = Completion(rows_ns, frames.front().stamp_ns, frames.back().stamp_ns);
+    const TimeNs offset_ns = SecondsToNs(camera_time_offset_s);
+    cell->completion =
+        Completion(rows_ns, frames.front().stamp_ns + offset_ns, frames.back().stamp_ns + offset_ns);
   }
 }
 
@@ -18,14 +20,14 @@ void ScoreSpeed(double data_s, double run_s, CellResult* cell) {
 }
 
 void ScoreProgress(const std::vector<RunRecord>& records, const std::vector<TrackFrame>& frames,
-                   CellResult* cell) {
+                   double camera_time_offset_s, CellResult* cell) {
   std::vector<TimeNs> rows_ns;
   double run_ms = 0;
   for (const RunRecord& record : records) {
     rows_ns.push_back(record.estimate.stamp_ns);
     run_ms += record.frontend_ms + record.backend_ms;
   }
-  ScoreCompletion(rows_ns, frames, cell);
+  ScoreCompletion(rows_ns, frames, camera_time_offset_s, cell);
   ScoreSpeed(CoveredSeconds(rows_ns), 1e-3 * run_ms, cell);
 }
 

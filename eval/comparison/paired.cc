@@ -50,8 +50,12 @@ double ValueOf(const Figure& figure, const Runs& runs, unsigned seed) {
   return counts ? figure.value(*run->second) : kNan;
 }
 
-bool SameInput(const Runs& first, const Runs& second, unsigned seed) {
-  return first.at(seed)->input_digest == second.at(seed)->input_digest;
+/// A run that was killed or did not start leaves no digest; figures of all runs count it, on the input that
+/// its seed stands for.
+bool SameInput(const Figure& figure, const Runs& first, const Runs& second, unsigned seed) {
+  const std::string& a = first.at(seed)->input_digest;
+  const std::string& b = second.at(seed)->input_digest;
+  return a == b || (figure.of_all_runs && (a.empty() || b.empty()));
 }
 
 PairVerdict VerdictOf(const PairedT& test, Ideal ideal) {
@@ -73,7 +77,7 @@ PairedDifference Compare(const Block& block, const Figure& figure, const Runs& f
   for (const unsigned seed : block.seeds) {
     const double a = ValueOf(figure, first, seed);
     const double b = ValueOf(figure, second, seed);
-    const bool paired = !std::isnan(a) && !std::isnan(b) && SameInput(first, second, seed);
+    const bool paired = !std::isnan(a) && !std::isnan(b) && SameInput(figure, first, second, seed);
     pair.only_first += !paired && !std::isnan(a) ? 1 : 0;
     pair.only_second += !paired && !std::isnan(b) ? 1 : 0;
     pair.neither += std::isnan(a) && std::isnan(b) ? 1 : 0;

@@ -10,6 +10,7 @@
 #include "eval/dataset/log_tables.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/dataset/stale_parts.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 
@@ -162,6 +163,42 @@ bool HasCamera(const Dataset& dataset) {
   return !dataset.frames.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
 }
 
+/// True when the list of images in the folder is that of the dataset, whose images were put there.
+bool HoldsItsImages(const Dataset& dataset, const fs::path& folder) {
+  std::error_code error;
+  return !dataset.images.empty() &&
+         fs::equivalent(fs::path(dataset.images.front().path).parent_path(), folder / "data", error) &&
+         !error;
+}
+
+/// What another sequence left in the camera folders: the reader would take its tracks, stamps and images for
+/// those of this one. Images stay, which nothing lists any more.
+Status RemoveStaleCameras(const Dataset& dataset, const std::string& mav) {
+  const fs::path first = fs::path(mav) / "cam0";
+  if (!HasCamera(dataset) && dataset.gnss != nullptr) {
+    ALIDADE_RETURN_IF_ERROR(RemoveStaleFolder(first.string()));
+  }
+  if (dataset.frames.empty()) {
+    ALIDADE_RETURN_IF_ERROR(RemoveStaleFiles(first.string(), {"tracks.csv"}));
+  }
+  if (StampsToWrite(dataset).empty()) {
+    ALIDADE_RETURN_IF_ERROR(RemoveStaleFiles(first.string(), {"timestamps.csv"}));
+  }
+  if (!HoldsItsImages(dataset, first)) {
+    // With the list goes what the renderer wrote beside it.
+    ALIDADE_RETURN_IF_ERROR(
+        RemoveStaleFiles(first.string(), {"data.csv", "hall.csv", "exposure.csv", "data_pose.csv"}));
+  }
+  for (const std::string& folder : NumberedFolders(mav, "cam", dataset.extra_cameras.size() + 1)) {
+    if (MayExist((fs::path(folder) / "tracks.csv").string())) {  // without, it is no part of a sequence
+      ALIDADE_RETURN_IF_ERROR(RemoveStaleFiles(folder, {"tracks.csv", "sensor.yaml"}));
+      std::error_code not_empty;
+      fs::remove(folder, not_empty);
+    }
+  }
+  return Status::Ok();
+}
+
 /// Counts before lists: without them a sample could move between lists and leave the bytes unchanged.
 Status AddFrames(const Table<TrackFrame>& frames, LogHasher* hasher) {
   hasher->Add(static_cast<std::uint64_t>(frames.size()));
@@ -198,6 +235,9 @@ std::string ExtraCameraYaml(const Dataset& dataset, size_t k) {
 
 Status WriteCameraFolders(const Dataset& dataset, const std::string& mav) {
   const fs::path first = fs::path(mav) / "cam0";
+  if (!IsItsOwnFolder(dataset, mav)) {
+    ALIDADE_RETURN_IF_ERROR(RemoveStaleCameras(dataset, mav));
+  }
   if (HasCamera(dataset) || dataset.gnss == nullptr) {
     ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((first / "sensor.yaml").string(),
                                                 CameraSensorYaml(dataset.rig, dataset.camera_rate_hz)));

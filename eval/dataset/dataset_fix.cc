@@ -10,6 +10,7 @@
 #include "eval/dataset/sensor_file.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/dataset/stale_parts.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/nmea_reader.h"
@@ -204,6 +205,11 @@ Status ReadFixFolders(const std::string& mav, const DatasetStorage& /*storage*/,
 }
 
 Status WriteFixFolders(const Dataset& dataset, const std::string& mav) {
+  if (!IsItsOwnFolder(dataset, mav)) {
+    for (const std::string& folder : NumberedFolders(mav, "fix", dataset.rig.fixes.size())) {
+      ALIDADE_RETURN_IF_ERROR(RemoveStaleFolder(folder));
+    }
+  }
   for (std::size_t sensor = 0; sensor < dataset.rig.fixes.size(); ++sensor) {
     const fs::path folder = fs::path(mav) / ("fix" + std::to_string(sensor));
     std::string text = "#timestamp [ns],p_x [m],p_y [m],p_z [m],c_xx,c_xy,c_xz,c_yy,c_yz,c_zz [m^2]\n";

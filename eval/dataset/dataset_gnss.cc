@@ -9,6 +9,7 @@
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/dataset/stale_parts.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/files/strict_yaml.h"
@@ -190,10 +191,10 @@ Status ReadGnssFolder(const std::string& mav, const DatasetStorage& /*storage*/,
 }
 
 Status WriteGnssFolder(const Dataset& dataset, const std::string& mav) {
-  if (dataset.gnss == nullptr) {
-    return Status::Ok();
-  }
   const fs::path path = fs::path(mav) / "gnss0";
+  if (dataset.gnss == nullptr) {
+    return IsItsOwnFolder(dataset, mav) ? Status::Ok() : RemoveStaleFolder(path.string());
+  }
   ObservationFile file;
   file.marker = "ALIDADE";
   file.approximate_position_E = dataset.gnss->approximate_position_E;

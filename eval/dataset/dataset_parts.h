@@ -15,7 +15,7 @@ class LogHasher;
 struct DatasetPart {
   /// Reads the part's folders below `mav` into the dataset. Ok without them, unless every sequence has them.
   Status (*read)(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
-  /// Writes the part's folders below `mav`; nothing when the dataset has none of it.
+  /// Writes the part's folders below `mav`, and removes those of another sequence (stale_parts.h).
   Status (*write)(const Dataset& dataset, const std::string& mav);
   /// Adds the part to the digest of a log with these long tables; nothing when the log has none of it.
   /// Errors: the tables'.

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "core/format.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/log_tables.h"
 #include "eval/dataset/sensor_table.h"
+#include "eval/dataset/stale_parts.h"
 #include "eval/files/input_file.h"
 #include "eval/files/output_file.h"
 #include "eval/trajectory/trajectory_reader.h"
@@ -137,13 +139,21 @@ Status ReadTruthFolder(const std::string& mav, const DatasetStorage& storage, Da
 }
 
 Status WriteTruthFolder(const Dataset& dataset, const std::string& mav) {
+  const fs::path folder = fs::path(mav) / "state_groundtruth_estimate0";
+  const bool own = IsItsOwnFolder(dataset, mav);
   if (!dataset.truth.has_value()) {
-    return Status::Ok();
+    return own ? Status::Ok() : RemoveStaleFolder(folder.string());
   }
   const char* name = dataset.truth->has_velocity      ? "data.csv"
                      : dataset.truth->has_orientation ? "data_pose.csv"
                                                       : "data_position.csv";
-  const std::string path = (fs::path(mav) / "state_groundtruth_estimate0" / name).string();
+  for (const char* other : {"data.csv", "data_pose.csv", "data_position.csv"}) {
+    if (!own && std::string_view(other) != name) {
+      const std::string covariance = fs::path(CovariancePath((folder / other).string())).filename().string();
+      ALIDADE_RETURN_IF_ERROR(RemoveStaleFiles(folder.string(), {other, covariance.c_str()}));
+    }
+  }
+  const std::string path = (folder / name).string();
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically(path, TruthCsv(*dataset.truth)));
   if (dataset.truth->has_covariance) {
     return WriteFileAtomically(CovariancePath(path), CovarianceCsv(*dataset.truth));

@@ -8,6 +8,7 @@
 namespace alidade {
 
 /// Writes all but the images of a sequence under `path`. Numbers are the shortest text that reads back equal.
+/// Parts of another sequence there that this one does not have are removed.
 Status WriteDataset(const Dataset& dataset, const std::string& path);
 
 }  // namespace alidade

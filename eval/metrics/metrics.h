@@ -23,7 +23,9 @@ struct RpeResult {
 };
 /// Relative error over sub-trajectories of the given truth path length [m], in the frame of their first pose
 /// (Geiger et al. 2012, Zhang and Scaramuzza 2018): T_truth = T_first^-1 T_last against the estimate's. Every
-/// pair starts one that ends at the pair nearest to the distance, if that is within 10 % of it.
+/// pair from which the path still reaches the distance, to half its last step, starts one that ends at the
+/// pair nearest to the distance, if that is within 10 % of it. A shorter rest of the path counts for nothing:
+/// at the end of every path it would put the error over a shorter distance among those of this one.
 [[nodiscard]] std::vector<RpeResult> ComputeRpe(const std::vector<StatePair>& pairs,
                                                 const std::vector<double>& distances_m);
 

@@ -72,6 +72,9 @@ void Decode(ByteReader* bytes, RunRecord* record) {
 
 Status RecordSpool::Add(const RunRecord& record) {
   if (record.calibration) {
+    if (calibration_columns_.empty()) {
+      calibration_columns_ = CalibrationColumns(*record.calibration);
+    }
     ALIDADE_RETURN_IF_ERROR(calibration_rows_.Append(std::to_string(record.estimate.stamp_ns) +
                                                      CalibrationFields(*record.calibration) + "\n"));
   }

@@ -29,6 +29,8 @@ class RecordSpool {
   Status Turn(const GnssAlignment& alignment);
 
   [[nodiscard]] const Table<RunRecord>& records() const { return records_; }
+  /// CalibrationColumns of the first calibration; empty without one.
+  [[nodiscard]] const std::string& calibration_columns() const { return calibration_columns_; }
   /// Rows of calibration.csv and gnss.csv.
   [[nodiscard]] const SpoolFile& calibration_rows() const { return calibration_rows_; }
   [[nodiscard]] const SpoolFile& satellite_rows() const { return satellite_rows_; }
@@ -36,6 +38,7 @@ class RecordSpool {
  private:
   std::string folder_;
   Table<RunRecord> records_;
+  std::string calibration_columns_;
   SpoolFile calibration_rows_;
   SpoolFile satellite_rows_;
 };

@@ -176,7 +176,11 @@ Status WriteRows(const RunTable& table, const RunResult& result, const AppendTex
 std::vector<RunTable> FilesOf(const RunIdentity& identity, const RunResult& result) {
   const RunRecord* first = FirstRecord(result);
   const bool gnss = HasGnss(result);
-  const bool calibrates = first != nullptr && first->calibration;
+  // The records of a spool have no calibration.
+  std::string calibration = result.spool == nullptr ? "" : result.spool->calibration_columns();
+  if (calibration.empty() && first != nullptr && first->calibration) {
+    calibration = CalibrationColumns(*first->calibration);
+  }
   std::string states = StatesHeader();
   if (gnss) {
     states.insert(states.size() - 1, ClockColumns());
@@ -193,8 +197,7 @@ std::vector<RunTable> FilesOf(const RunIdentity& identity, const RunResult& resu
       {"status.csv", true, StatusHeader(identity.config),
        [&identity](const RunRecord& r, std::string* t) { AppendStatus(r, identity.config, t); }},
       {"observability.csv", identity.audited, ObservabilityHeader(), AppendObservability},
-      {"calibration.csv", calibrates,
-       calibrates ? "timestamp_ns" + CalibrationColumns(*first->calibration) + "\n" : "", AppendCalibration,
+      {"calibration.csv", !calibration.empty(), "timestamp_ns" + calibration + "\n", AppendCalibration,
        calibration_rows},
       {"bound.csv", HasBound(result), BoundHeader(), AppendBound},
       {"trajectory.pos", gnss, gnss ? AntennaHeader() : "",

@@ -68,8 +68,8 @@ const std::map<std::string, std::string>& Fields() {
       {"alidade/Tracks", "std_msgs/Header header\nint64[] track_id\nfloat64[] u_px\nfloat64[] v_px\n"},
       {"alidade/Position", "std_msgs/Header header\ngeometry_msgs/Vector3 position\nfloat64[9] covariance\n"},
       {"alidade/State",
-       "std_msgs/Header header\ngeometry_msgs/Vector3 p_WB\ngeometry_msgs/Quaternion q_WB\nbool "
-       "has_velocity\n"
+       // Row-major: a quaternion would round the rotation.
+       "std_msgs/Header header\ngeometry_msgs/Vector3 p_WB\nfloat64[9] R_WB\nbool has_velocity\n"
        "geometry_msgs/Vector3 v_WB\ngeometry_msgs/Vector3 gyro_bias\ngeometry_msgs/Vector3 accel_bias\n"}};
   return fields;
 }

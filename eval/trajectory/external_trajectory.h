@@ -14,7 +14,7 @@ struct ExternalContext {
   /// stored here.
   std::optional<Eigen::Vector3d> anchor_E;
   double gnss_time_offset_s = 0;      ///< t_imu = t_GPST + offset, for files of geodetic positions
-  std::vector<TimeNs> camera_stamps;  ///< of the sequence, for files without stamps
+  std::vector<TimeNs> camera_stamps;  ///< of the sequence, in IMU time, for files without stamps
   std::optional<Pose> T_BC;           ///< set: the file holds camera poses, which are converted to body poses
 };
 

@@ -170,6 +170,22 @@ TEST_F(CompareCommand, PartsMakeTheWhole) {
             WithoutTimes(ReadFile(folder_.File("whole/summary.csv"))));
 }
 
+// GIVEN the parts of a comparison WHEN the plan asks for other metrics THEN the reports of before do not
+// enter its tables, and the cells run again.
+TEST_F(CompareCommand, PartsOfAnotherPlanAreNotTaken) {
+  ASSERT_EQ(Compare("parts", "--stage=cells").code, 0);
+  ASSERT_EQ(Compare("parts", "--stage=tables").code, 0);
+  std::string text = ReadFile(plan_);
+  text.replace(text.find("rpe: [1, 2]"), 11, "rpe: [3]   ");
+  folder_.Write("plan.yaml", text);
+  const CommandResult stale = Compare("parts", "--stage=tables");
+  EXPECT_EQ(stale.code, 7);
+  EXPECT_THAT(stale.output, HasSubstr("of another plan or configuration"));
+  ASSERT_EQ(Compare("parts", "--stage=cells").code, 0);
+  EXPECT_EQ(Compare("parts", "--stage=tables").code, 0);
+  EXPECT_THAT(ReadFile(folder_.File("parts/summary.csv")), HasSubstr("rpe_3"));
+}
+
 // GIVEN a sequence with settings for the estimators WHEN compared THEN they hold there and only there.
 TEST_F(CompareCommand, ASequenceMaySetItsOwnNoise) {
   folder_.Write("plan.yaml",

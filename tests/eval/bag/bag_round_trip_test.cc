@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <sstream>
 
 #include "eval/bag/bag_export.h"
 #include "eval/bag/bag_import.h"
@@ -10,6 +12,7 @@
 #include "eval/dataset/digest.h"
 #include "eval/dataset/png_image.h"
 #include "eval/rosbag/gnss_receiver_messages.h"
+#include "eval/rosbag/ros_message.h"
 #include "eval/rosbag/ros_sensor_messages.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
@@ -144,6 +147,29 @@ TEST(BagMessages, AStateWithoutARotationIsRefused) {
   point.nav.R_WB(0, 0) = 1;
   point.bias.accel.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(DecodeState(EncodeState(point, true)));
+}
+
+/// Bytes of a message whose arrays have fixed lengths and whose strings are empty, by its definition.
+size_t SizeByDefinition(const std::string& type) {
+  static const std::map<std::string, size_t> sizes = {{"bool", 1},    {"uint8", 1}, {"uint32", 4},
+                                                      {"float64", 8}, {"time", 8},  {"string", 4}};
+  const std::string definition = RosDefinition(type);
+  EXPECT_FALSE(definition.empty()) << type;
+  std::istringstream fields(definition.substr(0, definition.find("\n=")));
+  size_t size = 0;
+  for (std::string field, name; fields >> field >> name;) {
+    const size_t bracket = field.find('[');
+    const std::string base = field.substr(0, bracket);
+    const size_t count = bracket == std::string::npos ? 1 : std::stoul(field.substr(bracket + 1));
+    size += count * (sizes.count(base) != 0 ? sizes.at(base) : SizeByDefinition(base));
+  }
+  return size;
+}
+
+// GIVEN the definition in a bag, by which other programs read it, THEN the messages are as long as it says.
+TEST(BagMessages, AreAsLongAsTheirDefinitions) {
+  EXPECT_EQ(EncodeState(TrajectoryPoint(), true).size(), SizeByDefinition("alidade/State"));
+  EXPECT_EQ(EncodeImu(ImuSample()).size(), SizeByDefinition("sensor_msgs/Imu"));
 }
 
 TEST(BagMessages, AnIonosphereHasEightParameters) {

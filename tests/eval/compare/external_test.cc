@@ -74,6 +74,26 @@ TEST_F(External, KittiTakesTheStampsOfTheCameraAndItsFrame) {
   EXPECT_LT((nav.R_WB * context_.T_BC->rotation - kTurn).norm(), 1e-12);
 }
 
+// GIVEN a camera whose stamps are 13 ms before IMU time THEN the rows of its frames are in IMU time, as truth
+// is.
+TEST_F(External, KittiRowsOfACellAreInImuTime) {
+  PlanEstimator estimator;
+  PlanSequence sequence;
+  sequence.name = "seq";
+  estimator.trajectories["seq"] =
+      folder_.Write("kitti.txt", "1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 1 0 1 0 2 0 0 1 4\n");
+  MeasurementLog log;
+  log.rig.camera_time_offset_s = 0.013;
+  log.frames.resize(2);
+  log.frames[0].stamp_ns = kSecondNs;
+  log.frames[1].stamp_ns = 2 * kSecondNs;
+  const Result<ExternalOutcome> outcome =
+      TrajectoryOfExternal({estimator, sequence, 1, log, nullptr, "", ""}, false, nullptr);
+  ASSERT_TRUE(outcome.ok()) << outcome.message();
+  EXPECT_EQ(outcome->trajectory.points[0].stamp_ns, kSecondNs + 13'000'000);
+  EXPECT_EQ(outcome->trajectory.points[1].stamp_ns, 2 * kSecondNs + 13'000'000);
+}
+
 TEST_F(External, PositionFilesAreEnuInImuTime) {
   context_.gnss_time_offset_s = -18;
   const Result<Trajectory> t = Read("a.pos",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "core/estimator_config.h"
@@ -180,6 +181,32 @@ TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
     EXPECT_THAT(plan.message(), HasSubstr(expected)) << text;
     EXPECT_THAT(plan.message(), HasSubstr("plan.yaml")) << text;
   }
+}
+
+// GIVEN a plan in a folder of its sequence WHEN it is read from there THEN the name is that of the folder to
+// which ".." leads: as a name, ".." would be the folder of all cells.
+TEST_F(PlanTest, ANameThatFollowsFromAPathIsTheNameOfAFolder) {
+  folder_.Write("data/seq/plans/plan.yaml",
+                "estimators: [../../../estimators/a.yaml]\nsequences: [{path: ..}]\n");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.File("data/seq/plans"));
+  const Result<Plan> plan = ReadPlan("plan.yaml", "");
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_EQ(plan->sequences[0].name, "seq");
+
+  folder_.Write("data/my walk/mav0/x", "");
+  folder_.Write("estimators/a b.yaml", "name: a\n");
+  const std::string estimators = "estimators: [estimators/a.yaml]\n";
+  EXPECT_EQ(Read(estimators + "sequences: [{path: data/seq/}]\n")->sequences[0].name, "seq");
+  const Result<Plan> spaced = Read(estimators + "sequences:\n  - {path: data/my walk}\n");
+  EXPECT_EQ(spaced.code(), StatusCode::kConfig);
+  EXPECT_THAT(spaced.message(),
+              HasSubstr("plan.yaml:3:5: sequences: found a group of keys, expected a `name` "
+                        "beside it: 'my walk', which follows from the path"));
+  EXPECT_TRUE(Read(estimators + "sequences: [{path: data/my walk, name: walk}]\n").ok());
+  EXPECT_THAT(Read("estimators: [estimators/a b.yaml]\nsequences: [{config: sim.yaml}]\n").message(),
+              HasSubstr("plan.yaml:1:14: estimators: found 'estimators/a b.yaml', expected a `name`"));
 }
 
 TEST_F(PlanTest, MissingFileIsAConfigurationFault) {

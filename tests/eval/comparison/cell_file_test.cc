@@ -19,6 +19,7 @@ constexpr double kThird = 1.0 / 3;
 CellReport Report() {
   CellReport report;
   report.reused = true;
+  report.digest = "d";
   report.frontend = FrontendSummary{"seq", 7, 12, 34, kThird, 5, 6.5, NAN, 0.25, 0, 1.5, 2.5};
   report.remarks = {"a remark", ""};
   CellResult& cell = report.result;

@@ -35,21 +35,35 @@ TEST(CellProgress, GivenALostRunThenCompletionAndSpeedAreOfWhatItCovered) {
   }
   CellResult cell;
   cell.status = "diverged";
-  ScoreProgress(records, Frames(), &cell);
+  ScoreProgress(records, Frames(), 0, &cell);
   EXPECT_DOUBLE_EQ(*cell.completion, 0.3);
   EXPECT_DOUBLE_EQ(*cell.realtime_factor, 3 / (32 * 5e-3));
 }
 
+// GIVEN a camera whose clock is a second behind the IMU's WHEN all of its frames have an estimate, in IMU
+// time, THEN everything is completed.
+TEST(CellProgress, GivenACameraClockOfItsOwnThenItsFramesAreMeantInImuTime) {
+  std::vector<TimeNs> rows_ns;
+  for (const TrackFrame& frame : Frames()) {
+    rows_ns.push_back(frame.stamp_ns + kSecondNs);
+  }
+  CellResult cell;
+  ScoreCompletion(rows_ns, Frames(), 1, &cell);
+  EXPECT_DOUBLE_EQ(*cell.completion, 1);
+  ScoreCompletion(rows_ns, Frames(), 0, &cell);
+  EXPECT_DOUBLE_EQ(*cell.completion, 0.9);
+}
+
 TEST(CellProgress, GivenNoRecordThenNothingIsCompletedAndTheSpeedIsUnknown) {
   CellResult cell;
-  ScoreProgress({}, Frames(), &cell);
+  ScoreProgress({}, Frames(), 0, &cell);
   EXPECT_EQ(cell.completion, 0.0);
   EXPECT_FALSE(cell.realtime_factor.has_value());
 }
 
 TEST(CellProgress, GivenNoCameraThenBothAreUnknown) {
   CellResult cell;
-  ScoreProgress({Record(0, 0, 1), Record(100, 0, 1)}, {}, &cell);
+  ScoreProgress({Record(0, 0, 1), Record(100, 0, 1)}, {}, 0, &cell);
   EXPECT_FALSE(cell.completion.has_value());
   EXPECT_FALSE(cell.realtime_factor.has_value());
 }

@@ -197,6 +197,32 @@ TEST(ComparePairs, GivenRunsOfDifferentInputThenTheyAreNoPair) {
   EXPECT_EQ(PairOf(comparison, "rmse_pos_m", "walk").difference.count, 1);
 }
 
+// GIVEN runs of which some were killed, before anything said what their input was, WHEN completion is
+// compared THEN all are pairs, and of a figure of finished runs only those that finished.
+TEST(ComparePairs, GivenKilledRunsThenTheirCompletionIsPaired) {
+  Comparison comparison;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    for (const char* name : {"a", "b"}) {
+      comparison.cells.push_back(Cell(name, seed, name[0] == 'a' ? 1 : 2));
+      comparison.cells.back().completion = 1;
+    }
+  }
+  for (CellResult* killed : {&comparison.cells[1], &comparison.cells[3]}) {  // b, seeds 1 and 2
+    killed->status = "failed";
+    killed->input_digest.clear();
+    killed->completion.reset();
+  }
+  comparison.cells[5].input_digest = "other";  // b, seed 3
+  const PairedDifference completed = PairOf(comparison, "completion", "walk");
+  EXPECT_EQ(completed.difference.count, 3);
+  EXPECT_EQ(completed.only_first, 1);
+  EXPECT_EQ(completed.only_second, 1);
+  EXPECT_NEAR(completed.difference.mean, 2.0 / 3, 1e-12);
+  const PairedDifference error = PairOf(comparison, "rmse_pos_m", "walk");
+  EXPECT_EQ(error.difference.count, 1);
+  EXPECT_EQ(error.only_first, 3);
+}
+
 TEST(ComparePairs, GivenANeesThenHigherIsNotCalledWorse) {
   Comparison comparison;
   for (unsigned seed = 1; seed <= 3; ++seed) {

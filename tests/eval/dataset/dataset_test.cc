@@ -86,6 +86,78 @@ TEST(Dataset, WhenWrittenAndReadThenMeasurementsAreEqualToTheLastBit) {
   }
 }
 
+/// SmallDataset with all that a sequence may have beside it, written to `folder`; GNSS as files alone.
+void WriteFullSequence(const test::TemporaryFolder& folder) {
+  Dataset full = SmallDataset();
+  full.extra_cameras.push_back({full.rig.camera, full.rig.T_BC, 0, full.frames});
+  full.rig.fixes.resize(2);
+  for (int i = 0; i < 4; ++i) {
+    full.fixes.push_back({full.imu.front().stamp_ns + i * TimeNs{10'000'000}, i % 2, Eigen::Vector3d(1, 2, i),
+                          Eigen::Matrix3d::Identity()});
+  }
+  ASSERT_TRUE(WriteDataset(full, folder.path()).ok());
+  folder.Write("mav0/gnss0/sensor.yaml", "observations: obs.rnx\n");
+  folder.Write("mav0/cam0/hall.csv", "#shape\n");
+  folder.Write("mav0/cam0/data.csv", "#timestamp [ns],filename\n1,1.png\n");
+  folder.Write("mav0/cam5/data/1.png", "of a camera that is no part of the sequence");
+  folder.Write("mav0/notes.txt", "of the user");
+}
+
+bool Exists(const test::TemporaryFolder& folder, const std::string& name) {
+  return std::filesystem::exists(folder.File("mav0/" + name));
+}
+
+// GIVEN a sequence with everything WHEN one with less is written over it THEN what is read is the new one.
+TEST(Dataset, WhenWrittenOverAnotherThenNothingOfThatOneIsRead) {
+  const test::TemporaryFolder folder;
+  WriteFullSequence(folder);
+  Dataset written = SmallDataset();
+  written.truth->has_velocity = written.truth->has_bias = false;
+  written.frames[2].observations = {{99, {1, 2}}};  // all frames see something: no timestamps.csv
+  ASSERT_TRUE(WriteDataset(written, folder.path()).ok());
+  const Result<Dataset> read = ReadDataset(folder.path());
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_EQ(DigestOf(LogOf(written)), DigestOf(LogOf(*read)));
+  EXPECT_EQ(read->gnss, nullptr);
+  EXPECT_TRUE(read->fixes.empty() && read->rig.fixes.empty());
+  EXPECT_TRUE(read->extra_cameras.empty() && read->images.empty() && read->camera_stamps.empty());
+  EXPECT_FALSE(read->truth->has_velocity);
+  for (const char* stale : {"gnss0", "fix0", "fix1", "cam1", "cam0/hall.csv", "cam0/data.csv",
+                            "cam0/timestamps.csv", "state_groundtruth_estimate0/data.csv"}) {
+    EXPECT_FALSE(Exists(folder, stale)) << stale;
+  }
+  EXPECT_TRUE(Exists(folder, "cam5/data/1.png") && Exists(folder, "notes.txt"));
+}
+
+// GIVEN images that were just put there, as a bag's are, THEN their list stays and the old tracks go; without
+// truth the old one goes.
+TEST(Dataset, WhenImagesAreWrittenOverTracksThenTheTracksAreGone) {
+  const test::TemporaryFolder folder;
+  WriteFullSequence(folder);
+  Dataset written = SmallDataset();
+  written.frames.clear();
+  written.truth.reset();
+  written.images = {{1, folder.Write("mav0/cam0/data/1.png", "")}};
+  ASSERT_TRUE(WriteDataset(written, folder.path()).ok());
+  EXPECT_TRUE(Exists(folder, "cam0/data.csv") && Exists(folder, "cam0/sensor.yaml"));
+  EXPECT_FALSE(Exists(folder, "cam0/tracks.csv") || Exists(folder, "cam0/timestamps.csv"));
+  EXPECT_FALSE(Exists(folder, "state_groundtruth_estimate0"));
+}
+
+// GIVEN a sequence that is written back to its own folder THEN what the dataset does not hold stays.
+TEST(Dataset, WhenWrittenInPlaceThenNothingIsRemoved) {
+  const test::TemporaryFolder folder;
+  WriteFullSequence(folder);
+  Dataset written = SmallDataset();
+  written.path = folder.path();
+  written.truth.reset();
+  ASSERT_TRUE(WriteDataset(written, folder.path()).ok());
+  for (const char* kept : {"gnss0/sensor.yaml", "fix1/data.csv", "cam1/tracks.csv", "cam0/hall.csv",
+                           "cam0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
+    EXPECT_TRUE(Exists(folder, kept)) << kept;
+  }
+}
+
 TEST(Dataset, WhenOneBitOfTheLogChangesThenItsDigestChanges) {
   const MeasurementLog log = LogOf(SmallDataset());
   const std::string digest = DigestOf(log);

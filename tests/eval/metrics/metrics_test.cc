@@ -90,6 +90,14 @@ TEST(Rpe, EndsAtThePairNearestToTheDistance) {
   EXPECT_NEAR(ComputeRpe(StraightLine(100, 1, 2), {20.6})[0].pos_rmse_m, 21, 1e-9);
 }
 
+// GIVEN a path that ends before the distance THEN it gives no pair, although its whole length is within 10 %
+// of it, unless half a step is all that is missing.
+TEST(Rpe, OfAPathThatEndsBeforeTheDistanceIsNotANumber) {
+  EXPECT_EQ(ComputeRpe(StraightLine(77, 0.1, 1.1), {8})[0].count, 0);  // 7.6 m
+  EXPECT_EQ(ComputeRpe(StraightLine(77, 0.1, 1.1), {7.64})[0].count, 1);
+  EXPECT_EQ(ComputeRpe(StraightLine(77, 0.1, 1.1), {7.66})[0].count, 0);
+}
+
 TEST(Rpe, OfADistanceThatThePairsCannotResolveOrReachIsNotANumber) {
   const std::vector<double> distances = {0.3, 100, 0, -1, NAN, INFINITY};
   for (const RpeResult& rpe : ComputeRpe(StraightLine(50, 1, 1.1), distances)) {

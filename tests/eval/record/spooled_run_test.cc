@@ -10,6 +10,7 @@
 #include "eval/config/config_yaml.h"
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/dataset_writer.h"
+#include "eval/record/record_spool.h"
 #include "eval/record/recorder.h"
 #include "eval/record/run_options.h"
 #include "eval/record/runner.h"
@@ -93,6 +94,29 @@ TEST_P(SpooledRun, TurnsWhatItHasPutAway) {
       Preset("gvio", {std::string("backend=") + GetParam(), "init.method=truth", "gnss.model_std_scale=0",
                       "gnss.pseudorange_std_m=0.5", "smoother.window=6", "gnss.align_min_epochs=20"});
   ExpectTheSameFiles(config, dataset, {"states.csv", "trajectory.pos", "gnss.csv", "status.csv"});
+}
+
+// GIVEN a run that calibrates WHEN an alignment turns the records that were put away, and with them goes the
+// calibration that the first one had, THEN its calibration is written all the same.
+TEST(SpooledRun, KeepsTheCalibrationOfRecordsThatAreTurned) {
+  const test::TemporaryFolder folder;
+  const EstimatorConfig config =
+      Preset("alidade_filter", {"calibration.watch=false", "calibration.time_offset=true"});
+  RunResult result;
+  result.spool = std::make_shared<RecordSpool>(folder.path());
+  for (int i = 0; i < 3; ++i) {
+    RunRecord record;
+    record.estimate.stamp_ns = i + 1;
+    record.status = "local";
+    record.calibration = InitialCalibration(config.calibration, CameraCalibration());
+    ASSERT_TRUE(result.spool->Add(record).ok());
+  }
+  const std::string columns = CalibrationColumns(*result.spool->records().front().calibration);
+  ASSERT_TRUE(result.spool->Turn(GnssAlignment()).ok());
+  ASSERT_TRUE(WriteRun({config, "name", "dd", "ii", 1, 2, 3, false}, result, folder.File("run")).ok());
+  const std::string text = test::ReadFile(folder.File("run/calibration.csv"));
+  EXPECT_THAT(text, testing::StartsWith("timestamp_ns" + columns + "\n1,"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
 }
 
 /// Bytes in use, by whatever kind of allocation.
