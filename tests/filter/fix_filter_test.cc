@@ -116,6 +116,7 @@ TEST(FixFilter, AFixCorrectsTheReceiversClock) {
   constexpr TimeNs sky_ns = 1'700'000'100 * kSecondNs;
   const NavigationData sky = SyntheticSky(sky_ns);
   EstimatorConfig config;
+  config.gnss.enabled = true;
   config.gnss.corrections.ionosphere = IonosphereMode::kNone;
   const auto builder = std::make_shared<const MeasurementBuilder>(std::make_shared<SatelliteCatalog>(sky),
                                                                   config.gnss.corrections);
