@@ -285,7 +285,8 @@ TEST(RinexObservationTest, RealFilesAreReadWhole) {
 TEST(RinexObservationTest, LeapSecondsCountedFromBdtAreRightToo) {
   std::string header = kHeader3;
   const std::string of_gps = HeaderLine("    18", "LEAP SECONDS");
-  header.replace(header.find(of_gps), of_gps.size(), HeaderLine("     4    18   753     7BDS", "LEAP SECONDS"));
+  header.replace(header.find(of_gps), of_gps.size(),
+                 HeaderLine("     4    18   753     7BDS", "LEAP SECONDS"));
   const ObservationFile file =
       Parse(header + "> 2020 06 25 00 00 30.0000000  0  1\n" + Satellite("G07", 2.1e7));
   EXPECT_EQ(file.warnings.count, 0);
