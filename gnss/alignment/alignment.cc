@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/format.h"
 #include "core/robust.h"
@@ -47,7 +48,7 @@ NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estim
 }
 
 GnssAligner::GnssAligner(const GnssConfig& config, const GnssReceiver& receiver)
-    : config_(config), receiver_(receiver) {}
+    : config_(config), receiver_(receiver), matcher_(config.align_window_s) {}
 
 void GnssAligner::AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& bias,
                            const Vector3d& gyro_radps, const Eigen::Matrix3d& velocity_covariance_W) {
@@ -57,7 +58,7 @@ void GnssAligner::AddState(TimeNs stamp_ns, const NavState& nav, const ImuBias& 
   state.bias = bias;
   state.gyro_radps = gyro_radps;
   state.velocity_covariance_W = velocity_covariance_W;
-  states_.Add(state);
+  matcher_.AddState(std::move(state));
   MatchEpochs();
 }
 
@@ -72,32 +73,24 @@ void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>
                   [&](const SatelliteMeasurement& m) { return Refused(*solution, m.satellite); });
   }
   if (static_cast<int>(taken.measurements.satellites.size()) >= config_.align_min_satellites) {
-    pending_.push_back(std::move(taken));
+    matcher_.AddMessage(std::move(taken));
     any_epoch_ = true;
   }
+  matcher_.DropOld(epoch.stamp_ns);  // one with too few satellites tells the time too
   MatchEpochs();
-  // Without a state there is nothing to match; what waits is bounded all the same.
-  while (!pending_.empty() &&
-         SecondsBetween(pending_.front().stamp_ns, epoch.stamp_ns) > config_.align_window_s) {
-    pending_.pop_front();
-  }
 }
 
 void GnssAligner::ForgetEstimate() {
-  states_ = StateHistory();
+  matcher_.ForgetStates();
   samples_.clear();
 }
 
-/// Moves pending epochs that two states embrace to the samples, with the state interpolated between them.
 void GnssAligner::MatchEpochs() {
-  while (!pending_.empty() && states_.Reaches(pending_.front().stamp_ns)) {
-    if (const std::optional<AlignmentState> state = states_.At(pending_.front().stamp_ns)) {
-      samples_.push_back({*state, std::move(pending_.front().measurements)});
-      located_ = false;
-    }
-    pending_.pop_front();
+  while (std::optional<StateMatcher<GnssEpoch>::Match> match = matcher_.Next()) {
+    samples_.push_back({match->state, std::move(match->message.measurements)});
+    located_ = false;
   }
-  const TimeNs newest = states_.empty() ? 0 : states_.newest().stamp_ns;
+  const TimeNs newest = matcher_.states().empty() ? 0 : matcher_.states().newest().stamp_ns;
   const TimeNs oldest = newest - SecondsToNs(config_.align_window_s);
   while (!samples_.empty() && samples_.front().state.stamp_ns < oldest) {
     samples_.pop_front();

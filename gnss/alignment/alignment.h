@@ -9,7 +9,7 @@
 #include "core/rig_calibration.h"
 #include "core/yaw_shift.h"
 #include "gnss/alignment/alignment_fit.h"
-#include "gnss/alignment/state_history.h"
+#include "gnss/alignment/state_matcher.h"
 #include "gnss/positioning/single_point_solution.h"
 
 namespace alidade {
@@ -77,8 +77,7 @@ class GnssAligner {
 
   GnssConfig config_;
   GnssReceiver receiver_;
-  StateHistory states_;
-  std::deque<GnssEpoch> pending_;
+  StateMatcher<GnssEpoch> matcher_;
   std::deque<AlignmentSample> samples_;
   std::optional<Eigen::Vector3d> approximate_E_;
   std::shared_ptr<const MeasurementBuilder> builder_;

@@ -61,7 +61,7 @@ struct FixAligner::Fit {
 
 FixAligner::FixAligner(const FixConfig& config, std::vector<FixSensor> sensors,
                        const std::optional<EnuFrame>& enu)
-    : config_(config), sensors_(std::move(sensors)), enu_(enu) {}
+    : config_(config), sensors_(std::move(sensors)), enu_(enu), matcher_(config.align_window_s) {}
 
 void FixAligner::AddState(const NavEstimate& estimate) {
   AlignmentState state;
@@ -70,39 +70,32 @@ void FixAligner::AddState(const NavEstimate& estimate) {
   state.bias = estimate.bias;
   state.velocity_covariance_W = estimate.covariance.block<3, 3>(6, 6);
   state.position_covariance_W = estimate.covariance.block<3, 3>(3, 3);
-  states_.Add(std::move(state));
+  matcher_.AddState(std::move(state));
   MatchFixes();
 }
 
 void FixAligner::AddFix(const PositionFix& fix) {
-  pending_.push_back(fix);
+  matcher_.AddMessage(fix);
   MatchFixes();
-  // Without a state there is nothing to match; what waits is bounded all the same.
-  while (!pending_.empty() &&
-         SecondsBetween(pending_.front().stamp_ns, fix.stamp_ns) > config_.align_window_s) {
-    pending_.pop_front();
-  }
 }
 
 void FixAligner::ForgetEstimate() {
-  states_ = StateHistory();
+  matcher_.ForgetStates();
   samples_.clear();
 }
 
 void FixAligner::MatchFixes() {
-  while (!pending_.empty() && states_.Reaches(pending_.front().stamp_ns)) {
-    const PositionFix& fix = pending_.front();
+  while (const std::optional<StateMatcher<PositionFix>::Match> match = matcher_.Next()) {
+    const PositionFix& fix = match->message;
     const Vector3d& p_BA = sensors_[static_cast<std::size_t>(fix.sensor)].p_BA;
-    const std::optional<AlignmentState> state = states_.At(fix.stamp_ns);
     const Result<FixMeasurement> measurement = MakeFixMeasurement(config_, p_BA, fix);
-    if (state && measurement.ok()) {
-      samples_.push_back({*state, *measurement, measurement->model.Predict(state->nav)});
+    if (measurement.ok()) {
+      samples_.push_back({match->state, *measurement, measurement->model.Predict(match->state.nav)});
     }
-    pending_.pop_front();
   }
-  while (!samples_.empty() && !states_.empty() &&
-         SecondsBetween(samples_.front().state.stamp_ns, states_.newest().stamp_ns) >
-             config_.align_window_s) {
+  const StateHistory& states = matcher_.states();
+  while (!samples_.empty() && !states.empty() &&
+         SecondsBetween(samples_.front().state.stamp_ns, states.newest().stamp_ns) > config_.align_window_s) {
     samples_.pop_front();
   }
 }

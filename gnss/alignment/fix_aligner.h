@@ -8,7 +8,7 @@
 #include "core/fix_config.h"
 #include "core/position_fix.h"
 #include "gnss/alignment/alignment.h"
-#include "gnss/alignment/state_history.h"
+#include "gnss/alignment/state_matcher.h"
 
 namespace alidade {
 
@@ -63,8 +63,7 @@ class FixAligner {
   FixConfig config_;
   std::vector<FixSensor> sensors_;
   std::optional<EnuFrame> enu_;
-  StateHistory states_;
-  std::deque<PositionFix> pending_;
+  StateMatcher<PositionFix> matcher_;
   std::deque<Sample> samples_;
   TimeNs tried_ns_ = INT64_MIN;
   std::string report_;
