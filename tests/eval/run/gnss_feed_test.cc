@@ -50,6 +50,25 @@ TEST(GnssFeedTest, TheOrderOfArrivalDoesNotMatter) {
   EXPECT_EQ(swapped.Add(at(0)), GnssFeed::Arrival::kTooLate);
 }
 
+// GIVEN a receiver whose time is behind the IMU's, THEN an epoch's stamp is its true time and the offset, and
+// a correction of the offset moves the epoch at hand and those after it.
+TEST(GnssFeedTest, StampsContainTheTimeOffset) {
+  const Dataset dataset = SimulateGnss();
+  const auto& epochs = dataset.gnss->epochs;
+  ASSERT_GE(epochs.size(), 4u);
+  GnssFeed feed(GnssConfig(), SetupOf(*dataset.gnss), 0.25);
+  for (size_t i = 0; i < 4; ++i) {
+    feed.Add(std::shared_ptr<const ObservationEpoch>(dataset.gnss, &epochs[i]));
+    ASSERT_TRUE(feed.Next() != nullptr && feed.solution());
+    if (i == 2) {
+      feed.ShiftTime(-0.05);
+    }
+    EXPECT_EQ(feed.Next()->measurements.tag_ns, epochs[i].stamp_ns);
+    EXPECT_EQ(feed.Next()->stamp_ns, feed.solution()->stamp_ns + SecondsToNs(i < 2 ? 0.25 : 0.2)) << i;
+    feed.Pop();
+  }
+}
+
 TEST(GnssFeedTest, SecondEpochOfATagIsRefused) {
   const Dataset dataset = SimulateGnss();
   GnssFeed feed(GnssConfig(), SetupOf(*dataset.gnss), 0);

@@ -23,6 +23,7 @@ struct Walk {
   double sway_mps = 0;               ///< and by how much that turns, once in 3 s
   double velocity_std_mps = 0;       ///< as it says itself
   Vector3d p_NW = Vector3d(3, -2, 1);
+  double time_offset_s = 0;  ///< t_imu = t_GPST + offset
   EnuFrame enu = EnuFrame::At(Vector3d(3582105, 532590, 5232755));
   NavigationData sky = test::SyntheticSky(kStart);
   GnssConfig config = MakeConfig();
@@ -37,6 +38,9 @@ struct Walk {
     return config;
   }
 
+  [[nodiscard]] TimeNs ImuTime(double t) const {
+    return kStart + SecondsToNs(t) + SecondsToNs(time_offset_s);
+  }
   [[nodiscard]] NavState Global(double t) const {
     const double phase = speed_mps / radius_m * t + wobble_rad * std::sin(2 * t);
     const double rate = speed_mps / radius_m + 2 * wobble_rad * std::cos(2 * t);
@@ -78,22 +82,23 @@ struct Walk {
       *signal.pseudorange_m += 0.3 * std::sin(7.0 * static_cast<double>(i) + 13 * t);
       *signal.doppler_hz += 0.1 * std::cos(5.0 * static_cast<double>(i) + 11 * t);
     }
-    return {receiver.stamp_ns, builder->Prepare(observed), builder};
+    return {ImuTime(t), builder->Prepare(observed), builder};
   }
 };
 
-/// Feeds `seconds` of states at 10 Hz and epochs at 1 Hz, between the states, and stops at the alignment.
-std::optional<GnssAlignment> Follow(const Walk& walk, double seconds, std::size_t satellites,
-                                    GnssAligner* aligner) {
+/// Feeds states at 10 Hz and epochs at 1 Hz, between the states, from the second `first` on until `last`, and
+/// stops at the alignment.
+std::optional<GnssAlignment> FollowFrom(const Walk& walk, int first, double last, std::size_t satellites,
+                                        GnssAligner* aligner) {
   const Vector3d approximate = walk.enu.ToEcef(Vector3d(200, -300, 50));
-  int epochs = 0;
-  for (int i = 0; i * 0.1 < seconds; ++i) {
+  int epochs = first;
+  for (int i = 10 * first; i * 0.1 < last; ++i) {
     const double t = 0.1 * i;
     const Vector3d gyro(0, 0, walk.speed_mps / walk.radius_m);
     for (; epochs + 0.537 < t; ++epochs) {
       aligner->AddEpoch(walk.Epoch(epochs + 0.537, satellites), approximate);
     }
-    aligner->AddState(kStart + SecondsToNs(t), walk.Local(t), ImuBias(), gyro, walk.VelocityCovariance());
+    aligner->AddState(walk.ImuTime(t), walk.Local(t), ImuBias(), gyro, walk.VelocityCovariance());
     if (auto alignment = aligner->TryAlign()) {
       return alignment;
     }
@@ -101,8 +106,14 @@ std::optional<GnssAlignment> Follow(const Walk& walk, double seconds, std::size_
   return std::nullopt;
 }
 
+std::optional<GnssAlignment> Follow(const Walk& walk, double seconds, std::size_t satellites,
+                                    GnssAligner* aligner) {
+  return FollowFrom(walk, 0, seconds, satellites, aligner);
+}
+
 GnssReceiver AtAnchor(const Walk& walk) {
   GnssReceiver receiver;
+  receiver.time_offset_s = walk.time_offset_s;
   receiver.anchor_E = walk.enu.origin_E;
   return receiver;
 }
@@ -206,6 +217,54 @@ TEST(GnssAlignerTest, GIVEN_stamps_50_ms_late_WHEN_asked_THEN_the_offset_is_foun
   }
   ASSERT_TRUE(alignment) << aligner.report();
   EXPECT_NEAR(alignment->time_offset_s, 0.05, 0.02);
+}
+
+// GIVEN a receiver whose time is not the IMU's, as its sheet says, THEN an epoch meets the state at its
+// stamp, which contains the offset, and neither that at its tag nor one that the offset is added to once
+// more.
+TEST(GnssAlignerTest, GIVEN_a_time_offset_THEN_the_state_is_that_at_the_epochs_IMU_time) {
+  Walk walk;
+  walk.radius_m = 2;
+  walk.speed_mps = 3;  // 0.25 s turn the path by 0.375 rad
+  GnssAligner together(walk.config, AtAnchor(walk));
+  const auto expected = Follow(walk, 30, 40, &together);
+  ASSERT_TRUE(expected) << together.report();
+  EXPECT_LT(std::abs(expected->yaw_rad - walk.yaw_rad), 0.1);
+  for (const double offset_s : {0.25, -18.0}) {
+    walk.time_offset_s = offset_s;
+    GnssAligner aligner(walk.config, AtAnchor(walk));
+    const auto alignment = Follow(walk, 30, 40, &aligner);
+    ASSERT_TRUE(alignment) << offset_s << ": " << aligner.report();
+    EXPECT_EQ(alignment->stamp_ns - expected->stamp_ns, SecondsToNs(offset_s));
+    EXPECT_NEAR(alignment->yaw_rad, expected->yaw_rad, 1e-9);
+    EXPECT_LT((alignment->p_NW - expected->p_NW).norm(), 1e-6);
+  }
+}
+
+// GIVEN an estimate that is lost 1 s before the next one, which stands elsewhere, and an epoch in between,
+// THEN the alignment is that of an aligner that has seen the next one alone.
+TEST(GnssAlignerTest, GIVEN_a_lost_estimate_THEN_nothing_of_it_is_in_the_alignment) {
+  constexpr int kNext = 9;
+  Walk walk;
+  walk.config.align_min_epochs = 12;
+  Walk lost = walk;
+  lost.yaw_rad = -1.8;
+  lost.p_NW = Vector3d(-40, 25, 3);
+  GnssAligner aligner(walk.config, AtAnchor(walk));
+  EXPECT_FALSE(Follow(lost, kNext - 1, 40, &aligner));
+  EXPECT_NE(aligner.report().find("8 epochs"), std::string::npos) << aligner.report();
+  aligner.AddEpoch(walk.Epoch(kNext - 0.463, 40), walk.enu.ToEcef(Vector3d(200, -300, 50)));
+  aligner.ForgetEstimate();
+  GnssAligner fresh(walk.config, AtAnchor(walk));
+  const auto alignment = FollowFrom(walk, kNext, 45, 40, &aligner);
+  const auto expected = FollowFrom(walk, kNext, 45, 40, &fresh);
+  ASSERT_TRUE(expected) << fresh.report();
+  ASSERT_TRUE(alignment) << aligner.report();
+  EXPECT_EQ(alignment->report, expected->report);
+  EXPECT_EQ(alignment->stamp_ns, expected->stamp_ns);
+  EXPECT_NEAR(alignment->yaw_rad, expected->yaw_rad, 1e-9);
+  EXPECT_LT((alignment->p_NW - expected->p_NW).norm(), 1e-6);
+  EXPECT_LT(std::abs(alignment->yaw_rad - walk.yaw_rad), 0.1);
 }
 
 TEST(TurnIntoEnuTest, TurnsAndWidens) {
