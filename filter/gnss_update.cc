@@ -81,7 +81,8 @@ bool GnssUpdate::Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps
     return true;
   }
   const double step = CommonStep(rows_);
-  const double clock_std = std::sqrt(Clock(*state).covariance(ClockState::kClock, ClockState::kClock));
+  const Matrix6d clock = state->covariance().PoseBlock(state->ClockOffset(), state->ClockOffset());
+  const double clock_std = std::sqrt(clock(ClockState::kClock, ClockState::kClock));
   if (IsClockJump(config_, rows_, step, clock_std)) {
     ResetClock(step, state);
     statistics->clock_jump = true;
