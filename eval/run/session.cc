@@ -12,18 +12,7 @@ namespace alidade {
 Result<std::unique_ptr<Session>> Session::Make(const EstimatorConfig& config, const RigCalibration& rig,
                                                SessionOptions options) {
   ALIDADE_RETURN_IF_ERROR(config.Validate());
-  if (config.init.method == InitMethod::kTruth && options.camera && !options.start_state) {
-    return Status::Config(
-        "init.method: found truth, but no state was given; expected static, dynamic or auto, or "
-        "SessionOptions::start_state");
-  }
-  if (!options.camera && (!config.gnss.enabled || !options.gnss)) {
-    return Status::Config("gnss.enabled: a session without a camera needs GNSS; expected true, and a setup");
-  }
-  if (!options.camera && config.backend == Backend::kBatch) {
-    return Status::Config(
-        "backend: batch, but a session without a camera has no frames; expected filter or smoother");
-  }
+  ALIDADE_RETURN_IF_ERROR(options.Validate(config));
   std::unique_ptr<Estimator> estimator = MakeEstimator(config, rig);
   auto session = std::make_unique<Session>(config, rig, std::move(options), estimator.get());
   session->own_estimator_ = std::move(estimator);
