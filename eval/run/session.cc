@@ -12,18 +12,7 @@ namespace alidade {
 Result<std::unique_ptr<Session>> Session::Make(const EstimatorConfig& config, const RigCalibration& rig,
                                                SessionOptions options) {
   ALIDADE_RETURN_IF_ERROR(config.Validate());
-  if (config.init.method == InitMethod::kTruth && options.camera && !options.start_state) {
-    return Status::Config(
-        "init.method: found truth, but no state was given; expected static, dynamic or auto, or "
-        "SessionOptions::start_state");
-  }
-  if (!options.camera && (!config.gnss.enabled || !options.gnss)) {
-    return Status::Config("gnss.enabled: a session without a camera needs GNSS; expected true, and a setup");
-  }
-  if (!options.camera && config.backend == Backend::kBatch) {
-    return Status::Config(
-        "backend: batch, but a session without a camera has no frames; expected filter or smoother");
-  }
+  ALIDADE_RETURN_IF_ERROR(options.Validate(config));
   std::unique_ptr<Estimator> estimator = MakeEstimator(config, rig);
   auto session = std::make_unique<Session>(config, rig, std::move(options), estimator.get());
   session->own_estimator_ = std::move(estimator);
@@ -47,40 +36,36 @@ void Session::AddImu(const ImuSample& sample) {
     Skip(Sensor::kImu, sample.stamp_ns, "not finite");
     return;
   }
-  if (!HoldLeap(sample)) {
+  if (options_.live) {
+    JudgeLeap(sample);
+  } else {
     TakeImu(sample);
   }
 }
 
-bool Session::HoldLeap(const ImuSample& sample) {
-  const auto leaps = [&](TimeNs from_ns) {
-    return from_ns != INT64_MIN && SecondsBetween(from_ns, sample.stamp_ns) > kMaxImuLeapS;
-  };
-  if (leap_ && sample.stamp_ns == leap_->stamp_ns) {
-    Skip(Sensor::kImu, sample.stamp_ns, "there is one with this stamp already");
-    return true;
-  }
-  if (leap_) {
-    const ImuSample held = *std::exchange(leap_, std::nullopt);
-    if (sample.stamp_ns > held.stamp_ns && !leaps(held.stamp_ns)) {
-      TakeImu(held);
-      return false;
-    }
-    Skip(Sensor::kImu, held.stamp_ns,
+void Session::JudgeLeap(const ImuSample& sample) {
+  const TimeNs newest_ns = loop_.imu().newest_ns();
+  const ImuLeap::Judgement judgement = leap_.Judge(sample, newest_ns);
+  if (judgement.refused) {
+    const TimeNs refused_ns = judgement.refused->stamp_ns;
+    Skip(Sensor::kImu, refused_ns,
          Format("it lies %.3f s after the one before, and none comes soon after it",
-                SecondsBetween(loop_.imu().newest_ns(), held.stamp_ns)));
+                SecondsBetween(newest_ns, refused_ns)));
   }
-  if (options_.live && leaps(loop_.imu().newest_ns())) {
-    leap_ = sample;
-    return true;
+  if (judgement.confirmed) {
+    TakeImu(*judgement.confirmed);
   }
-  return false;
+  if (judgement.verdict == ImuLeap::Verdict::kTake) {
+    TakeImu(sample);
+  } else if (judgement.verdict == ImuLeap::Verdict::kTwice) {
+    SkipTwice(Sensor::kImu, sample.stamp_ns);
+  }
 }
 
 void Session::TakeImu(const ImuSample& sample) {
   switch (loop_.imu().Add(sample)) {
     case ImuStream::Arrival::kTwice:
-      Skip(Sensor::kImu, sample.stamp_ns, "there is one with this stamp already");
+      SkipTwice(Sensor::kImu, sample.stamp_ns);
       return;
     case ImuStream::Arrival::kTooLate:
       RefuseLate(Sensor::kImu, sample.stamp_ns, loop_.imu().delivered_ns() - sample.stamp_ns);
@@ -112,7 +97,7 @@ void Session::AddFrame(TrackFrame frame) {
     return;
   }
   if (!frames_.emplace(stamp_ns, std::move(frame)).second) {
-    Skip(Sensor::kCamera, stamp_ns, "there is one with this stamp already");
+    SkipTwice(Sensor::kCamera, stamp_ns);
     return;
   }
   Process();
@@ -168,8 +153,8 @@ void Session::AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCata
 
 void Session::AdvanceTo(TimeNs imu_ns) {
   advanced_ns_ = std::max(advanced_ns_, imu_ns);
-  if (leap_ && leap_->stamp_ns <= imu_ns) {
-    TakeImu(*std::exchange(leap_, std::nullopt));  // nothing before it is awaited any more
+  if (const std::optional<ImuSample> released = leap_.Release(imu_ns)) {
+    TakeImu(*released);
   }
   Process();
 }
@@ -302,7 +287,7 @@ Result<NewestState> Session::Newest() {
 }
 
 size_t Session::held() {
-  size_t count = loop_.imu().size() + (leap_ ? 1 : 0) + frames_.size() + events_.size();
+  size_t count = loop_.imu().size() + (leap_.holds() ? 1 : 0) + frames_.size() + events_.size();
   for (const SensorRun* sensor : loop_.sensors()) {
     count += sensor->waiting();
   }
@@ -311,6 +296,10 @@ size_t Session::held() {
 
 void Session::Skip(Sensor sensor, TimeNs stamp_ns, std::string reason) {
   events_.emplace_back(SkippedEvent{sensor, stamp_ns, std::move(reason)});
+}
+
+void Session::SkipTwice(Sensor sensor, TimeNs stamp_ns) {
+  Skip(sensor, stamp_ns, "there is one with this stamp already");
 }
 
 void Session::RefuseLate(Sensor sensor, TimeNs stamp_ns, TimeNs by_ns) {

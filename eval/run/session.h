@@ -7,6 +7,7 @@
 
 #include "eval/run/camera_clock.h"
 #include "eval/run/estimator_loop.h"
+#include "eval/run/imu_leap.h"
 #include "eval/run/session_event.h"
 #include "eval/run/session_options.h"
 
@@ -46,9 +47,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// In a live session a sample more than kMaxImuLeapS after the newest one is held until the next confirms
-  /// it, else skipped: taken in, a single wrong stamp would make all that follows late.
-  static constexpr double kMaxImuLeapS = 1;
+  /// In a live session a sample more than ImuLeap::kMaxLeapS after the newest one is held until the next
+  /// confirms it, else skipped.
   void AddImu(const ImuSample& sample);
   /// Tracks of one image; stamp in camera time.
   void AddFrame(TrackFrame frame);
@@ -91,8 +91,8 @@ class Session {
 
   /// Takes a sample in, in order.
   void TakeImu(const ImuSample& sample);
-  /// Holds the sample back when it leaps, and deals with the one held back: true, when that is all.
-  bool HoldLeap(const ImuSample& sample);
+  /// Takes a sample of a live session in, unless it leaps.
+  void JudgeLeap(const ImuSample& sample);
   void Process();
   /// A message of this sensor has been taken in.
   void ProcessAfter(SensorRun* arrival);
@@ -108,6 +108,7 @@ class Session {
   void TakeBackJump(TimeNs jump_ns, TrackFrame* frame);
   void ProcessNextEpoch();
   void Skip(Sensor sensor, TimeNs stamp_ns, std::string reason);
+  void SkipTwice(Sensor sensor, TimeNs stamp_ns);
   void RefuseLate(Sensor sensor, TimeNs stamp_ns, TimeNs by_ns);
 
   const EstimatorConfig config_;
@@ -117,7 +118,7 @@ class Session {
   std::vector<SessionEvent> events_;
   EstimatorLoop loop_;
   CameraClock camera_clock_;
-  std::optional<ImuSample> leap_;        ///< held back
+  ImuLeap leap_;                         ///< in a live session
   TimeNs camera_jump_ns_ = 0;            ///< by which the camera's stamps are off
   std::map<TimeNs, TrackFrame> frames_;  ///< waiting, by camera stamp less the jump
   TimeNs frame_offset_ns_;               ///< IMU time less camera time after the last frame

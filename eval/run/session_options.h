@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/estimator_config.h"
 #include "core/navigation_state.h"
 #include "core/status.h"
 #include "eval/run/gnss_feed.h"
@@ -33,6 +34,9 @@ struct SessionOptions {
   size_t max_waiting = 1000;
   /// False: lateness does not count, and nothing is processed before Session::AdvanceTo or Flush says so.
   bool live = true;
+
+  /// kConfig: they contradict the configuration, which is valid by itself.
+  [[nodiscard]] Status Validate(const EstimatorConfig& config) const;
 };
 
 }  // namespace alidade

@@ -49,7 +49,7 @@ class RestDetectorTest : public ::testing::Test {
       // A turning point in the middle of the last half second.
       const Vector3d position = velocity * t + 0.5 * (t - 0.75) * (t - 0.75) * acceleration;
       TrackFrame frame;
-      frame.stamp_ns = SecondsToNs(t);
+      frame.stamp_ns = SecondsToNs(t + camera_ahead_s_);
       for (size_t i = 0; i < landmarks_.size(); ++i) {
         Vector2d pixel;
         if (camera_.Project(R_WC.transpose() * (landmarks_[i] - position), &pixel)) {
@@ -82,7 +82,8 @@ class RestDetectorTest : public ::testing::Test {
   CameraModel camera_;
   std::vector<Vector3d> landmarks_;
   NavEstimate estimate_;
-  double doubt_from_s_ = 0;  ///< before, the estimate's velocity is zero
+  double doubt_from_s_ = 0;    ///< before, the estimate's velocity is zero
+  double camera_ahead_s_ = 0;  ///< the frames' stamps less the IMU's
   double told_noise_px_ = 1;
   Vector3d mean_gyro_;
 };
@@ -195,6 +196,34 @@ TEST_F(RestDetectorTest, RestBeforeTheDoubtDoesNotCount) {
   EXPECT_TRUE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_FALSE(After(3, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_TRUE(After(4.6, Vector3d::Zero(), 0, 0.1).no_translation);
+}
+
+// GIVEN an IMU whose rate tells the time, WHEN no frame comes for ten minutes, THEN the mean over the samples
+// that are kept shows that they reach back no farther than twice the four windows of a verdict in doubt.
+TEST_F(RestDetectorTest, ASilenceOfTheCameraKeepsABoundedNumberOfSamples) {
+  const double bound_s = 2 * 4 * VisionConfig().rest_window_s;
+  RestDetector detector(VisionConfig(), InitConfig(), camera_);
+  for (int k = 0; k < 6000; ++k) {
+    std::vector<ImuSample> imu;
+    for (int i = 0; i <= 10; ++i) {
+      const double t = 0.1 * k + 0.01 * i;
+      imu.push_back({SecondsToNs(t), Vector3d(0, t, 0), Vector3d(0, 0, 9.81)});
+    }
+    detector.AddImu(imu);
+    const RestRates rates = detector.Rates();
+    EXPECT_NEAR(rates.at_end_radps.y(), 0.1 * k + 0.1, 1e-9) << "the newest sample is always kept";
+    ASSERT_LE(2 * (rates.at_end_radps.y() - rates.mean_radps.y()), bound_s + 1e-6) << k;
+  }
+}
+
+// GIVEN a camera whose clock is far off that of the IMU, WHEN the rig stands still for longer than samples
+// may reach back, THEN that is rest: how far they do is measured from the newest of them, not from the
+// frame's stamp.
+TEST_F(RestDetectorTest, TheCamerasClockDoesNotDecideWhichSamplesAreKept) {
+  for (const double ahead_s : {-1000.0, 1000.0}) {
+    camera_ahead_s_ = ahead_s;
+    EXPECT_TRUE(After(4.2, Vector3d::Zero(), 0, 0.1).no_translation) << ahead_s;
+  }
 }
 
 TEST_F(RestDetectorTest, NothingIsSaidBeforeTheWindowIsFull) {

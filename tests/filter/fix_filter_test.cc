@@ -93,6 +93,46 @@ TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_b
       << "a new start stands in a local world";
 }
 
+// GIVEN fixes so far away that the square of their distance is no number any more, WHEN more of them come
+// than are refused in a row before the state is suspect, THEN each is refused and the state is as before.
+TEST(FixFilter, AnAbsurdFixIsRefusedHoweverOftenItComes) {
+  SimulatorConfig scene;
+  scene.duration_s = 2;
+  scene.path_m = 4;
+  scene.max_features = 10;
+  scene.fix.rate_hz = 10;
+  const Dataset dataset = SimulateOrDie(scene, 1);
+  const EstimatorConfig config;
+  FilterEstimator filter(config, dataset.rig);
+  const NavEstimate start = DrawInitialState(dataset, 1);
+  ASSERT_TRUE(filter.Initialize(start).ok());
+  for (const ImuSample& sample : dataset.imu) {
+    ASSERT_TRUE(filter.AddImu(sample).ok());
+  }
+  ASSERT_TRUE(filter.Align(IdentityAlignment(start.stamp_ns)).ok());
+  ASSERT_TRUE(filter.AddMeasurement(dataset.fixes.front()).ok());
+  const NavEstimate before = filter.Latest();
+  for (const double far_m : {1e200, -1e200, 1e300}) {
+    PositionFix absurd = dataset.fixes.front();
+    absurd.p_A = Eigen::Vector3d(far_m, -0.5 * far_m, 0.1 * far_m);
+    for (int i = 0; i <= config.fix.max_refused_run; ++i) {
+      ASSERT_TRUE(filter.AddMeasurement(absurd).ok()) << far_m;
+      const SensorStatistics& counts = filter.last_statistics().sensors[SensorOf<PositionFixEntry>()];
+      EXPECT_EQ(counts.gated, 1) << far_m;
+      EXPECT_EQ(counts.used, 0) << far_m;
+      const NavEstimate after = filter.Latest();
+      ASSERT_TRUE(after.covariance.allFinite()) << far_m;
+      EXPECT_EQ(after.stamp_ns, before.stamp_ns);
+      EXPECT_LT((after.nav.p_WB - before.nav.p_WB).norm(), 1e-12);
+      EXPECT_LT((after.nav.v_WB - before.nav.v_WB).norm(), 1e-12);
+      EXPECT_LT((after.nav.R_WB - before.nav.R_WB).norm(), 1e-12);
+      EXPECT_EQ(after.bias.gyro, before.bias.gyro);
+      EXPECT_EQ(after.bias.accel, before.bias.accel);
+      EXPECT_LT((after.covariance - before.covariance).norm(), 1e-12 * before.covariance.norm());
+    }
+  }
+}
+
 /// Keeps what an update of position fixes has to say, as dense algebra has it.
 class DenseUpdate : public FilterObserver {
  public:

@@ -124,6 +124,12 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
            " --set=duration_s=nan --output=" + out,
        3, "duration_s"},
+      {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
+           " --set=render.line_delay_s=nan --output=" + out,
+       3, "render.line_delay_s: found 'nan', expected a finite number"},
+      {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
+           " --set=render.line_delay_s=29.7 --output=" + out,
+       3, "render.line_delay_s: found '29.7', expected a number in [-0.001, 0.001]"},
       {"track --dataset=" + seq + " --output=" + folder_.File("tracks"), 4, "no images"},
       {"evaluate --truth=" + folder_.File("torn.tum") + " --estimate=" + folder_.File("torn.tum"), 4,
        "torn.tum:1"},
