@@ -1,11 +1,11 @@
 #include "eval/dataset/calibration_import.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "eval/dataset/basalt_calibration.h"
 #include "eval/dataset/calibration_text.h"
+#include "eval/dataset/vins_calibration.h"
 #include "eval/files/strict_yaml.h"
 #include "eval/files/suggest.h"
 
@@ -13,8 +13,6 @@ namespace alidade {
 namespace {
 
 using Node = YAML::Node;
-
-constexpr char kLensSuffix[] = "_calib";  // of the key by which VINS names a camera's own file
 
 /// One collection of files on its way to a calibration. Values are written as a sensor.yaml, whose reader
 /// holds them against what a sensor may be.
@@ -34,7 +32,7 @@ class Importer {
       return Unknown(path);
     }
     bool known = false;
-    const std::string lens_key = camera_ + kLensSuffix;
+    const std::string lens_key = VinsLensKey(camera_);
     for (const std::string& key :
          {std::string("relative_config_imu"), std::string("relative_config_imucam"), lens_key}) {
       if (root[key].IsDefined()) {
@@ -43,7 +41,7 @@ class Importer {
         known = true;
       }
     }
-    if (!root[lens_key].IsDefined() && NamesALens(root)) {
+    if (!root[lens_key].IsDefined() && NamesVinsLens(root)) {
       lensless_place_ = path + ": " + lens_key;
       known = true;
     }
@@ -57,7 +55,7 @@ class Importer {
       known = true;
     }
     if (root["acc_n"].IsDefined()) {
-      ALIDADE_RETURN_IF_ERROR(AddVinsImu(path, root));
+      AddVinsImu(path, root);
       known = true;
     }
     if (IsYamlMap(root["value0"])) {
@@ -101,14 +99,6 @@ class Importer {
   static Status Unknown(const std::string& path) {
     return Status::Input(
         path + ": found none of the keys of a calibration, expected one of Kalibr, OpenVINS, VINS or Basalt");
-  }
-
-  /// Whether this configuration of VINS names the file of any camera.
-  static bool NamesALens(const Node& root) {
-    return std::any_of(root.begin(), root.end(), [](const auto& entry) {
-      const std::string key = FlowText(entry.first);
-      return key.starts_with("cam") && key.ends_with(kLensSuffix);
-    });
   }
 
   Status AddChainCamera(const std::string& path, const Node& camera) {
@@ -208,87 +198,35 @@ class Importer {
     return Status::Ok();
   }
 
-  Status AddVinsImu(const std::string& path, const Node& root) {
-    if (!imu_text_.empty()) {
-      return Status::Ok();
-    }
-    imu_place_ = path;
-    calibration_.imu_is_per_sample = true;
-    imu_text_ = CalibrationLine("gyroscope_noise_density", FlowText(root["gyr_n"])) +
-                CalibrationLine("gyroscope_random_walk", FlowText(root["gyr_w"])) +
-                CalibrationLine("accelerometer_noise_density", FlowText(root["acc_n"])) +
-                CalibrationLine("accelerometer_random_walk", FlowText(root["acc_w"]));
-    return Status::Ok();
-  }
-
   Status AddVinsCamera(const std::string& path, const Node& root) {
     if (!camera_text_.empty()) {
       return Status::Ok();
     }
+    const Result<std::string> text = TranslateVinsCamera(path, root);
+    ALIDADE_RETURN_IF_ERROR(text.status());
+    camera_text_ = *text;
     camera_place_ = path;
-    const std::string type = FlowText(root["model_type"]);
-    const Node projection = root["projection_parameters"];
-    const Node distortion = root["distortion_parameters"];
-    Result<std::string> intrinsics = Status::Input("");
-    Result<std::string> coefficients = Status::Input("");
-    std::string model;
-    if (type == "PINHOLE") {
-      model = "radial-tangential";
-      intrinsics = FlowListOf(path, projection, {"fx", "fy", "cx", "cy"});
-      coefficients = FlowListOf(path, distortion, {"k1", "k2", "p1", "p2"});
-    } else if (type == "MEI") {
-      model = "mei";
-      intrinsics = FlowListOf(path, projection, {"gamma1", "gamma2", "u0", "v0"});
-      const Result<std::string> mirror = FlowListOf(path, root["mirror_parameters"], {"xi"});
-      const Result<std::string> lens = FlowListOf(path, distortion, {"k1", "k2", "p1", "p2"});
-      ALIDADE_RETURN_IF_ERROR(mirror.status());
-      ALIDADE_RETURN_IF_ERROR(lens.status());
-      coefficients = mirror->substr(0, mirror->size() - 1) + ", " + lens->substr(1);
-    } else if (type == "KANNALA_BRANDT") {
-      model = "equidistant";
-      intrinsics = FlowListOf(path, projection, {"mu", "mv", "u0", "v0"});
-      coefficients = FlowListOf(path, projection, {"k2", "k3", "k4", "k5"});
-    } else {
-      return Status::Input(path + ": model_type: found '" + type +
-                           "', expected PINHOLE, MEI or KANNALA_BRANDT");
-    }
-    ALIDADE_RETURN_IF_ERROR(intrinsics.status());
-    ALIDADE_RETURN_IF_ERROR(coefficients.status());
-    const Result<std::string> resolution = FlowListOf(path, root, {"image_width", "image_height"});
-    ALIDADE_RETURN_IF_ERROR(resolution.status());
-    camera_text_ = CalibrationLine("resolution", *resolution) + CalibrationLine("intrinsics", *intrinsics) +
-                   CalibrationLine("distortion_model", model) +
-                   CalibrationLine("distortion_coefficients", *coefficients);
     return Status::Ok();
   }
 
-  /// True when the file holds any; VINS keeps them apart from the camera's own file.
+  void AddVinsImu(const std::string& path, const Node& root) {
+    if (imu_text_.empty()) {
+      imu_text_ = TranslateVinsImu(root);
+      imu_place_ = path;
+      calibration_.imu_is_per_sample = true;
+    }
+  }
+
+  /// True when the file holds any.
   bool AddVinsExtrinsics(const Node& root) {
-    const std::string body_key = "body_T_" + camera_;
-    const Node rotation = root["extrinsicRotation"];
-    const Node translation = root["extrinsicTranslation"];
-    std::string text;
-    if (root[body_key].IsDefined()) {
-      text = CalibrationLine("body_T_cam0", FlowText(root[body_key]));
-    } else if (IsYamlMap(rotation) && IsYamlMap(translation) && rotation["data"].IsDefined() &&
-               translation["data"].IsDefined() && rotation["data"].size() == 9 &&
-               translation["data"].size() == 3) {
-      std::string rows;
-      for (std::size_t row = 0; row < 3; ++row) {
-        for (std::size_t column = 0; column < 3; ++column) {
-          rows += FlowText(rotation["data"][3 * row + column]) + ", ";
-        }
-        rows += FlowText(translation["data"][row]) + ", ";
-      }
-      text = CalibrationLine("body_T_cam0", "[" + rows + "0, 0, 0, 1]");
-    }
-    if (!text.empty() && extrinsics_.empty()) {
-      extrinsics_ = text;
-      if (root["td"].IsDefined()) {
-        offset_ = CalibrationLine("time_offset_s", FlowText(root["td"]));
+    const VinsExtrinsics found = TranslateVinsExtrinsics(root, camera_);
+    if (!found.extrinsics.empty() && extrinsics_.empty()) {
+      extrinsics_ = found.extrinsics;
+      if (!found.offset.empty()) {
+        offset_ = found.offset;
       }
     }
-    return !text.empty();
+    return !found.extrinsics.empty();
   }
 
   std::string camera_;
