@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/dataset/calibration_text.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {
@@ -31,7 +32,7 @@ class BasaltReader {
     if (value0_["cam_time_offset_ns"].IsDefined()) {
       double offset_ns = 0;
       ALIDADE_RETURN_IF_ERROR(Read(value0_, "", "cam_time_offset_ns", &offset_ns));
-      texts.offset = Line("time_offset_s", ShortestDouble(1e-9 * offset_ns));
+      texts.offset = CalibrationLine("time_offset_s", ShortestDouble(1e-9 * offset_ns));
     }
     ALIDADE_RETURN_IF_ERROR(AddImu(&texts.imu));
     return texts;
@@ -40,10 +41,6 @@ class BasaltReader {
  private:
   [[nodiscard]] Status Fault(const std::string& key, const std::string& expected) const {
     return Status::Input(path_ + ": value0." + key + ": expected " + expected);
-  }
-
-  static std::string Line(const std::string& key, const std::string& value) {
-    return key + ": " + value + "\n";
   }
 
   /// The entry of the chosen camera in a list of value0's.
@@ -93,10 +90,10 @@ class BasaltReader {
       if (!size || !size->IsSequence() || size->size() != 2) {
         return Fault("resolution[" + std::to_string(index_) + "]", "width and height [px]");
       }
-      *text = Line("resolution",
-                   "[" + (*size)[0].as<std::string>("''") + ", " + (*size)[1].as<std::string>("''") + "]") +
-              Line("intrinsics", plane) + Line("distortion_model", lens.model) +
-              Line("distortion_coefficients", coefficients);
+      *text = CalibrationLine("resolution", "[" + (*size)[0].as<std::string>("''") + ", " +
+                                                (*size)[1].as<std::string>("''") + "]") +
+              CalibrationLine("intrinsics", plane) + CalibrationLine("distortion_model", lens.model) +
+              CalibrationLine("distortion_coefficients", coefficients);
       return Status::Ok();
     }
     return Fault(place + "camera_type", "one of ds, eucm, kb4, pinhole, found '" + type + "'");
@@ -142,7 +139,7 @@ class BasaltReader {
       }
       rows += ShortestDouble(p[i]) + ", ";
     }
-    *text = Line("T_imu_cam", "[" + rows + "0, 0, 0, 1]");
+    *text = CalibrationLine("T_imu_cam", "[" + rows + "0, 0, 0, 1]");
     return Status::Ok();
   }
 
@@ -169,12 +166,12 @@ class BasaltReader {
         }
         squared += value * value / 3;
       }
-      lines += Line(line, ShortestDouble(std::sqrt(squared)));
+      lines += CalibrationLine(line, ShortestDouble(std::sqrt(squared)));
     }
     if (value0_["imu_update_rate"].IsDefined()) {
       double rate_hz = 0;
       ALIDADE_RETURN_IF_ERROR(Read(value0_, "", "imu_update_rate", &rate_hz));
-      lines += Line("rate_hz", ShortestDouble(rate_hz));
+      lines += CalibrationLine("rate_hz", ShortestDouble(rate_hz));
     }
     *text = lines;
     return Status::Ok();

@@ -1,10 +1,11 @@
 #include "eval/dataset/calibration_import.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "eval/dataset/basalt_calibration.h"
+#include "eval/dataset/calibration_text.h"
+#include "eval/dataset/vins_calibration.h"
 #include "eval/files/strict_yaml.h"
 #include "eval/files/suggest.h"
 
@@ -12,66 +13,6 @@ namespace alidade {
 namespace {
 
 using Node = YAML::Node;
-
-constexpr char kLensSuffix[] = "_calib";  // of the key by which VINS names a camera's own file
-
-/// A scalar or nested list as it stands; of an OpenCV matrix its data.
-std::string Flow(const Node& node) {
-  if (!node.IsDefined()) {
-    return "''";
-  }
-  if (node.IsMap()) {
-    return Flow(node["data"]);
-  }
-  if (!node.IsSequence()) {
-    return node.IsScalar() ? node.Scalar() : "''";
-  }
-  std::string text;
-  for (const Node& entry : node) {
-    text += (text.empty() ? "" : ", ") + Flow(entry);
-  }
-  return "[" + text + "]";
-}
-
-/// yaml-cpp throws on questions to a node that is not there.
-bool IsMap(const Node& node) {
-  return node.IsDefined() && node.IsMap();
-}
-
-std::string YamlLine(const std::string& key, const std::string& value) {
-  return key + ": " + value + "\n";
-}
-
-/// Entries of a list of scalars, as they stand.
-std::vector<std::string> EntriesOf(const Node& list) {
-  std::vector<std::string> entries;
-  if (list.IsDefined() && list.IsSequence()) {
-    for (const Node& entry : list) {
-      entries.push_back(Flow(entry));
-    }
-  }
-  return entries;
-}
-
-std::string ListText(const std::vector<std::string>& entries) {
-  std::string text;
-  for (const std::string& entry : entries) {
-    text += (text.empty() ? "" : ", ") + entry;
-  }
-  return "[" + text + "]";
-}
-
-/// The values of these keys of a map as a list; the first one that is missing is named.
-Result<std::string> ListOf(const std::string& path, const Node& map, const std::vector<const char*>& keys) {
-  std::string text;
-  for (const char* key : keys) {
-    if (!IsMap(map) || !map[key].IsDefined()) {
-      return Status::Input(path + ": " + key + ": is missing");
-    }
-    text += (text.empty() ? "" : ", ") + Flow(map[key]);
-  }
-  return "[" + text + "]";
-}
 
 /// One collection of files on its way to a calibration. Values are written as a sensor.yaml, whose reader
 /// holds them against what a sensor may be.
@@ -91,33 +32,33 @@ class Importer {
       return Unknown(path);
     }
     bool known = false;
-    const std::string lens_key = camera_ + kLensSuffix;
+    const std::string lens_key = VinsLensKey(camera_);
     for (const std::string& key :
          {std::string("relative_config_imu"), std::string("relative_config_imucam"), lens_key}) {
       if (root[key].IsDefined()) {
         const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-        ALIDADE_RETURN_IF_ERROR(Add((folder / Flow(root[key])).string(), depth + 1));
+        ALIDADE_RETURN_IF_ERROR(Add((folder / FlowText(root[key])).string(), depth + 1));
         known = true;
       }
     }
-    if (!root[lens_key].IsDefined() && NamesALens(root)) {
+    if (!root[lens_key].IsDefined() && NamesVinsLens(root)) {
       lensless_place_ = path + ": " + lens_key;
       known = true;
     }
-    if (IsMap(root[camera_])) {
+    if (IsYamlMap(root[camera_])) {
       ALIDADE_RETURN_IF_ERROR(AddChainCamera(path, root[camera_]));
       known = true;
     }
-    const Node imu = IsMap(root["imu0"]) ? root["imu0"] : root;
+    const Node imu = IsYamlMap(root["imu0"]) ? root["imu0"] : root;
     if (imu["gyroscope_noise_density"].IsDefined()) {
       ALIDADE_RETURN_IF_ERROR(AddKalibrImu(path, imu));
       known = true;
     }
     if (root["acc_n"].IsDefined()) {
-      ALIDADE_RETURN_IF_ERROR(AddVinsImu(path, root));
+      AddVinsImu(path, root);
       known = true;
     }
-    if (IsMap(root["value0"])) {
+    if (IsYamlMap(root["value0"])) {
       ALIDADE_RETURN_IF_ERROR(AddBasalt(path, root["value0"]));
       known = true;
     }
@@ -160,21 +101,13 @@ class Importer {
         path + ": found none of the keys of a calibration, expected one of Kalibr, OpenVINS, VINS or Basalt");
   }
 
-  /// Whether this configuration of VINS names the file of any camera.
-  static bool NamesALens(const Node& root) {
-    return std::any_of(root.begin(), root.end(), [](const auto& entry) {
-      const std::string key = Flow(entry.first);
-      return key.starts_with("cam") && key.ends_with(kLensSuffix);
-    });
-  }
-
   Status AddChainCamera(const std::string& path, const Node& camera) {
     if (!camera_text_.empty()) {
       return Status::Ok();
     }
     camera_place_ = path + ": " + camera_;
-    const std::string lens = Flow(camera["distortion_model"]);
-    const std::string model = Flow(camera["camera_model"]);
+    const std::string lens = FlowText(camera["distortion_model"]);
+    const std::string model = FlowText(camera["camera_model"]);
     const bool omni = model == "omni";
     const std::string name = omni               ? "mei"
                              : lens == "radtan" ? "radial-tangential"
@@ -193,7 +126,7 @@ class Importer {
     }
     Result<Intrinsics> intrinsics = SplitIntrinsics(camera, omni ? 1 : 0);
     if (intrinsics.ok()) {
-      for (const std::string& coefficient : EntriesOf(camera["distortion_coeffs"])) {
+      for (const std::string& coefficient : FlowEntries(camera["distortion_coeffs"])) {
         intrinsics->coefficients.push_back(coefficient);
       }
     }
@@ -207,9 +140,9 @@ class Importer {
 
   /// Kalibr puts `count` coefficients of a lens that is no pinhole before fu, fv, cu, cv.
   [[nodiscard]] Result<Intrinsics> SplitIntrinsics(const Node& camera, std::size_t count) const {
-    const std::vector<std::string> all = EntriesOf(camera["intrinsics"]);
+    const std::vector<std::string> all = FlowEntries(camera["intrinsics"]);
     if (all.size() != count + 4) {
-      return Status::Input(camera_place_ + ": intrinsics: found " + Flow(camera["intrinsics"]) +
+      return Status::Input(camera_place_ + ": intrinsics: found " + FlowText(camera["intrinsics"]) +
                            ", expected " + std::to_string(count + 4) + " numbers" +
                            (count > 0 ? ", the lens' before fu, fv, cu, cv" : ": fu, fv, cu, cv"));
     }
@@ -219,16 +152,17 @@ class Importer {
 
   Status SetChainCamera(const Node& camera, const std::string& name, const Result<Intrinsics>& intrinsics) {
     ALIDADE_RETURN_IF_ERROR(intrinsics.status());
-    camera_text_ = YamlLine("resolution", Flow(camera["resolution"])) +
-                   YamlLine("intrinsics", ListText(intrinsics->plane)) + YamlLine("distortion_model", name) +
-                   YamlLine("distortion_coefficients", ListText(intrinsics->coefficients));
+    camera_text_ = CalibrationLine("resolution", FlowText(camera["resolution"])) +
+                   CalibrationLine("intrinsics", FlowList(intrinsics->plane)) +
+                   CalibrationLine("distortion_model", name) +
+                   CalibrationLine("distortion_coefficients", FlowList(intrinsics->coefficients));
     for (const char* key : {"T_cam_imu", "T_imu_cam"}) {
       if (camera[key].IsDefined()) {
-        extrinsics_ += YamlLine(key, Flow(camera[key]));
+        extrinsics_ += CalibrationLine(key, FlowText(camera[key]));
       }
     }
     if (camera["timeshift_cam_imu"].IsDefined()) {
-      offset_ = YamlLine("time_offset_s", Flow(camera["timeshift_cam_imu"]));
+      offset_ = CalibrationLine("time_offset_s", FlowText(camera["timeshift_cam_imu"]));
     }
     return Status::Ok();
   }
@@ -256,24 +190,11 @@ class Importer {
     imu_place_ = path;
     for (const char* key : {"gyroscope_noise_density", "gyroscope_random_walk", "accelerometer_noise_density",
                             "accelerometer_random_walk"}) {
-      imu_text_ += YamlLine(key, Flow(imu[key]));
+      imu_text_ += CalibrationLine(key, FlowText(imu[key]));
     }
     if (imu["update_rate"].IsDefined()) {
-      imu_text_ += YamlLine("rate_hz", Flow(imu["update_rate"]));
+      imu_text_ += CalibrationLine("rate_hz", FlowText(imu["update_rate"]));
     }
-    return Status::Ok();
-  }
-
-  Status AddVinsImu(const std::string& path, const Node& root) {
-    if (!imu_text_.empty()) {
-      return Status::Ok();
-    }
-    imu_place_ = path;
-    calibration_.imu_is_per_sample = true;
-    imu_text_ = YamlLine("gyroscope_noise_density", Flow(root["gyr_n"])) +
-                YamlLine("gyroscope_random_walk", Flow(root["gyr_w"])) +
-                YamlLine("accelerometer_noise_density", Flow(root["acc_n"])) +
-                YamlLine("accelerometer_random_walk", Flow(root["acc_w"]));
     return Status::Ok();
   }
 
@@ -281,69 +202,31 @@ class Importer {
     if (!camera_text_.empty()) {
       return Status::Ok();
     }
+    const Result<std::string> text = TranslateVinsCamera(path, root);
+    ALIDADE_RETURN_IF_ERROR(text.status());
+    camera_text_ = *text;
     camera_place_ = path;
-    const std::string type = Flow(root["model_type"]);
-    const Node projection = root["projection_parameters"];
-    const Node distortion = root["distortion_parameters"];
-    Result<std::string> intrinsics = Status::Input("");
-    Result<std::string> coefficients = Status::Input("");
-    std::string model;
-    if (type == "PINHOLE") {
-      model = "radial-tangential";
-      intrinsics = ListOf(path, projection, {"fx", "fy", "cx", "cy"});
-      coefficients = ListOf(path, distortion, {"k1", "k2", "p1", "p2"});
-    } else if (type == "MEI") {
-      model = "mei";
-      intrinsics = ListOf(path, projection, {"gamma1", "gamma2", "u0", "v0"});
-      const Result<std::string> mirror = ListOf(path, root["mirror_parameters"], {"xi"});
-      const Result<std::string> lens = ListOf(path, distortion, {"k1", "k2", "p1", "p2"});
-      ALIDADE_RETURN_IF_ERROR(mirror.status());
-      ALIDADE_RETURN_IF_ERROR(lens.status());
-      coefficients = mirror->substr(0, mirror->size() - 1) + ", " + lens->substr(1);
-    } else if (type == "KANNALA_BRANDT") {
-      model = "equidistant";
-      intrinsics = ListOf(path, projection, {"mu", "mv", "u0", "v0"});
-      coefficients = ListOf(path, projection, {"k2", "k3", "k4", "k5"});
-    } else {
-      return Status::Input(path + ": model_type: found '" + type +
-                           "', expected PINHOLE, MEI or KANNALA_BRANDT");
-    }
-    ALIDADE_RETURN_IF_ERROR(intrinsics.status());
-    ALIDADE_RETURN_IF_ERROR(coefficients.status());
-    const Result<std::string> resolution = ListOf(path, root, {"image_width", "image_height"});
-    ALIDADE_RETURN_IF_ERROR(resolution.status());
-    camera_text_ = YamlLine("resolution", *resolution) + YamlLine("intrinsics", *intrinsics) +
-                   YamlLine("distortion_model", model) + YamlLine("distortion_coefficients", *coefficients);
     return Status::Ok();
   }
 
-  /// True when the file holds any; VINS keeps them apart from the camera's own file.
+  void AddVinsImu(const std::string& path, const Node& root) {
+    if (imu_text_.empty()) {
+      imu_text_ = TranslateVinsImu(root);
+      imu_place_ = path;
+      calibration_.imu_is_per_sample = true;
+    }
+  }
+
+  /// True when the file holds any.
   bool AddVinsExtrinsics(const Node& root) {
-    const std::string body_key = "body_T_" + camera_;
-    const Node rotation = root["extrinsicRotation"];
-    const Node translation = root["extrinsicTranslation"];
-    std::string text;
-    if (root[body_key].IsDefined()) {
-      text = YamlLine("body_T_cam0", Flow(root[body_key]));
-    } else if (IsMap(rotation) && IsMap(translation) && rotation["data"].IsDefined() &&
-               translation["data"].IsDefined() && rotation["data"].size() == 9 &&
-               translation["data"].size() == 3) {
-      std::string rows;
-      for (std::size_t row = 0; row < 3; ++row) {
-        for (std::size_t column = 0; column < 3; ++column) {
-          rows += Flow(rotation["data"][3 * row + column]) + ", ";
-        }
-        rows += Flow(translation["data"][row]) + ", ";
-      }
-      text = YamlLine("body_T_cam0", "[" + rows + "0, 0, 0, 1]");
-    }
-    if (!text.empty() && extrinsics_.empty()) {
-      extrinsics_ = text;
-      if (root["td"].IsDefined()) {
-        offset_ = YamlLine("time_offset_s", Flow(root["td"]));
+    const VinsExtrinsics found = TranslateVinsExtrinsics(root, camera_);
+    if (!found.extrinsics.empty() && extrinsics_.empty()) {
+      extrinsics_ = found.extrinsics;
+      if (!found.offset.empty()) {
+        offset_ = found.offset;
       }
     }
-    return !text.empty();
+    return !found.extrinsics.empty();
   }
 
   std::string camera_;

@@ -5,54 +5,16 @@
 #include <cstring>
 #include <limits>
 
-#include "smoother/sliding/smoother.h"
-#include "tests/support/scenario.h"
+#include "tests/smoother/sliding/smoother_fixture.h"
 
 namespace alidade {
 namespace {
 
-struct SequenceOptions {
-  double duration_s = 12;
-  double pixel_noise_px = 1;
-  bool exact = false;  ///< no noise anywhere, start at the truth
-  unsigned seed = 1;
-};
-
-Dataset MakeSequence(const SequenceOptions& options) {
-  SimulatorConfig simulator;
-  simulator.duration_s = options.duration_s;
-  simulator.path_m = 1.3 * options.duration_s;
-  simulator.pixel_noise_px = options.exact ? 0 : options.pixel_noise_px;
-  const ImuNoise noise = simulator.imu_noise;
-  if (options.exact) {
-    simulator.imu_noise = {0, 0, 0, 0};
-    simulator.imu_rate_hz = 400;
-  }
-  Result<Dataset> dataset = Simulate(simulator, options.seed);
-  EXPECT_TRUE(dataset.ok()) << dataset.message();
-  dataset->rig.imu_noise = noise;
-  return std::move(dataset).value();
-}
-
-EstimatorConfig MakeConfig(SmootherLandmark landmark,
-                           ErrorConvention error = ErrorConvention::kRightInvariant) {
-  EstimatorConfig config;
-  config.backend = Backend::kSmoother;
-  config.smoother.landmark = landmark;
-  config.smoother.error = error;
-  return config;
-}
-
-test::ScenarioResult RunSmoother(const Dataset& dataset, const EstimatorConfig& config, bool perturb,
-                                 unsigned seed = 1) {
-  const std::unique_ptr<Estimator> estimator = MakeSmoother(config, dataset.rig);
-  const test::ScenarioResult result =
-      test::RunScenario(dataset, test::DrawInitialState(dataset, seed, perturb ? 1 : 0), estimator.get());
-  EXPECT_TRUE(result.status.ok()) << result.status.message();
-  return result;
-}
-
-constexpr SmootherLandmark kLandmarks[] = {SmootherLandmark::kInverseDepth, SmootherLandmark::kPoseOnly};
+using test::kLandmarks;
+using test::MakeConfig;
+using test::MakeSequence;
+using test::RunSmoother;
+using test::WithSlamFeatures;
 
 TEST(SmootherEstimatorTest, ExactDataGivesTheTruthForBothLandmarks) {
   const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
@@ -106,102 +68,6 @@ TEST(SmootherEstimatorTest, FirstEstimatesLearnNoHeading) {
   const double claimed = YawDeviation(RunSmoother(dataset, WithFirstEstimates(true), true).last);
   EXPECT_GT(claimed, YawDeviation(test::DrawInitialState(dataset, 1)));
   EXPECT_NEAR(claimed / YawDeviation(RunSmoother(dataset, invariant, true).last), 1, 0.005);
-}
-
-EstimatorConfig WithSlamFeatures(int count) {
-  EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly);
-  config.smoother.frames = FramePolicy::kEveryFrame;
-  config.smoother.slam_features = count;
-  return config;
-}
-
-/// Landmarks that a solve of this window may have held: those of the prior that are in sight, and tracks.
-int Landmarks(const Window& window) {
-  return static_cast<int>(std::count_if(window.tracks().begin(), window.tracks().end(), [](const auto& item) {
-    const WindowTrack& track = item.second;
-    return track.anchor != nullptr ? !track.views.empty() : track.views.size() >= 2;
-  }));
-}
-
-// GIVEN a slow motion, WHEN the velocity, and with it the scale of the window, is uncertain, THEN no landmark
-// joins the prior; with a known velocity landmarks do.
-TEST(SmootherEstimatorTest, LandmarksWaitUntilTheScaleOfTheWindowIsKnown) {
-  SimulatorConfig simulator;
-  simulator.duration_s = 2;
-  simulator.path_m = 1.5;
-  const Dataset dataset = test::SimulateOrDie(simulator, 3);
-  const auto features = [&](double velocity_std_mps) {
-    SmootherEstimator estimator(WithSlamFeatures(60), dataset.rig);
-    NavEstimate initial = test::DrawInitialState(dataset, 3);
-    initial.covariance.diagonal().segment<3>(6).setConstant(velocity_std_mps * velocity_std_mps);
-    const test::ScenarioResult result = test::RunScenario(dataset, initial, &estimator);
-    EXPECT_TRUE(result.status.ok()) << result.status.message();
-    return std::count_if(estimator.window().tracks().begin(), estimator.window().tracks().end(),
-                         [](const auto& item) { return item.second.anchor != nullptr; });
-  };
-  EXPECT_GT(features(1e-3), 5);
-  EXPECT_EQ(features(0.3), 0);
-}
-
-// GIVEN outliers, WHEN the gate refuses a landmark of the prior, THEN it is not counted as used besides.
-TEST(SmootherEstimatorTest, ARefusedSlamFeatureIsNotCountedAsUsed) {
-  SimulatorConfig simulator;
-  simulator.duration_s = 8;
-  simulator.path_m = 10;
-  simulator.outlier_rate = 0.02;
-  simulator.outlier_kind = SimOutlierKind::kJump;
-  const Dataset dataset = test::SimulateOrDie(simulator, 3);
-  SmootherEstimator estimator(WithSlamFeatures(60), dataset.rig);
-  ASSERT_TRUE(estimator.Initialize(test::DrawInitialState(dataset, 3)).ok());
-  size_t next = 0;
-  int refused = 0;
-  for (const TrackFrame& frame : dataset.frames) {
-    while (next < dataset.imu.size() && (next == 0 || dataset.imu[next - 1].stamp_ns < frame.stamp_ns)) {
-      ASSERT_TRUE(estimator.AddImu(dataset.imu[next++]).ok());
-    }
-    std::vector<std::int64_t> features;
-    for (const auto& [id, track] : estimator.window().tracks()) {
-      if (track.anchor != nullptr && track.alive) {
-        features.push_back(id);
-      }
-    }
-    ASSERT_TRUE(estimator.AddFrame(frame).ok());
-    const FrameStatistics& statistics = estimator.last_statistics();
-    refused += static_cast<int>(std::count_if(features.begin(), features.end(), [&](std::int64_t id) {
-      const auto found = estimator.window().tracks().find(id);
-      return found != estimator.window().tracks().end() && found->second.alive &&
-             found->second.anchor == nullptr;
-    }));
-    EXPECT_LE(statistics.features_used, Landmarks(estimator.window()));
-  }
-  EXPECT_GT(refused, 3);
-}
-
-// Landmarks change their anchors, are lost and replaced all the time: nothing of it may show on exact data.
-TEST(SmootherEstimatorTest, SlamFeaturesLeaveExactDataExact) {
-  const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
-  const test::ScenarioResult run = RunSmoother(dataset, WithSlamFeatures(20), false);
-  EXPECT_LT(run.max_position_m, 1e-3);
-  const NavState& truth = test::TruthAt(dataset, run.last.stamp_ns).nav;
-  EXPECT_LT((run.last.nav.p_WB - truth.p_WB).norm(), 1e-4);
-}
-
-// Three runs: the information that outlives the window of one second makes the estimate better, and its
-// covariance knows by how much.
-TEST(SmootherEstimatorTest, SlamFeaturesLowerTheErrorAndKeepTheCovarianceTrue) {
-  double with = 0;
-  double without = 0;
-  double nees = 0;
-  for (unsigned seed = 1; seed <= 3; ++seed) {
-    const Dataset dataset = MakeSequence({.duration_s = 30, .seed = seed});
-    const test::ScenarioResult kept = RunSmoother(dataset, WithSlamFeatures(30), true, seed);
-    const test::ScenarioResult lost = RunSmoother(dataset, WithSlamFeatures(0), true, seed);
-    with += kept.rmse_orientation_rad;
-    without += lost.rmse_orientation_rad;
-    nees += kept.nees_pose / 3;
-  }
-  EXPECT_LT(with, 0.9 * without);
-  EXPECT_LT(nees, 12);
 }
 
 TEST(SmootherEstimatorTest, BothLandmarksFindTheSameMinimumInNoise) {
