@@ -34,13 +34,15 @@ if [[ ! -d $beside/source ]]; then
   mv "$beside/extracted" "$beside/source"
 fi
 
-# Configures and builds the benchmarks of the tree $1 in $2; prints their names.
+# Configures and builds the benchmarks of the tree $1 in $2, which must be new or have the compiler of this tree's build; prints their names.
 build() {
-  cmake -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
+  local compiler
+  compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' build/CMakeCache.txt 2>/dev/null || true)
+  cmake -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release ${compiler:+-DCMAKE_CXX_COMPILER="$compiler"} >&2
   local programs
   programs=$(ninja -C "$2" -t targets all | sed -nE 's/^(alidade_[a-z]+_benchmark): .*/\1/p' | sort -u)
   # shellcheck disable=SC2086 # one word a target
-  cmake --build "$2" --parallel "$(nproc)" --target $programs >&2
+  cmake --build "$2" --parallel "$(scripts/jobs.sh)" --target $programs >&2
   echo "$programs"
 }
 new_programs=$(build . build)

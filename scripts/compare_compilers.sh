@@ -15,7 +15,7 @@ for variant in "${variants[@]}"; do
   read -r name compiler level <<<"$variant"
   cmake -S . -B "$output/$name/build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DALIDADE_BUILD_TESTS=OFF \
     -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="$level -DNDEBUG" >/dev/null
-  cmake --build "$output/$name/build" --target alidade --parallel "$(nproc)" >/dev/null
+  cmake --build "$output/$name/build" --target alidade --parallel "$(scripts/jobs.sh)" >/dev/null
   "$output/$name/build/alidade" compare --plan=configs/plans/demo.yaml --output="$output/$name/demo" --overwrite --quiet \
     --jobs="$(nproc)" >"$output/$name/table.txt"
 done

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Alidade needs on Debian 12 and is missing. `--with-tests-of-report` adds what some tests use and are skipped
 # without: a headless browser for the report page, RTKLIB as oracle of single-point positions, rosbag as
-# oracle of bags, man for the manual page, a Slurm cluster. `--with-clang` adds the compiler of the preset dev.
+# oracle of bags, man for the manual page, a Slurm cluster. `--with-clang` adds the compiler of the presets release and dev.
 set -euo pipefail
 
 packages=(
