@@ -58,7 +58,7 @@ for program in "${programs[@]}"; do
     [[ $link == *" $archive"* ]] && objects+=" $out/alidade_${room/\//_}_*.o"
     link=${link//"$archive"/}
   done
-  link=${link/\/usr\/bin\/c++/clang++-14 -fprofile-instr-generate}
+  link=$(sed -E "s|^: && [^ ]+|: \\&\\& clang++-14 -fprofile-instr-generate|" <<<"$link")
   link=${link/-o $program /-o $out/$program $objects }
   eval "$link"
   LLVM_PROFILE_FILE=$out/$program.profraw "$out/$program" --gtest_brief=1 >&2
