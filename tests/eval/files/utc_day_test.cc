@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace alidade {
 namespace {
 
@@ -28,6 +30,14 @@ TEST(UtcDay, GivenASourceDateThatIsNoTimeThenItIsRefused) {
     EXPECT_EQ(day.message(),
               "SOURCE_DATE_EPOCH: found \"" + std::string(wrong) + "\", expected whole seconds since 1970");
   }
+}
+
+TEST(UtcDay, GivenTheEnvironmentsSourceDateThenItIsThatOne) {
+  ASSERT_EQ(setenv("SOURCE_DATE_EPOCH", "951782400", 1), 0);
+  EXPECT_EQ(*UtcDay(), "2000-02-29");
+  ASSERT_EQ(unsetenv("SOURCE_DATE_EPOCH"), 0);
+  EXPECT_EQ(UtcDay()->size(), 10U);
+  EXPECT_GT(*UtcDay(), "2026-01-01");
 }
 
 }  // namespace
