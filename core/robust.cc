@@ -59,6 +59,20 @@ double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm
   return 1.0;
 }
 
+double ObservationKernel::SecondDerivative(double s) const {
+  const double k2 = scale_sigma * scale_sigma;
+  const double weight = Weight(s);
+  switch (kernel) {
+    case RobustKernel::kHuber:
+      return s > k2 ? -weight / (2 * s) : 0;
+    case RobustKernel::kCauchy:
+      return -weight * weight / k2;
+    case RobustKernel::kNone:
+      break;
+  }
+  return 0;
+}
+
 double ObservationKernel::RadialCurvature(double s) const {
   const double k2 = scale_sigma * scale_sigma;
   switch (kernel) {

@@ -38,6 +38,8 @@ struct ObservationKernel {
   [[nodiscard]] double Rho(double s) const { return RobustCost(kernel, scale_sigma, s); }
   /// rho'(s).
   [[nodiscard]] double Weight(double s) const { return RobustWeight(kernel, scale_sigma, s); }
+  /// rho''(s), at most 0.
+  [[nodiscard]] double SecondDerivative(double s) const;
   /// rho' + 2 s rho'': second derivative of rho(|r|^2) / 2 along r. Zero or negative in the tails.
   [[nodiscard]] double RadialCurvature(double s) const;
 };

@@ -7,11 +7,8 @@
 
 // A camera and an IMU on a circle of 3 m, streamed into a session as a robot's drivers would. Samples and
 // tracks are computed here; on a robot they come from the sensors.
-
 namespace {
-
 using Eigen::Vector3d;
-
 constexpr double kRadiusM = 3, kRateRadps = 0.6;
 
 /// Body x along the path, z up, moving up and down by 0.2 m.
@@ -41,7 +38,6 @@ alidade::TrackFrame FrameAt(alidade::TimeNs stamp_ns, const alidade::RigCalibrat
   }
   return frame;
 }
-
 }  // namespace
 
 int main() {
@@ -52,6 +48,10 @@ int main() {
   alidade::SessionOptions options;
   options.lateness.camera_s = 0.1;
   auto made = alidade::Session::Make(alidade::EstimatorConfig(), rig, options);
+  if (!made.ok()) {
+    std::fprintf(stderr, "%s\n", made.message().c_str());
+    return 1;
+  }
   alidade::Session& session = **made;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> place(-15, 15);

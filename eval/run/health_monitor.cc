@@ -79,12 +79,11 @@ NavEstimate ContinueFrom(const NavEstimate& sound, const NavEstimate& reckoned, 
     slip = speed + kSlipMps;
     turn_std = kUnknownYawRad;
   }
+  YawShift onto;
+  onto.yaw_rad = YawTo(base.nav.R_WB, start.nav.R_WB);
+  onto.p_NW = base.nav.p_WB - onto.Rotation() * start.nav.p_WB;
   NavEstimate moved = start;
-  const double turn = YawTo(base.nav.R_WB, start.nav.R_WB);
-  const Matrix3d R = so3::Exp(Vector3d(0, 0, turn));
-  moved.nav.R_WB = R * start.nav.R_WB;
-  moved.nav.v_WB = R * start.nav.v_WB;
-  moved.nav.p_WB = base.nav.p_WB;
+  moved.nav = onto * start.nav;
   Eigen::Matrix<double, 4, 15> of_gauge = Eigen::Matrix<double, 4, 15>::Zero();
   of_gauge.block<1, 3>(0, 0) = base.nav.R_WB.row(2);
   of_gauge.block<3, 3>(1, 3).setIdentity();
@@ -93,8 +92,7 @@ NavEstimate ContinueFrom(const NavEstimate& sound, const NavEstimate& reckoned, 
   gauge.diagonal().tail<3>().array() += slip * slip * away_s * away_s;
   // dp and dv of the start are along its own axes of W.
   Matrix15d frame = Matrix15d::Identity();
-  frame.block<3, 3>(3, 3) = R;
-  frame.block<3, 3>(6, 6) = R;
+  frame.topLeftCorner<9, 9>() = onto.StateJacobian();
   const Eigen::Matrix<double, 15, 4> directions = GaugeDirections(moved.nav);
   moved.covariance =
       frame * start.covariance * frame.transpose() + directions * gauge * directions.transpose();

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/lever_arm.h"
 #include "core/random.h"
 #include "eval/simulation/sim_fault.h"
 
@@ -47,7 +48,7 @@ void AddSimulatedFixes(const SimulatorConfig& config, const ContinuousTrajectory
     if (is_out) {
       continue;
     }
-    Vector3d p_WA = nav.p_WB + nav.R_WB * sensor.p_BA + error_W + pull.At(time_s);
+    Vector3d p_WA = LeverArm{sensor.p_BA}.Position(nav) + error_W + pull.At(time_s);
     if (is_wrong) {
       p_WA += size_m * Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/lever_arm.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/state_pair.h"
 #include "eval/metrics/trajectory_alignment.h"
@@ -171,7 +172,7 @@ double SinglePointRmse(const GnssConfig& config, const MeasurementLog& log, cons
     if (!feed.solution() || !there.ok()) {
       continue;
     }
-    const Eigen::Vector3d antenna_N = there->nav.p_WB + there->nav.R_WB * log.rig.gnss.p_BA;
+    const Eigen::Vector3d antenna_N = LeverArm{log.rig.gnss.p_BA}.Position(there->nav);
     PositionError& error = errors.emplace_back();
     error.error = enu.FromEcef(feed.solution()->position_E) - antenna_N;
   }

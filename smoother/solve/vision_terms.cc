@@ -4,19 +4,26 @@
 #include <utility>
 
 #include "core/predicted_observation.h"
+
 namespace alidade {
 namespace {
 
-std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
-  switch (kernel.kernel) {
-    case RobustKernel::kHuber:
-      return std::make_unique<ceres::HuberLoss>(kernel.scale_sigma);
-    case RobustKernel::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(kernel.scale_sigma);
-    case RobustKernel::kNone:
-      break;
+/// The kernel as Ceres asks for it.
+class KernelLoss final : public ceres::LossFunction {
+ public:
+  explicit KernelLoss(const ObservationKernel& kernel) : kernel_(kernel) {}
+  void Evaluate(double s, double rho[3]) const override {
+    rho[0] = kernel_.Rho(s);
+    rho[1] = kernel_.Weight(s);
+    rho[2] = kernel_.SecondDerivative(s);
   }
-  return nullptr;
+
+ private:
+  ObservationKernel kernel_;
+};
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
+  return kernel.kernel == RobustKernel::kNone ? nullptr : std::make_unique<KernelLoss>(kernel);
 }
 
 }  // namespace

@@ -142,6 +142,42 @@ TEST(SessionCatalogTest, EphemeridesMayComeLater) {
   EXPECT_GT(aligned[0].global.stamp_ns, from_ns);
 }
 
+// GIVEN one epoch that comes a second late, when those after it were processed, THEN the session names it,
+// and its states are those of the log without it.
+TEST(SessionGnssLatenessTest, SaysWhichEpochCameTooLate) {
+  const Dataset& dataset = Walk();
+  const EstimatorConfig config = Preset("gvio");
+  const SessionOptions options = Options(config, dataset);
+  std::vector<test::Arrival> arrivals = test::ArrivalsOf(dataset, kLive, 1);
+  const size_t late = dataset.gnss->epochs.size() / 2;
+  for (test::Arrival& message : arrivals) {
+    message.arrival_ns += message.sensor == Sensor::kGnss && message.index == late ? kSecondNs : 0;
+  }
+  std::stable_sort(arrivals.begin(), arrivals.end(), [](const test::Arrival& a, const test::Arrival& b) {
+    return a.arrival_ns < b.arrival_ns;
+  });
+  Result<std::unique_ptr<Session>> session = Session::Make(config, dataset.rig, options);
+  ASSERT_TRUE(session.ok()) << session.message();
+  const std::vector<SessionEvent> events = test::Stream(session->get(), dataset, arrivals);
+  const auto refused = Only<TooLateEvent>(events);
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0].sensor, Sensor::kGnss);
+  EXPECT_GT(refused[0].late_s, 0.3);
+  EXPECT_LT(refused[0].late_s, 1);
+
+  Dataset without = dataset;
+  auto gnss = std::make_shared<GnssLog>(*dataset.gnss);
+  EXPECT_LT(std::abs(SecondsBetween(gnss->epochs[late].stamp_ns, refused[0].stamp_ns)), 0.1);
+  gnss->epochs.erase(gnss->epochs.begin() + static_cast<std::ptrdiff_t>(late));
+  without.gnss = gnss;
+  const std::vector<NavEstimate> expected = test::StatesOf(StreamOf(config, without, options, 1));
+  const std::vector<NavEstimate> states = test::StatesOf(events);
+  ASSERT_EQ(states.size(), expected.size());
+  for (size_t i = 0; i < states.size(); ++i) {
+    ASSERT_TRUE(test::SameBits(states[i], expected[i])) << i;
+  }
+}
+
 // GIVEN epochs with numbers that are none, THEN those are left out, and the estimate goes on.
 TEST(SessionGnssNumbersTest, WhatIsNoNumberIsLeftOut) {
   Dataset dataset = Walk();
