@@ -11,25 +11,25 @@ bool Leaps(TimeNs from_ns, TimeNs to_ns) {
 
 }  // namespace
 
-ImuLeap::Judgement ImuLeap::Judge(const ImuSample& sample, TimeNs newest_ns) {
-  Judgement judgement;
+ImuLeap::Outcome ImuLeap::Add(const ImuSample& sample, TimeNs newest_ns) {
+  Outcome outcome;
   if (held_ && sample.stamp_ns == held_->stamp_ns) {
-    judgement.verdict = Verdict::kTwice;
-    return judgement;
+    outcome.verdict = Verdict::kTwice;
+    return outcome;
   }
   if (held_) {
     const ImuSample held = *std::exchange(held_, std::nullopt);
     if (sample.stamp_ns > held.stamp_ns && !Leaps(held.stamp_ns, sample.stamp_ns)) {
-      judgement.confirmed = held;
-      return judgement;
+      outcome.confirmed = held;
+      return outcome;
     }
-    judgement.refused = held;
+    outcome.refused = held;
   }
   if (Leaps(newest_ns, sample.stamp_ns)) {
-    judgement.verdict = Verdict::kHold;
+    outcome.verdict = Verdict::kHold;
     held_ = sample;
   }
-  return judgement;
+  return outcome;
 }
 
 std::optional<ImuSample> ImuLeap::Release(TimeNs stamp_ns) {

@@ -22,7 +22,7 @@ class ImuLeap {
     kHold,
     kTwice,  ///< it has the stamp of the one held, which stays
   };
-  struct Judgement {
+  struct Outcome {
     Verdict verdict = Verdict::kTake;
     // Of the sample held before, at most one of:
     std::optional<ImuSample> confirmed;  ///< to be taken in first
@@ -30,7 +30,7 @@ class ImuLeap {
   };
 
   /// `newest_ns`: stamp of the newest sample that was taken; INT64_MIN before the first, which cannot leap.
-  Judgement Judge(const ImuSample& sample, TimeNs newest_ns);
+  Outcome Add(const ImuSample& sample, TimeNs newest_ns);
   /// Lets the held sample go when it lies at or before `stamp_ns`, as none before that is awaited any more.
   std::optional<ImuSample> Release(TimeNs stamp_ns);
   [[nodiscard]] bool holds() const { return held_.has_value(); }

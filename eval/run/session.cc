@@ -37,27 +37,27 @@ void Session::AddImu(const ImuSample& sample) {
     return;
   }
   if (options_.live) {
-    JudgeLeap(sample);
+    TakeUnlessLeap(sample);
   } else {
     TakeImu(sample);
   }
 }
 
-void Session::JudgeLeap(const ImuSample& sample) {
+void Session::TakeUnlessLeap(const ImuSample& sample) {
   const TimeNs newest_ns = loop_.imu().newest_ns();
-  const ImuLeap::Judgement judgement = leap_.Judge(sample, newest_ns);
-  if (judgement.refused) {
-    const TimeNs refused_ns = judgement.refused->stamp_ns;
+  const ImuLeap::Outcome outcome = leap_.Add(sample, newest_ns);
+  if (outcome.refused) {
+    const TimeNs refused_ns = outcome.refused->stamp_ns;
     Skip(Sensor::kImu, refused_ns,
          Format("it lies %.3f s after the one before, and none comes soon after it",
                 SecondsBetween(newest_ns, refused_ns)));
   }
-  if (judgement.confirmed) {
-    TakeImu(*judgement.confirmed);
+  if (outcome.confirmed) {
+    TakeImu(*outcome.confirmed);
   }
-  if (judgement.verdict == ImuLeap::Verdict::kTake) {
+  if (outcome.verdict == ImuLeap::Verdict::kTake) {
     TakeImu(sample);
-  } else if (judgement.verdict == ImuLeap::Verdict::kTwice) {
+  } else if (outcome.verdict == ImuLeap::Verdict::kTwice) {
     SkipTwice(Sensor::kImu, sample.stamp_ns);
   }
 }

@@ -92,7 +92,7 @@ class Session {
   /// Takes a sample in, in order.
   void TakeImu(const ImuSample& sample);
   /// Takes a sample of a live session in, unless it leaps.
-  void JudgeLeap(const ImuSample& sample);
+  void TakeUnlessLeap(const ImuSample& sample);
   void Process();
   /// A message of this sensor has been taken in.
   void ProcessAfter(SensorRun* arrival);

@@ -22,18 +22,18 @@ class ImuLeapTest : public testing::Test {
  protected:
   Verdict Add(double seconds) {
     const ImuSample sample = Stamped(seconds);
-    const ImuLeap::Judgement judgement = leap_.Judge(sample, newest_ns_);
-    EXPECT_FALSE(judgement.confirmed && judgement.refused);
-    if (judgement.refused) {
-      refused_.push_back(judgement.refused->stamp_ns);
+    const ImuLeap::Outcome outcome = leap_.Add(sample, newest_ns_);
+    EXPECT_FALSE(outcome.confirmed && outcome.refused);
+    if (outcome.refused) {
+      refused_.push_back(outcome.refused->stamp_ns);
     }
-    if (judgement.confirmed) {
-      Take(*judgement.confirmed);
+    if (outcome.confirmed) {
+      Take(*outcome.confirmed);
     }
-    if (judgement.verdict == Verdict::kTake) {
+    if (outcome.verdict == Verdict::kTake) {
       Take(sample);
     }
-    return judgement.verdict;
+    return outcome.verdict;
   }
 
   /// At the end of a log.
@@ -99,11 +99,11 @@ TEST_F(ImuLeapTest, WhatIsHeldIsTheWholeSample) {
   ImuSample leap = Stamped(5);
   leap.gyro = {0.1, 0.2, 0.3};
   leap.accel = {1, 2, 9};
-  EXPECT_EQ(leap_.Judge(leap, 0).verdict, Verdict::kHold);
-  const ImuLeap::Judgement judgement = leap_.Judge(Stamped(5.01), 0);
-  ASSERT_TRUE(judgement.confirmed);
-  EXPECT_EQ(judgement.confirmed->gyro, leap.gyro);
-  EXPECT_EQ(judgement.confirmed->accel, leap.accel);
+  EXPECT_EQ(leap_.Add(leap, 0).verdict, Verdict::kHold);
+  const ImuLeap::Outcome outcome = leap_.Add(Stamped(5.01), 0);
+  ASSERT_TRUE(outcome.confirmed);
+  EXPECT_EQ(outcome.confirmed->gyro, leap.gyro);
+  EXPECT_EQ(outcome.confirmed->accel, leap.accel);
 }
 
 // GIVEN two wrong stamps in a row, each far from the other, THEN neither confirms the other.
