@@ -49,7 +49,7 @@ void Session::JudgeLeap(const ImuSample& sample) {
   if (judgement.refused) {
     const TimeNs refused_ns = judgement.refused->stamp_ns;
     Skip(Sensor::kImu, refused_ns,
-         Format("it lies %.3f s after the one before, and none comes soon after it",
+         Format("its stamp is %.3f s after the previous sample and no later sample confirms it",
                 SecondsBetween(newest_ns, refused_ns)));
   }
   if (judgement.confirmed) {
