@@ -29,7 +29,7 @@ Status EstimatorConfig::Validate() const {
   }
   if (frontend.template_px != 0 && frontend.template_px < 5) {
     return Status::Config("frontend.template_px: " + std::to_string(frontend.template_px) +
-                          " px do not tell how they are deformed; expected 0, or at least 5");
+                          " px are too few to estimate the deformation; expected 0, or at least 5");
   }
   if (calibration.line_delay && !vision.rolling_shutter) {
     return Status::Config(

@@ -98,7 +98,7 @@ Status Fetch(const CatalogueChoice& choice, const std::string& folder) {
         },
         stop));
     std::printf("%s%s\n", request.path.c_str(),
-                file->expected.States() ? "" : ": nothing is stated to check it by");
+                file->expected.States() ? "" : ": no size or checksum is known");
   }
   return Status::Ok();
 }
@@ -106,7 +106,7 @@ Status Fetch(const CatalogueChoice& choice, const std::string& folder) {
 Status Verify(const CatalogueChoice& choice, const std::string& folder) {
   const CatalogueDataset& dataset = *choice.dataset;
   if (choice.files.empty()) {
-    return Status::Usage(dataset.name + ": the catalogue states nothing of its files");
+    return Status::Usage(dataset.name + ": the catalogue lists no files");
   }
   std::size_t faults = 0;
   for (const CatalogueFile* file : choice.files) {
@@ -114,10 +114,9 @@ Status Verify(const CatalogueChoice& choice, const std::string& folder) {
     const Status checked = CheckFile(path.string(), file->expected);
     faults += checked.ok() ? 0 : 1;
     const std::string verdict =
-        checked.ok()
-            ? path.string() + (file->expected.States() ? ": ok (" + ChecksText(file->expected) + ")"
-                                                       : ": present; nothing is stated to check it by")
-            : checked.message();
+        checked.ok() ? path.string() + (file->expected.States() ? ": ok (" + ChecksText(file->expected) + ")"
+                                                                : ": present; no size or checksum is known")
+                     : checked.message();
     std::printf("%s\n", verdict.c_str());
   }
   return faults == 0 ? Status::Ok()

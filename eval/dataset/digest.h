@@ -9,9 +9,10 @@ namespace alidade {
 
 struct LogTables;
 
-/// SHA-256 (hex) over the log's calibration, IMU and tracks and, where it has GNSS, receiver, observations
-/// (pseudorange, Doppler, C/N0) and broadcast ephemerides: equal digests mean identical input to every
-/// estimator. Of GNSS it leaves out reported deviations, ionosphere parameters and precise products.
+/// SHA-256 (hex) over the log's calibration, IMU and tracks and, where it has them, further cameras with
+/// their tracks, position fixes with their sensors, and of GNSS the receiver, observations (pseudorange,
+/// Doppler, C/N0) and broadcast ephemerides. Equal digests mean that these are equal. Inputs can still differ
+/// in what is left out: reported deviations of GNSS, ionosphere parameters and precise products.
 [[nodiscard]] std::string DigestOf(const MeasurementLog& log);
 /// The same of a log whose long tables are elsewhere. Errors: the tables'.
 Result<std::string> DigestOf(const MeasurementLog& log, const LogTables& tables);

@@ -180,7 +180,7 @@ void Remark(RestSpan* span) {
   }
   if (span->jitter_rms_s > kMuchJitter * span->period_s) {
     span->remarks.push_back(
-        Format("the stamps jitter by %.0f %% of the period: missing samples cannot be told from "
+        Format("the stamps jitter by %.0f %% of the period: missing samples cannot be distinguished from "
                "late ones",
                100 * span->jitter_rms_s / span->period_s));
   }

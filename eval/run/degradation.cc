@@ -55,8 +55,8 @@ void Degradation::OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison
 std::string Degradation::AgainstSensors(const char* by) const {
   for (const auto& [source, monitor] : absolute_) {
     if (const std::optional<Contradiction>& found = monitor.contradiction()) {
-      return Format("%s %s: %.1f m (%.1f sigma) from where they lead within %.0f s", Contradicts(source), by,
-                    found->distance_m, found->sigmas, found->window_s);
+      return Format("%s %s: %.1f m (%.1f sigma) from the predicted position within %.0f s",
+                    Contradicts(source), by, found->distance_m, found->sigmas, found->window_s);
     }
   }
   return {};

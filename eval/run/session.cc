@@ -49,7 +49,7 @@ void Session::TakeUnlessLeap(const ImuSample& sample) {
   if (outcome.refused) {
     const TimeNs refused_ns = outcome.refused->stamp_ns;
     Skip(Sensor::kImu, refused_ns,
-         Format("it lies %.3f s after the one before, and none comes soon after it",
+         Format("its stamp is %.3f s after the previous sample and no later sample confirms it",
                 SecondsBetween(newest_ns, refused_ns)));
   }
   if (outcome.confirmed) {
