@@ -282,7 +282,7 @@ TEST(SessionTest, AStampFarAheadIsSkippedAlone) {
   }
   const auto skipped = Only<SkippedEvent>(events);
   ASSERT_EQ(skipped.size(), 1u);
-  EXPECT_THAT(skipped[0].reason, HasSubstr("after the one before"));
+  EXPECT_THAT(skipped[0].reason, HasSubstr("after the previous sample"));
   EXPECT_TRUE(Only<TooLateEvent>(events).empty());
   const std::vector<NavEstimate> states = test::StatesOf(events);
   ASSERT_EQ(states.size(), expected.size());
