@@ -79,6 +79,9 @@ int RunCalibrate(const std::vector<std::string>&) {
   if (!config.ok()) {
     return Report(config.status());
   }
+  if (const Status status = RequireOutputBesideDataset(FLAGS_output, FLAGS_dataset); !status.ok()) {
+    return Report(status);
+  }
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }

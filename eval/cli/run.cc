@@ -161,6 +161,9 @@ int RunRun(const std::vector<std::string>&) {
   if (!dataset_digest.ok()) {
     return Report(dataset_digest.status());
   }
+  if (const Status status = RequireOutputBesideDataset(FLAGS_output, FLAGS_dataset); !status.ok()) {
+    return Report(status);
+  }
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }

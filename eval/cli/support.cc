@@ -81,11 +81,31 @@ Status RequireFlag(const std::string& command, const std::string& flag, const st
   return value.empty() ? Status::Usage(command + ": --" + flag + " is missing") : Status::Ok();
 }
 
+Status RequireOutputBesideDataset(const std::string& output, const std::string& dataset) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path sequence = fs::weakly_canonical(fs::absolute(dataset), error);
+  for (fs::path folder = fs::weakly_canonical(fs::absolute(output), error); !dataset.empty();
+       folder = folder.parent_path()) {
+    if (folder == sequence) {
+      return Status::Output(output + ": lies in the dataset " + dataset +
+                            ", expected a folder outside of it for the output");
+    }
+    if (folder == folder.root_path() || folder.empty()) {
+      break;
+    }
+  }
+  return Status::Ok();
+}
+
 Status PrepareOutputFolder(const std::string& path, bool allowed) {
   namespace fs = std::filesystem;
   std::error_code error;
   if (path.empty()) {
     return Status::Usage("--output: found an empty path, expected a folder");
+  }
+  if (const fs::path whole = fs::weakly_canonical(fs::absolute(path), error); whole == whole.root_path()) {
+    return Status::Output(path + ": is the root of the file system, expected a folder for the output alone");
   }
   if (fs::exists(path, error) && !fs::is_directory(path, error)) {
     return Status::Output(path + ": exists and is not a folder, expected a folder for the output");

@@ -17,8 +17,13 @@ int Report(const Status& status);
 /// kUsage when a flag that this use of a command needs was left out.
 Status RequireFlag(const std::string& command, const std::string& flag, const std::string& value);
 
-/// Refuses an output folder that exists (even empty is fine) unless `allowed`; makes it, and this process its
-/// only writer. kOutput: it cannot be made, or another process writes there.
+/// kOutput: the output folder is the dataset or lies in it, whose files it might replace. An empty dataset:
+/// none.
+Status RequireOutputBesideDataset(const std::string& output, const std::string& dataset);
+
+/// Refuses an output folder that is the root of the file system, and one that exists (even empty is fine)
+/// unless `allowed`; makes it, and this process its only writer. kOutput: it cannot be made, or another
+/// process writes there.
 Status PrepareOutputFolder(const std::string& path, bool allowed);
 
 /// A line for people on standard error, unless --quiet.

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <regex>
 #include <thread>
 
@@ -17,10 +18,22 @@ namespace {
 
 constexpr char kTemporary[] = ".tmp";  // then process and thread: two cells never share a file
 
-bool IsTemporary(const std::string& name) {
+/// The process of a temporary file's name; 0 for other files.
+pid_t WriterOf(const std::string& name) {
   const size_t mark = name.rfind(kTemporary);
-  return mark != std::string::npos &&
-         std::regex_match(name.substr(mark + sizeof kTemporary - 1), std::regex("[0-9]+_[0-9]+"));
+  if (mark == std::string::npos ||
+      !std::regex_match(name.substr(mark + sizeof kTemporary - 1), std::regex("[0-9]+_[0-9]+"))) {
+    return 0;
+  }
+  pid_t process = 0;
+  const char* first = name.data() + mark + sizeof kTemporary - 1;
+  const auto [end, error] = std::from_chars(first, name.data() + name.size(), process);
+  return error == std::errc() ? process : std::numeric_limits<pid_t>::max();
+}
+
+/// Whether another process of that number runs: it may be writing into a folder further down.
+bool IsAnotherThatLives(pid_t process) {
+  return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }
 
 std::string SystemReason() {
@@ -101,7 +114,8 @@ void RemoveTemporaryFiles(const std::string& folder) {
   const auto options = fs::directory_options::skip_permission_denied;
   for (fs::recursive_directory_iterator entry(folder, options, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (IsTemporary(entry->path().filename().string())) {
+    const pid_t writer = WriterOf(entry->path().filename().string());
+    if (writer > 0 && !IsAnotherThatLives(writer)) {
       std::error_code ignored;
       fs::remove(entry->path(), ignored);
     }

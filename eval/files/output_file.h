@@ -18,8 +18,9 @@ using AppendText = std::function<Status(std::string_view)>;
 /// of the file.
 Status WriteFileAtomically(const std::string& path, const std::function<Status(const AppendText&)>& write);
 
-/// Removes what processes that were killed left below `folder`: temporary files of WriteFileAtomically. Only
-/// for the one writer of the folder (LockFolder).
+/// Removes what processes that were killed left below `folder`: temporary files of WriteFileAtomically. Those
+/// of another process that runs stay: it may write in a folder further down. Only for the one writer of the
+/// folder (LockFolder).
 void RemoveTemporaryFiles(const std::string& folder);
 
 /// Shortest decimal text that reads back to the same double.

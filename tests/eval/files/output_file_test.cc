@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "eval/files/input_file.h"
@@ -50,14 +52,18 @@ TEST(ShortestDouble, ReadsBackToTheSameNumber) {
 
 TEST(RemoveTemporaryFiles, TakesWhatAKilledProcessLeftAndNothingElse) {
   const test::TemporaryFolder folder;
-  for (const char* name :
-       {"a/states.csv.tmp12_345", "b.tmp1_2", "a/states.csv", "c.tmp", "d.tmp12_x", "e.tmp1_2.csv"}) {
+  for (const char* name : {"a/states.csv.tmp999999999_345", "b.tmp99999999999999999999_2", "a/states.csv",
+                           "c.tmp", "d.tmp12_x", "e.tmp1_2.csv", "of_the_process_that_runs_all.tmp1_2"}) {
     folder.Write(name, "x");
   }
+  const std::string own = folder.File("own.tmp" + std::to_string(getpid()) + "_7");  // of an earlier process
+  std::ofstream(own) << "x";
   RemoveTemporaryFiles(folder.path());
-  EXPECT_FALSE(std::filesystem::exists(folder.File("a/states.csv.tmp12_345")));
-  EXPECT_FALSE(std::filesystem::exists(folder.File("b.tmp1_2")));
-  for (const char* name : {"a/states.csv", "c.tmp", "d.tmp12_x", "e.tmp1_2.csv"}) {
+  EXPECT_FALSE(std::filesystem::exists(folder.File("a/states.csv.tmp999999999_345")));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("b.tmp99999999999999999999_2")));
+  EXPECT_FALSE(std::filesystem::exists(own));
+  for (const char* name :
+       {"a/states.csv", "c.tmp", "d.tmp12_x", "e.tmp1_2.csv", "of_the_process_that_runs_all.tmp1_2"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.File(name))) << name;
   }
 }
