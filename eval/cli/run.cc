@@ -153,6 +153,9 @@ int RunRun(const std::vector<std::string>&) {
   if (!config.ok()) {
     return Report(config.status());
   }
+  if (const Status status = RequireOutputBesideDataset(FLAGS_output, FLAGS_dataset); !status.ok()) {
+    return Report(status);
+  }
   Result<Dataset> dataset = ReadDatasetFromFlags(StorageOf(*config));
   if (!dataset.ok()) {
     return Report(dataset.status());
@@ -160,9 +163,6 @@ int RunRun(const std::vector<std::string>&) {
   const Result<std::string> dataset_digest = DigestOf(SourceFromFlags());
   if (!dataset_digest.ok()) {
     return Report(dataset_digest.status());
-  }
-  if (const Status status = RequireOutputBesideDataset(FLAGS_output, FLAGS_dataset); !status.ok()) {
-    return Report(status);
   }
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);

@@ -12,6 +12,7 @@
 #include "eval/config/config_yaml.h"
 #include "eval/dataset/dataset.h"
 #include "eval/files/folder_lock.h"
+#include "eval/files/lies_in.h"
 #include "eval/files/output_file.h"
 #include "eval/files/time_left.h"
 
@@ -82,20 +83,10 @@ Status RequireFlag(const std::string& command, const std::string& flag, const st
 }
 
 Status RequireOutputBesideDataset(const std::string& output, const std::string& dataset) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path sequence = fs::weakly_canonical(fs::absolute(dataset), error);
-  for (fs::path folder = fs::weakly_canonical(fs::absolute(output), error); !dataset.empty();
-       folder = folder.parent_path()) {
-    if (folder == sequence) {
-      return Status::Output(output + ": lies in the dataset " + dataset +
-                            ", expected a folder outside of it for the output");
-    }
-    if (folder == folder.root_path() || folder.empty()) {
-      break;
-    }
-  }
-  return Status::Ok();
+  return !dataset.empty() && LiesIn(output, dataset)
+             ? Status::Output(output + ": lies in the dataset " + dataset +
+                              ", expected a folder outside of it for the output")
+             : Status::Ok();
 }
 
 Status PrepareOutputFolder(const std::string& path, bool allowed) {

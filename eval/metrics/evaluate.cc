@@ -37,7 +37,7 @@ void ForgetUnknownNees(const Trajectory& truth, NeesResult* nees) {
   }
 }
 
-/// Statistics of the aligned pairs' errors, as evo prints them.
+/// The aligned pairs' errors: their statistics as evo prints them, of which the figures of `ate` are a part.
 void DescribeAte(const std::vector<StatePair>& aligned, Evaluation* evaluation) {
   std::vector<double> pos_m, ori_deg;
   for (const StatePair& pair : aligned) {
@@ -48,6 +48,7 @@ void DescribeAte(const std::vector<StatePair>& aligned, Evaluation* evaluation) 
   }
   evaluation->ate_pos_m = ComputeErrorStatistics(pos_m);
   evaluation->ate_ori_deg = ComputeErrorStatistics(ori_deg);
+  evaluation->ate = {evaluation->ate_pos_m.rmse, evaluation->ate_ori_deg.rmse, evaluation->ate_pos_m.max};
 }
 
 Status ComputeRelativeErrors(const Trajectory& truth, const std::vector<StatePair>& aligned, bool oriented,
@@ -113,7 +114,6 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
   evaluation.transform = Align(FirstShare(evaluation.pairs, options.align_share), options.alignment);
   const std::vector<StatePair> aligned = ApplyAlignment(evaluation.pairs, evaluation.transform);
   evaluation.unaligned = ComputeAte(evaluation.pairs);
-  evaluation.ate = ComputeAte(aligned);
   DescribeAte(aligned, &evaluation);
   ALIDADE_RETURN_IF_ERROR(ComputeRelativeErrors(truth, aligned, oriented, &evaluation));
   if (!oriented) {

@@ -8,6 +8,7 @@
 #include "eval/dataset/dataset_imu.h"
 #include "eval/dataset/dataset_truth.h"
 #include "eval/files/input_file.h"
+#include "eval/files/lies_in.h"
 #include "eval/trajectory/trajectory_point.h"
 
 namespace alidade {
@@ -39,19 +40,6 @@ Result<std::vector<fs::path>> EntriesOf(const fs::path& folder) {
   }
   return error ? Status::Input(folder.string() + ": cannot be read: " + error.message())
                : Result<std::vector<fs::path>>(std::move(entries));
-}
-
-/// Whether `path` is `folder` or below it, whatever links lead there; `path` need not exist.
-bool LiesIn(const fs::path& path, const fs::path& folder) {
-  std::error_code error;
-  for (fs::path above = fs::weakly_canonical(fs::absolute(path), error);; above = above.parent_path()) {
-    if (fs::equivalent(above, folder, error)) {
-      return true;
-    }
-    if (above == above.parent_path()) {
-      return false;
-    }
-  }
 }
 
 /// `entry` under the name `target`, a folder (images) as a link. The copy is complete before it takes the

@@ -19,6 +19,17 @@ TEST(ObservationKernelTest, RhoIsTheIntegralOfTheSharedWeight) {
   }
 }
 
+TEST(ObservationKernelTest, SecondDerivativeIsThatOfTheCost) {
+  for (const RobustKernel kernel : kKernels) {
+    const ObservationKernel robust{kernel, 2.0};
+    for (const double s : {0.1, 3.9, 4.1, 50.0}) {
+      const double change = (robust.Weight(s + 1e-5) - robust.Weight(s - 1e-5)) / 2e-5;
+      EXPECT_NEAR(robust.SecondDerivative(s), change, 1e-9);
+      EXPECT_NEAR(robust.RadialCurvature(s), robust.Weight(s) + 2 * s * robust.SecondDerivative(s), 1e-15);
+    }
+  }
+}
+
 TEST(ObservationKernelTest, RadialCurvatureIsTheSecondDerivativeAlongTheResidual) {
   for (const RobustKernel kernel : kKernels) {
     const ObservationKernel robust{kernel, 2.0};

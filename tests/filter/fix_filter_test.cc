@@ -59,20 +59,28 @@ INSTANTIATE_TEST_SUITE_P(Conventions, FixFilterTest,
                                          ErrorConvention::kSo3xRn),
                          [](const auto& convention) { return std::string(ToString(convention.param)); });
 
-TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_before) {
+Dataset ShortWalkWithFixes() {
   SimulatorConfig scene;
   scene.duration_s = 2;
   scene.path_m = 4;
   scene.max_features = 10;
   scene.fix.rate_hz = 10;
-  const Dataset dataset = SimulateOrDie(scene, 1);
+  return SimulateOrDie(scene, 1);
+}
+
+void StartWithAllSamples(const Dataset& dataset, const NavEstimate& start, FilterEstimator* filter) {
+  ASSERT_TRUE(filter->Initialize(start).ok());
+  for (const ImuSample& sample : dataset.imu) {
+    ASSERT_TRUE(filter->AddImu(sample).ok());
+  }
+}
+
+TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_before) {
+  const Dataset dataset = ShortWalkWithFixes();
   FilterEstimator filter(EstimatorConfig(), dataset.rig);
   const NavEstimate start = DrawInitialState(dataset, 1);
   PositionFix fix = dataset.fixes.front();
-  ASSERT_TRUE(filter.Initialize(start).ok());
-  for (const ImuSample& sample : dataset.imu) {
-    ASSERT_TRUE(filter.AddImu(sample).ok());
-  }
+  StartWithAllSamples(dataset, start, &filter);
   EXPECT_EQ(filter.AddMeasurement(fix).code(), StatusCode::kDiverged) << "not aligned";
   ASSERT_TRUE(filter.Align(IdentityAlignment(start.stamp_ns)).ok());
   EXPECT_FALSE(filter.LatestClock());
@@ -96,19 +104,11 @@ TEST(FixFilter, GIVEN_what_is_no_fix_for_it_THEN_the_filter_says_why_and_is_as_b
 // GIVEN fixes so far away that the square of their distance is no number any more, WHEN more of them come
 // than are refused in a row before the state is suspect, THEN each is refused and the state is as before.
 TEST(FixFilter, AnAbsurdFixIsRefusedHoweverOftenItComes) {
-  SimulatorConfig scene;
-  scene.duration_s = 2;
-  scene.path_m = 4;
-  scene.max_features = 10;
-  scene.fix.rate_hz = 10;
-  const Dataset dataset = SimulateOrDie(scene, 1);
+  const Dataset dataset = ShortWalkWithFixes();
   const EstimatorConfig config;
   FilterEstimator filter(config, dataset.rig);
   const NavEstimate start = DrawInitialState(dataset, 1);
-  ASSERT_TRUE(filter.Initialize(start).ok());
-  for (const ImuSample& sample : dataset.imu) {
-    ASSERT_TRUE(filter.AddImu(sample).ok());
-  }
+  StartWithAllSamples(dataset, start, &filter);
   ASSERT_TRUE(filter.Align(IdentityAlignment(start.stamp_ns)).ok());
   ASSERT_TRUE(filter.AddMeasurement(dataset.fixes.front()).ok());
   const NavEstimate before = filter.Latest();

@@ -104,8 +104,8 @@ TEST(EvoAgreement, AbsoluteErrors) {
                                              AsEvo(row.words[1], std::stod(row.words[3])));
     EXPECT_EQ(evaluation.pairs.size(), std::stoul(row.words[5])) << row.text;
     ExpectAsEvo(row.words[4] == "angle_deg" ? evaluation.ate_ori_deg : evaluation.ate_pos_m, row);
-    EXPECT_NEAR(evaluation.ate.pos_m, evaluation.ate_pos_m.rmse, 1e-12);
-    EXPECT_NEAR(evaluation.ate.ori_deg, evaluation.ate_ori_deg.rmse, 1e-10);
+    EXPECT_DOUBLE_EQ(evaluation.ate.pos_m, evaluation.ate_pos_m.rmse);
+    EXPECT_DOUBLE_EQ(evaluation.ate.ori_deg, evaluation.ate_ori_deg.rmse);
   }
 }
 
