@@ -57,6 +57,12 @@ class CeresView {
     }
     return jacobian;
   }
+  /// Half the sum of the losses.
+  [[nodiscard]] double Cost() {
+    double cost = 0;
+    EXPECT_TRUE(problem_->Evaluate({}, &cost, nullptr, nullptr, nullptr));
+    return cost;
+  }
   /// Residuals with the blocks moved by `delta`, through the manifolds.
   [[nodiscard]] Eigen::VectorXd Moved(const Eigen::VectorXd& delta) {
     const std::vector<std::vector<double>> before = Move(delta);

@@ -168,6 +168,52 @@ MatrixXd Reduced(const MatrixXd& hessian, const VectorXd& gradient) {
   return reduced;
 }
 
+/// The rows of one view in Ceres under a kernel, and its cost.
+struct ViewInCeres {
+  ViewInCeres(WindowFixture* fixture, WindowTrack* track, std::size_t view, const ObservationKernel& kernel) {
+    ViewTerm term(std::make_shared<const ViewContext>(fixture->window.frames(), fixture->calibration, kernel),
+                  track, 0, view);
+    CeresView ceres_view(ErrorConvention::kSo3xRn, fixture->window.frames(), fixture->calibration, {track});
+    ceres_view.Add(&term);
+    jacobian = ceres_view.Jacobian(&residual);
+    cost = ceres_view.Cost();
+  }
+
+  MatrixXd jacobian;
+  VectorXd residual;
+  double cost = 0;
+};
+
+// GIVEN views on both sides of a kernel's bend THEN Ceres sees the kernel's cost, slope and weight. It leaves
+// out a second derivative that is negative, as these are.
+TEST(VisionTermTest, ViewsInCeresAreUnderTheSharedKernel) {
+  int within = 0;
+  int beyond = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    WindowFixture fixture(seed, 4, 8, 1.0);
+    Disturb(&fixture);
+    WindowTrack& track = fixture.window.tracks().begin()->second;
+    for (std::size_t view = 1; view < track.views.size(); ++view) {
+      const ViewInCeres plain(&fixture, &track, view, {});
+      const double s = plain.residual.squaredNorm();
+      for (const RobustKernel kind : {RobustKernel::kHuber, RobustKernel::kCauchy}) {
+        for (const double bend : {0.5, 2.0}) {  // of the residual's length
+          const ObservationKernel kernel{kind, bend * std::sqrt(s)};
+          (kernel.Weight(s) < 1 ? beyond : within) += 1;
+          const ViewInCeres robust(&fixture, &track, view, kernel);
+          EXPECT_NEAR(robust.cost, 0.5 * kernel.Rho(s), 1e-12 * s);
+          const MatrixXd information = kernel.Weight(s) * plain.jacobian.transpose() * plain.jacobian;
+          const VectorXd gradient = kernel.Weight(s) * plain.jacobian.transpose() * plain.residual;
+          EXPECT_TRUE((robust.jacobian.transpose() * robust.jacobian).isApprox(information, 1e-12));
+          EXPECT_TRUE((robust.jacobian.transpose() * robust.residual).isApprox(gradient, 1e-12));
+        }
+      }
+    }
+  }
+  EXPECT_GE(within, 8);
+  EXPECT_GE(beyond, 8);
+}
+
 // The landmark's coordinates move with the base frame in Ceres and stand still in the rows: once it is
 // eliminated both say the same of poses and calibration. In Ceres every row is numeric.
 TEST(VisionTermTest, ViewsAndDepthPriorsAreThoseOfCeresAndNumeric) {
