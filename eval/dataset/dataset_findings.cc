@@ -5,6 +5,7 @@
 
 #include "core/format.h"
 #include "core/median.h"
+#include "eval/dataset/clock_shift.h"
 #include "eval/dataset/log_tables.h"
 
 namespace alidade {
@@ -21,11 +22,11 @@ void Findings::Error(std::string text) {
   list_.push_back({DatasetFinding::Severity::kError, std::move(text)});
 }
 
-void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
-                 Findings* findings) {
+double CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
+                   Findings* findings) {
   if (stamps.size() < 2) {
     findings->Warning(Format("%s: %zu stamps", sensor, stamps.size()));
-    return;
+    return 0;
   }
   std::vector<double> steps;
   for (size_t i = 1; i < stamps.size(); ++i) {
@@ -60,18 +61,44 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
     findings->Warning(
         Format("%s: sensor.yaml states %.2f Hz, the stamps give %.2f Hz", sensor, stated_rate_hz, mean_rate));
   }
+  return 1 / median;
+}
+
+void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Findings* findings) {
+  if (rate_hz <= 0 || (rate_hz >= limits.low && rate_hz <= limits.high)) {
+    return;
+  }
+  const std::string text =
+      Format("%s: a rate of %.6g Hz, expected %.6g to %.6g Hz: %s?", sensor, rate_hz, limits.low, limits.high,
+             rate_hz < limits.low ? "thinned out, or stamps in another unit" : "stamps in another unit than ns");
+  if (rate_hz < limits.least || rate_hz > limits.most) {
+    findings->Error(text);
+  } else {
+    findings->Warning(text);
+  }
 }
 
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
   const Table<ImuSample> imu = TablesOf(dataset).imu;
-  const TimeNs imu_first = imu.front().stamp_ns;
-  const TimeNs imu_last = imu.back().stamp_ns;
+  const TimeSpan of_imu{imu.front().stamp_ns, imu.back().stamp_ns};
   findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
-                        SecondsBetween(imu_first, first), SecondsBetween(imu_last, last)));
-  if (last < imu_first || first > imu_last) {
-    const double ratio = static_cast<double>(first) / static_cast<double>(imu_first);
-    findings->Error(Format("%s: shares no time with imu0: %s", sensor,
-                           ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?"));
+                        SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last)));
+  if (last < of_imu.first_ns || first > of_imu.last_ns) {
+    const double ratio = static_cast<double>(first) / static_cast<double>(of_imu.first_ns);
+    std::string text = Format("%s: shares no time with imu0: %s", sensor,
+                              ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?");
+    if (const std::optional<Meeting> meeting = ShiftOntoSpan({first, last}, of_imu)) {
+      text += Format(" %+.0f s (%s) added to its stamps would make the two overlap by %.0f %%",
+                     SecondsBetween(0, meeting->shift.shift_ns), meeting->shift.name.c_str(),
+                     100 * meeting->share);
+    }
+    findings->Error(std::move(text));
+  } else if (const std::optional<ClockShift> shift = ShiftOfBothEnds({first, last}, of_imu)) {
+    findings->Warning(
+        Format("%s: starts %+.3f s and ends %+.3f s against imu0, expected about 0: is it %+.0f s (%s), to be "
+               "added to its stamps?",
+               sensor, SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last),
+               SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
   }
 }
 
