@@ -12,8 +12,8 @@ namespace {
 
 /// Of the shorter span, the share that is common once the sensor's stamps are shifted; negative: none is.
 double CommonShare(const TimeSpan& sensor, const TimeSpan& imu, TimeNs shift_ns) {
-  const double shorter = std::max(
-      kNsToSeconds, std::min(SecondsBetween(sensor.first_ns, sensor.last_ns), SecondsBetween(imu.first_ns, imu.last_ns)));
+  const double shorter = std::max(kNsToSeconds, std::min(SecondsBetween(sensor.first_ns, sensor.last_ns),
+                                                         SecondsBetween(imu.first_ns, imu.last_ns)));
   // As differences: a sum of arbitrary stamps might overflow.
   const double shift = SecondsBetween(0, shift_ns);
   const double starts = SecondsBetween(imu.first_ns, sensor.first_ns) + shift;

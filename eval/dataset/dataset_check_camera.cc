@@ -28,17 +28,18 @@ void CheckLives(const Dataset& dataset, size_t frames, int longest, Findings* fi
     return;
   }
   if (longest == 1) {
-    TellUseless(dataset,
-                Format("cam0: no track lasts: in %zu frames every track_id occurs once, expected the same id in "
-                       "following frames: are the ids numbered anew in each?",
-                       frames),
-                findings);
+    TellUseless(
+        dataset,
+        Format("cam0: no track lasts: in %zu frames every track_id occurs once, expected the same id in "
+               "following frames: are the ids numbered anew in each?",
+               frames),
+        findings);
   } else if (longest == 0) {
     TellUseless(dataset, Format("cam0: no observation in %zu frames, expected tracks", frames), findings);
   } else {
     findings->Warning(
-        Format("cam0: no track of the %zu frames has more than %d observations, expected three or more", frames,
-               longest));
+        Format("cam0: no track of the %zu frames has more than %d observations, expected three or more",
+               frames, longest));
   }
 }
 
@@ -111,9 +112,10 @@ void CheckRates(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findi
   constexpr RateLimits kRates = {0, 0, 250, 1e4};
   constexpr double kJitter = 1.1;
   if (stamps.size() == 1) {
-    TellUseless(dataset,
-                "cam0: a single frame, expected at least two: a track begins in one and is seen again in another",
-                findings);
+    TellUseless(
+        dataset,
+        "cam0: a single frame, expected at least two: a track begins in one and is seen again in another",
+        findings);
     return;
   }
   const double rate_hz = CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
@@ -121,9 +123,10 @@ void CheckRates(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findi
   const Table<ImuSample> imu = TablesOf(dataset).imu;
   const double imu_rate_hz = MeasuredRate(imu.front().stamp_ns, imu.back().stamp_ns, imu.size());
   if (rate_hz > kJitter * imu_rate_hz) {
-    findings->Warning(Format("cam0: %.4g Hz, expected no more than imu0's %.4g Hz: there are frames without a "
-                             "sample of the IMU between them",
-                             rate_hz, imu_rate_hz));
+    findings->Warning(
+        Format("cam0: %.4g Hz, expected no more than imu0's %.4g Hz: there are frames without a "
+               "sample of the IMU between them",
+               rate_hz, imu_rate_hz));
   }
 }
 

@@ -36,11 +36,11 @@ void CheckCourse(const Dataset& dataset, Findings* findings) {
   const std::optional<CourseShift> found =
       ShiftByCourse(courses, *turns, SecondsToNs(dataset.rig.gnss.time_offset_s));
   if (found) {
-    findings->Warning(
-        Format("gnss0: time_offset_s: courses of the Doppler velocities follow the gyroscope with %+.0f s (%s) "
-               "added (correlation %.2f of %d pairs of epochs), and do not as it is (%.2f): another clock?",
-               SecondsBetween(0, found->shift.shift_ns), found->shift.name.c_str(), found->shifted.correlation,
-               found->shifted.pairs, found->as_given.correlation));
+    findings->Warning(Format(
+        "gnss0: time_offset_s: courses of the Doppler velocities follow the gyroscope with %+.0f s (%s) "
+        "added (correlation %.2f of %d pairs of epochs), and do not as it is (%.2f): another clock?",
+        SecondsBetween(0, found->shift.shift_ns), found->shift.name.c_str(), found->shifted.correlation,
+        found->shifted.pairs, found->as_given.correlation));
   }
 }
 

@@ -107,8 +107,8 @@ struct DensityLimits {
   double most;   ///< ten times that: no sensor, however much a sheet is enlarged to be safe
   const char* wrong_unit;
 };
-// Data sheets: gyroscopes have 0.003 to 0.03 deg/s/sqrt(Hz), 5e-5 to 5e-4 rad/s/sqrt(Hz); accelerometers 50 to
-// 400 ug/sqrt(Hz), 5e-4 to 4e-3 m/s^2/sqrt(Hz), and sheets of 0.1 m/s^2/sqrt(Hz) are in use.
+// Data sheets: gyroscopes have 0.003 to 0.03 deg/s/sqrt(Hz), 5e-5 to 5e-4 rad/s/sqrt(Hz); accelerometers 50
+// to 400 ug/sqrt(Hz), 5e-4 to 4e-3 m/s^2/sqrt(Hz), and sheets of 0.1 m/s^2/sqrt(Hz) are in use.
 constexpr DensityLimits kGyroDensity = {"gyroscope_noise_density", "rad/s/sqrt(Hz)", 1e-3, 5e-3, "deg"};
 constexpr DensityLimits kAccelDensity = {"accelerometer_noise_density", "m/s^2/sqrt(Hz)", 2e-2, 0.5,
                                          "mg or ug"};
@@ -122,12 +122,12 @@ void CheckDensity(const DensityLimits& limits, double density, const std::option
   if (!(density > limits.most) && !above_samples) {
     return;
   }
-  findings->Warning(
-      Format("imu0/sensor.yaml: %s: found %.3g %s, expected below %.0e%s: in %s, or a standard deviation of the "
-             "samples?",
-             limits.key, density, limits.unit, limits.grade,
-             quietest ? Format(" (the quietest second shows at most %.2g)", *quietest).c_str() : "",
-             limits.wrong_unit));
+  findings->Warning(Format(
+      "imu0/sensor.yaml: %s: found %.3g %s, expected below %.0e%s: in %s, or a standard deviation of the "
+      "samples?",
+      limits.key, density, limits.unit, limits.grade,
+      quietest ? Format(" (the quietest second shows at most %.2g)", *quietest).c_str() : "",
+      limits.wrong_unit));
 }
 
 /// The accelerometer's scale and bias against gravity.
@@ -138,10 +138,10 @@ void CheckForceAtRest(const QuietSeconds& quiet, Findings* findings) {
   const std::optional<double> force = quiet.SpecificForce();
   const double off = std::abs(force.value_or(kStandardGravity) / kStandardGravity - 1);
   if (off > kMostShare && off < kUnit) {
-    findings->Warning(
-        Format("imu0: specific force at rest %.3f m/s^2 (median over %zu s) is %.3f of gravity, expected %.2f "
-               "within %.0f %%: a scale error or a large bias of the accelerometer?",
-               *force, quiet.count(), *force / kStandardGravity, kStandardGravity, 100 * kMostShare));
+    findings->Warning(Format(
+        "imu0: specific force at rest %.3f m/s^2 (median over %zu s) is %.3f of gravity, expected %.2f "
+        "within %.0f %%: a scale error or a large bias of the accelerometer?",
+        *force, quiet.count(), *force / kStandardGravity, kStandardGravity, 100 * kMostShare));
   }
 }
 
@@ -169,7 +169,8 @@ void CheckImu(const Dataset& dataset, Findings* findings) {
   CheckForceAtRest(values.quiet(), findings);
   const ImuNoise& noise = dataset.rig.imu_noise;
   CheckDensity(kGyroDensity, noise.gyro_noise_density_radps_sqrthz, values.quiet().gyro_density(), findings);
-  CheckDensity(kAccelDensity, noise.accel_noise_density_mps2_sqrthz, values.quiet().accel_density(), findings);
+  CheckDensity(kAccelDensity, noise.accel_noise_density_mps2_sqrthz, values.quiet().accel_density(),
+               findings);
 }
 
 }  // namespace alidade

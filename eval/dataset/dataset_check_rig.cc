@@ -65,7 +65,8 @@ void CheckField(const CameraSheet& sheet, Findings* findings) {
   }
   const Eigen::Vector4d& intrinsics = sheet.camera.intrinsics();
   Tell(field_deg < kLeastDeg || field_deg > most_deg,
-       Format("%s: intrinsics: found fu %.6g px, fv %.6g px for %d x %d px, a field of view of %.3g deg, expected "
+       Format("%s: intrinsics: found fu %.6g px, fv %.6g px for %d x %d px, a field of view of %.3g deg, "
+              "expected "
               "%.0f to %.0f deg: focal lengths in another unit, or of another resolution?",
               sheet.name.c_str(), intrinsics[0], intrinsics[1], sheet.camera.width_px(),
               sheet.camera.height_px(), field_deg, kNarrowDeg, wide_deg),
@@ -95,9 +96,10 @@ void CheckPrincipalPoint(const CameraSheet& sheet, Findings* findings) {
   };
   if (outside(cu, width, 0) || outside(cv, height, 0)) {
     Tell(outside(cu, width, 1) || outside(cv, height, 1),
-         Format("%s: intrinsics: found the principal point cu %.6g px, cv %.6g px, expected it in the image of "
-                "%.0f x %.0f px",
-                sheet.name.c_str(), cu, cv, width, height),
+         Format(
+             "%s: intrinsics: found the principal point cu %.6g px, cv %.6g px, expected it in the image of "
+             "%.0f x %.0f px",
+             sheet.name.c_str(), cu, cv, width, height),
          findings);
   }
 }
@@ -141,11 +143,11 @@ void CheckCameraSheet(const CameraSheet& sheet, double imu_span_s, Findings* fin
 void CheckReceiverOffset(const std::string& sheet, double offset_s, TimeNs imu_first_ns, Findings* findings) {
   constexpr double kSameClockS = 1;
   const std::vector<ClockShift> known = KnownClockShifts(imu_first_ns);
-  const bool expected =
-      std::abs(offset_s) <= kSameClockS || std::abs(offset_s) > std::abs(SecondsBetween(0, known.back().shift_ns)) ||
-      std::any_of(known.begin(), known.end(), [offset_s](const ClockShift& shift) {
-        return std::abs(offset_s - SecondsBetween(0, shift.shift_ns)) <= kSameClockS;
-      });
+  const bool expected = std::abs(offset_s) <= kSameClockS ||
+                        std::abs(offset_s) > std::abs(SecondsBetween(0, known.back().shift_ns)) ||
+                        std::any_of(known.begin(), known.end(), [offset_s](const ClockShift& shift) {
+                          return std::abs(offset_s - SecondsBetween(0, shift.shift_ns)) <= kSameClockS;
+                        });
   if (!expected) {
     findings->Warning(
         Format("%s: time_offset_s: found %g s, expected within %g s of 0 or of a difference of clocks (leap "

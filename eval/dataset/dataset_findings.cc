@@ -68,9 +68,9 @@ void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Fin
   if (rate_hz <= 0 || (rate_hz >= limits.low && rate_hz <= limits.high)) {
     return;
   }
-  const std::string text =
-      Format("%s: a rate of %.6g Hz, expected %.6g to %.6g Hz: %s?", sensor, rate_hz, limits.low, limits.high,
-             rate_hz < limits.low ? "thinned out, or stamps in another unit" : "stamps in another unit than ns");
+  const std::string text = Format(
+      "%s: a rate of %.6g Hz, expected %.6g to %.6g Hz: %s?", sensor, rate_hz, limits.low, limits.high,
+      rate_hz < limits.low ? "thinned out, or stamps in another unit" : "stamps in another unit than ns");
   if (rate_hz < limits.least || rate_hz > limits.most) {
     findings->Error(text);
   } else {
@@ -94,11 +94,11 @@ void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dat
     }
     findings->Error(std::move(text));
   } else if (const std::optional<ClockShift> shift = ShiftOfBothEnds({first, last}, of_imu)) {
-    findings->Warning(
-        Format("%s: starts %+.3f s and ends %+.3f s against imu0, expected about 0: is it %+.0f s (%s), to be "
-               "added to its stamps?",
-               sensor, SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last),
-               SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
+    findings->Warning(Format(
+        "%s: starts %+.3f s and ends %+.3f s against imu0, expected about 0: is it %+.0f s (%s), to be "
+        "added to its stamps?",
+        sensor, SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last),
+        SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
   }
 }
 

@@ -126,7 +126,8 @@ void RemarkOn(const ReaderWarnings& warnings, Dataset* dataset) {
   if (warnings.count == 0) {
     return;
   }
-  const std::string more = warnings.count > 1 ? Format("; and %lld more", static_cast<long long>(warnings.count - 1)) : "";
+  const std::string more =
+      warnings.count > 1 ? Format("; and %lld more", static_cast<long long>(warnings.count - 1)) : "";
   dataset->remarks.push_back(warnings.first.front() + more);
 }
 

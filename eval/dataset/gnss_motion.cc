@@ -20,7 +20,8 @@ std::optional<double> CourseOf(const Result<SinglePointSolution>& solution) {
   const Eigen::Matrix3d R_NE = EnuFrame::At(solution->position_E).R_EN.transpose();
   const Eigen::Vector3d velocity = R_NE * solution->velocity_E;
   const double speed = velocity.head<2>().norm();
-  const double variance = (R_NE * solution->velocity_covariance_E * R_NE.transpose()).topLeftCorner<2, 2>().trace();
+  const double variance =
+      (R_NE * solution->velocity_covariance_E * R_NE.transpose()).topLeftCorner<2, 2>().trace();
   if (!(speed >= kLeastSpeedMps) || !(std::sqrt(variance) <= kMostDeviation * speed)) {
     return std::nullopt;
   }
@@ -145,8 +146,8 @@ std::optional<CourseShift> ShiftByCourse(const std::vector<CourseChange>& course
                                          TimeNs offset_ns) {
   constexpr int kLeastPairs = 30;
   constexpr double kUnlike = 0.3;
-  // By chance 30 pairs have a correlation of 0.7 once in 100 000 times. Clocks that agree to half a second leave
-  // a person who walks 0.78, and a slope of 0.69.
+  // By chance 30 pairs have a correlation of 0.7 once in 100 000 times. Clocks that agree to half a second
+  // leave a person who walks 0.78, and a slope of 0.69.
   constexpr double kAlike = 0.7;
   constexpr double kSlopeError = 0.5;
   const CourseAgreement as_given = turns.Compare(courses, offset_ns);

@@ -16,8 +16,9 @@ struct CourseChange {
   double turn_rad = 0;  ///< about up, counterclockwise
 };
 
-/// Of up to about 150 pairs of epochs a second apart, evenly over the log and without overlap: those in which the Doppler velocity
-/// shows the antenna to move, horizontally, at 1 m/s or more with a course known to 0.1 rad.
+/// Of up to about 150 pairs of epochs a second apart, evenly over the log and without overlap: those in which
+/// the Doppler velocity shows the antenna to move, horizontally, at 1 m/s or more with a course known to 0.1
+/// rad.
 [[nodiscard]] std::vector<CourseChange> CourseChanges(const GnssLog& log);
 
 /// How a receiver's courses and the gyroscope's turns about the vertical agree.
@@ -47,9 +48,9 @@ class VerticalTurns {
 };
 
 /// The known difference of clocks (eval/dataset/clock_shift.h) to be added to the receiver's tags, by which
-/// its courses follow the gyroscope (correlation above 0.7 in 30 pairs or more, a turn of the body half to one
-/// and a half turns of the course), whereas with `offset_ns` alone they do not (below 0.3). It needs a rig that turns
-/// with its course: a vehicle, or a person who walks. Of others nothing is said.
+/// its courses follow the gyroscope (correlation above 0.7 in 30 pairs or more, a turn of the body half to
+/// one and a half turns of the course), whereas with `offset_ns` alone they do not (below 0.3). It needs a
+/// rig that turns with its course: a vehicle, or a person who walks. Of others nothing is said.
 struct CourseShift {
   ClockShift shift;
   CourseAgreement as_given, shifted;

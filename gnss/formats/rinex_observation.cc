@@ -81,7 +81,8 @@ Result<ObservationFile> ReadRinexObservation(const std::string& path) {
   Result<ObservationFile> file = ParseRinexObservation(path, *text);
   // A cut between two fields leaves a line that is valid, since blank fields at its end may be left out.
   if (file.ok() && !text->ends_with('\n')) {
-    file->warnings.Add(Status::Input(path + ": the last line has no line end, expected one: is the file cut?"));
+    file->warnings.Add(
+        Status::Input(path + ": the last line has no line end, expected one: is the file cut?"));
   }
   return file;
 }
