@@ -29,8 +29,11 @@ void CheckEphemerides(const GnssLog& log, Findings* findings) {
 /// A clock that is off by less than the spans show.
 void CheckCourse(const Dataset& dataset, Findings* findings) {
   const std::vector<CourseChange> courses = CourseChanges(*dataset.gnss);
+  if (courses.empty()) {
+    return;
+  }
   const Result<VerticalTurns> turns = VerticalTurns::Of(TablesOf(dataset).imu);
-  if (courses.empty() || !turns.ok()) {  // a file that cannot be read again is reported by its next reader
+  if (!turns.ok()) {  // a file that cannot be read again is reported by its next reader
     return;
   }
   const std::optional<CourseShift> found =
