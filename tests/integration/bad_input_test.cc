@@ -103,7 +103,7 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"run --dataset=" + folder_.File("torn_imu") + " --config=" + base + " --output=" + out, 4,
        "data.csv:50"},
       {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
-           " --set=init.method=truth --output=" + out,
+           " --set=init.method=truth --output=" + folder_.File("of_no_truth"),
        4, "no ground truth"},
       {run + " --config=" + folder_.File("comma.yaml"), 3, "comma.yaml:1:1"},
       {run + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
