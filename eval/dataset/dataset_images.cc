@@ -49,7 +49,7 @@ Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraMod
 
 /// Where a link leads that is the image itself, not a folder above it; nothing when `image` is no such link,
 /// or leads nowhere.
-std::optional<fs::path> TargetOf(const fs::path& image) {
+std::optional<fs::path> LinkTarget(const fs::path& image) {
   std::error_code error;
   if (!fs::is_symlink(fs::symlink_status(image, error))) {
     return std::nullopt;
@@ -67,13 +67,18 @@ Result<std::string> ImagePath(const CsvReader& csv, const std::string& folder) {
   }
   const fs::path camera = folder;
   const fs::path image = camera / "data" / csv.field(kColumn);
-  if (const std::optional<fs::path> target = TargetOf(image)) {
+  if (const std::optional<fs::path> target = LinkTarget(image)) {
     const fs::path mav = camera.parent_path();
-    const fs::path places[] = {image.parent_path(), camera / "data", camera, mav, mav.parent_path()};
+    std::error_code error;
+    // Of a sequence of links to the files of another one.
+    const fs::path list = fs::canonical(camera / "data.csv", error);
+    const fs::path places[] = {image.parent_path(), camera / "data", camera, list.parent_path(), mav,
+                               mav.parent_path()};
     if (std::none_of(std::begin(places), std::end(places),
                      [&target](const fs::path& place) { return LiesIn(*target, place); })) {
       return csv.Fault(kColumn, "filename",
-                       "a file of this sequence, not a link to " + target->string() + " outside of it");
+                       "a file of this sequence, not a link to " + target->string() +
+                           " outside of it (a link in place of the folder is fine)");
     }
   }
   return image.string();
