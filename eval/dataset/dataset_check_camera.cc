@@ -80,6 +80,7 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
   } else {
     CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
     CheckSpan("cam0", stamps.front(), stamps.back(), dataset, findings);
+    CheckTimeWithoutImu("cam0", stamps.front(), stamps.back(), stamps.size(), dataset, findings);
   }
   if (dataset.rig.line_delay_s != 0) {
     findings->Fact(Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms",

@@ -8,6 +8,39 @@
 #include "eval/dataset/log_tables.h"
 
 namespace alidade {
+namespace {
+
+struct Span {
+  TimeNs first = 0;
+  TimeNs last = 0;
+  [[nodiscard]] double Length() const { return SecondsBetween(first, last); }
+  [[nodiscard]] std::string Text() const {
+    return "from " + FormatSeconds(first) + " to " + FormatSeconds(last) + " s";
+  }
+};
+
+Span ImuSpan(const Dataset& dataset) {
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  return {imu.front().stamp_ns, imu.back().stamp_ns};
+}
+
+/// Seconds of `span` outside of `other`; 0 when the two share no time, which is an error of its own, or when
+/// the seconds are few.
+double MuchOutside(const Span& span, const Span& other, double step_s) {
+  constexpr double kRecordersApartS = 1;
+  if (span.last < other.first || span.first > other.last) {
+    return 0;
+  }
+  const double outside = std::max(0.0, SecondsBetween(span.first, other.first)) +
+                         std::max(0.0, SecondsBetween(other.last, span.last));
+  return outside > std::max({kMaxUnreadableShare * span.Length(), step_s, kRecordersApartS}) ? outside : 0;
+}
+
+double MeanStep(const Span& span, size_t stamps) {
+  return stamps < 2 ? 0 : span.Length() / static_cast<double>(stamps - 1);
+}
+
+}  // namespace
 
 void Findings::Fact(std::string text) {
   list_.push_back({DatasetFinding::Severity::kFact, std::move(text)});
@@ -63,15 +96,33 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
 }
 
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
-  const Table<ImuSample> imu = TablesOf(dataset).imu;
-  const TimeNs imu_first = imu.front().stamp_ns;
-  const TimeNs imu_last = imu.back().stamp_ns;
+  const auto [imu_first, imu_last] = ImuSpan(dataset);
   findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
                         SecondsBetween(imu_first, first), SecondsBetween(imu_last, last)));
   if (last < imu_first || first > imu_last) {
     const double ratio = static_cast<double>(first) / static_cast<double>(imu_first);
     findings->Error(Format("%s: shares no time with imu0: %s", sensor,
                            ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?"));
+  }
+}
+
+void CheckTimeWithoutImu(const char* sensor, TimeNs first, TimeNs last, size_t stamps, const Dataset& dataset,
+                         Findings* findings) {
+  const Span span{first, last};
+  const Span imu = ImuSpan(dataset);
+  if (const double seconds = MuchOutside(span, imu, MeanStep(span, stamps)); seconds > 0) {
+    findings->Warning(Format("%s: %s, imu0 %s: %.3f s of %s are without IMU, nothing of it is used there",
+                             sensor, span.Text().c_str(), imu.Text().c_str(), seconds, sensor));
+  }
+}
+
+void CheckTimeWithoutSensor(const char* sensor, TimeNs first, TimeNs last, size_t stamps,
+                            const Dataset& dataset, Findings* findings) {
+  const Span span{first, last};
+  const Span imu = ImuSpan(dataset);
+  if (const double seconds = MuchOutside(imu, span, MeanStep(span, stamps)); seconds > 0) {
+    findings->Warning(Format("%s: %s, imu0 %s: %.3f s of the IMU's time are without %s", sensor,
+                             span.Text().c_str(), imu.Text().c_str(), seconds, sensor));
   }
 }
 

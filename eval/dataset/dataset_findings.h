@@ -32,5 +32,12 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
                  Findings* findings);
 /// Where a sensor starts and ends against the IMU.
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
+/// Warns when much of the sensor's time lies outside of the IMU's. Much is more than kMaxUnreadableShare of
+/// its span, one of its `stamps` mean steps, and the second by which recorders begin and end apart.
+void CheckTimeWithoutImu(const char* sensor, TimeNs first, TimeNs last, size_t stamps, const Dataset& dataset,
+                         Findings* findings);
+/// Warns likewise when much of the IMU's time lies outside of the sensor's, which bounds the drift.
+void CheckTimeWithoutSensor(const char* sensor, TimeNs first, TimeNs last, size_t stamps,
+                            const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

@@ -224,6 +224,9 @@ void CheckGnss(const Dataset& dataset, Findings* findings) {
                         dataset.gnss->catalog->navigation().ephemerides()));
   const TimeNs offset_ns = SecondsToNs(dataset.rig.gnss.time_offset_s);
   CheckSpan("gnss0", first_ns + offset_ns, last_ns + offset_ns, dataset, findings);
+  CheckTimeWithoutImu("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset, findings);
+  CheckTimeWithoutSensor("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset,
+                         findings);
   CheckEphemerides(*dataset.gnss, findings);
 }
 
