@@ -140,7 +140,10 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
   } else {
     CheckRates(stamps, dataset, findings);
     const TimeNs offset_ns = SecondsToNs(dataset.rig.camera_time_offset_s);
-    CheckSpan("cam0", stamps.front() + offset_ns, stamps.back() + offset_ns, dataset, findings);
+    const TimeNs first_ns = stamps.front() + offset_ns;
+    const TimeNs last_ns = stamps.back() + offset_ns;
+    CheckSpan("cam0", first_ns, last_ns, dataset, findings);
+    CheckTimeWithoutImu("cam0", first_ns, last_ns, stamps.size(), dataset, findings);
   }
   if (dataset.rig.line_delay_s != 0) {
     findings->Fact(Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms",

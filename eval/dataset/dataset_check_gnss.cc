@@ -67,6 +67,9 @@ void CheckGnss(const Dataset& dataset, Findings* findings) {
   CheckRate("gnss0", MeasuredRate(first_ns, last_ns, epochs.size()), kGnssRates, findings);
   const TimeNs offset_ns = SecondsToNs(dataset.rig.gnss.time_offset_s);
   CheckSpan("gnss0", first_ns + offset_ns, last_ns + offset_ns, dataset, findings);
+  CheckTimeWithoutImu("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset, findings);
+  CheckTimeWithoutSensor("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset,
+                         findings);
   CheckEphemerides(*dataset.gnss, findings);
   CheckCourse(dataset, findings);
 }

@@ -9,6 +9,38 @@
 #include "eval/dataset/log_tables.h"
 
 namespace alidade {
+namespace {
+
+double Length(const TimeSpan& span) {
+  return SecondsBetween(span.first_ns, span.last_ns);
+}
+
+std::string Text(const TimeSpan& span) {
+  return "from " + FormatSeconds(span.first_ns) + " to " + FormatSeconds(span.last_ns) + " s";
+}
+
+TimeSpan ImuSpan(const Dataset& dataset) {
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  return {imu.front().stamp_ns, imu.back().stamp_ns};
+}
+
+/// Seconds of `span` outside of `other`; 0 when the two share no time, which is an error of its own, or when
+/// the seconds are few.
+double MuchOutside(const TimeSpan& span, const TimeSpan& other, double step_s) {
+  constexpr double kRecordersApartS = 1;
+  if (span.last_ns < other.first_ns || span.first_ns > other.last_ns) {
+    return 0;
+  }
+  const double outside = std::max(0.0, SecondsBetween(span.first_ns, other.first_ns)) +
+                         std::max(0.0, SecondsBetween(other.last_ns, span.last_ns));
+  return outside > std::max({kMaxUnreadableShare * Length(span), step_s, kRecordersApartS}) ? outside : 0;
+}
+
+double MeanStep(const TimeSpan& span, size_t stamps) {
+  return stamps < 2 ? 0 : Length(span) / static_cast<double>(stamps - 1);
+}
+
+}  // namespace
 
 void Findings::Fact(std::string text) {
   list_.push_back({DatasetFinding::Severity::kFact, std::move(text)});
@@ -79,8 +111,7 @@ void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Fin
 }
 
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
-  const Table<ImuSample> imu = TablesOf(dataset).imu;
-  const TimeSpan of_imu{imu.front().stamp_ns, imu.back().stamp_ns};
+  const TimeSpan of_imu = ImuSpan(dataset);
   findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
                         SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last)));
   if (last < of_imu.first_ns || first > of_imu.last_ns) {
@@ -99,6 +130,26 @@ void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dat
         "added to its stamps?",
         sensor, SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last),
         SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
+  }
+}
+
+void CheckTimeWithoutImu(const char* sensor, TimeNs first, TimeNs last, size_t stamps, const Dataset& dataset,
+                         Findings* findings) {
+  const TimeSpan span{first, last};
+  const TimeSpan imu = ImuSpan(dataset);
+  if (const double seconds = MuchOutside(span, imu, MeanStep(span, stamps)); seconds > 0) {
+    findings->Warning(Format("%s: %s, imu0 %s: %.3f s of %s are without IMU, nothing of it is used there",
+                             sensor, Text(span).c_str(), Text(imu).c_str(), seconds, sensor));
+  }
+}
+
+void CheckTimeWithoutSensor(const char* sensor, TimeNs first, TimeNs last, size_t stamps,
+                            const Dataset& dataset, Findings* findings) {
+  const TimeSpan span{first, last};
+  const TimeSpan imu = ImuSpan(dataset);
+  if (const double seconds = MuchOutside(imu, span, MeanStep(span, stamps)); seconds > 0) {
+    findings->Warning(Format("%s: %s, imu0 %s: %.3f s of the IMU's time are without %s", sensor,
+                             Text(span).c_str(), Text(imu).c_str(), seconds, sensor));
   }
 }
 

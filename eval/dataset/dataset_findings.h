@@ -44,5 +44,12 @@ void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Fin
 /// Where a sensor starts and ends against the IMU, in IMU time. Without common time, or when both ends are
 /// off by a known difference of clocks (eval/dataset/clock_shift.h), that is named.
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
+/// Warns when much of the sensor's time lies outside of the IMU's. Much is more than kMaxUnreadableShare of
+/// its span, one of its `stamps` mean steps, and the second by which recorders begin and end apart.
+void CheckTimeWithoutImu(const char* sensor, TimeNs first, TimeNs last, size_t stamps, const Dataset& dataset,
+                         Findings* findings);
+/// Warns likewise when much of the IMU's time lies outside of the sensor's, which bounds the drift.
+void CheckTimeWithoutSensor(const char* sensor, TimeNs first, TimeNs last, size_t stamps,
+                            const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

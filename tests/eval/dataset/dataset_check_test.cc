@@ -111,10 +111,49 @@ TEST(DatasetCheck, GivenTheRealTumViRoomThenItsTruthGapsAreFound) {
   EXPECT_THAT(Complaints(*dataset, Severity::kWarning), HasSubstr("the longest is 1.99"));
 }
 
+TEST(DatasetCheck, GivenAnImuThatEndsHalfwayThenBothSpansAndTheSecondsWithoutAreTold) {
+  Dataset dataset = Healthy();
+  dataset.imu.resize(501);
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning),
+              HasSubstr("cam0: from 1500000000.000000000 to 1500000010.000000000 s, imu0 from "
+                        "1500000000.000000000 to 1500000005.000000000 s: 5.000 s of cam0 are without IMU"));
+  // Recorders that stop a second apart, and an IMU that goes on, are usual.
+  dataset = Healthy();
+  dataset.imu.resize(901);
+  EXPECT_EQ(Complaints(dataset, Severity::kWarning), "");
+  dataset = Healthy();
+  dataset.frames.resize(50);
+  EXPECT_EQ(Complaints(dataset, Severity::kWarning), "");
+}
+
+TEST(DatasetCheck, GivenFixesOfHalfTheFlightThenTheSecondsWithoutThemAreTold) {
+  Dataset dataset = Healthy();
+  dataset.rig.fixes.emplace_back();
+  for (int i = 0; i <= 5; ++i) {
+    PositionFix fix;
+    fix.stamp_ns = dataset.imu.front().stamp_ns + i * kSecondNs;
+    fix.covariance = Eigen::Matrix3d::Identity();
+    dataset.fixes.push_back(fix);
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning),
+              HasSubstr("5.000 s of the IMU's time are without fix0"));
+}
+
 TEST(DatasetCheck, GivenGnssThenItsSpanAndEphemeridesAreNoComplaint) {
   EXPECT_EQ(Complaints(WithGnss(0, 0), Severity::kError), "");
   EXPECT_EQ(Complaints(WithGnss(0, 0), Severity::kWarning), "");
   EXPECT_THAT(Complaints(WithGnss(0, 0), Severity::kFact), HasSubstr("gnss0: starts +0.000 s"));
+}
+
+TEST(DatasetCheck, GivenGnssOfPartOfTheFlightThenTheSecondsWithoutItAreTold) {
+  Dataset half = WithGnss(0, 0);
+  auto log = std::make_shared<GnssLog>(*half.gnss);
+  log->epochs.resize(5);
+  half.gnss = log;
+  EXPECT_THAT(Complaints(half, Severity::kWarning), HasSubstr("6.000 s of the IMU's time are without gnss0"));
+  Dataset longer = WithGnss(0, 0);
+  longer.imu.resize(501);
+  EXPECT_THAT(Complaints(longer, Severity::kWarning), HasSubstr("4.000 s of gnss0 are without IMU"));
 }
 
 TEST(DatasetCheck, GivenEphemeridesADayOldThenItWarnsThatNoEpochCanBeUsed) {
