@@ -80,6 +80,7 @@ Result<ProvisionalSequence> CompleteSheets(const std::string& path, const std::s
   const fs::path mav = fs::path(path) / "mav0";
   ProvisionalSequence sequence{path};
   std::error_code ignored;
+  fs::remove_all(staging, ignored);  // of a process that was killed
   sequence.camera =
       fs::is_directory(mav / "cam0", ignored) && !fs::exists(mav / "cam0" / "sensor.yaml", ignored);
   sequence.imu_noise =

@@ -17,6 +17,11 @@
 namespace alidade::cli {
 namespace {
 
+/// Where a sequence with provisional sheets stands while it is read.
+std::string StagingFolder() {
+  return FLAGS_output + "/provisional";
+}
+
 /// The log of a sequence whose sheets may be missing, with the tracks of its images.
 struct RecordingToCalibrate {
   Dataset dataset;
@@ -26,10 +31,9 @@ struct RecordingToCalibrate {
 
 Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const std::atomic<bool>* stop) {
   DatasetSource source = SourceFromFlags();
-  const std::string staging = FLAGS_output + "/provisional";
   ProvisionalSequence sequence;
   if (!IsBag(source.path)) {
-    Result<ProvisionalSequence> completed = CompleteSheets(source.path, staging);
+    Result<ProvisionalSequence> completed = CompleteSheets(source.path, StagingFolder());
     ALIDADE_RETURN_IF_ERROR(completed.status());
     sequence = *std::move(completed);
     source.path = sequence.path;
@@ -49,9 +53,7 @@ Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   options.remark = Say;
   Result<MeasurementLog> log = MakeLog(*dataset, frontend, options);
-  std::error_code ignored;
-  std::filesystem::remove_all(staging, ignored);
-  dataset->path = FLAGS_dataset;  // what was staged is gone
+  dataset->path = FLAGS_dataset;  // what is staged will be gone
   ALIDADE_RETURN_IF_ERROR(log.status());
   return RecordingToCalibrate{*std::move(dataset), *std::move(log), sequence.camera};
 }
@@ -87,6 +89,8 @@ int RunCalibrate(const std::vector<std::string>&) {
   }
   const std::atomic<bool>* stop = InstallInterruptHandler();
   Result<RecordingToCalibrate> recording = ReadRecording(config->frontend, stop);
+  std::error_code ignored;
+  std::filesystem::remove_all(StagingFolder(), ignored);
   if (!recording.ok()) {
     return stop->load() ? kExitInterrupted : Report(recording.status());
   }

@@ -101,7 +101,7 @@ int Run() {
   if (const Status status = SolveAll(epochs, &solver, &text); !status.ok()) {
     return Report(status);
   }
-  return Report(WriteFileAtomically(FLAGS_output, text));
+  return Report(WriteLoneFileAtomically(FLAGS_output, text));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ int RunStarts(const std::vector<std::string>&) {
     Say(plan->sequences[static_cast<size_t>(i)].name + ": " + std::to_string(found->size()) + " starts");
   }
   std::fputs(StartTable(outcomes).c_str(), stdout);
-  return FLAGS_output.empty() ? kExitDone : Report(WriteFileAtomically(FLAGS_output, StartCsv(outcomes)));
+  return FLAGS_output.empty() ? kExitDone : Report(WriteLoneFileAtomically(FLAGS_output, StartCsv(outcomes)));
 }
 
 }  // namespace alidade::cli

@@ -36,6 +36,15 @@ bool IsAnotherThatLives(pid_t process) {
   return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }
 
+/// Removes the temporary file of a process that was killed; any other file stays.
+void RemoveIfLeft(const std::filesystem::path& file) {
+  const pid_t writer = WriterOf(file.filename().string());
+  if (writer > 0 && !IsAnotherThatLives(writer)) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
+}
+
 std::string SystemReason() {
   return std::strerror(errno);
 }
@@ -73,6 +82,22 @@ class HeldInterrupts {
   sigset_t before_;
 };
 
+/// Removes what processes that were killed left of WriteFileAtomically(path).
+void RemoveTemporariesOf(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path file(path);
+  const std::string start = file.filename().string() + kTemporary;
+  std::error_code error;
+  for (fs::directory_iterator entry(file.has_parent_path() ? file.parent_path() : ".", error), end;
+       !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    // Of "a.csv" not "a.csv.tmp1_2.tmp3_4", which is another file's.
+    if (name.starts_with(start) && name.rfind(kTemporary) == start.size() - (sizeof kTemporary - 1)) {
+      RemoveIfLeft(entry->path());
+    }
+  }
+}
+
 }  // namespace
 
 Status WriteFileAtomically(const std::string& path, std::string_view content) {
@@ -108,17 +133,18 @@ Status WriteFileAtomically(const std::string& path, const std::function<Status(c
   return status;
 }
 
+Status WriteLoneFileAtomically(const std::string& path, std::string_view content) {
+  RemoveTemporariesOf(path);
+  return WriteFileAtomically(path, content);
+}
+
 void RemoveTemporaryFiles(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
   const auto options = fs::directory_options::skip_permission_denied;
   for (fs::recursive_directory_iterator entry(folder, options, error), end; !error && entry != end;
        entry.increment(error)) {
-    const pid_t writer = WriterOf(entry->path().filename().string());
-    if (writer > 0 && !IsAnotherThatLives(writer)) {
-      std::error_code ignored;
-      fs::remove(entry->path(), ignored);
-    }
+    RemoveIfLeft(entry->path());
   }
 }
 

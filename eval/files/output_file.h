@@ -12,6 +12,10 @@ namespace alidade {
 /// complete file or none. Creates missing folders. Errors: kOutput naming the path and the system's reason.
 Status WriteFileAtomically(const std::string& path, std::string_view content);
 
+/// The same of a file beside files of others, which no command tidies up (RemoveTemporaryFiles): what killed
+/// processes left of this file is removed first.
+Status WriteLoneFileAtomically(const std::string& path, std::string_view content);
+
 /// Takes the next piece of a file.
 using AppendText = std::function<Status(std::string_view)>;
 /// The same of a file that `write` hands over piece by piece, which ends at the first error: its own or that

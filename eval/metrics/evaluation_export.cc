@@ -11,10 +11,11 @@ Status WriteForOtherTools(const Trajectory& truth, const Trajectory& estimate, T
   const std::string align =
       alignment == TrajectoryAlignment::kPos ? "none" : std::string(ToString(alignment));
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically(folder + "/stamped_groundtruth.txt", header + FormatTum(truth)));
+      WriteLoneFileAtomically(folder + "/stamped_groundtruth.txt", header + FormatTum(truth)));
   ALIDADE_RETURN_IF_ERROR(
-      WriteFileAtomically(folder + "/stamped_traj_estimate.txt", header + FormatTum(estimate)));
-  return WriteFileAtomically(folder + "/eval_cfg.yaml", "align_type: " + align + "\nalign_num_frames: -1\n");
+      WriteLoneFileAtomically(folder + "/stamped_traj_estimate.txt", header + FormatTum(estimate)));
+  return WriteLoneFileAtomically(folder + "/eval_cfg.yaml",
+                                 "align_type: " + align + "\nalign_num_frames: -1\n");
 }
 
 }  // namespace alidade

@@ -1,20 +1,62 @@
 #!/usr/bin/env bash
-# Kills every command that writes at random times (kill -9) and looks at what is left: each file is whole, or is not there; the command,
-# run again, writes what an undisturbed run writes. Measured times are left out of the comparison.
-# Usage: kill_test.sh PROGRAM SOURCE_DIR [KILLS a command, default 3] [SEED of the times, default 1]
+# Kills every command that writes files, and looks at what is left: each file is whole, or is not there; the command, run again, writes
+# what an undisturbed run writes, and leaves no temporary file. In one folder it is killed at a random time (kill -9), and then in the midst
+# of a write, by the signal of a limit of the size of files. Measured times are left out of the comparison (listing.pl).
+# Usage: kill_test.sh PROGRAM SOURCE_DIR [KILLS at random times a command, default 3] [SEED of the times, default 1]
+#                     [COMMANDS: a regular expression, only those that match it]
 set -euo pipefail
-program=$1
-source=$2
+program=$(realpath "$1")
+source=$(realpath "$2")
 kills=${3:-3}
 RANDOM=${4:-1}
+only=${5:-}
+here=$(dirname "$(realpath "$0")")
 
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+server=
+trap '[[ -z "$server" ]] || kill "$server"; rm -rf "$work"' EXIT
 cd "$work"
 export ALIDADE_DATA_DIR=$source
+export SOURCE_DATE_EPOCH=0  # the day in reports
+ulimit -c 0
+
+# What a command writes into the folder OUT. Its second word tells how an interrupted one is repeated; -: as it was begun.
+commands=(
+  "simulate --overwrite --config=figure8_short --set=duration_s=6,path_m=7.8 --output=OUT"
+  "simulate --overwrite --config=drawn.yaml --output=OUT"
+  "track --overwrite --dataset=images --score --overlay=10 --output=OUT"
+  "run --overwrite --dataset=tracks --config=alidade_filter --set=init.method=truth --output=OUT"
+  "run --overwrite --dataset=brief --config=alidade_filter --set=init.method=truth --audit --output=OUT"
+  "run --overwrite --dataset=tracks --config=vins_mono_class --set=init.method=truth,smoother.window=5 --output=OUT"
+  "run --overwrite --dataset=brief --config=batch --set=init.method=truth --output=OUT"
+  "run --overwrite --dataset=gnss --config=gnss_imu --set=init.method=truth --output=OUT"
+  "evaluate - --truth=tracks/mav0/state_groundtruth_estimate0/data.csv --estimate=refined/mav0/state_groundtruth_estimate0/data.csv --export=OUT"
+  "compare --resume --plan=plan.yaml --jobs=2 --figures=svg --output=OUT"
+  "starts - --plan=starts.yaml --starts=3 --limit=2 --output=OUT/starts.csv"
+  "identify --overwrite --dataset=rest --output=OUT"
+  "identify --overwrite --dataset=brief --motion --set=init.method=truth --output=OUT"
+  "calibrate --overwrite --dataset=without_sheet --set=init.method=truth --output=OUT"
+  "spp --overwrite --obs=gnss/mav0/gnss0/obs.rnx --nav=gnss/mav0/gnss0/nav.rnx --output=OUT/rover.pos"
+  "convert --overwrite --dataset=gnss --output=OUT/gnss.bag"
+  "convert --overwrite --dataset=gnss --compression=lz4 --output=OUT/gnss.bag"
+  "convert --overwrite --dataset=tracks.bag --calibration=camchain.yaml --output=OUT"
+  "convert --overwrite --calibration=camchain.yaml --output=OUT"
+  "refine_truth --overwrite --dataset=tracks --output=OUT"
+  "data - fetch parcel --catalogue=catalogue.yaml --mirror=MIRROR --output=OUT"
+)
+
+# Every command whose help names a flag of an output is among them.
+for command in $("$program" help | sed -n '/^Commands:/,/^$/s/^  \([a-z_][a-z_]*\)  .*/\1/p'); do
+  [[ $command == help ]] && continue
+  flags=$("$program" "$command" --help)
+  if [[ $flags == *$'\n  --output '* || $flags == *$'\n  --export '* ]]; then
+    [[ $'\n'$(printf '%s\n' "${commands[@]}") == *$'\n'"$command "* ]] || { echo "$command writes files and is not killed here"; exit 1; }
+  fi
+done
 
 "$program" simulate --config=figure8_short --set=duration_s=8,path_m=10 --output=tracks --quiet
-cat >drawn.yaml <<EOF
+"$program" simulate --config=figure8_short --set=duration_s=2.5,path_m=3.2,max_features=20 --output=brief --quiet
+cat >drawn.yaml <<END
 name: drawn
 duration_s: 3
 path_m: 3.9
@@ -23,61 +65,125 @@ height_px: 240
 focal_px: 200
 landmark_min_distance_m: 0.8
 render: {enabled: true}
-EOF
+END
 "$program" simulate --config=drawn.yaml --output=images --quiet
 "$program" simulate --config=gnss_figure8_short --set=duration_s=5,path_m=6.5 --output=gnss --quiet
-cat >plan.yaml <<EOF
+"$program" refine_truth --dataset=tracks --output=refined --quiet >/dev/null
+"$program" convert --dataset=tracks --output=tracks.bag --quiet
+cp -r tracks without_sheet
+rm without_sheet/mav0/imu0/sensor.yaml
+cat >plan.yaml <<END
 set: {init.method: truth}
 estimators: [$source/configs/estimators/alidade_filter.yaml, $source/configs/estimators/po_invio_multi.yaml]
 sequences:
   - {config: $source/configs/datasets/figure8_short.yaml, name: short, set: {duration_s: 3, path_m: 3.9}, seeds: 1..4}
+  - {dataset: $work/images, name: drawn}
 metrics: {rpe: [1]}
-EOF
+END
+cat >starts.yaml <<END
+estimators: [$source/configs/estimators/alidade_filter.yaml]
+sequences:
+  - {config: $source/configs/datasets/figure8_short.yaml, name: short, set: {duration_s: 8, path_m: 10}, seeds: [1]}
+END
+cat >camchain.yaml <<END
+cam0:
+  T_cam_imu: [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]]
+  camera_model: pinhole
+  distortion_coeffs: [0, 0, 0, 0]
+  distortion_model: radtan
+  intrinsics: [460, 460, 376, 240]
+  resolution: [752, 480]
+END
+# 30 s at 50 Hz.
+mkdir -p rest/mav0/imu0
+cp tracks/mav0/imu0/sensor.yaml rest/mav0/imu0
+{
+  head -1 tracks/mav0/imu0/data.csv
+  awk 'BEGIN {
+    srand(1)
+    for (i = 0; i < 1500; i++) {
+      printf "%d0000000", 1000 + 2 * i
+      for (axis = 0; axis < 6; axis++) printf ",%.6f", (axis < 3 ? 0.01 : 0.1) * (rand() - 0.5) + (axis == 5 ? 9.81 : 0)
+      print ""
+    }
+  }'
+} >rest/mav0/imu0/data.csv
+mkdir served
+cp tracks/mav0/imu0/data.csv served/parcel
+cat >catalogue.yaml <<END
+datasets:
+  - name: parcel
+    title: a file
+    page: http://127.0.0.1/
+    base: http://127.0.0.1/
+    files: [{name: parcel, file: parcel, path: parcel, bytes: $(stat -c %s served/parcel), sha256: $(sha256sum <served/parcel | cut -d' ' -f1)}]
+END
+"$here/slow_server.pl" served >port 2>/dev/null &
+server=$!
+for _ in $(seq 100); do
+  [[ -s port ]] && break
+  sleep 0.05
+done
+mirror=http://127.0.0.1:$(cat port)/
 
-# What a command writes with --output=OUT. Its second word tells how an interrupted one is repeated.
-commands=(
-  "simulate --overwrite --config=figure8_short --set=duration_s=6,path_m=7.8"
-  "simulate --overwrite --config=drawn.yaml"
-  "track --overwrite --dataset=images"
-  "run --overwrite --dataset=tracks --config=alidade_filter --set=init.method=truth"
-  "run --overwrite --dataset=tracks --config=vins_mono_class --set=init.method=truth,smoother.window=5"
-  "compare --resume --plan=plan.yaml --jobs=2 --figures=svg"
-  "convert --overwrite --dataset=gnss"
-  "convert --overwrite --dataset=gnss --compression=lz4"
-  "refine_truth --overwrite --dataset=tracks"
-)
-
-# Checksums of all files below a folder without temporary ones, and without what measures time: timing.csv, the end of run.json,
-# columns of times, and the tables and the report, which hold times throughout.
-sums() {
-  (cd "$1" && find . -type f ! -name '*.tmp*' ! -name '*.part' ! -name '*.running' ! -name timing.csv ! -name '*.cbor' ! -name 'tables.*' \
-    ! -name 'report.*' ! -name '*_time.svg' | sort | while read -r file; do
-    case $file in
-      */run.json) echo "$file $(sed '/"times"/,$d' "$file" | sha256sum)" ;;
-      *.csv) echo "$file $(without_times "$file" | sha256sum)" ;;
-      *) echo "$file $(sha256sum <"$file")" ;;
-    esac
-  done)
+# Starts a command with the words of `commands` into a folder.
+run_into() {  # folder, words...
+  local out=$1
+  shift
+  local words=("${@//OUT/$out}")
+  [[ $1 == evaluate ]] || words+=(--quiet)
+  exec "$program" "${words[@]//MIRROR/$mirror}"
 }
-without_times() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) keep[i] = $i !~ /_ms|^realtime_factor/ } { line = ""; for (i = 1; i <= NF; i++) if (keep[i]) line = line $i ","; print line }' "$1"
+
+fail() {
+  echo "$*"
+  exit 1
+}
+
+beside() {  # all files but those in a folder
+  find . -path "./$1" -prune -o -type f -print | sort
+}
+
+# Whatever a killed command left in a folder is in the listing of an undisturbed run.
+expect_whole() {  # what, folder, expected listing
+  local torn
+  torn=$(comm -13 <(sort <<<"$3") <("$here/listing.pl" "$2" | sort) | grep -v '^$' || true)
+  [[ -z "$torn" ]] || fail "$1: torn or wrong: $torn"
+}
+
+# Sizes at which files end in the midst of a write: of the first file that is written, and of a random one. Only that of the report ends a
+# comparison: the rest is written by its workers, whose deaths it outlives.
+size_limits() {  # folder of an undisturbed run
+  local sizes
+  if [[ -e $1/report.html ]]; then
+    sizes=("$(stat -c %s "$1/report.html")")
+  else
+    mapfile -t sizes < <(find "$1" -type f -size +0 -printf '%s\n' | sort -nu)
+    sizes=("${sizes[0]}" "${sizes[RANDOM % ${#sizes[@]}]}")
+  fi
+  printf '%s\n' "${sizes[@]}" | sort -nu | while read -r size; do echo $((size - 1)); done
 }
 
 total=0
 killed_early=0
+in_writes=0
 for index in "${!commands[@]}"; do
-  read -r command again rest <<<"${commands[$index]}"
+  [[ "${commands[$index]}" =~ $only ]] || continue
+  read -r command again words <<<"${commands[$index]}"
+  read -ra words <<<"$words"
+  [[ $again == - ]] && again=() || again=("$again")
   clean=clean_$index
-  [[ $command == convert ]] && suffix=.bag || suffix=
   begin=$(date +%s%N)
-  # shellcheck disable=SC2086
-  "$program" $command $rest --output="$clean$suffix" --quiet >/dev/null
+  (run_into "$clean" "$command" "${words[@]}") >/dev/null || fail "$command ${words[*]}: exit code $?"
   length_ms=$((($(date +%s%N) - begin) / 1000000))
-  expected=$(sums .  | grep "^\./$clean" | sed "s/$clean//")
+  expected=$("$here/listing.pl" "$clean")
+  [[ -n "$expected" ]] || fail "$command wrote no file"
   for ((kill = 0; kill < kills; ++kill)); do
     out=killed_${index}_$kill
-    # shellcheck disable=SC2086
-    "$program" $command $rest --output="$out$suffix" --quiet >/dev/null 2>&1 &
+    before=$(beside "$out")
+    limits=$(size_limits "$clean")
+
+    run_into "$out" "$command" "${words[@]}" >/dev/null 2>&1 &
     process=$!
     sleep "$(printf '%d.%03d' $((RANDOM % (length_ms + 1) / 1000)) $((RANDOM % (length_ms + 1) % 1000)))"
     if kill -9 "$process" 2>/dev/null; then
@@ -85,42 +191,46 @@ for index in "${!commands[@]}"; do
     fi
     wait "$process" 2>/dev/null || true
     # Workers of a killed comparison end by themselves.
-    for wait in $(seq 100); do
+    for _ in $(seq 100); do
       pgrep -f -- "--output=$out" >/dev/null || break
       sleep 0.05
     done
-    left=$(sums . | grep "^\./$out" | sed "s/$out//" || true)
-    # The tables of a comparison, and files that are replaced while it runs, may be of part of the cells.
-    torn=$(comm -13 <(sort <<<"$expected") <(sort <<<"$left") | grep -v '^$' || true)
-    if [[ -n "$torn" ]]; then
-      echo "$command, killed: torn or wrong: $torn"
-      exit 1
-    fi
-    # shellcheck disable=SC2086
-    "$program" $command $again $rest --output="$out$suffix" --quiet >/dev/null
-    repeated=$(sums . | grep "^\./$out" | sed "s/$out//")
+    expect_whole "$command, killed" "$out" "$expected"
+
+    for limit in $limits; do
+      [[ $command == data && -e $out/parcel/parcel ]] && continue  # what is there is not fetched again
+      code=0
+      { (prlimit --pid "$BASHPID" --fsize="$limit" && run_into "$out" "$command" "${again[@]}" "${words[@]}"); } >/dev/null 2>&1 || code=$?
+      [[ $code -eq $((128 + $(kill -l XFSZ))) ]] || fail "$command, with files of at most $limit bytes: exit code $code, expected the end by SIGXFSZ"
+      expect_whole "$command, killed in a write of more than $limit bytes" "$out" "$expected"
+      in_writes=$((in_writes + 1))
+    done
+
+    scores=$(find "$out" -name '*.cbor' -exec sha256sum {} + 2>/dev/null || true)
+    (run_into "$out" "$command" "${again[@]}" "${words[@]}") >/dev/null || fail "$command, killed and repeated: exit code $?"
+    repeated=$("$here/listing.pl" "$out")
     if [[ "$repeated" != "$expected" ]]; then
-      echo "$command, killed and repeated: differs"
       diff <(echo "$expected") <(echo "$repeated") || true
-      exit 1
+      fail "$command, killed and repeated: differs"
     fi
-    if [[ -n "$(find "$out"* -name '*.tmp*' -o -name '*.running' -o -name '*.part')" ]]; then
-      echo "$command, killed and repeated: temporary files are left"
-      exit 1
-    fi
+    # A torn score would have been made anew, with other times.
+    [[ -z "$scores" ]] || sha256sum --check --quiet <<<"$scores" || fail "$command, killed and repeated: a score was not kept"
+    left=$(find "$out" -name '*.tmp*' -o -name '*.running' -o -name '*.part' -o -name provisional)
+    [[ -z "$left" ]] || fail "$command, killed and repeated: temporary files are left: $left"
+    [[ "$(beside "$out")" == "$before" ]] || fail "$command, killed and repeated: files are left beside its output: $(beside "$out" | comm -13 <(echo "$before") -)"
+
     if [[ $command == compare ]]; then  # made from the same cells once more, its tables and its report are the same
       mkdir "$out.tables"
-      cp "$out"/*.* "$out/figures/short_time.svg" "$out.tables"
-      # shellcheck disable=SC2086
-      "$program" $command $again $rest --output="$out" --quiet >/dev/null
+      cp "$out"/*.* "$out"/figures/*_time.svg "$out.tables"
+      (run_into "$out" "$command" "${again[@]}" "${words[@]}") >/dev/null
       for file in "$out.tables"/*; do
         cmp "$file" "$out/$(basename "$file")" 2>/dev/null || cmp "$file" "$out/figures/$(basename "$file")"
       done
       rm -rf "$out.tables"
     fi
     total=$((total + 1))
-    rm -rf "$out$suffix"
+    rm -rf "$out"
   done
-  echo "$command: $kills kills within ${length_ms} ms"
+  echo "$command ${words[*]}: $kills kills within ${length_ms} ms, and in writes"
 done
-echo "$total kills, $killed_early of them before the end; nothing torn, repeated results equal"
+echo "$total kills at random times, $killed_early of them before the end, and $in_writes in writes; nothing torn, repeated results equal"

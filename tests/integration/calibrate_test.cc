@@ -138,6 +138,23 @@ TEST(Calibrate, ARecordingAtRestSaysWhy) {
   EXPECT_THAT(found.output, HasSubstr("pairs of images in motion"));
 }
 
+// GIVEN a sequence without the IMU's sheet whose samples cannot be read WHEN it is calibrated THEN what was
+// staged is removed, and the folder is as good as new.
+TEST(Calibrate, AFaultOfTheSequenceLeavesNoProvisionalSheets) {
+  TemporaryFolder folder;
+  const std::string sequence = folder.File("seq");
+  ASSERT_EQ(Alidade("simulate --config=" + Source("configs/datasets/figure8_short.yaml") +
+                    " --set=duration_s=2,path_m=2.6 --output=" + sequence + " --quiet")
+                .code,
+            0);
+  std::filesystem::remove(sequence + "/mav0/imu0/sensor.yaml");
+  std::ofstream(sequence + "/mav0/imu0/data.csv") << "no table\n";
+  const CommandResult found = Alidade("calibrate --dataset=" + sequence + " --output=" + folder.File("out"));
+  EXPECT_EQ(found.code, 4) << found.output;
+  EXPECT_THAT(found.output, HasSubstr("imu0/data.csv"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.File("out")));
+}
+
 TEST(Calibrate, ThePhonesTimeOffsetIsTold) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   TemporaryFolder folder;

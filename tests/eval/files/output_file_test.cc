@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "eval/files/input_file.h"
 #include "tests/support/temporary_folder.h"
@@ -64,6 +66,26 @@ TEST(RemoveTemporaryFiles, TakesWhatAKilledProcessLeftAndNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(own));
   for (const char* name :
        {"a/states.csv", "c.tmp", "d.tmp12_x", "e.tmp1_2.csv", "of_the_process_that_runs_all.tmp1_2"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.File(name))) << name;
+  }
+}
+
+// GIVEN what killed processes left of a file, and files of others beside it WHEN the file is written THEN the
+// former is gone and the latter stand.
+TEST(WriteLoneFileAtomically, TakesWhatAKilledProcessLeftOfItsFileAndNothingElse) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> of_others = {
+      "rover.pos.tmp1_2",  // of the process that runs all
+      "rover.pos.tmp",           "rover.pos.tmp12_x",           "rover.pos.tmp999999999_1.tmp999999999_2",
+      "base.pos.tmp999999999_1", "my_rover.pos.tmp999999999_1", "below/rover.pos.tmp999999999_1"};
+  for (const std::string& name : of_others) {
+    folder.Write(name, "x");
+  }
+  folder.Write("rover.pos.tmp999999999_345", "x");
+  ASSERT_TRUE(WriteLoneFileAtomically(folder.File("rover.pos"), "text").ok());
+  EXPECT_EQ(ReadWholeFile(folder.File("rover.pos")).value(), "text");
+  EXPECT_FALSE(std::filesystem::exists(folder.File("rover.pos.tmp999999999_345")));
+  for (const std::string& name : of_others) {
     EXPECT_TRUE(std::filesystem::exists(folder.File(name))) << name;
   }
 }
