@@ -13,10 +13,11 @@ cd "$work"
 # The first time the positions are those of the program; afterwards they are written without a temporary name.
 cat >torn <<END
 #!/usr/bin/env bash
+output=
 for word in "\$@"; do
   case \$word in --output=*) output=\${word#--output=} ;; esac
 done
-if [[ \$1 != spp ]]; then
+if [[ \$1 != spp || -z \$output ]]; then
   exec "$program" "\$@"
 elif [[ ! -e $work/rover.pos ]]; then
   "$program" "\$@" && cp "\$output" $work/rover.pos
