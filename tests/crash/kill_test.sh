@@ -169,9 +169,10 @@ killed_early=0
 in_writes=0
 for index in "${!commands[@]}"; do
   [[ "${commands[$index]}" =~ $only ]] || continue
-  read -r command again words <<<"${commands[$index]}"
+  read -r command repeat words <<<"${commands[$index]}"
   read -ra words <<<"$words"
-  [[ $again == - ]] && again=() || again=("$again")
+  again=()
+  [[ $repeat == - ]] || again=("$repeat")
   clean=clean_$index
   begin=$(date +%s%N)
   (run_into "$clean" "$command" "${words[@]}") >/dev/null || fail "$command ${words[*]}: exit code $?"
