@@ -10,6 +10,16 @@
 namespace alidade {
 namespace {
 
+/// Whether tracks of this largest coordinate are x/z, y/z instead of pixels: 3 is 72 deg off the axis, beyond
+/// which no plane is used.
+bool AreNormalized(size_t observations, double largest, const CameraModel& camera) {
+  constexpr size_t kLeastObservations = 20;
+  constexpr double kLargestOnPlane = 3;
+  constexpr int kLeastWidthPx = 100;
+  return observations >= kLeastObservations && largest <= kLargestOnPlane &&
+         camera.width_px() >= kLeastWidthPx;
+}
+
 void CheckTracks(const Dataset& dataset, Findings* findings) {
   struct Life {
     size_t last_frame = 0;
@@ -20,6 +30,7 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
   size_t total = 0;
   size_t outside = 0;
   size_t returned = 0;
+  double largest = 0;
   static_cast<void>(TablesOf(dataset).frames.ForEach([&](const TrackFrame& frame) {
     const size_t i = frames++;
     for (const TrackObservation& observation : frame.observations) {
@@ -27,6 +38,7 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
       returned += life.observations > 0 && life.last_frame + 1 < i ? 1 : 0;
       life = {i, life.observations + 1};
       outside += dataset.rig.camera.InImage(observation.pixel) ? 0 : 1;
+      largest = std::max(largest, observation.pixel.cwiseAbs().maxCoeff());
       ++total;
     }
   }));
@@ -38,7 +50,12 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
       Format("cam0: %zu observations of %zu tracks, %.1f a frame, mean length %.2f; %zu tracks of 3 or more",
              total, lives.size(), static_cast<double>(total) / static_cast<double>(frames),
              static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
-  if (outside > 0) {
+  if (AreNormalized(total, largest, dataset.rig.camera)) {
+    findings->Error(
+        Format("cam0: all coordinates of the tracks are within +-%.2f, the image has %d x %d px: they seem "
+               "to be normalised (x/z, y/z); expected raw pixels",
+               largest, dataset.rig.camera.width_px(), dataset.rig.camera.height_px()));
+  } else if (outside > 0) {
     const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
                                     dataset.rig.camera.width_px(), dataset.rig.camera.height_px());
     // A few per mille sit on the border; more means the resolution is not that of the tracks.
@@ -77,8 +94,7 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
   if (stamps.empty()) {
     findings->Warning(dataset.gnss == nullptr ? "cam0: none; estimators need a camera or GNSS"
                                               : "cam0: none; only GNSS and IMU");
-  } else {
-    CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
+  } else if (CheckStamps("cam0", stamps, dataset.camera_rate_hz, kCameraRates, findings)) {
     CheckSpan("cam0", stamps.front(), stamps.back(), dataset, findings);
   }
   if (dataset.rig.line_delay_s != 0) {

@@ -87,7 +87,7 @@ void CheckFixes(const Dataset& dataset, Findings* findings) {
         stamps.push_back(fix.stamp_ns);
       }
     }
-    CheckStamps(name.c_str(), stamps, 0, findings);
+    CheckStamps(name.c_str(), stamps, 0, kAnyRates, findings);
     if (fixes.empty()) {
       continue;
     }

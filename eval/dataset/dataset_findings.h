@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eval/dataset/dataset.h"
+#include "eval/dataset/stamp_unit.h"
 
 namespace alidade {
 
@@ -27,10 +28,12 @@ class Findings {
 };
 
 /// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
-/// no sheet says one.
-void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
-                 Findings* findings);
-/// Where a sensor starts and ends against the IMU.
-void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
+/// no sheet says one. rates: those of its kind; stamps in another unit than nanoseconds are an error, of
+/// which nothing else is said. False: they are.
+bool CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
+                 const RateRange& rates, Findings* findings);
+/// Where a sensor starts and ends against the IMU. False: they share no time, or stamps in another unit,
+/// which CheckStamps has told, leave nothing to compare.
+bool CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade
