@@ -175,11 +175,19 @@ void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, F
 
 void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, std::size_t most_pairs,
                             Findings* findings) {
-  constexpr double kMarginS = 2;  // beyond what the fit takes
+  constexpr double kMarginS = 2;    // beyond what the fit takes
+  constexpr double kMostScale = 5;  // no error of the camera's sheet explains more
   const CameraGyroModel sheet = ModelOfSheet(rig);
   const GyroCorrelation rates =
       CorrelateGyro(TurnsOfImages(rig.camera, tables.frames), tables.imu, sheet.time_offset_s);
   if (TellClocksOrUnit(rig, rates, findings)) {
+    return;
+  }
+  if (rates.best.scale > kMostScale) {
+    findings->Fact(
+        Format("cam0 against the gyroscope: not compared: its rates are %.3g times those of the "
+               "images, and vary otherwise",
+               rates.best.scale));
     return;
   }
   CameraGyroSearchOptions options;
