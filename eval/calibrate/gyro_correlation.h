@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -30,8 +31,12 @@ struct LaggedRates {
   double scale = 0;  ///< the gyroscope's root mean square over the images'
   std::size_t turns = 0;
 
-  /// The share of the variance that they do not have in common.
-  [[nodiscard]] double unexplained() const { return 1 - (correlation > 0 ? correlation * correlation : 0); }
+  /// The share of the variance that they do not have in common; at least what translation and noise of the
+  /// tracks leave in good recordings.
+  [[nodiscard]] double unexplained() const {
+    constexpr double kLeast = 0.01;
+    return std::max(kLeast, 1 - (correlation > 0 ? correlation * correlation : 0));
+  }
 };
 
 /// How images and gyroscope agree over lags within ten seconds. Norms do not depend on T_BS.
