@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "core/format.h"
 #include "core/lie.h"
@@ -59,17 +58,16 @@ bool TellClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, F
   return true;
 }
 
-/// Which axes of the gyroscope are negated, when T_BS of the sheet is right: a gyroscope D w of true rates w
-/// agrees as -1 (D w) with a camera at -D R_BC. Empty: it is something else.
-std::string NegatedAxes(const Matrix3d& R_BC_sheet, const Matrix3d& R_BC_found) {
+/// The one axis of the gyroscope that is negated, when T_BS of the sheet is right: a gyroscope D w of true
+/// rates w agrees as -D w with a camera at -D R_BC. Empty: all axes, or something else.
+std::string NegatedAxis(const Matrix3d& R_BC_sheet, const Matrix3d& R_BC_found) {
   constexpr double kSameDeg = 15;
-  const std::array<std::pair<Vector3d, const char*>, 4> candidates = {{{{1, 1, 1}, "all axes"},
-                                                                       {{1, -1, -1}, "the x axis"},
-                                                                       {{-1, 1, -1}, "the y axis"},
-                                                                       {{-1, -1, 1}, "the z axis"}}};
-  for (const auto& [turn, name] : candidates) {
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector3d turn = Vector3d::Constant(-1);
+    turn[axis] = 1;
     if (Angle(turn.asDiagonal() * R_BC_sheet, R_BC_found) < kSameDeg) {
-      return name;
+      return kNames[static_cast<std::size_t>(axis)];
     }
   }
   return "";
@@ -85,11 +83,10 @@ bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* 
     return false;  // little rotation in the recording
   }
   if (found.gyro_sign < 0) {
-    const std::string axes = NegatedAxes(sheet.R_BC, found.R_BC);
+    const std::string axis = NegatedAxis(sheet.R_BC, found.R_BC);
     findings->Error(
         "imu0: the gyroscope's rates contradict the rotation of the images and agree with it once " +
-        (axes.empty() ? "they are negated"
-                      : axes + " of the gyroscope" + (axes == "all axes" ? " are" : " is") + " negated") +
+        (axis.empty() ? "they are negated" : "the " + axis + " axis of the gyroscope is negated") +
         ": wrong sign, or an axis of a left-handed system");
     return true;
   }
