@@ -27,4 +27,8 @@ Vector3d LeverArm::Velocity(const NavState& state, const ImuBias& bias, const Ve
   return state.v_WB + state.R_WB * swing;
 }
 
+Eigen::Matrix3d LeverArm::SwingByArm(const ImuBias& bias, const Vector3d& gyro_radps) {
+  return Skew(Vector3d(gyro_radps - bias.gyro));
+}
+
 }  // namespace alidade

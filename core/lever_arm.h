@@ -20,6 +20,11 @@ struct LeverArm {
   [[nodiscard]] Eigen::Vector3d Velocity(const NavState& state, const ImuBias& bias,
                                          const Eigen::Vector3d& gyro_radps,
                                          Jacobian* jacobian = nullptr) const;
+
+  /// d p_WA / d p_BA; d v_WA / d p_BA is that times SwingByArm.
+  [[nodiscard]] static const Eigen::Matrix3d& PositionByArm(const NavState& state) { return state.R_WB; }
+  /// d (omega x p_BA) / d p_BA [rad/s].
+  [[nodiscard]] static Eigen::Matrix3d SwingByArm(const ImuBias& bias, const Eigen::Vector3d& gyro_radps);
 };
 
 }  // namespace alidade

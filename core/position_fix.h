@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/fix_config.h"
+#include "core/lever_arm.h"
 #include "core/measurement_gate.h"
 #include "core/navigation_state.h"
 #include "core/status.h"
@@ -59,7 +60,7 @@ struct FixMeasurement {
 
   /// d (whitened residual) / d p_BA, 3x3.
   [[nodiscard]] Eigen::Matrix3d LeverArmJacobian(const NavState& state) const {
-    return sqrt_information * state.R_WB;
+    return sqrt_information * LeverArm::PositionByArm(state);
   }
   /// Whitened.
   void Evaluate(const NavState& state, Residual* residual, Jacobian* jacobian) const;

@@ -4,6 +4,7 @@
 
 #include "core/camera_model.h"
 #include "core/rig_calibration.h"
+#include "eval/dataset/dataset_images.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/files/input_file.h"
@@ -29,10 +30,9 @@ Result<GreyImage> FirstImage(const fs::path& folder) {
     return Status::Input(path + ": lists no image, expected at least one row");
   }
   ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(2));
-  if (!StaysInFolder(csv->field(1))) {
-    return csv->Fault(1, "filename", "the name of a file in the folder data beside this one");
-  }
-  return ReadGreyImage((folder / "data" / std::string(csv->field(1))).string());
+  const Result<std::string> image = ImagePath(*csv, folder.string());
+  ALIDADE_RETURN_IF_ERROR(image.status());
+  return ReadGreyImage(*image);
 }
 
 Result<std::string> GuessedCamera(const fs::path& folder) {

@@ -6,6 +6,7 @@
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flag_description.h"
 #include "eval/cli/flags.h"
+#include "eval/config/config_yaml.h"
 #include "eval/files/suggest.h"
 
 namespace alidade::cli {
@@ -68,6 +69,7 @@ class FlagParser {
         return Usage("--" + WithDashes(required) + " is missing");
       }
     }
+    ALIDADE_RETURN_IF_ERROR(CheckSettingsAgree(SplitSettings(FLAGS_set)));
     return parsed_;
   }
 

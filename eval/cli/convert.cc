@@ -17,16 +17,15 @@ namespace alidade::cli {
 namespace {
 
 int FolderToBag(BagCompression compression) {
+  if (const Status status = CheckOutputFile(FLAGS_output); !status.ok()) {
+    return Report(status);
+  }
   const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
   if (!dataset.ok()) {
     return Report(dataset.status());
   }
   for (const std::string& remark : dataset->remarks) {
     Say(remark);
-  }
-  std::error_code ignored;
-  if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output, ignored)) {
-    return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
   }
   BagExportOptions options{FLAGS_topics, compression, InstallInterruptHandler(), {}};
   ProgressLine progress("messages");

@@ -6,6 +6,7 @@
 #include "core/format.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
+#include "eval/cli/flag_description.h"
 #include "eval/cli/flags.h"
 #include "eval/cli/split_words.h"
 #include "eval/cli/support.h"
@@ -102,6 +103,18 @@ Result<EvaluationOptions> OptionsFromFlags() {
   return options;
 }
 
+/// Names the flag where the fault is of one: its name precedes the colon.
+Status OfFlag(const Status& status) {
+  const std::string& message = status.message();
+  const size_t colon = message.find(':');
+  gflags::CommandLineFlagInfo info;
+  if (status.code() != StatusCode::kUsage || colon == std::string::npos ||
+      !gflags::GetCommandLineFlagInfo(message.substr(0, colon).c_str(), &info)) {
+    return status;
+  }
+  return Status::Usage("evaluate: --" + WithDashes(message.substr(0, colon)) + message.substr(colon));
+}
+
 }  // namespace
 
 int RunEvaluate(const std::vector<std::string>&) {
@@ -120,7 +133,7 @@ int RunEvaluate(const std::vector<std::string>&) {
   }
   const Result<Evaluation> evaluation = Evaluate(*truth, *estimate, *options);
   if (!evaluation.ok()) {
-    return Report(evaluation.status());
+    return Report(OfFlag(evaluation.status()));
   }
   if (!FLAGS_export.empty()) {
     const Status written = WriteForOtherTools(*truth, *estimate, options->alignment, FLAGS_export);

@@ -11,7 +11,7 @@ const std::vector<ExitCode>& ExitCodes() {
       {kExitDiverged, "an estimator diverged or never initialised"},
       {kExitOutput, "output could not be written"},
       {kExitCellsFailed, "some cells of a comparison failed"},
-      {kExitImpaired, "a run was lost in between or never used its GNSS"},
+      {kExitImpaired, "a run was impaired: lost in between, degraded, or without its GNSS or fixes"},
       {kExitInterrupted, "interrupted"}};
   return codes;
 }

@@ -94,7 +94,8 @@ DEFINE_bool(score, false,
             "judge the tracks: life, loss, coverage, CPU time, consistency with the truth, and errors of "
             "corners in rendered images; writes score.json and score.csv");
 DEFINE_uint32(seed, 1, "seed of the simulation, and of the start drawn by init.method truth");
-DEFINE_string(set, "", "a.b=value,...: override keys of the configuration file; may be repeated");
+DEFINE_string(set, "",
+              "a.b=value,...: override keys of the configuration file; may be repeated for other keys");
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
 DEFINE_string(slurm_options, "", "words for sbatch, such as \"--partition=long --time=60\"");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");

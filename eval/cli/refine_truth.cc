@@ -40,10 +40,6 @@ Result<RefineOptions> RefineOptionsFromFlags() {
 }
 
 Result<Dataset> DatasetToRefine() {
-  if (IsBag(FLAGS_dataset)) {
-    return Status::Usage(
-        "refine_truth: --dataset: found a bag, expected a folder (alidade convert makes one)");
-  }
   Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
   if (dataset.ok() && !FLAGS_truth.empty()) {
     Result<Trajectory> truth = ReadTrajectory(FLAGS_truth);
@@ -54,6 +50,19 @@ Result<Dataset> DatasetToRefine() {
   return dataset;
 }
 
+/// What is wrong with the places of input and output, before anything is read or made.
+Status CheckFolders() {
+  if (IsBag(FLAGS_dataset)) {
+    return Status::Usage(
+        "refine_truth: --dataset: found a bag, expected a folder (alidade convert makes one)");
+  }
+  // Whoever reads the dataset says what is wrong with it.
+  if (Status shared = CheckRefinedOutput(FLAGS_dataset, FLAGS_output); shared.code() == StatusCode::kUsage) {
+    return shared;
+  }
+  return CheckOutputFolder(FLAGS_output, FLAGS_overwrite);
+}
+
 }  // namespace
 
 int RunRefineTruth(const std::vector<std::string>&) {
@@ -61,12 +70,12 @@ int RunRefineTruth(const std::vector<std::string>&) {
   if (!options.ok()) {
     return Report(options.status());
   }
+  if (const Status status = CheckFolders(); !status.ok()) {
+    return Report(status);
+  }
   const Result<Dataset> dataset = DatasetToRefine();
   if (!dataset.ok()) {
     return Report(dataset.status());
-  }
-  if (const Status status = CheckRefinedOutput(*dataset, FLAGS_output); !status.ok()) {
-    return Report(status);
   }
   if (const Status status = PrepareOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/format.h"
+#include "eval/bag/frozen_images.h"
 #include "eval/calibrate/camera_gyro_check.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
@@ -17,6 +18,7 @@
 #include "eval/frontend_run/image_pipeline.h"
 #include "eval/record/failure_diagnosis.h"
 #include "eval/record/recorder.h"
+#include "eval/record/run_health.h"
 #include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 
@@ -65,6 +67,7 @@ Result<LogTables> TablesWithProgress(const Dataset& dataset, const FrontendConfi
 Status CheckFirst(const Dataset& dataset, const LogTables& tables) {
   constexpr size_t kMostPairs = 60;
   Findings findings;
+  CheckFrozenImages(dataset, &findings);
   if (!tables.frames.empty()) {
     CheckCameraAgainstGyro(dataset.rig, tables, kMostPairs, &findings);
   }
@@ -105,33 +108,11 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
   return RunEstimator(config, log, tables, options);
 }
 
-std::string Summary(const RunResult& result) {
-  const std::string times = Format("%.1f s wall, %.1f s CPU", result.wall_s, result.cpu_s);
-  if (RecordCount(result) == 0) {
-    return StatusWord(result) + ": no frame was estimated, " + times;
-  }
-  const double frames = static_cast<double>(RecordCount(result));
-  return StatusWord(result) + ": " + std::to_string(RecordCount(result)) + " frames, " +
-         std::to_string(result.frames_skipped) + " skipped, start: " + result.init_method + ", " + times +
-         Format(", %.2f ms CPU a frame", 1e3 * result.cpu_s / frames) +
-         (result.restarts.empty() ? "" : Format(", %zu restarts", result.restarts.size()));
-}
-
 /// What there is to say of a run that was written, and its exit code.
 int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTables& tables,
              const MeasurementLog& log, const RunResult& result, const std::atomic<bool>* stop) {
-  Say(Summary(result));
-  std::string asked = config.gnss.enabled ? "GNSS was" : "";
-  bool given = config.gnss.enabled && dataset.gnss != nullptr;
-  ForEachSensorEntry([&](auto entry, Sensor) {
-    if (entry.Config(config).enabled) {
-      asked = asked.empty() ? std::string(entry.kPluralName) + " were" : asked;
-      given = given || !entry.Measurements(dataset).empty();
-    }
-  });
-  if (!asked.empty() && !result.global) {
-    Say(asked + " not used: " + result.align_report);
-  }
+  const RunHealth health = HealthOf(config, result);
+  SayResult(DescribeRun(health, result));
   if (Failed(result)) {
     RunOptions options;
     options.stop = stop;
@@ -146,10 +127,10 @@ int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTab
       return kExitInterrupted;
     }
   }
-  if (!result.interrupted && result.status.ok() && ((given && !result.global) || !result.restarts.empty())) {
-    return kExitImpaired;
+  if (result.interrupted) {
+    return kExitInterrupted;
   }
-  return result.interrupted ? kExitInterrupted : Report(result.status);
+  return result.status.ok() && !health.impairments.empty() ? kExitImpaired : Report(result.status);
 }
 
 }  // namespace
@@ -160,6 +141,9 @@ int RunRun(const std::vector<std::string>&) {
     return Report(config.status());
   }
   if (const Status status = RequireOutputBesideDataset(FLAGS_output, FLAGS_dataset); !status.ok()) {
+    return Report(status);
+  }
+  if (const Status status = CheckOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
     return Report(status);
   }
   Result<Dataset> dataset = ReadDatasetFromFlags(StorageOf(*config));
@@ -182,6 +166,9 @@ int RunRun(const std::vector<std::string>&) {
     return Report(status);
   }
   const MeasurementLog log = MeasurementsOf(*dataset);
+  for (const std::string& sensor : MissingSensors(*config, log)) {
+    Say("warning: the sequence has no " + sensor + ", which the configuration enables");
+  }
   const Result<std::string> input_digest = DigestOf(log, *tables);
   if (!input_digest.ok()) {
     return Report(input_digest.status());

@@ -107,9 +107,8 @@ int Run() {
 }  // namespace
 
 int RunSpp(const std::vector<std::string>&) {
-  std::error_code ignored;
-  if (!FLAGS_overwrite && std::filesystem::exists(FLAGS_output, ignored)) {
-    return Report(Status::Output(FLAGS_output + ": exists, expected a new file or --overwrite"));
+  if (const Status status = CheckOutputFile(FLAGS_output); !status.ok()) {
+    return Report(status);
   }
   return Run();
 }

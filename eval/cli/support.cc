@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
 #include "eval/cli/exit_code.h"
@@ -89,7 +91,7 @@ Status RequireOutputBesideDataset(const std::string& output, const std::string& 
              : Status::Ok();
 }
 
-Status PrepareOutputFolder(const std::string& path, bool allowed) {
+Status CheckOutputFolder(const std::string& path, bool allowed) {
   namespace fs = std::filesystem;
   std::error_code error;
   if (path.empty()) {
@@ -104,23 +106,48 @@ Status PrepareOutputFolder(const std::string& path, bool allowed) {
   if (!allowed && fs::exists(path, error) && !fs::is_empty(path, error)) {
     return Status::Output(path + ": exists and is not empty, expected a new folder or --overwrite");
   }
-  fs::create_directories(path, error);
+  fs::path above = fs::absolute(path, error);
+  while (above.has_relative_path() && !fs::exists(above, error)) {
+    above = above.parent_path();
+  }
+  if (!fs::is_directory(above, error)) {
+    return Status::Output(path + ": cannot be made: " + above.string() + " is not a folder");
+  }
+  if (access(above.c_str(), W_OK | X_OK) != 0) {
+    const std::string reason = std::strerror(errno);
+    return Status::Output(path + ": cannot be written to: " + above.string() + ": " + reason);
+  }
+  return Status::Ok();
+}
+
+Status PrepareOutputFolder(const std::string& path, bool allowed) {
+  ALIDADE_RETURN_IF_ERROR(CheckOutputFolder(path, allowed));
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
   if (error) {
     return Status::Output(path + ": cannot be made: " + error.message());
-  }
-  if (access(path.c_str(), W_OK | X_OK) != 0) {
-    return Status::Output(path + ": cannot be written to");
   }
   ALIDADE_RETURN_IF_ERROR(LockFolder(path));
   RemoveTemporaryFiles(path);
   return Status::Ok();
 }
 
+Status CheckOutputFile(const std::string& path) {
+  std::error_code ignored;
+  return !FLAGS_overwrite && std::filesystem::exists(path, ignored)
+             ? Status::Output(path + ": exists, expected a new file or --overwrite")
+             : Status::Ok();
+}
+
 void Say(const std::string& line) {
   if (!FLAGS_quiet) {
-    std::fflush(stdout);  // a log of both streams keeps their order
-    std::fprintf(stderr, "%s\n", line.c_str());
+    SayResult(line);
   }
+}
+
+void SayResult(const std::string& line) {
+  std::fflush(stdout);  // a log of both streams keeps their order
+  std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 ProgressLine::ProgressLine(std::string label)

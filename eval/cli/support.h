@@ -21,13 +21,22 @@ Status RequireFlag(const std::string& command, const std::string& flag, const st
 /// none.
 Status RequireOutputBesideDataset(const std::string& output, const std::string& dataset);
 
-/// Refuses an output folder that is the root of the file system, and one that exists (even empty is fine)
-/// unless `allowed`; makes it, and this process its only writer. kOutput: it cannot be made, or another
-/// process writes there.
+/// Refuses an output folder that is the root of the file system, one that is not empty unless `allowed`, and
+/// one that cannot be made or written to (kOutput). Makes nothing: what takes long, or may find a fault in
+/// the input, can come between this and PrepareOutputFolder.
+Status CheckOutputFolder(const std::string& path, bool allowed);
+
+/// CheckOutputFolder; makes the folder, and this process its only writer. kOutput: another process writes
+/// there.
 Status PrepareOutputFolder(const std::string& path, bool allowed);
+
+/// kOutput: the output file exists, unless --overwrite.
+Status CheckOutputFile(const std::string& path);
 
 /// A line for people on standard error, unless --quiet.
 void Say(const std::string& line);
+/// Likewise, whatever the flag: the result of a command.
+void SayResult(const std::string& line);
 
 /// "label 120/600, about 2 min left": one line that rewrites itself on a terminal, every tenth as a plain
 /// line otherwise; nothing with --quiet.

@@ -99,6 +99,9 @@ int RunTrack(const std::vector<std::string>&) {
     return Report(
         Status::Config("--overlay: found " + std::to_string(FLAGS_overlay) + ", expected 0 or more"));
   }
+  if (const Status status = CheckOutputFolder(FLAGS_output, FLAGS_overwrite); !status.ok()) {
+    return Report(status);
+  }
   Result<Dataset> dataset = ReadDatasetFromFlags();
   if (!dataset.ok()) {
     return Report(dataset.status());

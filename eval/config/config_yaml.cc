@@ -1,7 +1,9 @@
 #include "eval/config/config_yaml.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "eval/config/config_keys.h"
 #include "eval/files/csv.h"
@@ -277,6 +279,20 @@ std::vector<std::string> SplitSettings(std::string_view list) {
     settings.push_back(current);
   }
   return settings;
+}
+
+Status CheckSettingsAgree(const std::vector<std::string>& settings) {
+  std::map<std::string_view, std::string_view> values;
+  for (const std::string_view setting : settings) {
+    const size_t equals = std::min(setting.find('='), setting.size());
+    const std::string_view value = setting.substr(std::min(equals + 1, setting.size()));
+    const auto [given, first] = values.try_emplace(setting.substr(0, equals), value);
+    if (!first && given->second != value) {
+      return Status::Config("setting " + Quoted(given->first) + ": found " + Quoted(given->second) + " and " +
+                            Quoted(value) + ", expected one value");
+    }
+  }
+  return Status::Ok();
 }
 
 Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path,

@@ -24,6 +24,9 @@ Status ApplySettings(const std::vector<std::string>& settings,
 /// The flag's text "a.b=1,c=[1,2,3]" -> its settings; commas inside brackets do not split.
 [[nodiscard]] std::vector<std::string> SplitSettings(std::string_view list);
 
+/// kConfig: a key is given two different values; both are named.
+Status CheckSettingsAgree(const std::vector<std::string>& settings);
+
 /// ReadConfigFile + ApplySettings + Validate for an estimator.
 Result<EstimatorConfig> LoadEstimatorConfig(const std::string& path,
                                             const std::vector<std::string>& settings);

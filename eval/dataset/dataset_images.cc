@@ -1,6 +1,9 @@
 #include "eval/dataset/dataset_images.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -8,9 +11,12 @@
 #include "core/regular_file.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/files/input_file.h"
+#include "eval/files/lies_in.h"
 
 namespace alidade {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Width and height in the header of a PNG file: 8 bytes of signature, then the IHDR chunk with both as
 /// big-endian integers (ISO/IEC 15948). Nothing when the file is no PNG: other formats are the decoder's
@@ -41,7 +47,42 @@ Status CheckImage(const CsvReader& csv, const ImageEntry& image, const CameraMod
   return Status::Ok();
 }
 
+/// Where a link leads that is the image itself, not a folder above it; nothing when `image` is no such link,
+/// or leads nowhere.
+std::optional<fs::path> LinkTarget(const fs::path& image) {
+  std::error_code error;
+  if (!fs::is_symlink(fs::symlink_status(image, error))) {
+    return std::nullopt;
+  }
+  const fs::path target = fs::canonical(image, error);
+  return error ? std::nullopt : std::optional(target);
+}
+
 }  // namespace
+
+Result<std::string> ImagePath(const CsvReader& csv, const std::string& folder) {
+  constexpr size_t kColumn = 1;
+  if (!StaysInFolder(csv.field(kColumn))) {
+    return csv.Fault(kColumn, "filename", "the name of a file in the folder data beside this one");
+  }
+  const fs::path camera = folder;
+  const fs::path image = camera / "data" / csv.field(kColumn);
+  if (const std::optional<fs::path> target = LinkTarget(image)) {
+    const fs::path mav = camera.parent_path();
+    std::error_code error;
+    // Of a sequence of links to the files of another one.
+    const fs::path list = fs::canonical(camera / "data.csv", error);
+    const fs::path places[] = {image.parent_path(), camera / "data", camera, list.parent_path(), mav,
+                               mav.parent_path()};
+    if (std::none_of(std::begin(places), std::end(places),
+                     [&target](const fs::path& place) { return LiesIn(*target, place); })) {
+      return csv.Fault(kColumn, "filename",
+                       "a file of this sequence, not a link to " + target->string() +
+                           " outside of it (a link in place of the folder is fine)");
+    }
+  }
+  return image.string();
+}
 
 Result<std::vector<ImageEntry>> ReadImages(const std::string& folder, const CameraModel& camera) {
   const std::string path = folder + "/data.csv";
@@ -57,10 +98,9 @@ Result<std::vector<ImageEntry>> ReadImages(const std::string& folder, const Came
     ImageEntry image;
     ALIDADE_RETURN_IF_ERROR(
         csv->ReadStamp(images.empty(), images.empty() ? 0 : images.back().stamp_ns, &image.stamp_ns));
-    if (!StaysInFolder(csv->field(1))) {
-      return csv->Fault(1, "filename", "the name of a file in the folder data beside this one");
-    }
-    image.path = folder + "/data/" + std::string(csv->field(1));
+    Result<std::string> path_of_image = ImagePath(*csv, folder);
+    ALIDADE_RETURN_IF_ERROR(path_of_image.status());
+    image.path = std::move(path_of_image).value();
     if (const Status usable = CheckImage(*csv, image, camera); !usable.ok() && unusable++ == 0) {
       first_fault = usable;
     }

@@ -4,14 +4,11 @@
 #include <utility>
 
 #include "core/format.h"
-#include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/imu_intake.h"
-#include "eval/dataset/imu_values.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/log_tables.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
-#include "eval/dataset/stamp_unit.h"
 #include "eval/files/output_file.h"
 
 namespace alidade {
@@ -124,13 +121,6 @@ std::string ImuCsv(const std::vector<ImuSample>& imu) {
   return text;
 }
 
-void CheckImuNoise(const ImuNoise& noise, Findings* findings) {
-  if (noise.gyro_noise_density_radps_sqrthz > 0.05 || noise.accel_noise_density_mps2_sqrthz > 0.5) {
-    findings->Warning(
-        "imu0: noise densities in sensor.yaml are large: are they discrete standard deviations or in deg?");
-  }
-}
-
 }  // namespace
 
 Status ReadImuFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
@@ -166,22 +156,6 @@ Status DigestImu(const MeasurementLog& /*log*/, const LogTables& tables, LogHash
     hasher->Add(sample.gyro);
     hasher->Add(sample.accel);
   });
-}
-
-void CheckImu(const Dataset& dataset, Findings* findings) {
-  std::vector<TimeNs> stamps;
-  ImuValues values;
-  // A file that cannot be read again is reported by its next reader.
-  static_cast<void>(TablesOf(dataset).imu.ForEach([&](const ImuSample& sample) {
-    stamps.push_back(sample.stamp_ns);
-    values.Add(sample);
-  }));
-  CheckStamps("imu0", stamps, dataset.imu_rate_hz, kImuRates, findings);
-  if (stamps.size() < 2) {
-    return;
-  }
-  values.Check(findings);
-  CheckImuNoise(dataset.rig.imu_noise, findings);
 }
 
 }  // namespace alidade

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/format.h"
+#include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/imu_units.h"
 
 namespace alidade {
@@ -28,21 +29,21 @@ void ImuValues::Add(const ImuSample& sample) {
   ++count_;
 }
 
-void ImuValues::Check(Findings* findings) const {
+SoundColumns ImuValues::Check(Findings* findings) const {
   findings->Fact(
       Format("imu0: mean specific force %.3f m/s^2, angular rate rms %.3f rad/s, largest %.3f rad/s",
-             force_ / Count(), std::sqrt(rate_square_ / Count()), fastest_));
+             MeanForce(), std::sqrt(rate_square_ / Count()), fastest_));
+  CheckRepeated(findings);
   if (GroupsSeemExchanged()) {
     findings->Error(
         Format("imu0: the gyroscope's columns have the norm of gravity (mean %.2f) and the accelerometer's "
                "are small (mean %.2f): the two groups of columns seem to be exchanged, expected angular rate "
                "[rad/s] first, then specific force [m/s^2]",
-               rate_ / Count(), force_ / Count()));
-  } else {
-    CheckForce(findings);
-    CheckRate(findings);
+               rate_ / Count(), MeanForce()));
+    return {false, false};
   }
-  CheckRepeated(findings);
+  const bool force = CheckForce(findings);
+  return {CheckRate(findings), force};
 }
 
 bool ImuValues::GroupsSeemExchanged() const {
@@ -50,7 +51,7 @@ bool ImuValues::GroupsSeemExchanged() const {
   const double mean = rate_ / Count();
   const double spread = std::sqrt(std::max(0.0, rate_square_ / Count() - mean * mean));
   return std::abs(mean - kStandardGravity) < kMostForceError && spread < kMostSpread * mean &&
-         force_ / Count() < kStandardGravity / 2;
+         MeanForce() < kStandardGravity / 2;
 }
 
 std::string ImuValues::DeadAxes(int first, int last) const {
@@ -66,9 +67,9 @@ std::string ImuValues::DeadAxes(int first, int last) const {
   return text;
 }
 
-void ImuValues::CheckForce(Findings* findings) const {
+bool ImuValues::CheckForce(Findings* findings) const {
   constexpr double kUnitBand = 1.3;  // a sensor in its unit is much nearer, the units are further apart
-  const double force = force_ / Count();
+  const double force = MeanForce();
   const double error = std::abs(force - kStandardGravity);
   const std::string dead = DeadAxes(3, 6);
   const ImuUnit* unit = force > 0 ? NearestUnit(kAccelUnits, force, kStandardGravity, kUnitBand) : nullptr;
@@ -77,18 +78,15 @@ void ImuValues::CheckForce(Findings* findings) const {
         Format("imu0: mean specific force %.3f m/s^2, expected about %.2f: %s in all samples, a "
                "dead axis?",
                force, kStandardGravity, dead.c_str()));
-    return;
+    return false;
   }
   if (!dead.empty()) {
     findings->Warning("imu0: " + dead + " in all samples: a dead axis?");
   }
   if (error <= kMostForceError) {
-    if (error > 0.5) {
-      findings->Warning(
-          Format("imu0: mean specific force %.3f m/s^2 differs from %.2f: bias, scale error or strong motion",
-                 force, kStandardGravity));
-    }
-  } else if (unit != nullptr && unit != kAccelUnits) {
+    return true;
+  }
+  if (unit != nullptr && unit != kAccelUnits) {
     findings->Error(
         Format("imu0: mean specific force %.*f: the accelerometer seems to be in %s, expected "
                "m/s^2",
@@ -98,15 +96,16 @@ void ImuValues::CheckForce(Findings* findings) const {
         Format("imu0: mean specific force %.3f m/s^2, expected about %.2f: unit or gravity removed?", force,
                kStandardGravity));
   }
+  return false;
 }
 
-void ImuValues::CheckRate(Findings* findings) const {
+bool ImuValues::CheckRate(Findings* findings) const {
   if (const std::string dead = DeadAxes(0, 3); !dead.empty()) {
     findings->Warning("imu0: " + dead + " in all samples: a dead axis?");
   }
   const double rate_rms = std::sqrt(rate_square_ / Count());
   if (rate_rms <= kMostRateRms && fastest_ <= kMostRate) {
-    return;
+    return true;
   }
   const std::string units = PlausibleGyroUnits(rate_rms, fastest_);
   findings->Error(Format("imu0: angular rate rms %.2f, largest %.2f: ", rate_rms, fastest_) +
@@ -115,6 +114,7 @@ void ImuValues::CheckRate(Findings* findings) const {
                                 "mrad/s and mdeg/s explains it",
                                 kMostRateRms, kMostRate)
                        : "the gyroscope seems to be in " + units + ", expected rad/s"));
+  return false;
 }
 
 void ImuValues::CheckRepeated(Findings* findings) const {

@@ -7,25 +7,36 @@
 
 #include "core/imu_sample.h"
 #include "core/lie.h"
-#include "eval/dataset/dataset_findings.h"
 
 namespace alidade {
+
+class Findings;
+
+/// Whether columns hold what they should, in SI units.
+struct SoundColumns {
+  bool rate = true;
+  bool force = true;
+};
 
 /// What all samples of an IMU together say of its units and axes.
 class ImuValues {
  public:
   void Add(const ImuSample& sample);
 
-  /// Units, exchanged groups of columns, dead axes, repeated rows. Precondition: two samples.
-  void Check(Findings* findings) const;
+  /// Errors of units, of exchanged groups of columns and of dead axes, and repeated rows. Columns with an
+  /// error are not sound. Precondition: two samples.
+  SoundColumns Check(Findings* findings) const;
+  /// Mean norm of the specific force [m/s^2].
+  [[nodiscard]] double MeanForce() const { return force_ / Count(); }
 
  private:
   [[nodiscard]] double Count() const { return static_cast<double>(count_); }
   [[nodiscard]] bool GroupsSeemExchanged() const;
   /// "accelerometer z is 0": of the axes [first, last) that never change; empty without one.
   [[nodiscard]] std::string DeadAxes(int first, int last) const;
-  void CheckForce(Findings* findings) const;
-  void CheckRate(Findings* findings) const;
+  /// False: an error was told.
+  bool CheckForce(Findings* findings) const;
+  bool CheckRate(Findings* findings) const;
   void CheckRepeated(Findings* findings) const;
 
   std::size_t count_ = 0;

@@ -14,11 +14,11 @@ constexpr std::array<StampUnit, 3> kUnits = {{{"us", 1000}, {"ms", 1'000'000}, {
 }  // namespace
 
 const StampUnit* OtherStampUnit(TimeNs first, TimeNs last, std::size_t count, double stated_rate_hz,
-                                const RateRange& range) {
+                                const RateLimits& limits) {
   constexpr std::size_t kLeastStamps = 11;  // fewer are no rate
   constexpr double kMostOff = 0.2;          // from the sheet's rate
   const double rate_hz = MeasuredRate(first, last, count);
-  if (count < kLeastStamps || !(rate_hz > range.most_hz)) {
+  if (count < kLeastStamps || !(rate_hz > limits.high_hz)) {
     return nullptr;
   }
   const auto find = [&](auto fits) -> const StampUnit* {
@@ -30,11 +30,11 @@ const StampUnit* OtherStampUnit(TimeNs first, TimeNs last, std::size_t count, do
     return nullptr;
   };
   const StampUnit* by_sheet = find([&](double hz) {
-    return stated_rate_hz > 0 && stated_rate_hz <= range.most_hz &&
+    return stated_rate_hz > 0 && stated_rate_hz <= limits.high_hz &&
            std::abs(hz / stated_rate_hz - 1) < kMostOff;
   });
   return by_sheet != nullptr ? by_sheet
-                             : find([&](double hz) { return hz > range.least_hz && hz <= range.most_hz; });
+                             : find([&](double hz) { return hz >= limits.unit_hz && hz <= limits.high_hz; });
 }
 
 const StampUnit* UnitByReference(TimeNs first, TimeNs reference_ns) {

@@ -63,6 +63,30 @@ bool IsNotFiniteWord(std::string_view text) {
   return lower == "nan" || lower == "inf" || lower == "infinity";
 }
 
+/// Appends the node on one line, as YAML writes lists and groups in brackets, while there is room in `text`.
+void AppendOnOneLine(const YAML::Node& node, size_t room, std::string* text) {
+  if (!node.IsMap() && !node.IsSequence()) {
+    for (const char c : node.IsScalar() ? node.Scalar() : std::string()) {
+      text->push_back(static_cast<unsigned char>(c) < ' ' ? ' ' : c);
+    }
+    return;
+  }
+  const char* separator = "";
+  text->push_back(node.IsMap() ? '{' : '[');
+  for (auto entry = node.begin(); entry != node.end() && text->size() <= room; ++entry) {
+    *text += separator;
+    separator = ", ";
+    if (node.IsMap()) {
+      AppendOnOneLine(entry->first, room, text);
+      *text += ": ";
+      AppendOnOneLine(entry->second, room, text);
+    } else {
+      AppendOnOneLine(*entry, room, text);
+    }
+  }
+  text->push_back(node.IsMap() ? '}' : ']');
+}
+
 }  // namespace
 
 Result<YAML::Node> LoadYaml(const std::string& text, const std::string& where, StatusCode code) {
@@ -113,7 +137,13 @@ std::string YamlText(const YAML::Node& node) {
   if (node.IsNull()) {
     return "nothing";
   }
-  return node.IsMap() ? "a group of keys" : "a list";
+  constexpr size_t kLongest = 40;
+  std::string text;
+  AppendOnOneLine(node, kLongest, &text);
+  if (text.size() > kLongest) {
+    text = text.substr(0, kLongest) + "...";
+  }
+  return (node.IsMap() ? "the group " : "the list ") + text;
 }
 
 Status ParseYamlReal(const YAML::Node& node, double* value) {

@@ -22,7 +22,8 @@ Result<YAML::Node> ParseYamlFile(const std::string& path, StatusCode code);
 
 /// "where:line:column" of a node, or `where` alone when the position of the node is unknown.
 [[nodiscard]] std::string YamlPlace(const std::string& where, const YAML::Node& node);
-/// The text of the node, shortened and in quotes.
+/// What the node holds, shortened: a scalar in quotes, "the list [1, 2, 3]", "the group {window: 3}" or
+/// "nothing".
 [[nodiscard]] std::string YamlText(const YAML::Node& node);
 
 /// Strict scalars. Each reads an unquoted decimal number (no octal-looking leading zero, no hexadecimal, no

@@ -181,7 +181,7 @@ std::string GapHint(const Trajectory& truth, const Trajectory& estimate) {
   std::sort(gaps.begin(), gaps.end());
   return "the truth rows around the estimate's stamps are " +
          Seconds(static_cast<double>(gaps[gaps.size() / 2]) * kNsToSeconds) +
-         " s apart (median): a longer max_gap_s, or nearest rows instead of interpolation";
+         " s apart (median): a longer max_gap, or nearest rows instead of interpolation";
 }
 
 /// Says which tolerance would have matched. Precondition: the ranges overlap.
@@ -199,7 +199,7 @@ std::string ToleranceHint(const Trajectory& truth, const Trajectory& estimate,
   // The median keeps rows far outside the overlap from inflating the advice.
   const std::size_t wanted = std::max(matches.size() / 2, kMinimumPairs - 1);
   const double needed = static_cast<double>(matches[wanted].distance_ns) * kNsToSeconds;
-  return "a max_dt_s of " + Seconds(needed * 1.001) + " would match at least " + std::to_string(wanted + 1) +
+  return "a max_dt of " + Seconds(needed * 1.001) + " s would match at least " + std::to_string(wanted + 1) +
          "; or interpolate the truth";
 }
 
@@ -207,7 +207,7 @@ Status TooFewPairs(const Trajectory& truth, const Trajectory& estimate, const As
                    std::size_t count) {
   const std::string tolerance = options.interpolate
                                     ? "interpolating over at most " + Seconds(options.max_gap_s)
-                                    : "within max_dt_s = " + Seconds(options.max_dt_s);
+                                    : "within a max_dt of " + Seconds(options.max_dt_s);
   std::string message = "only " + std::to_string(count) + " pairs of truth and estimate " + tolerance +
                         " s, expected at least " + std::to_string(kMinimumPairs) + ": " +
                         DescribeRange("truth", truth) + ", " + DescribeRange("estimate", estimate);
@@ -226,14 +226,14 @@ Status CheckTolerance(const char* name, double value) {
   if (value >= 0 && value <= kMaximumTolerance) {
     return Status::Ok();
   }
-  return Status::Usage(std::string(name) + " = " + Seconds(value) + ": expected 0 to " +
+  return Status::Usage(std::string(name) + ": found " + Seconds(value) + ", expected 0 to " +
                        Seconds(kMaximumTolerance) + " s");
 }
 
 Status CheckOptions(const AssociationOptions& options) {
-  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_dt_s", options.max_dt_s));
-  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_gap_s", options.max_gap_s));
-  ALIDADE_RETURN_IF_ERROR(CheckTolerance("time_offset_s", std::abs(options.time_offset_s)));
+  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_dt", options.max_dt_s));
+  ALIDADE_RETURN_IF_ERROR(CheckTolerance("max_gap", options.max_gap_s));
+  ALIDADE_RETURN_IF_ERROR(CheckTolerance("time_offset", std::abs(options.time_offset_s)));
   if (options.interpolate && options.method != EvaluationTool::kAlidade) {
     return Status::Usage("interpolate: " + std::string(ToString(options.method)) +
                          " pairs rows; only association alidade interpolates the truth");

@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "core/cpu_time.h"
 #include "core/stopwatch.h"
+#include "eval/record/run_health.h"
 #include "eval/record/truth_start.h"
 
 namespace alidade {
@@ -49,14 +50,10 @@ RunResult LogPlayer::Play() {
   const Stopwatch wall;
   const double cpu_start = ThreadCpuSeconds();
   result_.imu_rejected = log_.imu_rejected;
-  if (config_.gnss.enabled && log_.gnss == nullptr) {
-    result_.align_report = "the sequence has no GNSS";
+  result_.missing_sensors = MissingSensors(config_, log_);
+  if (!result_.missing_sensors.empty()) {
+    result_.align_report = "the sequence has no " + result_.missing_sensors.front();
   }
-  ForEachSensorEntry([&](auto entry, Sensor) {
-    if (result_.align_report.empty() && entry.Config(config_).enabled && entry.Sensors(log_.rig).empty()) {
-      result_.align_report = std::string("the sequence has no ") + entry.kPluralName;
-    }
-  });
   if (camera_) {
     PlayFrames();
   } else {

@@ -13,6 +13,7 @@
 #include "eval/record/recorder_covariance.h"
 #include "eval/record/recorder_gnss.h"
 #include "eval/record/recorder_rows.h"
+#include "eval/record/run_health.h"
 #include "eval/run/make_estimator.h"
 #include "eval/trajectory/trajectory_export.h"
 #include "eval/trajectory/trajectory_point.h"
@@ -103,6 +104,10 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
                     {"frames_processed", RecordCount(result)},
                     {"frames_skipped", result.frames_skipped}};
   json["skip_report"] = result.skip_report;
+  const RunHealth health = HealthOf(identity.config, result);
+  json["states"] = health.states;
+  json["unsound_s"] = health.unsound_s;
+  json["impaired"] = health.impairments;
   if (!result.restarts.empty()) {
     json["restarts"] = Json::array();
     for (const Restart& restart : result.restarts) {

@@ -31,9 +31,11 @@ struct RunResult {
   std::string init_method;  ///< truth | static | dynamic
   std::string init_report;  ///< what the initialiser found, or why it did not initialise
   TimeNs init_stamp_ns = 0;
-  int frames_skipped = 0;                     ///< refused by the estimator after initialisation
-  std::string skip_report;                    ///< why the first of them was
-  int imu_rejected = 0;                       ///< samples dropped by the reader or refused by the run
+  int frames_skipped = 0;   ///< refused by the estimator after initialisation
+  std::string skip_report;  ///< why the first of them was
+  int imu_rejected = 0;     ///< samples dropped by the reader or refused by the run
+  /// What the configuration enables and the log lacks (run_health.h).
+  std::vector<std::string> missing_sensors;
   std::optional<GlobalFrame> global;          ///< once aligned with GNSS or position fixes
   std::string align_report;                   ///< what the alignment found, or why it did not
   int epochs_used = 0;                        ///< GNSS epochs the estimator took

@@ -115,8 +115,8 @@ Trajectory TruthOf(const RefinedTruth& refined) {
   return truth;
 }
 
-Status CheckRefinedOutput(const Dataset& dataset, const std::string& output) {
-  const fs::path from = fs::path(dataset.path) / "mav0";
+Status CheckRefinedOutput(const std::string& dataset, const std::string& output) {
+  const fs::path from = fs::path(dataset) / "mav0";
   const fs::path to = fs::path(output) / "mav0";
   const Result<std::vector<fs::path>> entries = EntriesOf(from);
   ALIDADE_RETURN_IF_ERROR(entries.status());
@@ -128,14 +128,14 @@ Status CheckRefinedOutput(const Dataset& dataset, const std::string& output) {
     const fs::path target = to / entry.filename();
     shared = shared || LiesIn(target, entry) || LiesIn(entry, target);
   }
-  return shared ? Status::Usage("refine_truth: --output: found " + output +
-                                ", which shares files with the dataset " + dataset.path +
-                                ", expected another folder")
-                : Status::Ok();
+  return shared
+             ? Status::Usage("refine_truth: --output: found " + output +
+                             ", which shares files with the dataset " + dataset + ", expected another folder")
+             : Status::Ok();
 }
 
 Status WriteRefined(const Dataset& dataset, const RefinedTruth& refined, const std::string& output) {
-  ALIDADE_RETURN_IF_ERROR(CheckRefinedOutput(dataset, output));
+  ALIDADE_RETURN_IF_ERROR(CheckRefinedOutput(dataset.path, output));
   const fs::path to = fs::path(output) / "mav0";
   const Result<std::vector<fs::path>> entries = EntriesOf(fs::path(dataset.path) / "mav0");
   ALIDADE_RETURN_IF_ERROR(entries.status());

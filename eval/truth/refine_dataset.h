@@ -25,9 +25,10 @@ Result<RefinedTruth> RefineDataset(const Dataset& dataset, const RefineOptions& 
 /// The refined states as a truth: velocity, biases and the covariance of every pose.
 [[nodiscard]] Trajectory TruthOf(const RefinedTruth& refined);
 
-/// kUsage: the sequence that WriteRefined would write at `output` is that of the dataset, or one of the two
-/// lies within the other's mav0: the recording would be overwritten. kInput: the dataset cannot be read.
-Status CheckRefinedOutput(const Dataset& dataset, const std::string& output);
+/// kUsage: the sequence that WriteRefined would write at `output` is that of the folder `dataset`, or one of
+/// the two lies within the other's mav0: the recording would be overwritten. kInput: the dataset cannot be
+/// read.
+Status CheckRefinedOutput(const std::string& dataset, const std::string& output);
 
 /// Writes the folder of a sequence with its refined truth: sensors and tables of `dataset.path` are copied,
 /// folders of images (`data`) become links, and the truth stands in state_groundtruth_estimate0. Where scale

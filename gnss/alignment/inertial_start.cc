@@ -8,6 +8,7 @@
 #include "core/format.h"
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
+#include "core/lever_arm.h"
 #include "core/robust.h"
 #include "gnss/model/measurement_model.h"
 #include "gnss/model/receiver_clock.h"
@@ -190,7 +191,7 @@ NavState GnssInertialStart::FirstGuess(const Fit& fit) const {
   NavState nav;
   nav.R_WB = RotationBetween(sensed, seen);
   nav.v_WB = R_NE * first.velocity_E;
-  nav.p_WB = enu_->FromEcef(first.position_E) - nav.R_WB * receiver_.p_BA;
+  nav.p_WB = enu_->FromEcef(first.position_E) - LeverArm{receiver_.p_BA}.Position(nav);
   return nav;
 }
 

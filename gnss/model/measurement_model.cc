@@ -62,12 +62,12 @@ void RangeRateModel::Evaluate(const Vector3d& antenna_E, const Vector3d& velocit
 }
 
 Eigen::Matrix3d AntennaMount::PositionByLeverArm(const NavState& state) const {
-  return enu.R_EN * state.R_WB;
+  return enu.R_EN * LeverArm::PositionByArm(state);
 }
 
 Eigen::Matrix3d AntennaMount::VelocityByLeverArm(const NavState& state, const ImuBias& bias,
                                                  const Vector3d& gyro_radps) const {
-  return enu.R_EN * state.R_WB * Skew(Vector3d(gyro_radps - bias.gyro));
+  return PositionByLeverArm(state) * LeverArm::SwingByArm(bias, gyro_radps);
 }
 
 Vector3d AntennaMount::Position(const NavState& state, Eigen::Matrix<double, 3, 15>* jacobian) const {

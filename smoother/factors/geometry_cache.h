@@ -16,7 +16,7 @@ class GeometryCache {
   /// `calibration` must outlive it.
   GeometryCache(const WindowCalibration& calibration, size_t frames);
 
-  /// The camera of a calibration's block (null: nothing is estimated), for the frames asked for next. Null:
+  /// The camera of a calibration's block, for the frames asked for next. Null:
   /// the block is no camera.
   const WindowCalibration* Camera(const double* block);
   /// A frame at the state of its block, with that camera.

@@ -57,7 +57,7 @@ InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView
 
 bool InverseDepthFactor::Evaluate(const double* const* parameters, double* residual,
                                   double* const* tangent_jacobians) const {
-  const WindowCalibration* const camera = cache_->Camera(calibration_->Block(parameters, 3));
+  const WindowCalibration* const camera = cache_->Camera(parameters[3]);
   if (camera == nullptr) {
     return false;
   }
@@ -88,7 +88,7 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   if (tangent_jacobians[2] != nullptr) {
     Eigen::Map<RowMatrix2x3>{tangent_jacobians[2]} = rows.landmark;
   }
-  if (camera->size() > 0 && tangent_jacobians[3] != nullptr) {
+  if (tangent_jacobians[3] != nullptr) {
     StoreCalibration(rows.calibration, *calibration_, parameters[3], tangent_jacobians[3]);
   }
   return true;
@@ -100,9 +100,8 @@ BaseBearingFactor::BaseBearingFactor(const WindowView* view, const WindowCalibra
 bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residual,
                                  double* const* tangent_jacobians) const {
   const Eigen::Map<const Eigen::Vector3d> landmark(parameters[0]);
-  const bool calibrates = blocks().size() > 1;
   WindowCalibration camera = *calibration_;
-  if (calibrates && !calibration_->At(parameters[1], &camera.mean)) {
+  if (!calibration_->At(parameters[1], &camera.mean)) {
     return false;
   }
   const NormalizedObservation observation = Seen(camera, *view_);
@@ -113,7 +112,7 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
     out.leftCols<2>() = observation.sqrt_information;
     out.col(2).setZero();
   }
-  if (calibrates && tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
+  if (tangent_jacobians != nullptr && tangent_jacobians[1] != nullptr) {
     Eigen::Matrix2Xd rows(2, camera.size());
     CalibrationRows(camera.layout, camera.mean.camera, Eigen::Matrix3d::Identity(), {},
                     Eigen::Matrix<double, 2, 6>::Zero(), Predicted(observation, r), rows);

@@ -13,8 +13,7 @@
 namespace alidade {
 
 /// One observation of a landmark (x, y, rho) anchored in another frame: LinearizeAnchoredView without a
-/// kernel. Blocks nav_base, nav_view, landmark and, where something of it is estimated, the camera's
-/// calibration; 2 rows.
+/// kernel. Blocks nav_base, nav_view, landmark and the camera's calibration; 2 rows.
 ///
 /// The base bearing (x, y) is a measurement like any other, so it is estimated too and BaseBearingFactor
 /// holds it to the base observation: base noise is then accounted for exactly, correlation between the views
@@ -31,9 +30,7 @@ class InverseDepthFactor {
                      GeometryCache* cache = nullptr);
 
   [[nodiscard]] int rows() const { return kRows; }
-  [[nodiscard]] std::span<const BlockKind> blocks() const {
-    return std::span(kBlocks).first(calibration_->size() > 0 ? 4 : 3);
-  }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
   /// Behind the view the residual is replaced by a large constant with zero Jacobians, so that a trial step
   /// of the solver is refused rather than the whole solve failing. False: the calibration block is no camera.
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
@@ -50,8 +47,8 @@ class InverseDepthFactor {
   std::shared_ptr<GeometryCache> own_;
 };
 
-/// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Block landmark and,
-/// where the intrinsics are estimated, the camera's calibration; 2 rows.
+/// The base observation of an inverse-depth landmark: W ((x, y) - z), both on its plane. Blocks landmark and
+/// the camera's calibration; 2 rows.
 class BaseBearingFactor {
  public:
   static constexpr int kRows = 2;
@@ -60,9 +57,7 @@ class BaseBearingFactor {
   BaseBearingFactor(const WindowView* view, const WindowCalibration* calibration);
 
   [[nodiscard]] int rows() const { return kRows; }
-  [[nodiscard]] std::span<const BlockKind> blocks() const {
-    return std::span(kBlocks).first(calibration_->layout.intrinsics() < 0 ? 1 : 2);
-  }
+  [[nodiscard]] std::span<const BlockKind> blocks() const { return kBlocks; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
  private:

@@ -24,9 +24,7 @@ PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTra
       kernel_(kernel),
       blocks_(static_cast<size_t>(window.size()), BlockKind::kNavState),
       memo_(std::make_unique<Memo>()) {
-  if (calibration.size() > 0) {
-    blocks_.push_back(BlockKind::kCalibration);
-  }
+  blocks_.push_back(BlockKind::kCalibration);
 }
 
 const std::vector<WindowView>& PoseOnlyFactor::Views(const WindowTrack& track,
@@ -39,7 +37,7 @@ const std::vector<WindowView>& PoseOnlyFactor::Views(const WindowTrack& track,
 }
 
 bool PoseOnlyFactor::SolveLandmarks(const double* const* parameters) const {
-  const double* block = calibration_->Block(parameters, static_cast<size_t>(frames_));
+  const double* block = parameters[frames_];
   WindowCalibration camera{calibration_->layout, {}};
   if (!calibration_->At(block, &camera.mean)) {
     return false;
@@ -80,6 +78,7 @@ bool PoseOnlyFactor::SolveLandmarks(const double* const* parameters) const {
 void PoseOnlyFactor::Linearize() const {
   Memo& memo = *memo_;
   PoseSystem system(frames_, &memo.camera);
+  memo.columns = system.columns;
   std::vector<WindowView> renormalized;
   for (size_t i = 0; i < tracks_.size(); ++i) {
     if (memo.landmarks[i]) {  // one whose views do not determine it says nothing of the poses
@@ -114,10 +113,11 @@ bool PoseOnlyFactor::Evaluate(const double* const* parameters, double* residual,
       using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, kNavTangentSize, Eigen::RowMajor>;
       Eigen::Map<RowMatrix> out(tangent_jacobians[i], rows(), kNavTangentSize);
       out.setZero();
-      out.topLeftCorner(memo_->jacobian.rows(), 6) = memo_->jacobian.middleCols<6>(6 * i);
+      out.topLeftCorner(memo_->jacobian.rows(), 6) =
+          memo_->jacobian.middleCols<kPoseColumns>(memo_->columns.Frame(i).first);
     }
   }
-  if (calibration_->size() > 0 && tangent_jacobians[frames_] != nullptr) {
+  if (tangent_jacobians[frames_] != nullptr) {
     using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, CalibrationLayout::kMaxSize, Eigen::RowMajor>;
     Eigen::Map<RowMatrix> out(tangent_jacobians[frames_], rows(), CalibrationLayout::kMaxSize);
     out.setZero();

@@ -35,7 +35,9 @@ class PoseOnlyFactor {
   PoseOnlyFactor(const Window& window, std::vector<const WindowTrack*> tracks,
                  const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  [[nodiscard]] int rows() const { return 6 * frames_ + calibration_->size() + 1; }
+  [[nodiscard]] int rows() const {
+    return static_cast<int>(kPoseColumns) * frames_ + calibration_->size() + 1;
+  }
   [[nodiscard]] std::span<const BlockKind> blocks() const { return blocks_; }
   bool Evaluate(const double* const* parameters, double* residual, double* const* tangent_jacobians) const;
 
@@ -49,6 +51,7 @@ class PoseOnlyFactor {
     std::vector<std::optional<Eigen::Vector3d>> landmarks;  ///< of each track; none behind a view
     double robust_cost = 0;
     bool linear = false;  ///< jacobian and residual are of these parameters
+    ColumnMap columns;    ///< of jacobian
     Eigen::MatrixXd jacobian;
     Eigen::VectorXd residual;
     TrackWorkspace workspace;

@@ -82,9 +82,7 @@ PriorFactor::PriorFactor(const LinearPrior* prior, const WindowCalibration* cali
   if (prior->clock_origin) {
     blocks_.push_back(BlockKind::kClock);
   }
-  if (calibration->size() > 0) {
-    blocks_.push_back(BlockKind::kCalibration);
-  }
+  blocks_.push_back(BlockKind::kCalibration);
 }
 
 void PriorFactor::AddFrame(size_t anchor, const double* block, double* residual, double* tangent) const {

@@ -21,9 +21,7 @@ SlamPriorFactor::SlamPriorFactor(const SlamPrior* prior, int frames)
   if (prior->prior().clock_origin) {
     blocks_.push_back(BlockKind::kClock);
   }
-  if (prior->calibration().size() > 0) {
-    blocks_.push_back(BlockKind::kCalibration);
-  }
+  blocks_.push_back(BlockKind::kCalibration);
   memo_->landmarks = prior->StartingLandmarks();
 }
 

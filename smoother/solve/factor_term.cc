@@ -44,7 +44,6 @@ TermBlock CalibrationBlock(const WindowCalibration& calibration) {
 }
 
 FactorBlocks::FactorBlocks(std::vector<TermBlock> blocks) : blocks_(std::move(blocks)) {
-  std::erase_if(blocks_, [](const TermBlock& block) { return block.width == 0; });
   for (size_t i = 0; i < blocks_.size(); ++i) {
     const TermBlock& block = blocks_[i];
     const bool with_bias = block.kind == BlockKind::kNavState && i + 1 < blocks_.size() &&

@@ -23,7 +23,6 @@ struct TermBlock {
 /// Precondition: clock.
 [[nodiscard]] TermBlock ClockBlock(const WindowFrame& frame);
 [[nodiscard]] TermBlock LandmarkBlock(const WindowTrack& track, int landmark);
-/// Of width 0 where nothing is estimated: such a block is left out.
 [[nodiscard]] TermBlock CalibrationBlock(const WindowCalibration& calibration);
 
 /// The blocks of a term and where their columns stand in the tangent Jacobians of a factor. A bias that
@@ -72,7 +71,7 @@ class FactorTerm final : public FactorBlocks {
   LiftedCost<Factor> cost_;
 };
 
-/// `blocks`: in the order of the factor's; the last ones are left out where the factor has fewer.
+/// `blocks`: in the order of the factor's; the last one is left out where the factor has fewer.
 template <typename Factor>
 [[nodiscard]] std::unique_ptr<FactorTerm<Factor>> MakeTerm(Factor factor, std::vector<TermBlock> blocks) {
   const auto used = static_cast<std::ptrdiff_t>(std::min(blocks.size(), factor.blocks().size()));

@@ -13,8 +13,7 @@ ParameterBlocks::ParameterBlocks(ErrorConvention error, const WindowFrames& fram
       calibration_(calibration),
       has_clocks_(frames.front()->clock.has_value()),
       parameters_(kFrameStride * frames.size() + kLandmarkStride * tracks.size() +
-                  (has_clocks_ ? kClockStride * frames.size() : 0) +
-                  (calibration.size() > 0 ? kCalibrationStride : 0)),
+                  (has_clocks_ ? kClockStride * frames.size() : 0) + kCalibrationStride),
       manifold_(error, frames.back()->nav_state().p_WB, frames.back()->nav_state().v_WB) {
   for (const std::unique_ptr<WindowFrame>& frame : frames) {
     std::copy(frame->nav.begin(), frame->nav.end(), Nav(frame->index));
@@ -58,14 +57,12 @@ std::unique_ptr<ceres::Problem> ParameterBlocks::MakeProblem() {
       problem->AddParameterBlock(Clock(frame->index), ClockState::kSize);
     }
   }
-  if (has_calibration()) {
-    std::vector<int> fixed;
-    for (int i = calibration_.size(); i < CalibrationLayout::kMaxSize; ++i) {
-      fixed.push_back(i);
-    }
-    calibration_manifold_ = std::make_unique<ceres::SubsetManifold>(CalibrationLayout::kMaxSize, fixed);
-    problem->AddParameterBlock(Calibration(), CalibrationLayout::kMaxSize, calibration_manifold_.get());
+  std::vector<int> fixed;
+  for (int i = calibration_.size(); i < CalibrationLayout::kMaxSize; ++i) {
+    fixed.push_back(i);
   }
+  calibration_manifold_ = std::make_unique<ceres::SubsetManifold>(CalibrationLayout::kMaxSize, fixed);
+  problem->AddParameterBlock(Calibration(), CalibrationLayout::kMaxSize, calibration_manifold_.get());
   return problem;
 }
 

@@ -31,7 +31,7 @@ class ParameterBlocks {
   [[nodiscard]] double* Clock(int frame) {
     return Landmark(static_cast<int>(tracks_.size())) + kClockStride * static_cast<size_t>(frame);
   }
-  /// Where something of it is estimated.
+  /// Its error; coordinates beyond those of the layout are constant.
   [[nodiscard]] double* Calibration() { return Clock(static_cast<int>(has_clocks_ ? frames_.size() : 0)); }
   /// A block by its kind and the index of its frame or track.
   [[nodiscard]] double* Find(BlockKind kind, int index);
@@ -39,9 +39,8 @@ class ParameterBlocks {
   [[nodiscard]] int frames() const { return static_cast<int>(frames_.size()); }
   [[nodiscard]] int landmarks() const { return static_cast<int>(tracks_.size()); }
   [[nodiscard]] bool has_clocks() const { return has_clocks_; }
-  [[nodiscard]] bool has_calibration() const { return calibration_.size() > 0; }
 
-  /// A problem that owns nothing, with the blocks of all frames.
+  /// A problem that owns nothing, with the blocks of all frames and of the calibration.
   [[nodiscard]] std::unique_ptr<ceres::Problem> MakeProblem();
 
   /// True when every parameter is a finite number.

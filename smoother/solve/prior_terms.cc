@@ -65,9 +65,7 @@ void SlamPriorTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
   if (slam_.prior().clock_origin) {
     parameters.push_back(blocks->Clock(0));
   }
-  if (blocks->has_calibration()) {
-    parameters.push_back(blocks->Calibration());
-  }
+  parameters.push_back(blocks->Calibration());
   problem->AddResidualBlock(&cost_, nullptr, parameters);
 }
 

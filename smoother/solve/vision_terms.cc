@@ -73,9 +73,7 @@ void PoseOnlyTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
   for (int i = 0; i < window_->size(); ++i) {
     parameters.push_back(blocks->Nav(i));
   }
-  if (blocks->has_calibration()) {
-    parameters.push_back(blocks->Calibration());
-  }
+  parameters.push_back(blocks->Calibration());
   problem->AddResidualBlock(&*cost_, nullptr, parameters);
 }
 
@@ -135,9 +133,7 @@ void ViewTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
         base.frame, &view, calibration, track_->plane(), base.observation.row_px, context_->cache.get()));
     parameters.insert(parameters.begin(), {blocks->Nav(base.frame->index), blocks->Nav(view.frame->index)});
   }
-  if (parameters.size() < cost_->parameter_block_sizes().size()) {
-    parameters.push_back(blocks->Calibration());
-  }
+  parameters.push_back(blocks->Calibration());
   problem->AddResidualBlock(cost_.get(), context_->loss.get(), parameters);
 }
 

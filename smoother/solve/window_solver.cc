@@ -93,9 +93,7 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBloc
       solver.linear_solver_ordering->AddElementToGroup(blocks->Clock(i), 1);
     }
   }
-  if (blocks->has_calibration()) {
-    solver.linear_solver_ordering->AddElementToGroup(blocks->Calibration(), 1);
-  }
+  solver.linear_solver_ordering->AddElementToGroup(blocks->Calibration(), 1);
   return solver;
 }
 
@@ -120,7 +118,7 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
                             " s: " + summary.message);
   }
   CameraCalibration solved = calibration->mean;
-  if (blocks.has_calibration() && !calibration->At(blocks.Calibration(), &solved)) {
+  if (!calibration->At(blocks.Calibration(), &solved)) {
     return Status::Diverged("smoother: calibration at " + FormatSeconds(window->newest().stamp_ns) +
                             " s is no camera");
   }

@@ -68,11 +68,11 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
                     const DepthPrior& prior, const TrackWorkspace& workspace, PoseSystem* system) {
   const WindowCalibration& calibration = *system->calibration;
   const Eigen::Index size = calibration.size();
-  const Eigen::Index first = system->hessian.rows() - size;
+  const Eigen::Index first = system->columns.Calibration().first;
   Eigen::MatrixXd rows(2, size);
   Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(size, 3);
-  auto own = system->hessian.bottomRightCorner(size, size);
-  auto gradient = system->gradient.tail(size);
+  auto own = system->hessian.block(first, first, size, size);
+  auto gradient = system->gradient.segment(first, size);
   FrameGeometry view_row;
   for (size_t k = 0; k < views.size(); ++k) {
     const ViewRows& view = workspace.rows[k];
@@ -83,7 +83,7 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
     coupling.noalias() += view.weight * rows.transpose() * view.landmark;
     own.noalias() += view.weight * rows.transpose() * rows;
     gradient.noalias() += view.weight * rows.transpose() * view.residual;
-    system->hessian.block(first, 6 * views[k].frame->index, size, 6).noalias() +=
+    system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() +=
         view.weight * rows.transpose() * view.pose;
   }
   if (has_prior) {
@@ -91,14 +91,14 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
     coupling.col(2) += row.transpose() * prior.sqrt_information;
     own.noalias() += row.transpose() * row;
     gradient += row.transpose() * workspace.prior_residual;
-    system->hessian.block(first, 6 * views.front().frame->index, size, 6).noalias() +=
+    system->hessian.block(first, workspace.first[0], size, kPoseColumns).noalias() +=
         row.transpose() * workspace.prior_pose;
   }
   const Eigen::MatrixXd reduced = coupling * landmark_root;
   own.noalias() -= reduced * reduced.transpose();
   gradient.noalias() -= reduced * reduced_gradient;
   for (size_t k = 0; k < views.size(); ++k) {
-    system->hessian.block(first, 6 * views[k].frame->index, size, 6).noalias() -=
+    system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() -=
         reduced * workspace.reduced[k].transpose();
   }
 }
@@ -142,10 +142,14 @@ bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
 }
 
 PoseSystem::PoseSystem(int frames, const WindowCalibration* of_camera) : calibration(of_camera) {
-  const Eigen::Index size = 6 * frames + calibration_size();
-  hessian = Eigen::MatrixXd::Zero(size, size);
-  gradient = Eigen::VectorXd::Zero(size);
+  for (int i = 0; i < frames; ++i) {
+    columns.AddPose(i);
+  }
+  columns.AddCalibration(calibration->size());
+  hessian = Eigen::MatrixXd::Zero(columns.size(), columns.size());
+  gradient = Eigen::VectorXd::Zero(columns.size());
 }
+
 bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
               const ObservationKernel& kernel, const Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior) {
@@ -170,25 +174,27 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   const Vector3d reduced_gradient = factor.matrixL().solve(scale.asDiagonal() * workspace->landmark_gradient);
   const Matrix3d scaled = scale.asDiagonal();
   const Matrix3d inverse_transposed = factor.matrixL().solve(scaled).transpose();
-  const int base_row = 6 * views.front().frame->index;
+  workspace->first.resize(views.size());
+  for (size_t k = 0; k < views.size(); ++k) {
+    workspace->first[k] = system->columns.Frame(views[k].frame->index).first;
+  }
+  const Eigen::Index base_row = workspace->first.front();
   system->hessian.block<6, 6>(base_row, base_row) += workspace->prior_hessian;
   system->gradient.segment<6>(base_row) += workspace->prior_gradient;
   for (size_t k = 0; k < views.size(); ++k) {
-    const int row = 6 * views[k].frame->index;
+    const Eigen::Index row = workspace->first[k];
     const ViewRows& rows = workspace->rows[k];
     workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
     system->hessian.block<6, 6>(row, row).noalias() += rows.weight * rows.pose.transpose() * rows.pose;
     system->gradient.segment<6>(row).noalias() += rows.weight * rows.pose.transpose() * rows.residual;
     system->gradient.segment<6>(row).noalias() -= workspace->reduced[k] * reduced_gradient;
     for (size_t l = 0; l <= k; ++l) {
-      system->hessian.block<6, 6>(row, 6 * views[l].frame->index).noalias() -=
+      system->hessian.block<6, 6>(row, workspace->first[l]).noalias() -=
           workspace->reduced[k] * workspace->reduced[l].transpose();
     }
   }
-  if (system->calibration_size() > 0) {
-    AddCalibration(views, geometry, inverse_transposed, reduced_gradient, prior.sqrt_information > 0, prior,
-                   *workspace, system);
-  }
+  AddCalibration(views, geometry, inverse_transposed, reduced_gradient, prior.sqrt_information > 0, prior,
+                 *workspace, system);
   system->robust_cost += workspace->robust_cost;
   system->chi2 += workspace->chi2;
   system->dof += 2 * static_cast<int>(views.size()) - 3;
@@ -212,13 +218,14 @@ std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowVie
   const Vector3d last = scale.asDiagonal() * factor.solve(Vector3d(0, 0, scale.z()));
   InverseDepthError error;
   error.own_deviation = std::sqrt(last.z());
-  error.row.setZero(6 * static_cast<Eigen::Index>(geometry.size()));
+  error.row.setZero(kPoseColumns * static_cast<Eigen::Index>(geometry.size()));
   for (size_t k = 0; k < views.size(); ++k) {
-    error.row.segment<6>(6 * views[k].frame->index) -= (workspace.coupling[k] * last).transpose();
+    error.row.segment<kPoseColumns>(kPoseColumns * views[k].frame->index) -=
+        (workspace.coupling[k] * last).transpose();
   }
   FrameGeometry row;
   const FrameGeometry& base = AtRow(geometry, views.front(), &row);
-  error.row.segment<6>(6 * views.front().frame->index) +=
+  error.row.segment<kPoseColumns>(kPoseColumns * views.front().frame->index) +=
       InverseDepthRow(base, landmark, views.front().observation.plane) * base.camera_from_body;
   return error;
 }

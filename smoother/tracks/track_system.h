@@ -7,6 +7,7 @@
 
 #include "core/landmark_solver.h"
 #include "core/robust.h"
+#include "smoother/window/column_map.h"
 #include "smoother/window/frame_geometry.h"
 
 namespace alidade {
@@ -18,14 +19,13 @@ struct PoseSystem {
   /// calibration: it must outlive the system.
   explicit PoseSystem(int frames, const WindowCalibration* calibration = &NotCalibrated());
 
-  [[nodiscard]] int calibration_size() const { return calibration->size(); }
-
   const WindowCalibration* calibration;
-  Eigen::MatrixXd hessian;   ///< 6F + calibration squared, lower triangle; the calibration comes last
-  Eigen::VectorXd gradient;  ///< 6F + calibration
-  double robust_cost = 0;    ///< sum of rho(s) (twice the cost)
-  double chi2 = 0;           ///< sum of s, no kernel
-  int dof = 0;               ///< sum of 2N-3
+  ColumnMap columns;        ///< the frames' poses in order, then the calibration
+  Eigen::MatrixXd hessian;  ///< lower triangle
+  Eigen::VectorXd gradient;
+  double robust_cost = 0;  ///< sum of rho(s) (twice the cost)
+  double chi2 = 0;         ///< sum of s, no kernel
+  int dof = 0;             ///< sum of 2N-3
   int tracks = 0;
 };
 
@@ -56,6 +56,7 @@ bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
 
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {
+  std::vector<Eigen::Index> first;  ///< column of the system where each view's pose begins
   std::vector<ViewRows> rows;
   std::vector<Eigen::Matrix<double, 6, 3>> coupling;  ///< B_k^T A_k
   Eigen::Matrix3d landmark_hessian;

@@ -79,6 +79,7 @@ TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
 TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
   const std::string base = Source("configs/base.yaml");
   const std::string seq = folder_.File("seq"), out = folder_.File("out");
+  const std::string truth = seq + "/mav0/state_groundtruth_estimate0/data.csv";
   const std::string run = "run --dataset=" + seq + " --output=" + out;
   const std::string longer = folder_.File(std::string(300, 'x'));
   const std::vector<BadCall> calls = {
@@ -97,13 +98,15 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {run + " --config=" + folder_.File("unknown_key.yaml"), 3, "unknown_key.yaml:3:3"},
       {run + " --config=" + base + " --set=filter.windw=3", 3, "filter.window"},
       {run + " --config=" + base + " --set=filter.window=0", 3, "filter.window"},
+      {run + " --config=" + base + " --set=filter.window=6 --set=filter.window=7", 3,
+       "setting 'filter.window': found '6' and '7', expected one value"},
       {run + " --config=" + base + " --set=calibration.extrinsics=true,backend=batch", 3, "batch back end"},
       {"run --dataset=" + folder_.File("none") + " --config=" + base + " --output=" + out, 4, "none"},
       {"run --dataset=" + folder_.File("no_imu") + " --config=" + base + " --output=" + out, 4, "imu0"},
       {"run --dataset=" + folder_.File("torn_imu") + " --config=" + base + " --output=" + out, 4,
        "data.csv:50"},
       {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
-           " --set=init.method=truth --output=" + out,
+           " --set=init.method=truth --output=" + folder_.File("of_no_truth"),
        4, "no ground truth"},
       {run + " --config=" + folder_.File("comma.yaml"), 3, "comma.yaml:1:1"},
       {run + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
@@ -137,6 +140,8 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"track --dataset=" + seq + " --output=" + folder_.File("tracks"), 4, "no images"},
       {"evaluate --truth=" + folder_.File("torn.tum") + " --estimate=" + folder_.File("torn.tum"), 4,
        "torn.tum:1"},
+      {"evaluate --max-dt=-1 --truth=" + truth + " --estimate=" + truth, 2,
+       "evaluate: --max-dt: found -1, expected 0 to "},
       {"evaluate --truth=a --estimate=b --align=yaw", 2, "--align: found 'yaw'"},
       {"evaluate --truth=a --estimate=b --rpe=8,x", 2, "--rpe: found 'x'"},
       {"evaluate --truth=a --estimate=b --association=tum", 2, "--association: found 'tum'"},
@@ -168,6 +173,25 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
     EXPECT_EQ(result.code, call.code) << call.words << "\n" << result.output;
     EXPECT_THAT(result.output, HasSubstr(call.message)) << call.words;
     EXPECT_LT(result.output.size(), 2000u) << call.words << "\n" << result.output;
+  }
+}
+
+// GIVEN a camera sheet with focal lengths in mm and a principal point far away THEN check lists both faults,
+// and a run does not begin.
+TEST_F(BadInput, AnImplausibleSheetIsRefusedWithAllItsFaults) {
+  const std::string sheet = "seq/mav0/cam0/sensor.yaml";
+  const std::string text = ReadFile(folder_.File(sheet));
+  const size_t key = text.find("intrinsics:");
+  ASSERT_NE(key, std::string::npos);
+  folder_.Write(sheet,
+                text.substr(0, key) + "intrinsics: [4, 4, -4000, 240]" + text.substr(text.find('\n', key)));
+  const std::string run = "run --config=" + Source("configs/base.yaml") + " --output=" + folder_.File("out");
+  for (const std::string& words : {std::string("check"), run}) {
+    const CommandResult result = Alidade(words + " --dataset=" + folder_.File("seq"));
+    EXPECT_EQ(result.code, 4) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("cam0/sensor.yaml: intrinsics: found fu 4 px, fv 4 px"));
+    EXPECT_THAT(result.output,
+                HasSubstr("cam0/sensor.yaml: intrinsics: found the principal point cu -4000 px"));
   }
 }
 

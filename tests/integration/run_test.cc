@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/command.h"
@@ -49,8 +50,10 @@ TEST_P(EveryPreset, SameInputsGiveSameBytes) {
   const Sequence& sequence = Sequence::Get();
   ASSERT_EQ(sequence.made().code, 0) << sequence.made().output;
   const CommandResult first = sequence.Run(GetParam(), folder.File("a"));
-  ASSERT_EQ(first.code, 0) << first.output;
-  ASSERT_EQ(sequence.Run(GetParam(), folder.File("b")).code, 0);
+  const auto config = nlohmann::json::parse(ReadFile(folder.File("a/run.json")))["config"];
+  const int code = config["gnss"]["enabled"] ? 8 : 0;  // the sequence has no GNSS
+  ASSERT_EQ(first.code, code) << first.output;
+  ASSERT_EQ(sequence.Run(GetParam(), folder.File("b")).code, code);
   const auto a = ComparableFiles(folder.File("a"));
   EXPECT_EQ(a.size(), GetParam() == "batch" ? 6u : 5u);  // and bound.csv
   EXPECT_GT(a.at("states.csv").size(), 10000u);
@@ -137,6 +140,87 @@ TEST(Run, SettingsMayBeRepeated) {
   EXPECT_EQ(config["filter"]["window"], 9);
   EXPECT_EQ(config["vision"]["pixel_noise_px"], 1.5);
   EXPECT_EQ(config["init"]["method"], "truth");
+}
+
+// GIVEN --quiet WHEN a run ends THEN its result, and nothing else, is printed.
+TEST(Run, QuietPrintsTheResultAlone) {
+  TemporaryFolder folder;
+  const CommandResult run = Sequence::Get().Run("alidade_filter", folder.File("a"));
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.output, testing::StartsWith("ok: 61 frames, 0 skipped, start: truth"));
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+}
+
+// GIVEN an IMU that ends halfway WHEN an estimator has run THEN the warning names the spans, and the result
+// is not "ok" and says why.
+TEST(Run, OnHalfAnImuIsImpairedAndSaysWhy) {
+  TemporaryFolder folder;
+  std::filesystem::copy(Sequence::Get().path(), folder.File("half"),
+                        std::filesystem::copy_options::recursive);
+  const std::string table = ReadFile(folder.File("half/mav0/imu0/data.csv"));
+  folder.Write("half/mav0/imu0/data.csv", table.substr(0, table.find('\n', table.size() / 2) + 1));
+  const CommandResult run = Alidade("run --set=init.method=truth --dataset=" + folder.File("half") +
+                                    " --config=" + Source("configs/estimators/alidade_filter.yaml") +
+                                    " --output=" + folder.File("a"));
+  EXPECT_EQ(run.code, 8) << run.output;
+  EXPECT_THAT(run.output, testing::ContainsRegex("warning: cam0: from .* s of cam0 are without IMU"));
+  EXPECT_THAT(run.output, testing::ContainsRegex("\nimpaired: .* skipped .no imu sample reaches"));
+  const auto json = nlohmann::json::parse(ReadFile(folder.File("a/run.json")));
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["impaired"].size(), 1u);
+}
+
+// GIVEN a camera whose rotation is wrong by 1 deg, so that most states are degraded WHEN the run ends THEN
+// its last line, exit code and run.json tell it from a clean one.
+TEST(Run, ThatIsMostlyDegradedIsImpaired) {
+  TemporaryFolder folder;
+  const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +
+                                     " --seed=921 --set=duration_s=20,path_m=26,"
+                                     "calibration_rotation_error_rad=0.0175 --quiet --output=" +
+                                     folder.File("seq"));
+  ASSERT_EQ(made.code, 0) << made.output;
+  const CommandResult run = Alidade("run --quiet --set=init.method=truth --dataset=" + folder.File("seq") +
+                                    " --config=" + Source("configs/estimators/alidade_filter.yaml") +
+                                    " --output=" + folder.File("a"));
+  EXPECT_EQ(run.code, 8) << run.output;
+  EXPECT_THAT(run.output, testing::ContainsRegex("^impaired: .* degraded .* without a sound state"));
+  const auto json = nlohmann::json::parse(ReadFile(folder.File("a/run.json")));
+  EXPECT_GT(json["states"]["degraded"], 0);
+  EXPECT_EQ(json["impaired"].size(), 1u);
+}
+
+// GIVEN sensors that the configuration enables and the sequence lacks THEN each is named in the last line.
+TEST(Run, WithoutTheSensorsItIsToUseIsImpaired) {
+  TemporaryFolder folder;
+  const CommandResult run = Sequence::Get().Run("gvio", folder.File("a"), "--set=fix.enabled=true");
+  EXPECT_EQ(run.code, 8) << run.output;
+  EXPECT_THAT(run.output, testing::HasSubstr("GNSS was not used: the sequence has no GNSS; position fixes "
+                                             "were not used: the sequence has no position fixes\n"));
+  const auto json = nlohmann::json::parse(ReadFile(folder.File("a/run.json")));
+  EXPECT_EQ(json["impaired"].size(), 2u);
+}
+
+// GIVEN an output that cannot be used and an input with a fault THEN the output is told, which costs no time;
+// GIVEN the fault alone THEN nothing is made.
+TEST(Run, ChecksTheOutputBeforeItReadsTheInput) {
+  TemporaryFolder folder;
+  folder.Write("full/file", "");
+  folder.Write("seq/mav0/imu0/data.csv", "torn");
+  for (const std::string& command : std::vector<std::string>{
+           "run --config=" + Source("configs/base.yaml"), std::string("track"), std::string("identify"),
+           std::string("calibrate"), std::string("refine_truth")}) {
+    const CommandResult full =
+        Alidade(command + " --dataset=" + folder.File("seq") + " --output=" + folder.File("full"));
+    EXPECT_EQ(full.code, 6) << command << "\n" << full.output;
+    EXPECT_THAT(full.output, testing::HasSubstr("exists and is not empty"));
+  }
+  folder.Write("seq.bag", "");
+  EXPECT_EQ(Alidade("convert --dataset=" + folder.File("seq") + " --output=" + folder.File("seq.bag")).code,
+            6);
+  const CommandResult torn = Alidade("run --config=" + Source("configs/base.yaml") +
+                                     " --dataset=" + folder.File("seq") + " --output=" + folder.File("new"));
+  EXPECT_EQ(torn.code, 4) << torn.output;
+  EXPECT_FALSE(std::filesystem::exists(folder.File("new")));
 }
 
 // GIVEN a run that is lost and starts again, and one whose GNSS never aligns WHEN they end THEN their exit

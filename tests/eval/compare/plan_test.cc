@@ -200,8 +200,8 @@ TEST_F(PlanTest, ANameThatFollowsFromAPathIsTheNameOfAFolder) {
   const Result<Plan> spaced = Read(estimators + "sequences:\n  - {path: data/my walk}\n");
   EXPECT_EQ(spaced.code(), StatusCode::kConfig);
   EXPECT_THAT(spaced.message(),
-              HasSubstr("plan.yaml:3:5: sequences: found a group of keys, expected a `name` "
-                        "beside it: 'my walk', which follows from the path"));
+              HasSubstr("plan.yaml:3:5: sequences: found the group {path: data/my walk}, expected a "
+                        "`name` beside it: 'my walk', which follows from the path"));
   EXPECT_TRUE(Read(estimators + "sequences: [{path: data/my walk, name: walk}]\n").ok());
   EXPECT_THAT(Read("estimators: [estimators/a b.yaml]\nsequences: [{config: sim.yaml}]\n").message(),
               HasSubstr("plan.yaml:1:14: estimators: found 'estimators/a b.yaml', expected a `name`"));

@@ -154,5 +154,12 @@ TEST(ConfigYaml, GivenSettingsInOneFlagThenCommasInBracketsDoNotSplit) {
   EXPECT_EQ(every.text, "true");
 }
 
+TEST(ConfigYaml, GivenAKeyTwiceInSettingsThenDifferentValuesAreRefusedAndBothNamed) {
+  EXPECT_TRUE(CheckSettingsAgree({"a.b=1", "a.c=2", "a.b=1", "vector=[1,2]"}).ok());
+  const Status status = CheckSettingsAgree({"a.b=1", "a.c=2", "a.b=3"});
+  EXPECT_EQ(status.code(), StatusCode::kConfig);
+  EXPECT_EQ(status.message(), "setting 'a.b': found '1' and '3', expected one value");
+}
+
 }  // namespace
 }  // namespace alidade

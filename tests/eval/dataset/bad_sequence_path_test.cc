@@ -79,5 +79,63 @@ TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
   EXPECT_THAT(missing.message(), HasSubstr("nowhere: no such folder"));
 }
 
+/// A sequence that lists an image twice, which is missing, in the folder `name`.
+void WriteSequenceWithAnImage(const test::TemporaryFolder& folder, const std::string& name) {
+  folder.Write(name + "/mav0/imu0/sensor.yaml", test::kImuYaml);
+  folder.Write(name + "/mav0/imu0/data.csv", std::string(test::kImuHeader) + test::kImuRows);
+  folder.Write(name + "/mav0/cam0/sensor.yaml", test::CameraYaml(test::kIdentity, test::kNoLens));
+  folder.Write(name + "/mav0/cam0/data.csv", "#timestamp [ns],filename\n1000,1.png\n2000,1.png\n");
+  std::filesystem::create_directory(folder.File(name + "/mav0/cam0/data"));
+}
+
+// GIVEN an image that is a link to a file elsewhere WHEN the sequence is read THEN it is refused with the
+// place the link leads to.
+TEST(BadSequenceLink, GivenAnImageThatIsALinkOutOfTheSequenceThenItIsRefused) {
+  const test::TemporaryFolder folder;
+  WriteSequenceWithAnImage(folder, "seq");
+  const std::string secret = folder.Write("secret.png", "not for a sequence");
+  std::filesystem::create_symlink(secret, folder.File("seq/mav0/cam0/data/1.png"));
+  const Result<Dataset> dataset = ReadDataset(folder.File("seq"));
+  EXPECT_EQ(dataset.code(), StatusCode::kInput);
+  EXPECT_THAT(dataset.message(),
+              HasSubstr("data.csv:2: column 2 (filename): found '1.png', expected a file of "
+                        "this sequence, not a link to "));
+  EXPECT_THAT(dataset.message(), HasSubstr("secret.png outside of it"));
+}
+
+// GIVEN links that users make (of folders, within the sequence, of every file of another sequence) THEN the
+// images are read.
+TEST(BadSequenceLink, GivenLinkedFoldersAndLinksWithinThenTheyAreFollowed) {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  const auto images = [&folder](const std::string& name) {
+    const Result<Dataset> dataset = ReadDataset(folder.File(name));
+    EXPECT_TRUE(dataset.ok()) << name << ": " << dataset.message();
+    return dataset.ok() ? dataset->images.size() : 0;
+  };
+  WriteSequenceWithAnImage(folder, "seq");
+  folder.Write("seq/raw/1.png", "x");
+  fs::create_symlink("../../../raw/1.png", folder.File("seq/mav0/cam0/data/1.png"));
+  EXPECT_EQ(images("seq"), 2u);
+  fs::create_directory_symlink(folder.File("seq"), folder.File("link"));
+  EXPECT_EQ(images("link"), 2u);
+
+  WriteSequenceWithAnImage(folder, "linked");
+  fs::remove(folder.File("linked/mav0/cam0/data"));
+  folder.Write("disk/2.png", "x");
+  fs::create_symlink("2.png", folder.File("disk/1.png"));
+  fs::create_directory_symlink(folder.File("disk"), folder.File("linked/mav0/cam0/data"));
+  EXPECT_EQ(images("linked"), 2u);
+
+  WriteSequenceWithAnImage(folder, "real");
+  folder.Write("real/mav0/cam0/data/1.png", "x");
+  WriteSequenceWithAnImage(folder, "farm");
+  fs::remove(folder.File("farm/mav0/cam0/data.csv"));
+  for (const char* file : {"mav0/cam0/data.csv", "mav0/cam0/data/1.png"}) {
+    fs::create_symlink(folder.File(std::string("real/") + file), folder.File(std::string("farm/") + file));
+  }
+  EXPECT_EQ(images("farm"), 2u);
+}
+
 }  // namespace
 }  // namespace alidade

@@ -8,51 +8,18 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/dataset_writer.h"
-#include "gnss/model/gnss_epoch.h"
-#include "tests/gnss/model/synthetic_sky.h"
+#include "tests/eval/dataset/healthy_dataset.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
 
+using test::Complaints;
+using test::Healthy;
+using test::WithGnss;
 using testing::HasSubstr;
 using Severity = DatasetFinding::Severity;
-
-/// Ten seconds at rest, a camera that sees two tracks, truth throughout: nothing to complain about.
-Dataset Healthy() {
-  Dataset dataset;
-  dataset.rig.camera =
-      CameraModel::Create(DistortionModel::kNone, Eigen::Vector4d(400, 400, 320, 240), {}, 640, 480).value();
-  dataset.imu_rate_hz = 100;
-  dataset.camera_rate_hz = 10;
-  Trajectory truth;
-  for (int i = 0; i <= 1000; ++i) {
-    const TimeNs stamp = 1'500'000'000'000'000'000 + i * TimeNs{10'000'000};
-    const double noise = 1e-4 * (i % 7);
-    dataset.imu.push_back(
-        {stamp, Eigen::Vector3d(1e-4 * i, 0.1 + noise, noise), Eigen::Vector3d(noise, noise, 9.8 + noise)});
-    TrajectoryPoint point;
-    point.stamp_ns = stamp;
-    truth.points.push_back(point);
-    if (i % 10 == 0) {
-      dataset.frames.push_back({stamp, {{1, Eigen::Vector2d(5, 5)}, {2, Eigen::Vector2d(600, 400)}}, 0});
-    }
-  }
-  dataset.truth = truth;
-  return dataset;
-}
-
-/// The worst findings, one text a line.
-std::string Complaints(const Dataset& dataset, Severity severity) {
-  std::string text;
-  for (const DatasetFinding& finding : CheckDataset(dataset)) {
-    if (finding.severity == severity) {
-      text += finding.text + "\n";
-    }
-  }
-  return text;
-}
 
 TEST(DatasetCheck, GivenAHealthySequenceThenItStatesFactsAndComplainsOfNothing) {
   EXPECT_EQ(Complaints(Healthy(), Severity::kError), "");
@@ -201,27 +168,49 @@ TEST(DatasetCheck, GivenTheRealTumViRoomThenItsTruthGapsAreFound) {
   EXPECT_THAT(Complaints(*dataset, Severity::kWarning), HasSubstr("the longest is 1.99"));
 }
 
-/// With GNSS once a second, tags and ephemerides shifted.
-Dataset WithGnss(double tags_s, double ephemerides_s) {
+TEST(DatasetCheck, GivenAnImuThatEndsHalfwayThenBothSpansAndTheSecondsWithoutAreTold) {
   Dataset dataset = Healthy();
-  const TimeNs begin = dataset.imu.front().stamp_ns;
-  auto log = std::make_shared<GnssLog>();
-  for (int i = 0; i < 10; ++i) {
-    test::SyntheticReceiver receiver;
-    receiver.stamp_ns = begin + i * kSecondNs;
-    ObservationEpoch epoch = test::Observe(test::SyntheticSky(begin), receiver);
-    epoch.stamp_ns += SecondsToNs(tags_s);
-    log->epochs.push_back(epoch);
+  dataset.imu.resize(501);
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning),
+              HasSubstr("cam0: from 1500000000.000000000 to 1500000010.000000000 s, imu0 from "
+                        "1500000000.000000000 to 1500000005.000000000 s: 5.000 s of cam0 are without IMU"));
+  // Recorders that stop a second apart, and an IMU that goes on, are usual.
+  dataset = Healthy();
+  dataset.imu.resize(901);
+  EXPECT_EQ(Complaints(dataset, Severity::kWarning), "");
+  dataset = Healthy();
+  dataset.frames.resize(50);
+  EXPECT_EQ(Complaints(dataset, Severity::kWarning), "");
+}
+
+TEST(DatasetCheck, GivenFixesOfHalfTheFlightThenTheSecondsWithoutThemAreTold) {
+  Dataset dataset = Healthy();
+  dataset.rig.fixes.emplace_back();
+  for (int i = 0; i <= 5; ++i) {
+    PositionFix fix;
+    fix.stamp_ns = dataset.imu.front().stamp_ns + i * kSecondNs;
+    fix.covariance = Eigen::Matrix3d::Identity();
+    dataset.fixes.push_back(fix);
   }
-  log->catalog = std::make_shared<SatelliteCatalog>(test::SyntheticSky(begin + SecondsToNs(ephemerides_s)));
-  dataset.gnss = log;
-  return dataset;
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning),
+              HasSubstr("5.000 s of the IMU's time are without fix0"));
 }
 
 TEST(DatasetCheck, GivenGnssThenItsSpanAndEphemeridesAreNoComplaint) {
   EXPECT_EQ(Complaints(WithGnss(0, 0), Severity::kError), "");
   EXPECT_EQ(Complaints(WithGnss(0, 0), Severity::kWarning), "");
   EXPECT_THAT(Complaints(WithGnss(0, 0), Severity::kFact), HasSubstr("gnss0: starts +0.000 s"));
+}
+
+TEST(DatasetCheck, GivenGnssOfPartOfTheFlightThenTheSecondsWithoutItAreTold) {
+  Dataset half = WithGnss(0, 0);
+  auto log = std::make_shared<GnssLog>(*half.gnss);
+  log->epochs.resize(5);
+  half.gnss = log;
+  EXPECT_THAT(Complaints(half, Severity::kWarning), HasSubstr("6.000 s of the IMU's time are without gnss0"));
+  Dataset longer = WithGnss(0, 0);
+  longer.imu.resize(501);
+  EXPECT_THAT(Complaints(longer, Severity::kWarning), HasSubstr("4.000 s of gnss0 are without IMU"));
 }
 
 TEST(DatasetCheck, GivenEphemeridesADayOldThenItWarnsThatNoEpochCanBeUsed) {

@@ -141,13 +141,13 @@ TEST_F(RefineDatasetTest, AnOutputThatIsTheRecordingIsRefused) {
   EXPECT_EQ(test::ReadFile(folder_.File("mav0/imu0/data.csv")), imu);
   EXPECT_TRUE(fs::exists(folder_.File("mav0/cam0/data/1.png")));
   EXPECT_FALSE(fs::exists(folder_.File("mav0/new")));
-  EXPECT_TRUE(CheckRefinedOutput(dataset_, folder_.File("refined")).ok());
-  EXPECT_TRUE(CheckRefinedOutput(dataset_, elsewhere.File("new")).ok());
+  EXPECT_TRUE(CheckRefinedOutput(dataset_.path, folder_.File("refined")).ok());
+  EXPECT_TRUE(CheckRefinedOutput(dataset_.path, elsewhere.File("new")).ok());
   // A dataset within the output's own sequence.
   fs::create_directories(elsewhere.File("outer/mav0"));
   fs::rename(folder_.File("mav0"), elsewhere.File("outer/mav0/mav0"));
   dataset_.path = elsewhere.File("outer/mav0");
-  EXPECT_EQ(CheckRefinedOutput(dataset_, elsewhere.File("outer")).code(), StatusCode::kUsage);
+  EXPECT_EQ(CheckRefinedOutput(dataset_.path, elsewhere.File("outer")).code(), StatusCode::kUsage);
 }
 
 TEST_F(RefineDatasetTest, AnEarlierOutputIsReplaced) {

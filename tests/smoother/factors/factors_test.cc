@@ -113,6 +113,11 @@ Eigen::VectorXd Bias(const ImuBias& bias) {
   return block;
 }
 
+/// Of the present calibration.
+Eigen::VectorXd NoError() {
+  return Eigen::VectorXd::Zero(CalibrationLayout::kMaxSize);
+}
+
 TEST(ImuFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     WindowFixture fixture(seed, 2, 0);
@@ -161,10 +166,10 @@ TEST(InverseDepthFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConv
     const LiftedCost<InverseDepthFactor> cost(InverseDepthFactor(
         track.views.front().frame, &track.views.back(), &fixture.calibration, track.plane()));
     const Point point = {Nav(track.views.front().frame->nav_state()),
-                         Nav(track.views.back().frame->nav_state()), track.landmark};
+                         Nav(track.views.back().frame->nav_state()), track.landmark, NoError()};
     ExpectJacobianInAllConventions(cost, point, 1e-7);
     const LiftedCost<BaseBearingFactor> base(BaseBearingFactor(&track.views.front(), &fixture.calibration));
-    ExpectJacobianInAllConventions(base, {track.landmark}, 1e-9);
+    ExpectJacobianInAllConventions(base, {track.landmark, NoError()}, 1e-9);
   }
 }
 
@@ -185,7 +190,7 @@ TEST(InverseDepthFactorTest, ALandmarkBehindTheCameraCostsMuchButDoesNotFailTheS
   const NavState base = track.views.front().frame->nav_state();
   NavState view = base;
   view.p_WB -= 2 * (base.R_WB * fixture.T_BC.rotation).col(2);
-  EXPECT_GT(Residual(cost, {Nav(base), Nav(view), landmark}).norm(), 100);
+  EXPECT_GT(Residual(cost, {Nav(base), Nav(view), landmark, NoError()}).norm(), 100);
 }
 
 TEST(PriorFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions) {
@@ -206,7 +211,8 @@ TEST(PriorFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions
     prior.residual = prior.jacobian.col(3);
     const LiftedCost<PriorFactor> cost{PriorFactor(&prior, &fixture.calibration)};
     const Point point = {Nav(fixture.window.frame(0).nav_state()), Bias(fixture.random.Bias()),
-                         Nav(fixture.window.frame(1).nav_state()), Nav(fixture.window.frame(2).nav_state())};
+                         Nav(fixture.window.frame(1).nav_state()), Nav(fixture.window.frame(2).nav_state()),
+                         NoError()};
     ExpectJacobianInAllConventions(cost, point, 1e-7);
   }
 }
@@ -230,6 +236,7 @@ TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
       shift << fixture.random.Vector(0.002), fixture.random.Vector(0.005), Eigen::Vector3d::Zero();
       point.push_back(Nav(Retract(ErrorConvention::kSo3xRn, frame->nav_state(), shift)));
     }
+    point.push_back(NoError());
     for (const ErrorConvention convention : kAllConventions) {
       const NavStateManifold manifold(convention);
       Eigen::VectorXd residual;

@@ -225,11 +225,13 @@ TEST(FirstEstimateTest, FactorsKeepTheirResiduals) {
     for (const std::unique_ptr<WindowFrame>& frame : sliding.window.frames()) {
       frames.push_back(frame->nav.data());
     }
+    const std::vector<double> no_error(CalibrationLayout::kMaxSize, 0);
+    frames.push_back(no_error.data());
     const WindowFrame& zero = sliding.window.frame(0);
     const WindowFrame& one = sliding.window.frame(1);
     return std::vector<MatrixXd>{
         evaluate(imu, {zero.nav.data(), zero.bias.data(), one.nav.data(), one.bias.data()}),
-        evaluate(depth, {first.nav.data(), last.nav.data(), track.landmark.data()}),
+        evaluate(depth, {first.nav.data(), last.nav.data(), track.landmark.data(), no_error.data()}),
         evaluate(pose_only, frames)};
   };
   const std::vector<MatrixXd> plain = everything();

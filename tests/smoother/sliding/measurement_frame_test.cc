@@ -142,5 +142,18 @@ TEST(MeasurementFrame, AnEpochThatIsLeftOutHasNoCorrection) {
   EXPECT_EQ(smoother.last_correction(), nullptr);
 }
 
+// GIVEN a fix that corrected the estimate, WHEN the estimator starts anew, THEN nothing has been corrected.
+TEST(MeasurementFrame, AStartAnewHasNoCorrection) {
+  const Dataset dataset = SlowWalkWithFixes();
+  EstimatorConfig config = FramesForFixes();
+  config.calibration.watch = true;
+  SmootherEstimator smoother(config, dataset.rig);
+  const NavEstimate start = DrawInitialState(dataset, 3);
+  RunWithFixes(dataset, start, &smoother, [](const PositionFix&) {});
+  ASSERT_NE(smoother.last_correction(), nullptr);
+  ASSERT_TRUE(smoother.Initialize(start).ok());
+  EXPECT_EQ(smoother.last_correction(), nullptr);
+}
+
 }  // namespace
 }  // namespace alidade::test

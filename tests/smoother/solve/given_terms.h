@@ -19,11 +19,10 @@ namespace alidade::test {
 class GivenTerm final : public WindowTerm {
  public:
   explicit GivenTerm(const PoseSystem& system) : system_(system) {
-    const Eigen::Index calibration = system.calibration_size();
-    for (int i = 0; 6 * i < system.gradient.size() - calibration; ++i) {
-      AddPart({Unknown::Kind::kFrame, i}, kPoseColumns);
+    for (int i = 0; system.columns.Frame(i).size > 0; ++i) {
+      AddPart({Unknown::Kind::kFrame, i}, system.columns.Frame(i).size);
     }
-    AddPart({Unknown::Kind::kCalibration, 0}, calibration);
+    AddPart({Unknown::Kind::kCalibration, 0}, system.columns.Calibration().size);
   }
   [[nodiscard]] int rows() const override { return static_cast<int>(system_.gradient.size()); }
   Status Linearize(LinearTerm* linear) const override {

@@ -1,0 +1,136 @@
+#include "eval/record/run_health.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "eval/files/input_file.h"
+#include "eval/record/recorder.h"
+#include "eval/record/run_options.h"
+#include "eval/record/runner.h"
+#include "tests/eval/record/fake_estimator.h"
+#include "tests/support/temporary_folder.h"
+
+namespace alidade {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+class RunHealthTest : public testing::Test {
+ protected:
+  RunHealthTest() { config_.init.method = InitMethod::kTruth; }
+
+  RunResult Run() {
+    test::FakeEstimator estimator;
+    RunOptions options;
+    options.truth = &scene_.truth;
+    return RunEstimator(config_, scene_.log, options, &estimator);
+  }
+  /// A sound run of which `count` states after the first are called `status`.
+  RunResult RunWith(size_t count, const char* status) {
+    RunResult result = Run();
+    for (size_t i = 1; i <= count; ++i) {
+      result.records.at(i).status = status;
+    }
+    return result;
+  }
+  /// The largest number of frames of `all` that may be without a sound state.
+  static size_t Tolerated(size_t all) {
+    return static_cast<size_t>(std::floor(kMaxImpairedShare * static_cast<double>(all)));
+  }
+
+  const test::RestingScene scene_{5.0};
+  EstimatorConfig config_;
+};
+
+TEST_F(RunHealthTest, GivenASoundRunThenNothingIsToldOfIt) {
+  const RunResult result = Run();
+  const RunHealth health = HealthOf(config_, result);
+  EXPECT_THAT(health.impairments, IsEmpty());
+  EXPECT_EQ(health.states.at("ok"), result.records.size());
+  EXPECT_EQ(health.states.at("degraded"), 0u);
+  EXPECT_EQ(health.unsound_s, 0);
+  EXPECT_THAT(DescribeRun(health, result), StartsWith("ok: "));
+  EXPECT_THAT(DescribeRun(health, result), Not(HasSubstr("degraded")));
+}
+
+TEST_F(RunHealthTest, GivenAShortFaultThenItsStatesAndSecondsAreToldAndTheRunIsOk) {
+  const size_t few = Tolerated(Run().records.size());
+  ASSERT_GE(few, 1u);
+  const RunResult result = RunWith(few, "degraded");
+  const RunHealth health = HealthOf(config_, result);
+  EXPECT_THAT(health.impairments, IsEmpty());
+  EXPECT_NEAR(health.unsound_s, 0.1 * static_cast<double>(few), 1e-9);
+  EXPECT_THAT(DescribeRun(health, result), StartsWith("ok: "));
+  EXPECT_THAT(DescribeRun(health, result),
+              HasSubstr(", " + std::to_string(few) + " degraded (0." + std::to_string(few) + "0 s)"));
+}
+
+TEST_F(RunHealthTest, GivenMoreThanTheToleratedShareThenTheRunIsImpaired) {
+  const size_t many = Tolerated(Run().records.size()) + 1;
+  for (const char* status : {"degraded", "suspect", "lost"}) {
+    const RunResult result = RunWith(many, status);
+    const RunHealth health = HealthOf(config_, result);
+    ASSERT_EQ(health.impairments.size(), 1u) << status;
+    EXPECT_THAT(health.impairments[0], StartsWith(std::to_string(many) + " of "));
+    EXPECT_THAT(DescribeRun(health, result), StartsWith("impaired: "));
+    EXPECT_THAT(DescribeRun(health, result), HasSubstr(", " + std::to_string(many) + " " + status));
+  }
+  EXPECT_THAT(HealthOf(config_, RunWith(many, "local")).impairments, IsEmpty());
+}
+
+// GIVEN an IMU that ends before the images THEN the frames without it are counted, and the reason is told.
+TEST_F(RunHealthTest, GivenFramesBeyondTheImuThenTheRunIsImpairedAndSaysWhy) {
+  test::RestingScene scene;
+  scene.log.imu.resize(scene.log.imu.size() / 2);
+  test::FakeEstimator estimator;
+  RunOptions options;
+  options.truth = &scene.truth;
+  const RunResult result = RunEstimator(config_, scene.log, options, &estimator);
+  ASSERT_GT(result.frames_skipped, 0);
+  ASSERT_TRUE(result.status.ok()) << result.status.message();
+  const RunHealth health = HealthOf(config_, result);
+  EXPECT_EQ(health.impairments.size(), 1u);
+  EXPECT_THAT(DescribeRun(health, result), StartsWith("impaired: "));
+  EXPECT_THAT(DescribeRun(health, result),
+              HasSubstr(std::to_string(result.frames_skipped) + " skipped (no imu sample reaches "));
+}
+
+TEST_F(RunHealthTest, GivenSensorsThatTheSequenceLacksThenEachIsNamed) {
+  config_.gnss.enabled = config_.fix.enabled = true;
+  RunResult result = Run();
+  EXPECT_THAT(MissingSensors(config_, scene_.log), ElementsAre("GNSS", "position fixes"));
+  EXPECT_THAT(HealthOf(config_, result).impairments,
+              ElementsAre("GNSS was not used: the sequence has no GNSS",
+                          "position fixes were not used: the sequence has no position fixes"));
+  // Fixes aligned the run: GNSS is missing nonetheless.
+  result.missing_sensors = {"GNSS"};
+  result.global.emplace();
+  EXPECT_THAT(HealthOf(config_, result).impairments,
+              ElementsAre("GNSS was not used: the sequence has no GNSS"));
+  result.missing_sensors.clear();
+  EXPECT_THAT(HealthOf(config_, result).impairments, IsEmpty());
+}
+
+TEST_F(RunHealthTest, GivenAnImpairedRunThenRunJsonSaysSo) {
+  const RunResult result = RunWith(Tolerated(Run().records.size()) + 1, "degraded");
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(WriteRun({config_, "name", "dd", "ii", 1, 2, 3, false}, result, folder.path()).ok());
+  const auto json = nlohmann::json::parse(*ReadWholeFile(folder.File("run.json")));
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["states"]["degraded"], Tolerated(result.records.size()) + 1);
+  EXPECT_EQ(json["states"]["lost"], 0);
+  EXPECT_GT(json["unsound_s"], 0);
+  ASSERT_EQ(json["impaired"].size(), 1u);
+  EXPECT_THAT(json["impaired"][0].get<std::string>(), HasSubstr("without a sound state"));
+}
+
+}  // namespace
+}  // namespace alidade
