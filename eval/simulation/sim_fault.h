@@ -80,13 +80,12 @@ struct FaultSpan {
 };
 
 /// Applies the fault SimulatorConfig::fault, over [fault_start_s, fault_start_s + fault_duration_s) from
-/// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. imu: rates and
-/// specific forces are uniform in +-3 rad/s and +-30 m/s^2. tracks: a frame's ids are shuffled, anew in every
-/// frame. frozen: frames show what the first one of the fault showed. imu_gap: no samples. gyro_spike,
-/// accel_spike: 30 rad/s or 490 m/s^2 (50 g) in a random direction are added to one sample, drawn from those
-/// of the fault. frame_drops: each frame is missing with probability fault_drop_rate. camera_clock: stamps of
-/// the first camera's frames have fault_clock_jump_s more from the start of the fault on. The faults of GNSS
-/// are a matter of SimPull, those of rendered images of eval/render/image_fault.h.
+/// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. tracks: a
+/// frame's ids are shuffled, anew in every frame. frozen: frames show what the first one of the fault showed.
+/// frame_drops: each frame is missing with probability fault_drop_rate. camera_clock: stamps of the first
+/// camera's frames have fault_clock_jump_s more from the start of the fault on. Faults of the IMU:
+/// eval/simulation/sim_imu_fault.h; of rendered images: eval/render/image_fault.h; of GNSS: SimPull, and
+/// AddSimulatedGnss for stale ephemerides.
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset);
 
 }  // namespace alidade
