@@ -166,10 +166,6 @@ Eigen::Vector3d SimPull::At(double time_s) const {
                 : Eigen::Vector3d::Zero();
 }
 
-FaultSpan::FaultSpan(const SimulatorConfig& config, TimeNs start_ns)
-    : begin_ns(start_ns + SecondsToNs(config.fault_start_s)),
-      end_ns(begin_ns + SecondsToNs(config.fault_duration_s)) {}
-
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
   const FaultSpan span(config, start_ns);
   const auto fails = [=](TimeNs stamp_ns) { return span.Contains(stamp_ns); };

@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "eval/dataset/dataset.h"
+#include "eval/simulation/fault_span.h"
 #include "eval/simulation/simulator_config.h"
 
 namespace alidade {
@@ -67,16 +68,6 @@ class SimPull {
   bool pulls_;
   bool moves_rates_;
   Eigen::Vector3d velocity_W_mps_;
-};
-
-/// When the fault of a simulation acts: [begin_ns, end_ns).
-struct FaultSpan {
-  /// `start_ns`: of the first IMU sample.
-  FaultSpan(const SimulatorConfig& config, TimeNs start_ns);
-  [[nodiscard]] bool Contains(TimeNs stamp_ns) const { return stamp_ns >= begin_ns && stamp_ns < end_ns; }
-
-  TimeNs begin_ns;
-  TimeNs end_ns;
 };
 
 /// Applies the fault SimulatorConfig::fault, over [fault_start_s, fault_start_s + fault_duration_s) from

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/imu_sample.h"
-#include "eval/simulation/sim_fault.h"
+#include "eval/simulation/fault_span.h"
 #include "eval/simulation/simulator_config.h"
 
 namespace alidade {
