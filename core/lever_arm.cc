@@ -27,13 +27,8 @@ Vector3d LeverArm::Velocity(const NavState& state, const ImuBias& bias, const Ve
   return state.v_WB + state.R_WB * swing;
 }
 
-Eigen::Matrix3d LeverArm::PositionByArm(const NavState& state) {
-  return state.R_WB;
-}
-
-Eigen::Matrix3d LeverArm::VelocityByArm(const NavState& state, const ImuBias& bias,
-                                        const Vector3d& gyro_radps) {
-  return state.R_WB * Skew(Vector3d(gyro_radps - bias.gyro));
+Eigen::Matrix3d LeverArm::SwingByArm(const ImuBias& bias, const Vector3d& gyro_radps) {
+  return Skew(Vector3d(gyro_radps - bias.gyro));
 }
 
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #include "core/format.h"
 #include "eval/bag/dataset_images.h"
 #include "eval/bag/dataset_source.h"
+#include "eval/bag/frozen_images.h"
 #include "eval/calibrate/camera_gyro_check.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
@@ -72,6 +73,7 @@ int RunCheck(const std::vector<std::string>&) {
   bool faulty = false;
   Findings findings;
   CheckImages(*dataset, &findings);
+  CheckFrozenImages(*dataset, &findings);
   CheckCameraMotion(*dataset, &findings);
   std::vector<DatasetFinding> list = CheckDataset(*dataset);
   for (DatasetFinding& finding : findings.Take()) {

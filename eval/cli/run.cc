@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "eval/bag/frozen_images.h"
 #include "eval/calibrate/camera_gyro_check.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
@@ -65,6 +66,7 @@ Result<LogTables> TablesWithProgress(const Dataset& dataset, const FrontendConfi
 Status CheckFirst(const Dataset& dataset, const LogTables& tables) {
   constexpr size_t kMostPairs = 60;
   Findings findings;
+  CheckFrozenImages(dataset, &findings);
   if (!tables.frames.empty()) {
     CheckCameraAgainstGyro(dataset.rig, tables, kMostPairs, &findings);
   }

@@ -159,10 +159,6 @@ std::vector<TimeNs> StampsToWrite(const Dataset& dataset) {
   return some_empty ? stamps : std::vector<TimeNs>();
 }
 
-bool HasCamera(const Dataset& dataset) {
-  return !dataset.frames.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
-}
-
 /// True when the list of images in the folder is that of the dataset, whose images were put there.
 bool HoldsItsImages(const Dataset& dataset, const fs::path& folder) {
   std::error_code error;
@@ -213,6 +209,10 @@ Status AddFrames(const Table<TrackFrame>& frames, LogHasher* hasher) {
 }
 
 }  // namespace
+
+bool HasCamera(const Dataset& dataset) {
+  return !TablesOf(dataset).frames.empty() || !dataset.images.empty() || !dataset.camera_stamps.empty();
+}
 
 Status ReadCameraFolders(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
   const fs::path first = fs::path(mav) / "cam0";

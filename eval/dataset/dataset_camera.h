@@ -20,6 +20,9 @@ Status ReadCameraFolders(const std::string& mav, const DatasetStorage& storage, 
 /// Writes tracks and stamps; images are not written. Without camera and with GNSS there is no cam0.
 Status WriteCameraFolders(const Dataset& dataset, const std::string& mav);
 
+/// Whether there is a cam0: tracks, images or stamps.
+[[nodiscard]] bool HasCamera(const Dataset& dataset);
+
 /// sensor.yaml of extra_cameras[k].
 [[nodiscard]] std::string ExtraCameraYaml(const Dataset& dataset, size_t k);
 
@@ -28,7 +31,7 @@ void DigestCamera(const CameraModel& camera, const Pose& T_BC, LogHasher* hasher
 /// The tracks of all cameras and the calibration of those after the first, which is part of the rig.
 Status DigestTracks(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
 
-/// Rate, gaps and tracks of cam0.
+/// Rate, gaps, span and tracks of cam0.
 void CheckCamera(const Dataset& dataset, Findings* findings);
 /// What the further cameras are used for.
 void CheckExtraCameras(const Dataset& dataset, Findings* findings);

@@ -7,7 +7,8 @@
 
 namespace alidade {
 
-/// Rates, gaps, units (gravity magnitude, gyro in rad/s), time spans, offsets between sensors, duplicates.
+/// Rates, gaps, units (gravity magnitude, gyro in rad/s), implausible calibrations, time spans, offsets
+/// between sensors, tracks, duplicates.
 [[nodiscard]] std::vector<DatasetFinding> CheckDataset(const Dataset& dataset);
 
 }  // namespace alidade

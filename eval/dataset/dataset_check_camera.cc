@@ -6,9 +6,42 @@
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/log_tables.h"
+#include "eval/dataset/sensor_table.h"
 
 namespace alidade {
 namespace {
+
+/// A fault without which nothing can be estimated from the camera; with another sensor an estimator may do
+/// without it.
+void TellUseless(const Dataset& dataset, const std::string& text, Findings* findings) {
+  if (dataset.gnss != nullptr || !dataset.fixes.empty()) {
+    findings->Warning(text);
+  } else {
+    findings->Error(text);
+  }
+}
+
+/// `longest`: observations of the longest track.
+void CheckLives(const Dataset& dataset, size_t frames, int longest, Findings* findings) {
+  constexpr size_t kLeastFrames = 3;  // of fewer no track can have three observations
+  if (frames < kLeastFrames || longest >= 3) {
+    return;
+  }
+  if (longest == 1) {
+    TellUseless(
+        dataset,
+        Format("cam0: no track lasts: in %zu frames every track_id occurs once, expected the same id in "
+               "following frames: are the ids numbered anew in each?",
+               frames),
+        findings);
+  } else if (longest == 0) {
+    TellUseless(dataset, Format("cam0: no observation in %zu frames, expected tracks", frames), findings);
+  } else {
+    findings->Warning(
+        Format("cam0: no track of the %zu frames has more than %d observations, expected three or more",
+               frames, longest));
+  }
+}
 
 void CheckTracks(const Dataset& dataset, Findings* findings) {
   struct Life {
@@ -31,13 +64,16 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
     }
   }));
   size_t useful = 0;
+  int longest = 0;
   for (const auto& [id, life] : lives) {
     useful += life.observations >= 3 ? 1 : 0;
+    longest = std::max(longest, life.observations);
   }
   findings->Fact(
       Format("cam0: %zu observations of %zu tracks, %.1f a frame, mean length %.2f; %zu tracks of 3 or more",
              total, lives.size(), static_cast<double>(total) / static_cast<double>(frames),
              static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
+  CheckLives(dataset, frames, longest, findings);
   if (outside > 0) {
     const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
                                     dataset.rig.camera.width_px(), dataset.rig.camera.height_px());
@@ -70,6 +106,30 @@ std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
   return stamps;
 }
 
+/// Rate of the camera, also against the IMU's.
+void CheckRates(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findings* findings) {
+  // Keyframes may be many seconds apart. Cameras with a sensor of a megapixel end at some 200 Hz.
+  constexpr RateLimits kRates = {0, 0, 250, 1e4};
+  constexpr double kJitter = 1.1;
+  if (stamps.size() == 1) {
+    TellUseless(
+        dataset,
+        "cam0: a single frame, expected at least two: a track begins in one and is seen again in another",
+        findings);
+    return;
+  }
+  const double rate_hz = CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
+  CheckRate("cam0", rate_hz, kRates, findings);
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  const double imu_rate_hz = MeasuredRate(imu.front().stamp_ns, imu.back().stamp_ns, imu.size());
+  if (rate_hz > kJitter * imu_rate_hz) {
+    findings->Warning(
+        Format("cam0: %.4g Hz, expected no more than imu0's %.4g Hz: there are frames without a "
+               "sample of the IMU between them",
+               rate_hz, imu_rate_hz));
+  }
+}
+
 }  // namespace
 
 void CheckCamera(const Dataset& dataset, Findings* findings) {
@@ -78,9 +138,12 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
     findings->Warning(dataset.gnss == nullptr ? "cam0: none; estimators need a camera or GNSS"
                                               : "cam0: none; only GNSS and IMU");
   } else {
-    CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
-    CheckSpan("cam0", stamps.front(), stamps.back(), dataset, findings);
-    CheckTimeWithoutImu("cam0", stamps.front(), stamps.back(), stamps.size(), dataset, findings);
+    CheckRates(stamps, dataset, findings);
+    const TimeNs offset_ns = SecondsToNs(dataset.rig.camera_time_offset_s);
+    const TimeNs first_ns = stamps.front() + offset_ns;
+    const TimeNs last_ns = stamps.back() + offset_ns;
+    CheckSpan("cam0", first_ns, last_ns, dataset, findings);
+    CheckTimeWithoutImu("cam0", first_ns, last_ns, stamps.size(), dataset, findings);
   }
   if (dataset.rig.line_delay_s != 0) {
     findings->Fact(Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms",

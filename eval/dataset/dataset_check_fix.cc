@@ -50,22 +50,87 @@ void CheckDeviations(const char* name, const std::vector<const PositionFix*>& fi
   }
 }
 
-/// Steps between neighbours that no vehicle makes and no deviation explains.
+/// Whether a position looks as if it were counted from the Earth's centre. The grids of maps have such
+/// northings, but no such heights.
+bool IsEarthCentred(const Eigen::Vector3d& position) {
+  constexpr double kLeastRadiusM = 6.33e6, kMostRadiusM = 6.40e6, kHighestM = 1e4;
+  return position.norm() > kLeastRadiusM && position.norm() < kMostRadiusM &&
+         std::abs(position.z()) > kHighestM;
+}
+
+/// What was expected of a position where nobody is; null of others.
+const char* ExpectedOf(const Eigen::Vector3d& position, bool has_anchor) {
+  constexpr double kEarthM = 1.3e7;  // its diameter
+  constexpr double kFarM = 1e5;      // beyond what a recording travels
+  if (position.norm() > kEarthM) {
+    return "a place on the Earth: another unit?";
+  }
+  if (IsEarthCentred(position)) {
+    return "ENU coordinates: is it ECEF?";
+  }
+  return has_anchor && position.norm() > kFarM
+             ? "within 100 km of anchor_llh_deg: another anchor, or another unit?"
+             : nullptr;
+}
+
+/// Positions where nobody was: an error when most are so.
+void CheckPlaces(const char* name, bool has_anchor, const std::vector<const PositionFix*>& fixes,
+                 Findings* findings) {
+  constexpr std::size_t kManyFixes = 10;
+  const PositionFix* first = nullptr;
+  std::size_t absurd = 0;
+  bool all_equal = true;
+  for (const PositionFix* fix : fixes) {
+    if (ExpectedOf(fix->p_A, has_anchor) != nullptr) {
+      first = absurd++ == 0 ? fix : first;
+    }
+    all_equal = all_equal && fix->p_A == fixes.front()->p_A;
+  }
+  if (first != nullptr) {
+    const std::string text = Format(
+        "%s: %zu of %zu positions are absurd, the first of %lld ns: found p_x, p_y, p_z [%.6g, %.6g, %.6g] "
+        "m, "
+        "expected %s",
+        name, absurd, fixes.size(), static_cast<long long>(first->stamp_ns), first->p_A.x(), first->p_A.y(),
+        first->p_A.z(), ExpectedOf(first->p_A, has_anchor));
+    if (2 * absurd > fixes.size()) {
+      findings->Error(text);
+    } else {
+      findings->Warning(text);
+    }
+  }
+  if (all_equal && fixes.size() >= kManyFixes) {
+    findings->Warning(Format(
+        "%s: all %zu fixes are at one place, expected at least noise: does the receiver repeat its last "
+        "one?",
+        name, fixes.size()));
+  }
+}
+
+/// Steps between neighbours that no vehicle makes and no deviation explains; an error when most are beyond
+/// any vehicle on or above the ground.
 void CheckJumps(const char* name, const std::vector<const PositionFix*>& fixes, Findings* findings) {
   constexpr double kFastestMps = 150;
+  constexpr double kImpossibleMps = 1000;
   constexpr double kDeviations = 6;
   int jumps = 0;
+  std::size_t impossible = 0;
   TimeNs first_ns = 0;
   for (std::size_t i = 1; i < fixes.size(); ++i) {
     const PositionFix& before = *fixes[i - 1];
     const PositionFix& after = *fixes[i];
-    const double reach = kFastestMps * SecondsBetween(before.stamp_ns, after.stamp_ns) +
-                         kDeviations * std::sqrt(before.covariance.trace() + after.covariance.trace());
-    if ((after.p_A - before.p_A).norm() > reach) {
+    const double step_s = SecondsBetween(before.stamp_ns, after.stamp_ns);
+    const double beyond = (after.p_A - before.p_A).norm() -
+                          kDeviations * std::sqrt(before.covariance.trace() + after.covariance.trace());
+    impossible += beyond > kImpossibleMps * step_s ? 1 : 0;
+    if (beyond > kFastestMps * step_s) {
       first_ns = jumps++ == 0 ? after.stamp_ns : first_ns;
     }
   }
-  if (jumps > 0) {
+  if (fixes.size() > 3 && 2 * impossible > fixes.size() - 1) {
+    findings->Error(Format("%s: %zu of %zu steps are faster than %.0f m/s: positions in another unit than m?",
+                           name, impossible, fixes.size() - 1, kImpossibleMps));
+  } else if (jumps > 0) {
     findings->Warning(Format("%s: %d steps faster than %.0f m/s, the first to %lld ns: wrong fixes?", name,
                              jumps, kFastestMps, static_cast<long long>(first_ns)));
   }
@@ -98,6 +163,7 @@ void CheckFixes(const Dataset& dataset, Findings* findings) {
     CheckTimeWithoutImu(name.c_str(), first_ns, last_ns, stamps.size(), dataset, findings);
     CheckTimeWithoutSensor(name.c_str(), first_ns, last_ns, stamps.size(), dataset, findings);
     CheckDeviations(name.c_str(), fixes, findings);
+    CheckPlaces(name.c_str(), sheet.anchor_llh_deg.has_value(), fixes, findings);
     CheckJumps(name.c_str(), fixes, findings);
   }
   if (own_frames > 0 && dataset.rig.fixes.size() > 1) {

@@ -5,39 +5,39 @@
 
 #include "core/format.h"
 #include "core/median.h"
+#include "eval/dataset/clock_shift.h"
 #include "eval/dataset/log_tables.h"
 
 namespace alidade {
 namespace {
 
-struct Span {
-  TimeNs first = 0;
-  TimeNs last = 0;
-  [[nodiscard]] double Length() const { return SecondsBetween(first, last); }
-  [[nodiscard]] std::string Text() const {
-    return "from " + FormatSeconds(first) + " to " + FormatSeconds(last) + " s";
-  }
-};
+double Length(const TimeSpan& span) {
+  return SecondsBetween(span.first_ns, span.last_ns);
+}
 
-Span ImuSpan(const Dataset& dataset) {
+std::string Text(const TimeSpan& span) {
+  return "from " + FormatSeconds(span.first_ns) + " to " + FormatSeconds(span.last_ns) + " s";
+}
+
+TimeSpan ImuSpan(const Dataset& dataset) {
   const Table<ImuSample> imu = TablesOf(dataset).imu;
   return {imu.front().stamp_ns, imu.back().stamp_ns};
 }
 
 /// Seconds of `span` outside of `other`; 0 when the two share no time, which is an error of its own, or when
 /// the seconds are few.
-double MuchOutside(const Span& span, const Span& other, double step_s) {
+double MuchOutside(const TimeSpan& span, const TimeSpan& other, double step_s) {
   constexpr double kRecordersApartS = 1;
-  if (span.last < other.first || span.first > other.last) {
+  if (span.last_ns < other.first_ns || span.first_ns > other.last_ns) {
     return 0;
   }
-  const double outside = std::max(0.0, SecondsBetween(span.first, other.first)) +
-                         std::max(0.0, SecondsBetween(other.last, span.last));
-  return outside > std::max({kMaxUnreadableShare * span.Length(), step_s, kRecordersApartS}) ? outside : 0;
+  const double outside = std::max(0.0, SecondsBetween(span.first_ns, other.first_ns)) +
+                         std::max(0.0, SecondsBetween(other.last_ns, span.last_ns));
+  return outside > std::max({kMaxUnreadableShare * Length(span), step_s, kRecordersApartS}) ? outside : 0;
 }
 
-double MeanStep(const Span& span, size_t stamps) {
-  return stamps < 2 ? 0 : span.Length() / static_cast<double>(stamps - 1);
+double MeanStep(const TimeSpan& span, size_t stamps) {
+  return stamps < 2 ? 0 : Length(span) / static_cast<double>(stamps - 1);
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ void Findings::Error(std::string text) {
   list_.push_back({DatasetFinding::Severity::kError, std::move(text)});
 }
 
-void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
-                 Findings* findings) {
+double CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
+                   Findings* findings) {
   if (stamps.size() < 2) {
     findings->Warning(Format("%s: %zu stamps", sensor, stamps.size()));
-    return;
+    return 0;
   }
   std::vector<double> steps;
   for (size_t i = 1; i < stamps.size(); ++i) {
@@ -93,36 +93,63 @@ void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double s
     findings->Warning(
         Format("%s: sensor.yaml states %.2f Hz, the stamps give %.2f Hz", sensor, stated_rate_hz, mean_rate));
   }
+  return 1 / median;
+}
+
+void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Findings* findings) {
+  if (rate_hz <= 0 || (rate_hz >= limits.low && rate_hz <= limits.high)) {
+    return;
+  }
+  const std::string text = Format(
+      "%s: a rate of %.6g Hz, expected %.6g to %.6g Hz: %s?", sensor, rate_hz, limits.low, limits.high,
+      rate_hz < limits.low ? "thinned out, or stamps in another unit" : "stamps in another unit than ns");
+  if (rate_hz < limits.least || rate_hz > limits.most) {
+    findings->Error(text);
+  } else {
+    findings->Warning(text);
+  }
 }
 
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
-  const auto [imu_first, imu_last] = ImuSpan(dataset);
+  const TimeSpan of_imu = ImuSpan(dataset);
   findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
-                        SecondsBetween(imu_first, first), SecondsBetween(imu_last, last)));
-  if (last < imu_first || first > imu_last) {
-    const double ratio = static_cast<double>(first) / static_cast<double>(imu_first);
-    findings->Error(Format("%s: shares no time with imu0: %s", sensor,
-                           ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?"));
+                        SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last)));
+  if (last < of_imu.first_ns || first > of_imu.last_ns) {
+    const double ratio = static_cast<double>(first) / static_cast<double>(of_imu.first_ns);
+    std::string text = Format("%s: shares no time with imu0: %s", sensor,
+                              ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?");
+    if (const std::optional<Meeting> meeting = ShiftOntoSpan({first, last}, of_imu)) {
+      text += Format(" %+.0f s (%s) added to its stamps would make the two overlap by %.0f %%",
+                     SecondsBetween(0, meeting->shift.shift_ns), meeting->shift.name.c_str(),
+                     100 * meeting->share);
+    }
+    findings->Error(std::move(text));
+  } else if (const std::optional<ClockShift> shift = ShiftOfBothEnds({first, last}, of_imu)) {
+    findings->Warning(Format(
+        "%s: starts %+.3f s and ends %+.3f s against imu0, expected about 0: is it %+.0f s (%s), to be "
+        "added to its stamps?",
+        sensor, SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last),
+        SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
   }
 }
 
 void CheckTimeWithoutImu(const char* sensor, TimeNs first, TimeNs last, size_t stamps, const Dataset& dataset,
                          Findings* findings) {
-  const Span span{first, last};
-  const Span imu = ImuSpan(dataset);
+  const TimeSpan span{first, last};
+  const TimeSpan imu = ImuSpan(dataset);
   if (const double seconds = MuchOutside(span, imu, MeanStep(span, stamps)); seconds > 0) {
     findings->Warning(Format("%s: %s, imu0 %s: %.3f s of %s are without IMU, nothing of it is used there",
-                             sensor, span.Text().c_str(), imu.Text().c_str(), seconds, sensor));
+                             sensor, Text(span).c_str(), Text(imu).c_str(), seconds, sensor));
   }
 }
 
 void CheckTimeWithoutSensor(const char* sensor, TimeNs first, TimeNs last, size_t stamps,
                             const Dataset& dataset, Findings* findings) {
-  const Span span{first, last};
-  const Span imu = ImuSpan(dataset);
+  const TimeSpan span{first, last};
+  const TimeSpan imu = ImuSpan(dataset);
   if (const double seconds = MuchOutside(imu, span, MeanStep(span, stamps)); seconds > 0) {
     findings->Warning(Format("%s: %s, imu0 %s: %.3f s of the IMU's time are without %s", sensor,
-                             span.Text().c_str(), imu.Text().c_str(), seconds, sensor));
+                             Text(span).c_str(), Text(imu).c_str(), seconds, sensor));
   }
 }
 

@@ -27,10 +27,22 @@ class Findings {
 };
 
 /// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
-/// no sheet says one.
-void CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
-                 Findings* findings);
-/// Where a sensor starts and ends against the IMU.
+/// no sheet says one. Returns the rate of the median step [Hz]; 0 of fewer than two stamps.
+double CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
+                   Findings* findings);
+
+/// Rates [Hz] that a kind of sensor does not have: errors beyond the outer ones, warnings beyond the inner.
+struct RateLimits {
+  double least = 0;
+  double low = 0;
+  double high = 0;
+  double most = 0;
+};
+/// rate_hz: 0 when none is known.
+void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Findings* findings);
+
+/// Where a sensor starts and ends against the IMU, in IMU time. Without common time, or when both ends are
+/// off by a known difference of clocks (eval/dataset/clock_shift.h), that is named.
 void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings);
 /// Warns when much of the sensor's time lies outside of the IMU's. Much is more than kMaxUnreadableShare of
 /// its span, one of its `stamps` mean steps, and the second by which recorders begin and end apart.

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "core/format.h"
-#include "eval/dataset/dataset_findings.h"
-#include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/dataset/stale_parts.h"
 #include "eval/files/input_file.h"
@@ -123,15 +121,14 @@ std::vector<std::string> InFolder(const std::string& folder, std::vector<std::st
   return names;
 }
 
-/// Whether the ephemerides serve at the epochs' times.
-void CheckEphemerides(const GnssLog& log, Findings* findings) {
-  const GnssCoverage coverage = CheckCoverage(log);
-  if (coverage.usable_epochs < coverage.epochs) {
-    findings->Warning(Format("gnss0: %d of %d sampled epochs have no satellite that can be used (",
-                             coverage.epochs - coverage.usable_epochs, coverage.epochs) +
-                      Describe(coverage.faults) +
-                      Format("); the nearest ephemeris is %.1f h away", coverage.nearest_s / 3600));
+/// What a reader passed over, such as an epoch that the end of a cut file tears.
+void RemarkOn(const ReaderWarnings& warnings, Dataset* dataset) {
+  if (warnings.count == 0) {
+    return;
   }
+  const std::string more =
+      warnings.count > 1 ? Format("; and %lld more", static_cast<long long>(warnings.count - 1)) : "";
+  dataset->remarks.push_back(warnings.first.front() + more);
 }
 
 }  // namespace
@@ -175,6 +172,8 @@ Status ReadGnssFolder(const std::string& mav, const DatasetStorage& /*storage*/,
                             InFolder(folder, sensor->clocks)},
                            &warnings);
   ALIDADE_RETURN_IF_ERROR(catalog.status());
+  RemarkOn(observations->warnings, dataset);
+  RemarkOn(warnings, dataset);
   auto log = std::make_shared<GnssLog>();
   log->epochs = std::move(observations->epochs);
   log->glonass_channels = std::move(observations->glonass_channels);
@@ -205,29 +204,6 @@ Status WriteGnssFolder(const Dataset& dataset, const std::string& mav) {
   ALIDADE_RETURN_IF_ERROR(WriteFileAtomically((path / "obs.rnx").string(), FormatRinexObservation(file)));
   return WriteFileAtomically((path / "nav.rnx").string(),
                              FormatRinexNavigation(dataset.gnss->catalog->navigation()));
-}
-
-void CheckGnss(const Dataset& dataset, Findings* findings) {
-  if (dataset.gnss == nullptr) {
-    return;
-  }
-  const std::vector<ObservationEpoch>& epochs = dataset.gnss->epochs;
-  size_t satellites = 0;
-  for (const ObservationEpoch& epoch : epochs) {
-    satellites += epoch.satellites.size();
-  }
-  const TimeNs first_ns = epochs.front().stamp_ns;
-  const TimeNs last_ns = epochs.back().stamp_ns;
-  findings->Fact(Format("gnss0: %zu epochs, %.1f Hz, %.1f satellites each, %zu ephemerides", epochs.size(),
-                        MeasuredRate(first_ns, last_ns, epochs.size()),
-                        static_cast<double>(satellites) / static_cast<double>(epochs.size()),
-                        dataset.gnss->catalog->navigation().ephemerides()));
-  const TimeNs offset_ns = SecondsToNs(dataset.rig.gnss.time_offset_s);
-  CheckSpan("gnss0", first_ns + offset_ns, last_ns + offset_ns, dataset, findings);
-  CheckTimeWithoutImu("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset, findings);
-  CheckTimeWithoutSensor("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset,
-                         findings);
-  CheckEphemerides(*dataset.gnss, findings);
 }
 
 }  // namespace alidade

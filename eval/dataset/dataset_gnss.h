@@ -19,7 +19,8 @@ class LogHasher;
 ///   approximate_position_E  optional: ECEF [m], where positioning starts; default: the observations' header
 ///   observations    file; navigation, orbits (SP3), clocks (CLK): file or list of files, in the folder
 ///
-/// Other keys are remarks. Errors (kInput): a key's value, a file that cannot be read.
+/// Other keys, and what the readers of the files pass over, are remarks. Errors (kInput): a key's value, a
+/// file that cannot be read.
 Status ReadGnssFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset);
 
 /// Writes sensor.yaml, obs.rnx and nav.rnx, if there is GNSS. The navigation file holds broadcast ephemerides
@@ -42,7 +43,8 @@ Result<GnssSheet> ParseGnssSheet(const std::string& text, const std::string& whe
 /// GNSS.
 Status DigestGnss(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
 
-/// Rate, satellites, span, and whether the ephemerides serve; nothing without GNSS.
+/// Rate, satellites, span, whether the ephemerides serve, and the clock by the courses driven; nothing
+/// without GNSS.
 void CheckGnss(const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

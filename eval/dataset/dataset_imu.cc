@@ -1,14 +1,9 @@
 #include "eval/dataset/dataset_imu.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "core/format.h"
-#include "core/lie.h"
-#include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/imu_intake.h"
 #include "eval/dataset/log_hasher.h"
 #include "eval/dataset/log_tables.h"
@@ -126,96 +121,6 @@ std::string ImuCsv(const std::vector<ImuSample>& imu) {
   return text;
 }
 
-constexpr double kStandardGravity = 9.80665;
-
-/// What all samples together say.
-class ImuValues {
- public:
-  void Add(const ImuSample& sample) {
-    Vector6d values;
-    values << sample.gyro, sample.accel;
-    repeated_ += count_ > 0 && values == last_ ? 1 : 0;
-    last_ = values;
-    low_ = low_.cwiseMin(values);
-    high_ = high_.cwiseMax(values);
-    force_ += sample.accel.norm();
-    rate_square_ += sample.gyro.squaredNorm();
-    fastest_ = std::max(fastest_, sample.gyro.norm());
-    ++count_;
-  }
-
-  void CheckUnits(Findings* findings) const;
-  void CheckAxes(Findings* findings) const;
-  void CheckRepeated(Findings* findings) const;
-
- private:
-  size_t count_ = 0;
-  size_t repeated_ = 0;
-  Vector6d last_ = Vector6d::Zero();
-  Vector6d low_ = Vector6d::Constant(INFINITY), high_ = Vector6d::Constant(-INFINITY);
-  double force_ = 0;
-  double rate_square_ = 0;
-  double fastest_ = 0;
-};
-
-/// Specific force averages to gravity on any path that returns to its starting speed; the gyroscope stays
-/// below what motion a camera can follow.
-void ImuValues::CheckUnits(Findings* findings) const {
-  const double force = force_ / static_cast<double>(count_);
-  const double rate_rms = std::sqrt(rate_square_ / static_cast<double>(count_));
-  findings->Fact(
-      Format("imu0: mean specific force %.3f m/s^2, angular rate rms %.3f rad/s, largest %.3f rad/s", force,
-             rate_rms, fastest_));
-  if (std::abs(force - 1) < 0.3) {
-    findings->Error(
-        Format("imu0: mean specific force %.3f: the accelerometer seems to be in g, expected m/s^2", force));
-  } else if (std::abs(force - 1000) < 300) {
-    findings->Error(
-        Format("imu0: mean specific force %.0f: the accelerometer seems to be in mg, expected m/s^2", force));
-  } else if (std::abs(force - kStandardGravity) > 2.5) {
-    findings->Error(
-        Format("imu0: mean specific force %.3f m/s^2, expected about %.2f: unit or gravity removed?", force,
-               kStandardGravity));
-  } else if (std::abs(force - kStandardGravity) > 0.5) {
-    findings->Warning(
-        Format("imu0: mean specific force %.3f m/s^2 differs from %.2f: bias, scale error or strong motion",
-               force, kStandardGravity));
-  }
-  if (rate_rms > 8 || fastest_ > 40) {
-    findings->Error(Format(
-        "imu0: angular rate rms %.2f, largest %.2f: the gyroscope seems to be in deg/s, expected rad/s",
-        rate_rms, fastest_));
-  }
-}
-
-/// An axis that never changes is not connected.
-void ImuValues::CheckAxes(Findings* findings) const {
-  constexpr std::array<const char*, 6> kAxes = {"gyroscope x",     "gyroscope y",     "gyroscope z",
-                                                "accelerometer x", "accelerometer y", "accelerometer z"};
-  for (int axis = 0; axis < 6; ++axis) {
-    if (low_[axis] == high_[axis]) {
-      findings->Warning(Format("imu0: %s is %g in all samples: a dead axis?",
-                               kAxes[static_cast<std::size_t>(axis)], low_[axis]));
-    }
-  }
-}
-
-void ImuValues::CheckRepeated(Findings* findings) const {
-  const double share = static_cast<double>(repeated_) / static_cast<double>(count_ - 1);
-  if (repeated_ > 0 && share > 0.01) {
-    findings->Warning(
-        Format("imu0: %zu rows (%.1f %%) repeat the values of the row before; the real rate is lower",
-               repeated_, 100 * share));
-  }
-}
-
-void CheckImuNoise(const ImuNoise& noise, Findings* findings) {
-  if (noise.gyro_noise_density_radps_sqrthz > 0.05 || noise.accel_noise_density_mps2_sqrthz > 0.5) {
-    findings->Warning(
-        "imu0: noise densities in sensor.yaml are large: are they discrete standard deviations or in deg?");
-  }
-}
-
 }  // namespace
 
 Status ReadImuFolder(const std::string& mav, const DatasetStorage& storage, Dataset* dataset) {
@@ -251,24 +156,6 @@ Status DigestImu(const MeasurementLog& /*log*/, const LogTables& tables, LogHash
     hasher->Add(sample.gyro);
     hasher->Add(sample.accel);
   });
-}
-
-void CheckImu(const Dataset& dataset, Findings* findings) {
-  std::vector<TimeNs> stamps;
-  ImuValues values;
-  // A file that cannot be read again is reported by its next reader.
-  static_cast<void>(TablesOf(dataset).imu.ForEach([&](const ImuSample& sample) {
-    stamps.push_back(sample.stamp_ns);
-    values.Add(sample);
-  }));
-  CheckStamps("imu0", stamps, dataset.imu_rate_hz, findings);
-  if (stamps.size() < 2) {
-    return;
-  }
-  values.CheckUnits(findings);
-  values.CheckAxes(findings);
-  values.CheckRepeated(findings);
-  CheckImuNoise(dataset.rig.imu_noise, findings);
 }
 
 }  // namespace alidade

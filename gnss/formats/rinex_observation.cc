@@ -78,7 +78,13 @@ Result<ObservationFile> ScanRinexObservation(const std::string& path, const Take
 Result<ObservationFile> ReadRinexObservation(const std::string& path) {
   const Result<std::string> text = ReadTextFile(path);
   ALIDADE_RETURN_IF_ERROR(text.status());
-  return ParseRinexObservation(path, *text);
+  Result<ObservationFile> file = ParseRinexObservation(path, *text);
+  // A cut between two fields leaves a line that is valid, since blank fields at its end may be left out.
+  if (file.ok() && !text->ends_with('\n')) {
+    file->warnings.Add(
+        Status::Input(path + ": the last line has no line end, expected one: is the file cut?"));
+  }
+  return file;
 }
 
 }  // namespace alidade

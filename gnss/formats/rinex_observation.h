@@ -15,7 +15,7 @@ namespace alidade {
 /// A fault in the header is an error that names file and line. Records that are torn or ill-formed are passed
 /// over up to the next epoch and reported in `warnings`; so are epochs that do not come after the one before.
 /// Event records (flags 2 to 6) are counted and their header lines obeyed. A file without one good epoch is
-/// an error.
+/// an error. A last line without a line end is a warning.
 Result<ObservationFile> ReadRinexObservation(const std::string& path);
 
 /// The same from memory; `path` is used in messages.

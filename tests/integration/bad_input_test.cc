@@ -176,6 +176,25 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
   }
 }
 
+// GIVEN a camera sheet with focal lengths in mm and a principal point far away THEN check lists both faults,
+// and a run does not begin.
+TEST_F(BadInput, AnImplausibleSheetIsRefusedWithAllItsFaults) {
+  const std::string sheet = "seq/mav0/cam0/sensor.yaml";
+  const std::string text = ReadFile(folder_.File(sheet));
+  const size_t key = text.find("intrinsics:");
+  ASSERT_NE(key, std::string::npos);
+  folder_.Write(sheet,
+                text.substr(0, key) + "intrinsics: [4, 4, -4000, 240]" + text.substr(text.find('\n', key)));
+  const std::string run = "run --config=" + Source("configs/base.yaml") + " --output=" + folder_.File("out");
+  for (const std::string& words : {std::string("check"), run}) {
+    const CommandResult result = Alidade(words + " --dataset=" + folder_.File("seq"));
+    EXPECT_EQ(result.code, 4) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("cam0/sensor.yaml: intrinsics: found fu 4 px, fv 4 px"));
+    EXPECT_THAT(result.output,
+                HasSubstr("cam0/sensor.yaml: intrinsics: found the principal point cu -4000 px"));
+  }
+}
+
 TEST_F(BadInput, EstimatorThatNeverStartsKeepsItsOutputsAndExits5) {
   const std::string out = folder_.File("out");
   const CommandResult result =

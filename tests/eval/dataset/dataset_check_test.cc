@@ -6,51 +6,18 @@
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/dataset_writer.h"
-#include "gnss/model/gnss_epoch.h"
-#include "tests/gnss/model/synthetic_sky.h"
+#include "tests/eval/dataset/healthy_dataset.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
 namespace {
 
+using test::Complaints;
+using test::Healthy;
+using test::WithGnss;
 using testing::HasSubstr;
 using Severity = DatasetFinding::Severity;
-
-/// Ten seconds at rest, a camera that sees two tracks, truth throughout: nothing to complain about.
-Dataset Healthy() {
-  Dataset dataset;
-  dataset.rig.camera =
-      CameraModel::Create(DistortionModel::kNone, Eigen::Vector4d(400, 400, 320, 240), {}, 640, 480).value();
-  dataset.imu_rate_hz = 100;
-  dataset.camera_rate_hz = 10;
-  Trajectory truth;
-  for (int i = 0; i <= 1000; ++i) {
-    const TimeNs stamp = 1'500'000'000'000'000'000 + i * TimeNs{10'000'000};
-    const double noise = 1e-4 * (i % 7);
-    dataset.imu.push_back(
-        {stamp, Eigen::Vector3d(1e-4 * i, 0.1 + noise, noise), Eigen::Vector3d(noise, noise, 9.8 + noise)});
-    TrajectoryPoint point;
-    point.stamp_ns = stamp;
-    truth.points.push_back(point);
-    if (i % 10 == 0) {
-      dataset.frames.push_back({stamp, {{1, Eigen::Vector2d(5, 5)}, {2, Eigen::Vector2d(600, 400)}}, 0});
-    }
-  }
-  dataset.truth = truth;
-  return dataset;
-}
-
-/// The worst findings, one text a line.
-std::string Complaints(const Dataset& dataset, Severity severity) {
-  std::string text;
-  for (const DatasetFinding& finding : CheckDataset(dataset)) {
-    if (finding.severity == severity) {
-      text += finding.text + "\n";
-    }
-  }
-  return text;
-}
 
 TEST(DatasetCheck, GivenAHealthySequenceThenItStatesFactsAndComplainsOfNothing) {
   EXPECT_EQ(Complaints(Healthy(), Severity::kError), "");
@@ -170,23 +137,6 @@ TEST(DatasetCheck, GivenFixesOfHalfTheFlightThenTheSecondsWithoutThemAreTold) {
   }
   EXPECT_THAT(Complaints(dataset, Severity::kWarning),
               HasSubstr("5.000 s of the IMU's time are without fix0"));
-}
-
-/// With GNSS once a second, tags and ephemerides shifted.
-Dataset WithGnss(double tags_s, double ephemerides_s) {
-  Dataset dataset = Healthy();
-  const TimeNs begin = dataset.imu.front().stamp_ns;
-  auto log = std::make_shared<GnssLog>();
-  for (int i = 0; i < 10; ++i) {
-    test::SyntheticReceiver receiver;
-    receiver.stamp_ns = begin + i * kSecondNs;
-    ObservationEpoch epoch = test::Observe(test::SyntheticSky(begin), receiver);
-    epoch.stamp_ns += SecondsToNs(tags_s);
-    log->epochs.push_back(epoch);
-  }
-  log->catalog = std::make_shared<SatelliteCatalog>(test::SyntheticSky(begin + SecondsToNs(ephemerides_s)));
-  dataset.gnss = log;
-  return dataset;
 }
 
 TEST(DatasetCheck, GivenGnssThenItsSpanAndEphemeridesAreNoComplaint) {

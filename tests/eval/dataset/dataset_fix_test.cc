@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "eval/dataset/dataset_check.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/digest.h"
 #include "gnss/base/anchor_llh.h"
+#include "tests/eval/dataset/healthy_dataset.h"
 #include "tests/support/temporary_folder.h"
 
 namespace alidade {
@@ -16,6 +16,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using test::Complaints;
 using testing::HasSubstr;
 
 constexpr TimeNs kStart = 1'700'000'000'000'000'000;
@@ -178,14 +179,6 @@ TEST(DatasetFix, GIVEN_NMEA_THEN_its_positions_stand_at_the_given_anchor) {
   EXPECT_LT((read->fixes[0].p_A - Vector3d(0, 0, 1)).norm(), 1e-6);
 }
 
-std::string Complaints(const Dataset& dataset, DatasetFinding::Severity severity) {
-  std::string text;
-  for (const DatasetFinding& finding : CheckDataset(dataset)) {
-    text += finding.severity == severity ? finding.text + "\n" : "";
-  }
-  return text;
-}
-
 TEST(DatasetFix, GIVEN_odd_fixes_THEN_check_names_rate_gap_deviation_jump_and_frames) {
   Dataset dataset = WithFixes();
   EXPECT_THAT(Complaints(dataset, DatasetFinding::Severity::kFact), HasSubstr("fix0: 6 stamps over 7.500 s"));
@@ -198,6 +191,46 @@ TEST(DatasetFix, GIVEN_odd_fixes_THEN_check_names_rate_gap_deviation_jump_and_fr
   EXPECT_THAT(warnings, HasSubstr("fix1: 1 gaps"));
   EXPECT_THAT(warnings, HasSubstr("is the covariance in m^2?"));
   EXPECT_THAT(warnings, HasSubstr("wrong fixes?"));
+}
+
+TEST(DatasetFix, GIVEN_positions_where_nobody_is_THEN_check_names_them) {
+  const Dataset sound = WithFixes();
+  EXPECT_THAT(Complaints(sound, DatasetFinding::Severity::kWarning), testing::Not(HasSubstr("absurd")));
+  const auto shifted = [&sound](const Vector3d& shift, double scale) {
+    Dataset dataset = sound;
+    for (PositionFix& fix : dataset.fixes) {
+      fix.p_A = scale * fix.p_A + shift;
+    }
+    return dataset;
+  };
+  const Dataset ecef = shifted(Vector3d(4'279'000, 639'000, 4'672'000), 1);
+  EXPECT_THAT(Complaints(ecef, DatasetFinding::Severity::kError),
+              testing::AllOf(HasSubstr("fix0: 6 of 6 positions are absurd"),
+                             HasSubstr("fix1: 12 of 12 positions are absurd"), HasSubstr("is it ECEF?")));
+  // The grid of a map is a frame of a sensor's own, too.
+  const Dataset grid = shifted(Vector3d(500'000, 6'350'000, 400), 1);
+  EXPECT_THAT(Complaints(grid, DatasetFinding::Severity::kError),
+              testing::AllOf(testing::Not(HasSubstr("ECEF")), testing::Not(HasSubstr("fix1"))));
+  EXPECT_THAT(Complaints(grid, DatasetFinding::Severity::kError),
+              HasSubstr("within 100 km of anchor_llh_deg"));
+  const std::string in_nm = Complaints(shifted(Vector3d::Zero(), 1e9), DatasetFinding::Severity::kError);
+  EXPECT_THAT(in_nm, HasSubstr("fix1: 11 of 11 steps are faster than 1000 m/s"));
+  Dataset one = sound;
+  one.fixes[4].p_A.x() = 1e9;
+  EXPECT_EQ(Complaints(one, DatasetFinding::Severity::kError), "");
+  EXPECT_THAT(Complaints(one, DatasetFinding::Severity::kWarning),
+              testing::AllOf(HasSubstr("fix1: 1 of 12 positions are absurd"),
+                             HasSubstr("expected a place on the Earth")));
+}
+
+TEST(DatasetFix, GIVEN_fixes_that_repeat_THEN_check_names_them) {
+  Dataset dataset = WithFixes();
+  for (PositionFix& fix : dataset.fixes) {
+    fix.p_A = Vector3d(1, 2, 3);
+  }
+  EXPECT_THAT(
+      Complaints(dataset, DatasetFinding::Severity::kWarning),
+      testing::AllOf(HasSubstr("fix1: all 12 fixes are at one place"), testing::Not(HasSubstr("fix0: all"))));
 }
 
 }  // namespace

@@ -1,0 +1,187 @@
+#include "eval/dataset/dataset_check_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/format.h"
+#include "core/numbers.h"
+#include "eval/dataset/clock_shift.h"
+#include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/dataset_findings.h"
+#include "eval/dataset/log_tables.h"
+
+namespace alidade {
+namespace {
+
+void Tell(bool impossible, std::string text, Findings* findings) {
+  if (impossible) {
+    findings->Error(std::move(text));
+  } else {
+    findings->Warning(std::move(text));
+  }
+}
+
+/// Where a sensor's calibration stands: its sheet, or of a bag the sensor, whose sheet may be any file.
+std::string SheetOf(const Dataset& dataset, const std::string& sensor) {
+  return dataset.path.ends_with(".bag") ? sensor : sensor + "/sensor.yaml";
+}
+
+/// One camera of the rig.
+struct CameraSheet {
+  std::string name;
+  const CameraModel& camera;
+  const Pose& T_BC;
+  double time_offset_s;
+};
+
+bool IsRectilinear(DistortionModel model) {
+  return model == DistortionModel::kNone || model == DistortionModel::kRadialTangential;
+}
+
+/// Angle across the wider axis of the image [rad], the lens' distortion aside: rectilinear, or of the other
+/// lenses equidistant.
+double FieldAcross(const CameraModel& camera) {
+  const Eigen::Vector4d& intrinsics = camera.intrinsics();
+  if (IsRectilinear(camera.model())) {
+    return std::max(2 * std::atan(0.5 * camera.width_px() / intrinsics[0]),
+                    2 * std::atan(0.5 * camera.height_px() / intrinsics[1]));
+  }
+  return std::max(camera.width_px(), camera.height_px()) / camera.mean_focal_px();
+}
+
+void CheckField(const CameraSheet& sheet, Findings* findings) {
+  // Telescopes have a degree. The widest rectilinear lenses reach 130 degrees, the widest others 280; a
+  // stereographic image of those is as wide as an equidistant one of 480.
+  constexpr double kLeastDeg = 1, kNarrowDeg = 10;
+  const bool rectilinear = IsRectilinear(sheet.camera.model());
+  const double wide_deg = rectilinear ? 140 : 360;
+  const double most_deg = rectilinear ? 170 : 540;
+  const double field_deg = FieldAcross(sheet.camera) * kDegreesPerRadian;
+  if (field_deg >= kNarrowDeg && field_deg <= wide_deg) {
+    return;
+  }
+  const Eigen::Vector4d& intrinsics = sheet.camera.intrinsics();
+  Tell(field_deg < kLeastDeg || field_deg > most_deg,
+       Format("%s: intrinsics: found fu %.6g px, fv %.6g px for %d x %d px, a field of view of %.3g deg, "
+              "expected "
+              "%.0f to %.0f deg: focal lengths in another unit, or of another resolution?",
+              sheet.name.c_str(), intrinsics[0], intrinsics[1], sheet.camera.width_px(),
+              sheet.camera.height_px(), field_deg, kNarrowDeg, wide_deg),
+       findings);
+}
+
+void CheckPixels(const CameraSheet& sheet, Findings* findings) {
+  // Pixels are square; every second line or column of them, at most, is left out.
+  constexpr double kUnequal = 1.2;
+  constexpr double kMostUnequal = 3;
+  const Eigen::Vector4d& intrinsics = sheet.camera.intrinsics();
+  const double ratio = std::max(intrinsics[0] / intrinsics[1], intrinsics[1] / intrinsics[0]);
+  if (ratio > kUnequal) {
+    Tell(ratio > kMostUnequal,
+         Format("%s: intrinsics: found fu %.6g px and fv %.6g px, expected about equal focal lengths",
+                sheet.name.c_str(), intrinsics[0], intrinsics[1]),
+         findings);
+  }
+}
+
+void CheckPrincipalPoint(const CameraSheet& sheet, Findings* findings) {
+  const double width = sheet.camera.width_px(), height = sheet.camera.height_px();
+  const double cu = sheet.camera.intrinsics()[2], cv = sheet.camera.intrinsics()[3];
+  // An image that was cut out of a larger one may lie beside the axis, but not by more than its own size.
+  const auto outside = [](double at, double size, double margin) {
+    return at < -margin * size || at > (1 + margin) * size;
+  };
+  if (outside(cu, width, 0) || outside(cv, height, 0)) {
+    Tell(outside(cu, width, 1) || outside(cv, height, 1),
+         Format(
+             "%s: intrinsics: found the principal point cu %.6g px, cv %.6g px, expected it in the image of "
+             "%.0f x %.0f px",
+             sheet.name.c_str(), cu, cv, width, height),
+         findings);
+  }
+}
+
+/// How far a sensor may be from the IMU [m].
+struct ArmLimits {
+  double unlikely;
+  double impossible;
+};
+// A camera that is to be rigid with the IMU is beside it, on a car at most at the other end of the roof.
+constexpr ArmLimits kCameraArm = {3, 10};
+// The mast of a car or a small boat; ships are 400 m long, and their IMU is near the middle.
+constexpr ArmLimits kAntennaArm = {10, 200};
+
+void CheckArm(const std::string& place, const Eigen::Vector3d& arm, const ArmLimits& limits,
+              Findings* findings) {
+  const double length = arm.norm();
+  if (length > limits.unlikely) {
+    Tell(length > limits.impossible,
+         Format("%s: found [%.6g, %.6g, %.6g], %.4g m from the IMU, expected at most %.0f m: in mm or cm?",
+                place.c_str(), arm.x(), arm.y(), arm.z(), length, limits.unlikely),
+         findings);
+  }
+}
+
+void CheckCameraSheet(const CameraSheet& sheet, double imu_span_s, Findings* findings) {
+  constexpr double kUnlikelyOffsetS = 1;
+  CheckField(sheet, findings);
+  CheckPixels(sheet, findings);
+  CheckPrincipalPoint(sheet, findings);
+  CheckArm(sheet.name + ": T_BS: translation", sheet.T_BC.translation, kCameraArm, findings);
+  if (std::abs(sheet.time_offset_s) > kUnlikelyOffsetS) {
+    Tell(std::abs(sheet.time_offset_s) > imu_span_s,
+         Format("%s: time_offset_s: found %g s in a sequence of %.1f s, expected within %g s: in ms?",
+                sheet.name.c_str(), sheet.time_offset_s, imu_span_s, kUnlikelyOffsetS),
+         findings);
+  }
+}
+
+/// Of a receiver, whose clock may count from elsewhere or in another scale than the IMU's.
+void CheckReceiverOffset(const std::string& sheet, double offset_s, TimeNs imu_first_ns, Findings* findings) {
+  constexpr double kSameClockS = 1;
+  const std::vector<ClockShift> known = KnownClockShifts(imu_first_ns);
+  const bool expected = std::abs(offset_s) <= kSameClockS ||
+                        std::abs(offset_s) > std::abs(SecondsBetween(0, known.back().shift_ns)) ||
+                        std::any_of(known.begin(), known.end(), [offset_s](const ClockShift& shift) {
+                          return std::abs(offset_s - SecondsBetween(0, shift.shift_ns)) <= kSameClockS;
+                        });
+  if (!expected) {
+    findings->Warning(
+        Format("%s: time_offset_s: found %g s, expected within %g s of 0 or of a difference of clocks (leap "
+               "seconds, whole hours)",
+               sheet.c_str(), offset_s, kSameClockS));
+  }
+}
+
+}  // namespace
+
+void CheckRig(const Dataset& dataset, Findings* findings) {
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  const double imu_span_s = SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns);
+  const RigCalibration& rig = dataset.rig;
+  if (HasCamera(dataset)) {
+    CheckCameraSheet({SheetOf(dataset, "cam0"), rig.camera, rig.T_BC, rig.camera_time_offset_s}, imu_span_s,
+                     findings);
+  }
+  for (std::size_t k = 0; k < dataset.extra_cameras.size(); ++k) {
+    const ExtraCamera& extra = dataset.extra_cameras[k];
+    const std::string name = "cam" + std::to_string(k + 1);
+    CheckCameraSheet({SheetOf(dataset, name), extra.camera, extra.T_BC, extra.camera_time_offset_s},
+                     imu_span_s, findings);
+  }
+  if (dataset.gnss != nullptr) {
+    const std::string sheet = SheetOf(dataset, "gnss0");
+    CheckArm(sheet + ": p_BA", rig.gnss.p_BA, kAntennaArm, findings);
+    CheckReceiverOffset(sheet, rig.gnss.time_offset_s, imu.front().stamp_ns, findings);
+  }
+  for (std::size_t k = 0; k < rig.fixes.size(); ++k) {
+    const std::string sheet = SheetOf(dataset, "fix" + std::to_string(k));
+    CheckArm(sheet + ": p_BA", rig.fixes[k].p_BA, kAntennaArm, findings);
+    CheckReceiverOffset(sheet, rig.fixes[k].time_offset_s, imu.front().stamp_ns, findings);
+  }
+}
+
+}  // namespace alidade
