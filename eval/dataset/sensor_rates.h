@@ -10,7 +10,7 @@ struct RateLimits {
   double low_hz = 0;    ///< a warning below
   double high_hz = 0;   ///< a warning above
   double most_hz = 0;   ///< an error above
-  /// Stamps of more than high_hz are in another unit if that unit gives a rate from here to high_hz.
+  /// Stamps of more than high_hz are in another unit if that unit gives a rate above this and up to high_hz.
   double unit_hz = 0;
 };
 

@@ -34,7 +34,7 @@ const StampUnit* OtherStampUnit(TimeNs first, TimeNs last, std::size_t count, do
            std::abs(hz / stated_rate_hz - 1) < kMostOff;
   });
   return by_sheet != nullptr ? by_sheet
-                             : find([&](double hz) { return hz >= limits.unit_hz && hz <= limits.high_hz; });
+                             : find([&](double hz) { return hz > limits.unit_hz && hz <= limits.high_hz; });
 }
 
 const StampUnit* UnitByReference(TimeNs first, TimeNs reference_ns) {
