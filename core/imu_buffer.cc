@@ -31,7 +31,9 @@ ImuSample Interpolate(const ImuSample& a, const ImuSample& b, TimeNs stamp_ns) {
           (1 - w) * a.accel + w * b.accel - bow * b.accel_curvature,
           gap_s,
           b.gyro_curvature,
-          b.accel_curvature};
+          b.accel_curvature,
+          b.gyro_fault_density_radps_sqrthz,
+          b.accel_fault_density_mps2_sqrthz};
 }
 
 Status ImuBuffer::Add(const ImuSample& sample) {

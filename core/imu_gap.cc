@@ -6,9 +6,6 @@
 namespace alidade::imu_gap {
 namespace {
 
-constexpr double kMinGyroRadps = 0.2;
-constexpr double kMinAccelMps2 = 1;
-
 double Length(const ImuSample& from, const ImuSample& to) {
   return std::max({SecondsBetween(from.stamp_ns, to.stamp_ns), from.gap_s, to.gap_s});
 }

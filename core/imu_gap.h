@@ -17,6 +17,10 @@ namespace imu_gap {
 /// Shorter intervals between samples are those of a slow IMU.
 inline constexpr double kMinGapS = 0.1;
 
+/// The floors.
+inline constexpr double kMinGyroRadps = 0.2;
+inline constexpr double kMinAccelMps2 = 1;
+
 /// Whether the step between two consecutive samples of an interval lies in a silence.
 [[nodiscard]] bool IsInside(const ImuSample& from, const ImuSample& to);
 

@@ -1,5 +1,7 @@
 #include "core/preintegration.h"
 
+#include <cmath>
+
 #include "core/check.h"
 #include "core/imu_gap.h"
 #include "core/imu_step.h"
@@ -10,6 +12,24 @@ namespace alidade {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+namespace {
+
+/// `noise` of the sensor in the step between two consecutive samples of an interval.
+ImuNoise NoiseOfStep(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
+  ImuNoise with = imu_gap::IsInside(from, to) ? imu_gap::AddNoise(from, to, noise) : noise;
+  if (to.gyro_fault_density_radps_sqrthz > 0) {
+    with.gyro_noise_density_radps_sqrthz =
+        std::hypot(with.gyro_noise_density_radps_sqrthz, to.gyro_fault_density_radps_sqrthz);
+  }
+  if (to.accel_fault_density_mps2_sqrthz > 0) {
+    with.accel_noise_density_mps2_sqrthz =
+        std::hypot(with.accel_noise_density_mps2_sqrthz, to.accel_fault_density_mps2_sqrthz);
+  }
+  return with;
+}
+
+}  // namespace
 
 void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
   const double dt_s = SecondsBetween(from.stamp_ns, to.stamp_ns);
@@ -28,8 +48,7 @@ void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNo
 void Preintegration::Add(std::span<const ImuSample> samples) {
   const ImuNoise noise = noise_.with_vibration ? AddVibration(samples, noise_) : noise_;
   for (size_t k = 0; k + 1 < samples.size(); ++k) {
-    const bool silent = imu_gap::IsInside(samples[k], samples[k + 1]);
-    Add(samples[k], samples[k + 1], silent ? imu_gap::AddNoise(samples[k], samples[k + 1], noise) : noise);
+    Add(samples[k], samples[k + 1], NoiseOfStep(samples[k], samples[k + 1], noise));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "eval/calibrate/camera_gyro_check.h"
 #include "eval/calibrate/camera_gyro_search.h"
+#include "eval/calibrate/gyro_correlation.h"
 #include "eval/record/runner.h"
 
 namespace alidade {
@@ -97,6 +98,13 @@ class Calibration {
   Status FitGeometry() {
     constexpr std::size_t kMostPairs = 600;
     constexpr std::size_t kLeastHalf = 10;
+    const LogTables tables = TablesOf(log_);
+    const double sheet_offset_s = log_.rig.camera_time_offset_s;
+    const GyroCorrelation rates =
+        CorrelateGyro(TurnsOfImages(log_.rig.camera, tables.frames), tables.imu, sheet_offset_s);
+    if (rates.clocks_differ()) {
+      return Status::Input("cam0: " + DescribeClocks(rates, sheet_offset_s));
+    }
     const std::vector<FramePair> pairs = FramePairsOf(log_, kMostPairs);
     CameraGyroSearchOptions search;
     search.prior = PriorOf(log_.rig.camera, options_.readout);

@@ -1,11 +1,15 @@
 #include "eval/calibrate/camera_gyro_check.h"
 
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "core/format.h"
 #include "core/lie.h"
 #include "core/numbers.h"
 #include "eval/calibrate/camera_gyro_search.h"
+#include "eval/calibrate/gyro_correlation.h"
+#include "eval/dataset/imu_units.h"
 
 namespace alidade {
 namespace {
@@ -33,6 +37,42 @@ std::string AxesText(const Matrix3d& R_BC) {
   return text;
 }
 
+/// Clocks far apart, and rates in another unit: neither leaves anything to compare.
+bool TellClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, Findings* findings) {
+  constexpr double kUnitBand = 1.4;  // focal length and translation change the images' rate by less
+  if (rates.clocks_differ()) {
+    findings->Error("cam0: " + DescribeClocks(rates, rig.camera_time_offset_s));
+    return true;
+  }
+  if (!rates.agree() || !(rates.best.scale > 0)) {
+    return false;
+  }
+  const ImuUnit* unit = NearestUnit(kGyroUnits, rates.best.scale, 1, kUnitBand);
+  if (unit == nullptr || unit == kGyroUnits) {
+    return false;
+  }
+  findings->Error(
+      Format("imu0: the gyroscope's rates are %.4g times the rotation rate of the images (correlation %.2f): "
+             "the gyroscope seems to be in %s, expected rad/s",
+             rates.best.scale, rates.best.correlation, unit->name));
+  return true;
+}
+
+/// The one axis of the gyroscope that is negated, when T_BS of the sheet is right: a gyroscope D w of true
+/// rates w agrees as -D w with a camera at -D R_BC. Empty: all axes, or something else.
+std::string NegatedAxis(const Matrix3d& R_BC_sheet, const Matrix3d& R_BC_found) {
+  constexpr double kSameDeg = 15;
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector3d turn = Vector3d::Constant(-1);
+    turn[axis] = 1;
+    if (Angle(turn.asDiagonal() * R_BC_sheet, R_BC_found) < kSameDeg) {
+      return kNames[static_cast<std::size_t>(axis)];
+    }
+  }
+  return "";
+}
+
 /// Other axes than the sheet's; nothing else is compared then.
 bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
   constexpr double kOtherAxesDeg = 30;
@@ -43,10 +83,11 @@ bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* 
     return false;  // little rotation in the recording
   }
   if (found.gyro_sign < 0) {
+    const std::string axis = NegatedAxis(sheet.R_BC, found.R_BC);
     findings->Error(
-        "imu0: the gyroscope's rates contradict the rotation of the images and agree with it once they are "
-        "negated: "
-        "wrong sign, or an axis of a left-handed system");
+        "imu0: the gyroscope's rates contradict the rotation of the images and agree with it once " +
+        (axis.empty() ? "they are negated" : "the " + axis + " axis of the gyroscope is negated") +
+        ": wrong sign, or an axis of a left-handed system");
     return true;
   }
   const double angle_deg = Angle(sheet.R_BC, found.R_BC);
@@ -131,8 +172,21 @@ void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, F
 
 void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, std::size_t most_pairs,
                             Findings* findings) {
-  constexpr double kMarginS = 2;  // beyond what the fit takes
+  constexpr double kMarginS = 2;    // beyond what the fit takes
+  constexpr double kMostScale = 5;  // no error of the camera's sheet explains more
   const CameraGyroModel sheet = ModelOfSheet(rig);
+  const GyroCorrelation rates =
+      CorrelateGyro(TurnsOfImages(rig.camera, tables.frames), tables.imu, sheet.time_offset_s);
+  if (TellClocksOrUnit(rig, rates, findings)) {
+    return;
+  }
+  if (rates.best.scale > kMostScale) {
+    findings->Fact(
+        Format("cam0 against the gyroscope: not compared: its rates are %.3g times those of the "
+               "images, and vary otherwise",
+               rates.best.scale));
+    return;
+  }
   CameraGyroSearchOptions options;
   options.prior[Coordinate::kFocal] = 0.3;
   options.prior[Coordinate::kReadout] = 0.03;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "core/format.h"
 #include "eval/bag/frozen_images.h"
 #include "eval/calibrate/camera_gyro_check.h"
 #include "eval/cli/commands.h"
@@ -115,9 +116,15 @@ int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTab
   if (Failed(result)) {
     RunOptions options;
     options.stop = stop;
+    options.progress = [](size_t choice, size_t choices) {
+      Say(Format("looking for the cause: signs of the accelerometer, %zu of %zu", choice, choices));
+    };
     if (const std::optional<std::string> cause =
             DiagnoseAccelerometerSigns(config, log, tables, result, options)) {
       return Report(Status::Input(dataset.path + ": " + *cause));
+    }
+    if (stop->load()) {
+      return kExitInterrupted;
     }
   }
   if (result.interrupted) {

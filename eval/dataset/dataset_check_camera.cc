@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/format.h"
 #include "eval/dataset/dataset_camera.h"
@@ -10,6 +11,16 @@
 
 namespace alidade {
 namespace {
+
+/// Whether tracks of this largest coordinate are x/z, y/z instead of pixels: 3 is 72 deg off the axis, beyond
+/// which no plane is used.
+bool AreNormalized(size_t observations, double largest, const CameraModel& camera) {
+  constexpr size_t kLeastObservations = 20;
+  constexpr double kLargestOnPlane = 3;
+  constexpr int kLeastWidthPx = 100;
+  return observations >= kLeastObservations && largest <= kLargestOnPlane &&
+         camera.width_px() >= kLeastWidthPx;
+}
 
 /// A fault without which nothing can be estimated from the camera; with another sensor an estimator may do
 /// without it.
@@ -53,6 +64,7 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
   size_t total = 0;
   size_t outside = 0;
   size_t returned = 0;
+  double largest = 0;
   static_cast<void>(TablesOf(dataset).frames.ForEach([&](const TrackFrame& frame) {
     const size_t i = frames++;
     for (const TrackObservation& observation : frame.observations) {
@@ -60,6 +72,7 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
       returned += life.observations > 0 && life.last_frame + 1 < i ? 1 : 0;
       life = {i, life.observations + 1};
       outside += dataset.rig.camera.InImage(observation.pixel) ? 0 : 1;
+      largest = std::max(largest, observation.pixel.cwiseAbs().maxCoeff());
       ++total;
     }
   }));
@@ -74,7 +87,12 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
              total, lives.size(), static_cast<double>(total) / static_cast<double>(frames),
              static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
   CheckLives(dataset, frames, longest, findings);
-  if (outside > 0) {
+  if (AreNormalized(total, largest, dataset.rig.camera)) {
+    findings->Error(
+        Format("cam0: all coordinates of the tracks are within +-%.2f, the image has %d x %d px: they seem "
+               "to be normalised (x/z, y/z); expected raw pixels",
+               largest, dataset.rig.camera.width_px(), dataset.rig.camera.height_px()));
+  } else if (outside > 0) {
     const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
                                     dataset.rig.camera.width_px(), dataset.rig.camera.height_px());
     // A few per mille sit on the border; more means the resolution is not that of the tracks.
@@ -106,27 +124,34 @@ std::vector<TimeNs> CameraStamps(const Dataset& dataset) {
   return stamps;
 }
 
-/// Rate of the camera, also against the IMU's.
-void CheckRates(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findings* findings) {
-  // Keyframes may be many seconds apart. Cameras with a sensor of a megapixel end at some 200 Hz.
-  constexpr RateLimits kRates = {0, 0, 250, 1e4};
+/// Rate and span, also against the IMU's.
+void CheckTimes(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findings* findings) {
   constexpr double kJitter = 1.1;
+  std::optional<double> rate_hz = 0;
   if (stamps.size() == 1) {
     TellUseless(
         dataset,
         "cam0: a single frame, expected at least two: a track begins in one and is seen again in another",
         findings);
+  } else {
+    rate_hz = CheckStamps("cam0", stamps, dataset.camera_rate_hz, kCameraRates, findings);
+  }
+  const TimeNs offset_ns = SecondsToNs(dataset.rig.camera_time_offset_s);
+  const TimeNs first_ns = stamps.front() + offset_ns;
+  const TimeNs last_ns = stamps.back() + offset_ns;
+  // In this order: a span that tells the unit explains the rate.
+  if (!rate_hz || !CheckSpan("cam0", first_ns, last_ns, dataset, findings)) {
     return;
   }
-  const double rate_hz = CheckStamps("cam0", stamps, dataset.camera_rate_hz, findings);
-  CheckRate("cam0", rate_hz, kRates, findings);
+  CheckTimeWithoutImu("cam0", first_ns, last_ns, stamps.size(), dataset, findings);
+  CheckRate("cam0", *rate_hz, kCameraRates, findings);
   const Table<ImuSample> imu = TablesOf(dataset).imu;
   const double imu_rate_hz = MeasuredRate(imu.front().stamp_ns, imu.back().stamp_ns, imu.size());
-  if (rate_hz > kJitter * imu_rate_hz) {
+  if (*rate_hz > kJitter * imu_rate_hz) {
     findings->Warning(
         Format("cam0: %.4g Hz, expected no more than imu0's %.4g Hz: there are frames without a "
                "sample of the IMU between them",
-               rate_hz, imu_rate_hz));
+               *rate_hz, imu_rate_hz));
   }
 }
 
@@ -138,12 +163,7 @@ void CheckCamera(const Dataset& dataset, Findings* findings) {
     findings->Warning(dataset.gnss == nullptr ? "cam0: none; estimators need a camera or GNSS"
                                               : "cam0: none; only GNSS and IMU");
   } else {
-    CheckRates(stamps, dataset, findings);
-    const TimeNs offset_ns = SecondsToNs(dataset.rig.camera_time_offset_s);
-    const TimeNs first_ns = stamps.front() + offset_ns;
-    const TimeNs last_ns = stamps.back() + offset_ns;
-    CheckSpan("cam0", first_ns, last_ns, dataset, findings);
-    CheckTimeWithoutImu("cam0", first_ns, last_ns, stamps.size(), dataset, findings);
+    CheckTimes(stamps, dataset, findings);
   }
   if (dataset.rig.line_delay_s != 0) {
     findings->Fact(Format("cam0: rolling shutter: the rows of an image are exposed over %.1f ms",

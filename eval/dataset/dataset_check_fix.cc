@@ -152,16 +152,17 @@ void CheckFixes(const Dataset& dataset, Findings* findings) {
         stamps.push_back(fix.stamp_ns);
       }
     }
-    CheckStamps(name.c_str(), stamps, 0, findings);
+    CheckStamps(name.c_str(), stamps, 0, kAnyRates, findings);
     if (fixes.empty()) {
       continue;
     }
     const TimeNs offset_ns = SecondsToNs(sheet.time_offset_s);
     const TimeNs first_ns = stamps.front() + offset_ns;
     const TimeNs last_ns = stamps.back() + offset_ns;
-    CheckSpan(name.c_str(), first_ns, last_ns, dataset, findings);
-    CheckTimeWithoutImu(name.c_str(), first_ns, last_ns, stamps.size(), dataset, findings);
-    CheckTimeWithoutSensor(name.c_str(), first_ns, last_ns, stamps.size(), dataset, findings);
+    if (CheckSpan(name.c_str(), first_ns, last_ns, dataset, findings)) {
+      CheckTimeWithoutImu(name.c_str(), first_ns, last_ns, stamps.size(), dataset, findings);
+      CheckTimeWithoutSensor(name.c_str(), first_ns, last_ns, stamps.size(), dataset, findings);
+    }
     CheckDeviations(name.c_str(), fixes, findings);
     CheckPlaces(name.c_str(), sheet.anchor_llh_deg.has_value(), fixes, findings);
     CheckJumps(name.c_str(), fixes, findings);

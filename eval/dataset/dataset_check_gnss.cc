@@ -12,9 +12,6 @@
 namespace alidade {
 namespace {
 
-// Receivers deliver at most 100 raw epochs a second; reference stations one in 30 s.
-constexpr RateLimits kGnssRates = {0, 0, 110, 1e4};
-
 /// Whether the ephemerides serve at the epochs' times.
 void CheckEphemerides(const GnssLog& log, Findings* findings) {
   const GnssCoverage coverage = CheckCoverage(log);
@@ -66,11 +63,13 @@ void CheckGnss(const Dataset& dataset, Findings* findings) {
                         dataset.gnss->catalog->navigation().ephemerides()));
   CheckRate("gnss0", MeasuredRate(first_ns, last_ns, epochs.size()), kGnssRates, findings);
   const TimeNs offset_ns = SecondsToNs(dataset.rig.gnss.time_offset_s);
-  CheckSpan("gnss0", first_ns + offset_ns, last_ns + offset_ns, dataset, findings);
+  CheckEphemerides(*dataset.gnss, findings);
+  if (!CheckSpan("gnss0", first_ns + offset_ns, last_ns + offset_ns, dataset, findings)) {
+    return;
+  }
   CheckTimeWithoutImu("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset, findings);
   CheckTimeWithoutSensor("gnss0", first_ns + offset_ns, last_ns + offset_ns, epochs.size(), dataset,
                          findings);
-  CheckEphemerides(*dataset.gnss, findings);
   CheckCourse(dataset, findings);
 }
 

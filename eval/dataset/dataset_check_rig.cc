@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +12,6 @@
 #include "eval/dataset/clock_shift.h"
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
-#include "eval/dataset/log_tables.h"
 
 namespace alidade {
 namespace {
@@ -125,13 +125,15 @@ void CheckArm(const std::string& place, const Eigen::Vector3d& arm, const ArmLim
   }
 }
 
-void CheckCameraSheet(const CameraSheet& sheet, double imu_span_s, Findings* findings) {
+/// imu: none when its time is not known (ImuSpan); offsets are not compared then.
+void CheckCameraSheet(const CameraSheet& sheet, const std::optional<TimeSpan>& imu, Findings* findings) {
   constexpr double kUnlikelyOffsetS = 1;
   CheckField(sheet, findings);
   CheckPixels(sheet, findings);
   CheckPrincipalPoint(sheet, findings);
   CheckArm(sheet.name + ": T_BS: translation", sheet.T_BC.translation, kCameraArm, findings);
-  if (std::abs(sheet.time_offset_s) > kUnlikelyOffsetS) {
+  if (imu && std::abs(sheet.time_offset_s) > kUnlikelyOffsetS) {
+    const double imu_span_s = SecondsBetween(imu->first_ns, imu->last_ns);
     Tell(std::abs(sheet.time_offset_s) > imu_span_s,
          Format("%s: time_offset_s: found %g s in a sequence of %.1f s, expected within %g s: in ms?",
                 sheet.name.c_str(), sheet.time_offset_s, imu_span_s, kUnlikelyOffsetS),
@@ -140,9 +142,13 @@ void CheckCameraSheet(const CameraSheet& sheet, double imu_span_s, Findings* fin
 }
 
 /// Of a receiver, whose clock may count from elsewhere or in another scale than the IMU's.
-void CheckReceiverOffset(const std::string& sheet, double offset_s, TimeNs imu_first_ns, Findings* findings) {
+void CheckReceiverOffset(const std::string& sheet, double offset_s, const std::optional<TimeSpan>& imu,
+                         Findings* findings) {
   constexpr double kSameClockS = 1;
-  const std::vector<ClockShift> known = KnownClockShifts(imu_first_ns);
+  if (!imu) {
+    return;
+  }
+  const std::vector<ClockShift> known = KnownClockShifts(imu->first_ns);
   const bool expected = std::abs(offset_s) <= kSameClockS ||
                         std::abs(offset_s) > std::abs(SecondsBetween(0, known.back().shift_ns)) ||
                         std::any_of(known.begin(), known.end(), [offset_s](const ClockShift& shift) {
@@ -159,28 +165,27 @@ void CheckReceiverOffset(const std::string& sheet, double offset_s, TimeNs imu_f
 }  // namespace
 
 void CheckRig(const Dataset& dataset, Findings* findings) {
-  const Table<ImuSample> imu = TablesOf(dataset).imu;
-  const double imu_span_s = SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns);
+  const std::optional<TimeSpan> imu = ImuSpan(dataset);
   const RigCalibration& rig = dataset.rig;
   if (HasCamera(dataset)) {
-    CheckCameraSheet({SheetOf(dataset, "cam0"), rig.camera, rig.T_BC, rig.camera_time_offset_s}, imu_span_s,
+    CheckCameraSheet({SheetOf(dataset, "cam0"), rig.camera, rig.T_BC, rig.camera_time_offset_s}, imu,
                      findings);
   }
   for (std::size_t k = 0; k < dataset.extra_cameras.size(); ++k) {
     const ExtraCamera& extra = dataset.extra_cameras[k];
     const std::string name = "cam" + std::to_string(k + 1);
-    CheckCameraSheet({SheetOf(dataset, name), extra.camera, extra.T_BC, extra.camera_time_offset_s},
-                     imu_span_s, findings);
+    CheckCameraSheet({SheetOf(dataset, name), extra.camera, extra.T_BC, extra.camera_time_offset_s}, imu,
+                     findings);
   }
   if (dataset.gnss != nullptr) {
     const std::string sheet = SheetOf(dataset, "gnss0");
     CheckArm(sheet + ": p_BA", rig.gnss.p_BA, kAntennaArm, findings);
-    CheckReceiverOffset(sheet, rig.gnss.time_offset_s, imu.front().stamp_ns, findings);
+    CheckReceiverOffset(sheet, rig.gnss.time_offset_s, imu, findings);
   }
   for (std::size_t k = 0; k < rig.fixes.size(); ++k) {
     const std::string sheet = SheetOf(dataset, "fix" + std::to_string(k));
     CheckArm(sheet + ": p_BA", rig.fixes[k].p_BA, kAntennaArm, findings);
-    CheckReceiverOffset(sheet, rig.fixes[k].time_offset_s, imu.front().stamp_ns, findings);
+    CheckReceiverOffset(sheet, rig.fixes[k].time_offset_s, imu, findings);
   }
 }
 

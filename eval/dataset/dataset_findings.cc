@@ -5,8 +5,8 @@
 
 #include "core/format.h"
 #include "core/median.h"
-#include "eval/dataset/clock_shift.h"
 #include "eval/dataset/log_tables.h"
+#include "eval/dataset/stamp_unit.h"
 
 namespace alidade {
 namespace {
@@ -19,18 +19,9 @@ std::string Text(const TimeSpan& span) {
   return "from " + FormatSeconds(span.first_ns) + " to " + FormatSeconds(span.last_ns) + " s";
 }
 
-TimeSpan ImuSpan(const Dataset& dataset) {
-  const Table<ImuSample> imu = TablesOf(dataset).imu;
-  return {imu.front().stamp_ns, imu.back().stamp_ns};
-}
-
-/// Seconds of `span` outside of `other`; 0 when the two share no time, which is an error of its own, or when
-/// the seconds are few.
+/// Seconds of `span` outside of `other`; 0 when they are few.
 double MuchOutside(const TimeSpan& span, const TimeSpan& other, double step_s) {
   constexpr double kRecordersApartS = 1;
-  if (span.last_ns < other.first_ns || span.first_ns > other.last_ns) {
-    return 0;
-  }
   const double outside = std::max(0.0, SecondsBetween(span.first_ns, other.first_ns)) +
                          std::max(0.0, SecondsBetween(other.last_ns, span.last_ns));
   return outside > std::max({kMaxUnreadableShare * Length(span), step_s, kRecordersApartS}) ? outside : 0;
@@ -38,6 +29,23 @@ double MuchOutside(const TimeSpan& span, const TimeSpan& other, double step_s) {
 
 double MeanStep(const TimeSpan& span, size_t stamps) {
   return stamps < 2 ? 0 : Length(span) / static_cast<double>(stamps - 1);
+}
+
+/// What may explain that `span` shares no time with the IMU.
+std::string Explanation(const TimeSpan& span, const TimeSpan& imu) {
+  constexpr double kOtherMagnitude = 100;
+  if (const StampUnit* unit = UnitByReference(span.first_ns, imu.first_ns)) {
+    return Format("its stamps seem to be in %s, expected ns, multiply them by %lld", unit->name,
+                  static_cast<long long>(unit->ns));
+  }
+  if (const std::optional<Meeting> meeting = ShiftOntoSpan(span, imu)) {
+    return Format("another clock? %+.0f s (%s) added to its stamps would make the two overlap by %.0f %%",
+                  SecondsBetween(0, meeting->shift.shift_ns), meeting->shift.name.c_str(),
+                  100 * meeting->share);
+  }
+  const double ratio = static_cast<double>(span.first_ns) / static_cast<double>(imu.first_ns);
+  return ratio > kOtherMagnitude || ratio < 1 / kOtherMagnitude ? "another clock, or another unit of time?"
+                                                                : "another clock?";
 }
 
 }  // namespace
@@ -54,8 +62,8 @@ void Findings::Error(std::string text) {
   list_.push_back({DatasetFinding::Severity::kError, std::move(text)});
 }
 
-double CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double stated_rate_hz,
-                   Findings* findings) {
+std::optional<double> CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps,
+                                  double stated_rate_hz, const RateLimits& limits, Findings* findings) {
   if (stamps.size() < 2) {
     findings->Warning(Format("%s: %zu stamps", sensor, stamps.size()));
     return 0;
@@ -78,6 +86,15 @@ double CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double
   findings->Fact(Format("%s: %zu stamps over %.3f s, from %s to %s; mean rate %.2f Hz, median step %.3f ms",
                         sensor, stamps.size(), span, FormatSeconds(stamps.front()).c_str(),
                         FormatSeconds(stamps.back()).c_str(), mean_rate, 1e3 * median));
+  if (const StampUnit* unit =
+          OtherStampUnit(stamps.front(), stamps.back(), stamps.size(), stated_rate_hz, limits)) {
+    findings->Error(
+        Format("%s: the stamps as nanoseconds give %.4g Hz, expected at most %.4g Hz: they seem to be in %s, "
+               "which gives %.4g Hz%s; expected ns, multiply them by %lld",
+               sensor, mean_rate, limits.high_hz, unit->name, mean_rate / static_cast<double>(unit->ns),
+               DateText(stamps.front(), *unit).c_str(), static_cast<long long>(unit->ns)));
+    return std::nullopt;
+  }
   if (gaps > 0) {
     findings->Warning(
         Format("%s: %d gaps (steps above three median steps); the longest is %.3f s after %lld ns", sensor,
@@ -97,59 +114,66 @@ double CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps, double
 }
 
 void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Findings* findings) {
-  if (rate_hz <= 0 || (rate_hz >= limits.low && rate_hz <= limits.high)) {
+  if (rate_hz <= 0 || (rate_hz >= limits.low_hz && rate_hz <= limits.high_hz)) {
     return;
   }
   const std::string text = Format(
-      "%s: a rate of %.6g Hz, expected %.6g to %.6g Hz: %s?", sensor, rate_hz, limits.low, limits.high,
-      rate_hz < limits.low ? "thinned out, or stamps in another unit" : "stamps in another unit than ns");
-  if (rate_hz < limits.least || rate_hz > limits.most) {
+      "%s: a rate of %.6g Hz, expected %.6g to %.6g Hz: %s?", sensor, rate_hz, limits.low_hz, limits.high_hz,
+      rate_hz < limits.low_hz ? "thinned out, or stamps in another unit" : "stamps in another unit than ns");
+  if (rate_hz < limits.least_hz || rate_hz > limits.most_hz) {
     findings->Error(text);
   } else {
     findings->Warning(text);
   }
 }
 
-void CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
-  const TimeSpan of_imu = ImuSpan(dataset);
-  findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor,
-                        SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last)));
-  if (last < of_imu.first_ns || first > of_imu.last_ns) {
-    const double ratio = static_cast<double>(first) / static_cast<double>(of_imu.first_ns);
-    std::string text = Format("%s: shares no time with imu0: %s", sensor,
-                              ratio > 1e2 || ratio < 1e-2 ? "another unit of time?" : "another clock?");
-    if (const std::optional<Meeting> meeting = ShiftOntoSpan({first, last}, of_imu)) {
-      text += Format(" %+.0f s (%s) added to its stamps would make the two overlap by %.0f %%",
-                     SecondsBetween(0, meeting->shift.shift_ns), meeting->shift.name.c_str(),
-                     100 * meeting->share);
-    }
-    findings->Error(std::move(text));
-  } else if (const std::optional<ClockShift> shift = ShiftOfBothEnds({first, last}, of_imu)) {
+std::optional<TimeSpan> ImuSpan(const Dataset& dataset) {
+  const Table<ImuSample> imu = TablesOf(dataset).imu;
+  const TimeSpan span{imu.front().stamp_ns, imu.back().stamp_ns};
+  return OtherStampUnit(span.first_ns, span.last_ns, imu.size(), dataset.imu_rate_hz, kImuRates) == nullptr
+             ? std::optional(span)
+             : std::nullopt;
+}
+
+bool CheckSpan(const char* sensor, TimeNs first, TimeNs last, const Dataset& dataset, Findings* findings) {
+  const std::optional<TimeSpan> imu = ImuSpan(dataset);
+  if (!imu) {
+    return false;
+  }
+  const TimeSpan span{first, last};
+  const double starts_s = SecondsBetween(imu->first_ns, first);
+  const double ends_s = SecondsBetween(imu->last_ns, last);
+  findings->Fact(Format("%s: starts %+.3f s and ends %+.3f s against imu0", sensor, starts_s, ends_s));
+  if (last < imu->first_ns || first > imu->last_ns) {
+    findings->Error(Format("%s: shares no time with imu0: ", sensor) + Explanation(span, *imu));
+    return false;
+  }
+  if (const std::optional<ClockShift> shift = ShiftOfBothEnds(span, *imu)) {
     findings->Warning(Format(
         "%s: starts %+.3f s and ends %+.3f s against imu0, expected about 0: is it %+.0f s (%s), to be "
         "added to its stamps?",
-        sensor, SecondsBetween(of_imu.first_ns, first), SecondsBetween(of_imu.last_ns, last),
-        SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
+        sensor, starts_s, ends_s, SecondsBetween(0, shift->shift_ns), shift->name.c_str()));
   }
+  return true;
 }
 
 void CheckTimeWithoutImu(const char* sensor, TimeNs first, TimeNs last, size_t stamps, const Dataset& dataset,
                          Findings* findings) {
   const TimeSpan span{first, last};
-  const TimeSpan imu = ImuSpan(dataset);
-  if (const double seconds = MuchOutside(span, imu, MeanStep(span, stamps)); seconds > 0) {
+  const std::optional<TimeSpan> imu = ImuSpan(dataset);
+  if (const double seconds = imu ? MuchOutside(span, *imu, MeanStep(span, stamps)) : 0; seconds > 0) {
     findings->Warning(Format("%s: %s, imu0 %s: %.3f s of %s are without IMU, nothing of it is used there",
-                             sensor, Text(span).c_str(), Text(imu).c_str(), seconds, sensor));
+                             sensor, Text(span).c_str(), Text(*imu).c_str(), seconds, sensor));
   }
 }
 
 void CheckTimeWithoutSensor(const char* sensor, TimeNs first, TimeNs last, size_t stamps,
                             const Dataset& dataset, Findings* findings) {
   const TimeSpan span{first, last};
-  const TimeSpan imu = ImuSpan(dataset);
-  if (const double seconds = MuchOutside(imu, span, MeanStep(span, stamps)); seconds > 0) {
+  const std::optional<TimeSpan> imu = ImuSpan(dataset);
+  if (const double seconds = imu ? MuchOutside(*imu, span, MeanStep(span, stamps)) : 0; seconds > 0) {
     findings->Warning(Format("%s: %s, imu0 %s: %.3f s of the IMU's time are without %s", sensor,
-                             Text(span).c_str(), Text(imu).c_str(), seconds, sensor));
+                             Text(span).c_str(), Text(*imu).c_str(), seconds, sensor));
   }
 }
 

@@ -7,7 +7,6 @@
 
 namespace alidade {
 
-class Findings;
 class LogHasher;
 
 // The IMU's part of a sequence: folder imu0 of `mav`.
@@ -19,8 +18,5 @@ Status WriteImuFolder(const Dataset& dataset, const std::string& mav);
 
 /// The samples; the noise is part of the rig.
 Status DigestImu(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
-
-/// Rate, gaps, units (gravity magnitude, gyro in rad/s), repeated values, gravity at rest, noise densities.
-void CheckImu(const Dataset& dataset, Findings* findings);
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
 #include "eval/dataset/dataset_parts.h"
 
 #include "eval/dataset/dataset_camera.h"
+#include "eval/dataset/dataset_check_imu.h"
 #include "eval/dataset/dataset_check_rig.h"
 #include "eval/dataset/dataset_fix.h"
 #include "eval/dataset/dataset_gnss.h"

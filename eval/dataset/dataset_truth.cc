@@ -170,8 +170,10 @@ void CheckTruth(const Dataset& dataset, Findings* findings) {
   }
   const TruthExtent extent = dataset.truth_extent.value_or(ExtentOf(*dataset.truth));
   const std::vector<TimeNs>& stamps = extent.stamps;
-  CheckStamps("truth", stamps, 0, findings);
-  CheckSpan("truth", stamps.front(), stamps.back(), dataset, findings);
+  CheckStamps("truth", stamps, 0, kAnyRates, findings);
+  if (!CheckSpan("truth", stamps.front(), stamps.back(), dataset, findings)) {
+    return;
+  }
   const Table<ImuSample> imu = TablesOf(dataset).imu;
   const double imu_span = SecondsBetween(imu.front().stamp_ns, imu.back().stamp_ns);
   const TimeNs shared_first = std::max(stamps.front(), imu.front().stamp_ns);

@@ -1,57 +1,61 @@
 #include "eval/record/failure_diagnosis.h"
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 #include "core/format.h"
 #include "eval/dataset/log_tables.h"
+#include "eval/record/accelerometer_signs.h"
 #include "eval/record/runner.h"
 
 namespace alidade {
 namespace {
 
-struct AccelerometerSigns {
-  Eigen::Vector3d signs;
-  const char* name;
-};
-
-/// The likeliest first.
-const std::array<AccelerometerSigns, 7>& OtherSigns() {
-  static const std::array<AccelerometerSigns, 7> signs = {
-      {{{-1, -1, -1}, "all axes of the accelerometer"},
-       {{1, 1, -1}, "the accelerometer's z axis"},
-       {{1, -1, 1}, "the accelerometer's y axis"},
-       {{-1, 1, 1}, "the accelerometer's x axis"},
-       {{-1, -1, 1}, "the accelerometer's x and y axes"},
-       {{-1, 1, -1}, "the accelerometer's x and z axes"},
-       {{1, -1, -1}, "the accelerometer's y and z axes"}}};
-  return signs;
-}
-
-/// Those up to a stamp; what cannot be read is missing.
+/// Those of stamps in [begin_ns, end_ns]; what cannot be read is missing.
 template <typename Row>
-std::vector<Row> RowsUntil(const Table<Row>& table, TimeNs end_ns) {
+std::vector<Row> RowsWithin(const Table<Row>& table, TimeNs begin_ns, TimeNs end_ns) {
   std::vector<Row> rows;
   typename Table<Row>::Pass pass(table);
   for (Result<const Row*> row = pass.Next(); row.ok() && *row != nullptr && (*row)->stamp_ns <= end_ns;
        row = pass.Next()) {
-    rows.push_back(**row);
+    if ((*row)->stamp_ns >= begin_ns) {
+      rows.push_back(**row);
+    }
   }
   return rows;
 }
 
-/// The first seconds of a log, with the accelerometer's axes times `signs`.
-MeasurementLog Beginning(const MeasurementLog& log, const LogTables& tables, const Eigen::Vector3d& signs) {
-  constexpr TimeNs kLengthNs = 25 * kSecondNs;
-  MeasurementLog beginning;
-  beginning.rig = log.rig;
-  const TimeNs end_ns = tables.frames.front().stamp_ns + kLengthNs;
-  beginning.imu = RowsUntil(tables.imu, end_ns + kSecondNs);
-  for (ImuSample& sample : beginning.imu) {
-    sample.accel = sample.accel.cwiseProduct(signs);
+/// Stamp at which a run was lost, or of its first state that was not sound; empty: it never started.
+std::optional<TimeNs> LostAt(const RunResult& failed) {
+  if (!failed.restarts.empty()) {
+    return failed.restarts.front().lost_ns;
   }
-  beginning.frames = RowsUntil(tables.frames, end_ns);
-  return beginning;
+  std::optional<TimeNs> lost_ns;
+  bool doubted = false;
+  static_cast<void>(ForEachRecord(failed, [&](const RunRecord& record) {
+    if (!doubted) {
+      lost_ns = record.estimate.stamp_ns;
+      doubted = record.status != "ok";
+    }
+    return Status::Ok();
+  }));
+  return lost_ns;
+}
+
+/// The measurements around a start that failed.
+MeasurementLog SpanOfStart(const MeasurementLog& log, const LogTables& tables, const RunResult& failed) {
+  constexpr TimeNs kLengthNs = 25 * kSecondNs;
+  constexpr TimeNs kBeforeLossNs = 10 * kSecondNs;
+  MeasurementLog span;
+  span.rig = log.rig;
+  const std::optional<TimeNs> lost_ns = LostAt(failed);
+  const TimeNs first_ns = tables.frames.front().stamp_ns;
+  const TimeNs begin_ns = lost_ns ? std::max(first_ns, *lost_ns - kBeforeLossNs) : first_ns;
+  const TimeNs offset_ns = SecondsToNs(log.rig.camera_time_offset_s);
+  span.imu =
+      RowsWithin(tables.imu, begin_ns + offset_ns - kSecondNs, begin_ns + offset_ns + kLengthNs + kSecondNs);
+  span.frames = RowsWithin(tables.frames, begin_ns, begin_ns + kLengthNs);
+  return span;
 }
 
 /// Seconds in motion from a run's start to the first state that is lost or suspect. At rest wrong signs do
@@ -115,16 +119,28 @@ std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& con
   quiet.progress = nullptr;
   quiet.spool_folder.clear();
   quiet.audit = false;
-  if (SecondsHeld(RunEstimator(filter, Beginning(log, tables, Eigen::Vector3d::Ones()), quiet)) > kLeastS) {
-    return std::nullopt;
-  }
-  for (const AccelerometerSigns& other : OtherSigns()) {
-    const double held_s = SecondsHeld(RunEstimator(filter, Beginning(log, tables, other.signs), quiet));
-    if (held_s > kLeastS) {
+  const auto stopped = [&options] { return options.stop != nullptr && options.stop->load(); };
+  const MeasurementLog span = SpanOfStart(log, tables, failed);
+  int reruns = 0;
+  for (std::size_t k = 0; k < SignChoices().size() && reruns < kMostReruns && !stopped(); ++k) {
+    const AccelerometerSigns& choice = SignChoices()[k];
+    if (options.progress) {
+      options.progress(k + 1, SignChoices().size());
+    }
+    const MeasurementLog changed = WithSigns(span, choice.signs);
+    if (!StartsInMotion(filter, changed, options.stop)) {
+      continue;
+    }
+    if (k == 0) {
+      return std::nullopt;  // as given
+    }
+    ++reruns;
+    const double held_s = SecondsHeld(RunEstimator(filter, changed, quiet));
+    if (held_s > kLeastS && !stopped()) {
       return Format(
-          "imu0: with %s negated a filter runs through the first %.0f s without a fault: wrong sign of the "
-          "specific force (at rest it points up)",
-          other.name, held_s);
+          "imu0: with %s negated a filter runs through %.0f s around the failed start without a fault: wrong "
+          "sign of the specific force (at rest it points up)",
+          choice.name, held_s);
     }
   }
   return std::nullopt;

@@ -14,15 +14,22 @@ namespace alidade {
 /// Whether a run never started, was lost, or had to start again.
 [[nodiscard]] bool Failed(const RunResult& result);
 
-/// Looks for signs of the accelerometer's axes with which the filter runs through the first 25 s of a log, of
-/// which `tables` are the long tables, that the run `failed` with `config` failed on. The gyroscope's signs
-/// show in the rotation of the images (CheckCameraAgainstGyro), those of the accelerometer only in an
-/// estimate. A sentence for people, or empty: the run was sound for more than 5 s in motion, no other signs
-/// do better, or the log has no camera. Takes up to eight short runs.
+/// Looks for signs of the accelerometer's axes with which the data of a start that `failed` with `config`
+/// agree; `tables` are the long tables of the log. Units, the gyroscope's signs and the clocks are compared
+/// before a run (CheckDataset, CheckCameraAgainstGyro); the signs of the accelerometer only show where
+/// images, gyroscope and accelerometer meet. Of 25 s of data, from 10 s before the loss on or from the first
+/// frame, each of the eight combinations is first tried by starts in motion (StartsInMotion), without a run;
+/// one that passes is confirmed by a run of the filter over the same data, at most kMostReruns of them.
+///
+/// options.progress is called before each combination with its number from 1 and that of all; options.stop
+/// ends the search between and within them. A sentence for people, or empty: the run was sound for more than
+/// 5 s in motion, no other signs do better, the log has no camera, or the search was stopped. Deterministic.
 [[nodiscard]] std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& config,
                                                                     const MeasurementLog& log,
                                                                     const LogTables& tables,
                                                                     const RunResult& failed,
                                                                     const RunOptions& options);
+
+inline constexpr int kMostReruns = 3;
 
 }  // namespace alidade

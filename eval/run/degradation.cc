@@ -15,12 +15,16 @@ const char* Contradicts(const AbsoluteSource& source) {
 
 }  // namespace
 
-void Degradation::OnImu(TimeNs stamp_ns) {
+void Degradation::OnImu(TimeNs stamp_ns, const std::string& doubt) {
   if (last_imu_ns_ != INT64_MIN && SecondsBetween(last_imu_ns_, stamp_ns) > imu_gap::kMinGapS) {
     silent_until_ns_ = stamp_ns;
     silence_s_ = SecondsBetween(last_imu_ns_, stamp_ns);
   }
   last_imu_ns_ = stamp_ns;
+  if (!doubt.empty()) {
+    doubtful_until_ns_ = stamp_ns + SecondsToNs(kSettlingS);
+    doubt_ = doubt;
+  }
 }
 
 bool Degradation::IsFrozen(const TrackFrame& frame) {
@@ -100,6 +104,12 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   }
   if (silent_until_ns_ != INT64_MIN && SecondsBetween(silent_until_ns_, imu_ns) < kSettlingS) {
     return Format("the IMU was silent for %.2f s", silence_s_);
+  }
+  if (imu_ns < doubtful_until_ns_) {
+    return doubt_;
+  }
+  if (imu_ns < unit_until_ns_) {
+    return "the gyroscope changed its unit and is converted to rad/s";
   }
   if (std::string reason = AgainstSensors("vision and IMU"); !reason.empty()) {
     return reason;

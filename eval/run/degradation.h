@@ -16,8 +16,8 @@ namespace alidade {
 using AbsoluteSource = std::pair<Sensor, int>;
 
 /// Tells when an estimate goes on without what it needs, though nothing contradicts it: frames without
-/// tracks, images that do not change, an IMU that was silent; or with a model that does not hold: a camera
-/// that is not as given, innovations larger than predicted for long.
+/// tracks, images that do not change, an IMU that was silent or has an axis that does not measure; or with a
+/// model that does not hold: a camera that is not as given, innovations larger than predicted for long.
 class Degradation {
  public:
   /// Without tracks for this long the estimate is dead reckoning.
@@ -47,8 +47,10 @@ class Degradation {
     jump_s_ = jump_s;
     jump_until_ns_ = INT64_MAX;
   }
-  /// Every sample that is delivered, in order.
-  void OnImu(TimeNs stamp_ns);
+  /// Every sample that is delivered, in order. `doubt`: what is wrong with it, empty: nothing.
+  void OnImu(TimeNs stamp_ns, const std::string& doubt = {});
+  /// The gyroscope has changed its unit at this sample, and is converted from here on.
+  void OnGyroUnit(TimeNs stamp_ns) { unit_until_ns_ = stamp_ns + SecondsToNs(kSettlingS); }
   /// Whether the frame shows what the one before showed: every track of both, at least kMinFrozen, on the
   /// very same pixel. A sensor's noise moves each of them even at rest: it is the old image under a new
   /// stamp, and says nothing. Every frame, in order.
@@ -75,6 +77,9 @@ class Degradation {
   TimeNs last_imu_ns_ = INT64_MIN;
   TimeNs silent_until_ns_ = INT64_MIN;
   double silence_s_ = 0;
+  TimeNs unit_until_ns_ = INT64_MIN;
+  TimeNs doubtful_until_ns_ = INT64_MIN;
+  std::string doubt_;  ///< of the IMU, until then
   TimeNs jump_until_ns_ = INT64_MIN;
   double jump_s_ = 0;
   TimeNs sighted_ns_ = INT64_MIN;  ///< the last frame with tracks

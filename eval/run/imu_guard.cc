@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/format.h"
 
@@ -15,6 +16,9 @@ constexpr double kUnconfirmedRatio = 25;
 constexpr double kUnconfirmedFloor = 10;  // of the floor
 constexpr int kMemorySamples = 100;
 constexpr double kMaxStepS = 0.05;
+constexpr double kKnownRatio = 10;     // of a rate that tells a unit to the root mean square of the steps
+constexpr double kContinuesRatio = 4;  // of a step to that
+constexpr double kDegrees = 180 / std::numbers::pi;
 
 bool AreNeighbours(const ImuSample& a, const ImuSample& b) {
   return SecondsBetween(a.stamp_ns, b.stamp_ns) <= kMaxStepS;
@@ -46,16 +50,49 @@ void ImuGuard::MendSignal(const Vector3d& before, const Vector3d* after, const c
   signal->mean_square += ((*here - before).squaredNorm() - signal->mean_square) / kMemorySamples;
 }
 
-std::string ImuGuard::Mend(const ImuSample* next, ImuSample* sample) {
+std::string ImuGuard::MendUnit(const ImuSample* next, ImuSample* sample) {
   std::string fault;
-  const bool judged =
-      last_ && AreNeighbours(*last_, *sample) && (next == nullptr || AreNeighbours(*sample, *next));
+  const double rms = std::sqrt(gyro_.mean_square);
+  if (last_ && judged_ >= kMemorySamples && last_->gyro.norm() > kKnownRatio * rms &&
+      AreNeighbours(*last_, *sample) && (next == nullptr || AreNeighbours(*sample, *next))) {
+    const auto continues = [&](const Vector3d& before, const Vector3d& gyro, double unit) {
+      return (gyro / unit - before).norm() <= kContinuesRatio * rms;
+    };
+    const double other = unit_ == 1 ? kDegrees : 1;
+    const double jump = (sample->gyro / unit_ - last_->gyro).norm();
+    // In rad/s the same jump is smaller by the ratio of the units.
+    const double least = kUnconfirmedFloor * gyro_.floor / unit_;
+    if (jump > std::max(least, kRatio * rms) && continues(last_->gyro, sample->gyro, other) &&
+        (next == nullptr || continues(sample->gyro / other, next->gyro, other))) {
+      unit_ = other;
+      unit_changed_ns_ = sample->stamp_ns;
+      fault = unit_ == 1 ? "the gyroscope is in rad/s again"
+                         : "the gyroscope's rates are 57.3 times those before: in deg/s from here on";
+    }
+  }
+  if (unit_ != 1) {
+    sample->gyro = InRadians(sample->gyro);
+  }
+  return fault;
+}
+
+std::string ImuGuard::Mend(const ImuSample* next, ImuSample* sample) {
+  std::string fault = MendUnit(next, sample);
+  std::optional<ImuSample> after;
+  if (next != nullptr) {
+    after = *next;
+    after->gyro = InRadians(next->gyro);
+  }
+  const bool judged = last_ && AreNeighbours(*last_, *sample) && (!after || AreNeighbours(*sample, *after));
   if (judged) {
-    MendSignal(last_->gyro, next != nullptr ? &next->gyro : nullptr, "gyroscope", "rad/s", &sample->gyro,
-               &gyro_, &fault);
-    MendSignal(last_->accel, next != nullptr ? &next->accel : nullptr, "accelerometer", "m/s^2",
-               &sample->accel, &accel_, &fault);
+    MendSignal(last_->gyro, after ? &after->gyro : nullptr, "gyroscope", "rad/s", &sample->gyro, &gyro_,
+               &fault);
+    MendSignal(last_->accel, after ? &after->accel : nullptr, "accelerometer", "m/s^2", &sample->accel,
+               &accel_, &fault);
     ++judged_;
+  }
+  if (const std::string axis = axes_.Add(sample); !axis.empty()) {
+    fault += (fault.empty() ? "" : "; ") + axis;
   }
   last_ = *sample;
   return fault;

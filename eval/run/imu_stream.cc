@@ -65,7 +65,13 @@ std::vector<ImuSample> ImuStream::DeliveredSince(TimeNs stamp_ns) const {
 }
 
 std::vector<ImuSample> ImuStream::Since(TimeNs stamp_ns) const {
-  return Range(stamp_ns, samples_.size());
+  std::vector<ImuSample> range = Range(stamp_ns, samples_.size());
+  for (ImuSample& sample : range) {
+    if (sample.stamp_ns > delivered_ns_) {
+      sample.gyro = guard_.InRadians(sample.gyro);
+    }
+  }
+  return range;
 }
 
 std::vector<ImuSample> ImuStream::Range(TimeNs stamp_ns, size_t end) const {

@@ -27,8 +27,10 @@ class ImuStream {
   /// at or after it, one a call; null when they are delivered or there is none left. Valid until the next
   /// call.
   const ImuSample* Deliver(TimeNs stamp_ns);
-  /// What was wrong with the last delivered sample, which was mended; empty: nothing.
+  /// What was found at the last delivered sample, told once; empty: nothing.
   [[nodiscard]] const std::string& fault() const { return fault_; }
+  /// Of the samples delivered so far.
+  [[nodiscard]] const ImuGuard& guard() const { return guard_; }
   /// Takes out the oldest sample that is not delivered yet when it lies before `stamp_ns`; later samples not
   /// after it are too late.
   std::optional<ImuSample> PassOver(TimeNs stamp_ns);
@@ -37,7 +39,7 @@ class ImuStream {
   [[nodiscard]] std::optional<TimeNs> FirstAtOrAfter(TimeNs stamp_ns) const;
   /// INT64_MIN before the first sample.
   [[nodiscard]] TimeNs newest_ns() const { return newest_ns_; }
-  [[nodiscard]] const Eigen::Vector3d& newest_gyro() const { return newest_gyro_; }
+  [[nodiscard]] Eigen::Vector3d newest_gyro() const { return guard_.InRadians(newest_gyro_); }
   [[nodiscard]] TimeNs delivered_ns() const { return delivered_ns_; }
   /// The samples from the one before the last not after `stamp_ns` on (from the first there is, where there
   /// are fewer), up to the last delivered one or to the newest: what ImuBuffer needs for an interval from

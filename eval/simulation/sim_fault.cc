@@ -7,6 +7,8 @@
 #include <numbers>
 #include <set>
 
+#include "eval/simulation/sim_imu_fault.h"
+
 namespace alidade {
 namespace {
 
@@ -15,10 +17,6 @@ constexpr std::array<SimOutlierKind, 5> kKinds = {SimOutlierKind::kJump, SimOutl
                                                   SimOutlierKind::kMoving};
 constexpr std::uint64_t kOnsets = 4;                 // 1 to this many frames after the first
 constexpr std::int64_t kSecondLife = 1'000'000'000;  // added to the id of a track that comes back
-constexpr double kGarbageRate_radps = 3;
-constexpr double kGarbageForce_mps2 = 30;
-constexpr double kSpikeRate_radps = 30;
-constexpr double kSpikeForce_mps2 = 490;
 
 void BlackOut(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
   std::set<std::int64_t> before;
@@ -58,18 +56,6 @@ void ShuffleIds(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, co
   }
 }
 
-void Garble(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, std::vector<ImuSample>* imu) {
-  RandomStream random(seed, "fault/imu");
-  for (ImuSample& sample : *imu) {
-    if (fails(sample.stamp_ns)) {
-      for (int axis = 0; axis < 3; ++axis) {
-        sample.gyro[axis] = random.Uniform(-kGarbageRate_radps, kGarbageRate_radps);
-        sample.accel[axis] = random.Uniform(-kGarbageForce_mps2, kGarbageForce_mps2);
-      }
-    }
-  }
-}
-
 void Freeze(const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
   const TrackFrame* first = nullptr;
   for (TrackFrame& frame : *frames) {
@@ -91,33 +77,6 @@ void Drop(const std::function<bool(TimeNs)>& fails, double rate, std::uint64_t s
   std::erase_if(*items, [&](const Item& item) { return fails(stamp_of(item)) && random.Chance(rate); });
 }
 
-void Silence(const std::function<bool(TimeNs)>& fails, std::vector<ImuSample>* imu) {
-  imu->erase(std::remove_if(imu->begin(), imu->end(),
-                            [&](const ImuSample& sample) { return fails(sample.stamp_ns); }),
-             imu->end());
-}
-
-void AddSpike(const std::function<bool(TimeNs)>& fails, std::uint64_t seed, bool of_gyro,
-              std::vector<ImuSample>* imu) {
-  std::vector<ImuSample*> candidates;
-  for (ImuSample& sample : *imu) {
-    if (fails(sample.stamp_ns)) {
-      candidates.push_back(&sample);
-    }
-  }
-  if (candidates.empty()) {
-    return;
-  }
-  RandomStream random(seed, "fault/spike");
-  ImuSample& sample = *candidates[static_cast<std::size_t>(random.Below(candidates.size()))];
-  const Eigen::Vector3d direction = random.Normal3().normalized();
-  if (of_gyro) {
-    sample.gyro += kSpikeRate_radps * direction;
-  } else {
-    sample.accel += kSpikeForce_mps2 * direction;
-  }
-}
-
 /// Of the tracks of one camera; `camera` names its stream, empty for the first one.
 void ApplyToTracks(const SimulatorConfig& config, std::uint64_t seed, const std::string& camera,
                    const std::function<bool(TimeNs)>& fails, std::vector<TrackFrame>* frames) {
@@ -136,25 +95,6 @@ void ApplyToTracks(const SimulatorConfig& config, std::uint64_t seed, const std:
       Drop(
           fails, config.fault_drop_rate, seed, camera, [](const TrackFrame& frame) { return frame.stamp_ns; },
           frames);
-      break;
-    default:
-      break;
-  }
-}
-
-void ApplyToImu(SimFaultKind fault, std::uint64_t seed, const std::function<bool(TimeNs)>& fails,
-                std::vector<ImuSample>* imu) {
-  switch (fault) {
-    case SimFaultKind::kImu:
-    case SimFaultKind::kBlackoutAndImu:
-      Garble(fails, seed, imu);
-      break;
-    case SimFaultKind::kImuGap:
-      Silence(fails, imu);
-      break;
-    case SimFaultKind::kGyroSpike:
-    case SimFaultKind::kAccelSpike:
-      AddSpike(fails, seed, fault == SimFaultKind::kGyroSpike, imu);
       break;
     default:
       break;
@@ -226,10 +166,6 @@ Eigen::Vector3d SimPull::At(double time_s) const {
                 : Eigen::Vector3d::Zero();
 }
 
-FaultSpan::FaultSpan(const SimulatorConfig& config, TimeNs start_ns)
-    : begin_ns(start_ns + SecondsToNs(config.fault_start_s)),
-      end_ns(begin_ns + SecondsToNs(config.fault_duration_s)) {}
-
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset) {
   const FaultSpan span(config, start_ns);
   const auto fails = [=](TimeNs stamp_ns) { return span.Contains(stamp_ns); };
@@ -237,7 +173,7 @@ void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_
   for (std::size_t i = 0; i < dataset->extra_cameras.size(); ++i) {
     ApplyToTracks(config, seed, "/cam" + std::to_string(i + 1), fails, &dataset->extra_cameras[i].frames);
   }
-  ApplyToImu(config.fault, seed, fails, &dataset->imu);
+  ApplyImuFault(config, seed, span, &dataset->imu);
   if (config.fault == SimFaultKind::kFrameDrops) {
     Drop(fails, config.fault_drop_rate, seed, "", std::identity(), &dataset->camera_stamps);
   }

@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "eval/dataset/dataset.h"
+#include "eval/simulation/fault_span.h"
 #include "eval/simulation/simulator_config.h"
 
 namespace alidade {
@@ -69,24 +70,13 @@ class SimPull {
   Eigen::Vector3d velocity_W_mps_;
 };
 
-/// When the fault of a simulation acts: [begin_ns, end_ns).
-struct FaultSpan {
-  /// `start_ns`: of the first IMU sample.
-  FaultSpan(const SimulatorConfig& config, TimeNs start_ns);
-  [[nodiscard]] bool Contains(TimeNs stamp_ns) const { return stamp_ns >= begin_ns && stamp_ns < end_ns; }
-
-  TimeNs begin_ns;
-  TimeNs end_ns;
-};
-
 /// Applies the fault SimulatorConfig::fault, over [fault_start_s, fault_start_s + fault_duration_s) from
-/// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. imu: rates and
-/// specific forces are uniform in +-3 rad/s and +-30 m/s^2. tracks: a frame's ids are shuffled, anew in every
-/// frame. frozen: frames show what the first one of the fault showed. imu_gap: no samples. gyro_spike,
-/// accel_spike: 30 rad/s or 490 m/s^2 (50 g) in a random direction are added to one sample, drawn from those
-/// of the fault. frame_drops: each frame is missing with probability fault_drop_rate. camera_clock: stamps of
-/// the first camera's frames have fault_clock_jump_s more from the start of the fault on. The faults of GNSS
-/// are a matter of SimPull, those of rendered images of eval/render/image_fault.h.
+/// `start_ns` on. blackout: frames are empty; a track that comes back afterwards has a new id. tracks: a
+/// frame's ids are shuffled, anew in every frame. frozen: frames show what the first one of the fault showed.
+/// frame_drops: each frame is missing with probability fault_drop_rate. camera_clock: stamps of the first
+/// camera's frames have fault_clock_jump_s more from the start of the fault on. Faults of the IMU:
+/// eval/simulation/sim_imu_fault.h; of rendered images: eval/render/image_fault.h; of GNSS: SimPull, and
+/// AddSimulatedGnss for stale ephemerides.
 void ApplyFault(const SimulatorConfig& config, std::uint64_t seed, TimeNs start_ns, Dataset* dataset);
 
 }  // namespace alidade

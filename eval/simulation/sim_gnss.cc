@@ -288,7 +288,10 @@ Status AddSimulatedGnss(const SimulatorConfig& config, const ContinuousTrajector
   // An epoch without satellites is none.
   std::erase_if(log->epochs, [](const ObservationEpoch& epoch) { return epoch.satellites.empty(); });
   log->glonass_channels = receiver.channels();
-  log->catalog = catalog;
+  log->catalog = config.fault == SimFaultKind::kStaleEphemerides
+                     ? std::make_shared<const SatelliteCatalog>(
+                           SimulateConstellations(gnss.systems, start_ns - kDayNs, end_ns - kDayNs))
+                     : catalog;
   log->approximate_position_E = receiver.enu().origin_E;
   dataset->gnss = std::move(log);
   dataset->rig.gnss = {gnss.lever_arm_m, gnss.time_offset_s, receiver.enu().origin_E, true};

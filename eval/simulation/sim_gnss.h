@@ -15,8 +15,9 @@ namespace alidade {
 /// Code: geometric range in axes that stand still, satellite and receiver clocks, bias of the system, group
 /// delay, ionosphere, troposphere, then multipath (first-order Gauss-Markov), reflection, white noise.
 /// Doppler: the difference of noise-free codes over 10 ms, and white noise. Values are rounded as RINEX
-/// writes them. Every satellite and effect draws from a stream of its own. Errors (kInput): the navigation
-/// file, or no satellite is ever seen.
+/// writes them. With the fault stale_ephemerides the sequence has the navigation data of the day before,
+/// which are those of the same satellites. Every satellite and effect draws from a stream of its own. Errors
+/// (kInput): the navigation file, or no satellite is ever seen.
 Status AddSimulatedGnss(const SimulatorConfig& config, const ContinuousTrajectory& trajectory,
                         TimeNs start_ns, std::uint64_t seed, Dataset* dataset);
 

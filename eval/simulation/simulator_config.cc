@@ -166,20 +166,36 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
        {"imu_gap", SimFaultKind::kImuGap},
        {"gyro_spike", SimFaultKind::kGyroSpike},
        {"accel_spike", SimFaultKind::kAccelSpike},
+       {"gyro_saturation", SimFaultKind::kGyroSaturation},
+       {"accel_saturation", SimFaultKind::kAccelSaturation},
+       {"gyro_stuck", SimFaultKind::kGyroStuck},
+       {"accel_stuck", SimFaultKind::kAccelStuck},
+       {"imu_unit", SimFaultKind::kImuUnit},
+       {"imu_clock", SimFaultKind::kImuClock},
        {"frame_drops", SimFaultKind::kFrameDrops},
        {"camera_clock", SimFaultKind::kCameraClock},
        {"gnss_ramp", SimFaultKind::kGnssRamp},
        {"gnss_ramp_no_rates", SimFaultKind::kGnssRampNoRates},
+       {"stale_ephemerides", SimFaultKind::kStaleEphemerides},
        {"glare", SimFaultKind::kGlare},
        {"blur", SimFaultKind::kBlur}});
   visitor.Real({"fault_start_s", "s", "start of the fault after the first IMU sample"},
                &config->fault_start_s, 0, 1e5);
-  visitor.Real({"fault_duration_s", "s", "duration of the fault"}, &config->fault_duration_s, 0, 1e5);
+  visitor.Real({"fault_duration_s", "s",
+                "duration of the fault; without meaning for camera_clock, imu_clock, imu_unit and "
+                "stale_ephemerides"},
+               &config->fault_duration_s, 0, 1e5);
   visitor.Real({"fault_drop_rate", "-", "share of the frames that frame_drops takes away, one by one"},
                &config->fault_drop_rate, 0, 1);
+  visitor.Real({"fault_clock_jump_s", "s",
+                "camera_clock, imu_clock: added to the stamps from the start of the fault on; imu_clock: "
+                "greater than 0"},
+               &config->fault_clock_jump_s, -100, 100);
   visitor.Real(
-      {"fault_clock_jump_s", "s", "camera_clock: added to the stamps from the start of the fault on"},
-      &config->fault_clock_jump_s, -100, 100);
+      {"fault_limit_share", "-",
+       "gyro_saturation, accel_saturation: an axis is clipped at its mean magnitude and this share of "
+       "what its largest magnitude exceeds it by, both over the sequence"},
+      &config->fault_limit_share, 0, 1);
   visitor.Real({"fault_ramp_mps", "m/s",
                 "gnss_ramp and gnss_ramp_no_rates: speed of the pull, in a random horizontal direction; "
                 "afterwards it stays"},

@@ -35,16 +35,23 @@ enum class SimFaultKind {
   kImu,       ///< the IMU gives noise
   kTracks,    ///< the tracks of a frame exchange their ids at random
   kBlackoutAndImu,
-  kFrozen,           ///< every frame repeats the first one of the fault
-  kImuGap,           ///< the IMU is silent
-  kGyroSpike,        ///< one sample
-  kAccelSpike,       ///< one sample
-  kFrameDrops,       ///< some frames are missing
-  kCameraClock,      ///< the stamps of all later frames are off
-  kGnssRamp,         ///< GNSS and position fixes are pulled off ever farther, range rates with them
-  kGnssRampNoRates,  ///< the same with true range rates
-  kGlare,            ///< rendered images: more light than the sensor holds
-  kBlur,             ///< rendered images: out of focus
+  kFrozen,            ///< every frame repeats the first one of the fault
+  kImuGap,            ///< the IMU is silent
+  kGyroSpike,         ///< one sample
+  kAccelSpike,        ///< one sample
+  kGyroSaturation,    ///< each axis is clipped
+  kAccelSaturation,   ///< each axis is clipped
+  kGyroStuck,         ///< one axis repeats its last value
+  kAccelStuck,        ///< one axis repeats its last value
+  kImuUnit,           ///< the gyroscope is in deg/s from the start of the fault on
+  kImuClock,          ///< the stamps of all later IMU samples are off
+  kFrameDrops,        ///< some frames are missing
+  kCameraClock,       ///< the stamps of all later frames are off
+  kGnssRamp,          ///< GNSS and position fixes are pulled off ever farther, range rates with them
+  kGnssRampNoRates,   ///< the same with true range rates
+  kStaleEphemerides,  ///< the broadcast ephemerides of the sequence are a day old
+  kGlare,             ///< rendered images: more light than the sensor holds
+  kBlur,              ///< rendered images: out of focus
 };
 /// Whether single observations or whole tracks are wrong. Drift, moving and mixed outliers always affect
 /// whole tracks.
@@ -97,10 +104,11 @@ struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   SimFaultKind fault = SimFaultKind::kNone;
   double fault_start_s = 20;  ///< after the first IMU sample
   double fault_duration_s = 3;
-  double fault_drop_rate = 0.1;   ///< of frame_drops
-  double fault_clock_jump_s = 1;  ///< of camera_clock
-  double fault_ramp_mps = 0.5;    ///< of gnss_ramp and gnss_ramp_no_rates
-  double fault_blur_px = 6;       ///< of blur
+  double fault_drop_rate = 0.1;    ///< of frame_drops
+  double fault_clock_jump_s = 1;   ///< of camera_clock and imu_clock
+  double fault_limit_share = 0.5;  ///< of gyro_saturation and accel_saturation
+  double fault_ramp_mps = 0.5;     ///< of gnss_ramp and gnss_ramp_no_rates
+  double fault_blur_px = 6;        ///< of blur
 
   /// By how much the calibration that the estimators are given is wrong (eval/simulation/sim_calibration.h).
   double calibration_rotation_error_rad = 0;

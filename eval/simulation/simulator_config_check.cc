@@ -63,6 +63,16 @@ Status ValidateFault(const SimulatorConfig& config) {
   if (!config.render.enabled && (fault == SimFaultKind::kGlare || fault == SimFaultKind::kBlur)) {
     return Status::Config("fault: glare and blur are faults of images; expected render.enabled: true");
   }
+  if (fault == SimFaultKind::kStaleEphemerides &&
+      (config.gnss.rate_hz == 0 || config.gnss.navigation_file != kNoPath)) {
+    return Status::Config(
+        "fault: stale_ephemerides replaces the simulated ephemerides; expected gnss.rate_hz greater than 0 "
+        "and "
+        "gnss.navigation_file: none");
+  }
+  ALIDADE_RETURN_IF_ERROR(Expect(fault != SimFaultKind::kImuClock || config.fault_clock_jump_s > 0,
+                                 "fault_clock_jump_s", config.fault_clock_jump_s,
+                                 "greater than 0 with fault: imu_clock, as stamps must increase"));
   return Status::Ok();
 }
 

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
+#include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
 #include "tests/core/imu_samples.h"
 #include "tests/support/jacobian_checker.h"
@@ -34,6 +36,29 @@ Vector15d LocalWithBias(ErrorConvention convention, const NavState& a, const Imu
 
 ImuBias Moved(const ImuBias& bias, const Eigen::VectorXd& xi) {
   return {bias.gyro + xi.segment<3>(9), bias.accel + xi.tail<3>()};
+}
+
+// GIVEN a fault of the sensor at one sample, WHEN a frame falls into the step before it, THEN its noise lies
+// in both parts of that step and in no other.
+TEST(PreintegrationTest, TheNoiseOfAFaultLiesInTheStepThatEndsAtItsSample) {
+  ImuBuffer clean(0.5), faulty(0.5);
+  for (int k = 0; k <= 5; ++k) {
+    ImuSample sample{SecondsToNs(0.01 * k), Vector3d::Zero(), Vector3d(0, 0, 9.81)};
+    ASSERT_TRUE(clean.Add(sample).ok());
+    sample.gyro_fault_density_radps_sqrthz = k == 2 ? 0.3 : 0;
+    sample.accel_fault_density_mps2_sqrthz = k == 2 ? 2 : 0;
+    ASSERT_TRUE(faulty.Add(sample).ok());
+  }
+  for (const auto& [from_s, to_s, share_s] :
+       {std::tuple(0.0, 0.01, 0.0), std::tuple(0.01, 0.016, 0.006), std::tuple(0.016, 0.04, 0.004)}) {
+    std::vector<ImuSample> samples, with_fault;
+    ASSERT_TRUE(clean.Interval(SecondsToNs(from_s), SecondsToNs(to_s), &samples).ok());
+    ASSERT_TRUE(faulty.Interval(SecondsToNs(from_s), SecondsToNs(to_s), &with_fault).ok());
+    const Matrix15d more =
+        Integrated(with_fault, ImuBias()).covariance() - Integrated(samples, ImuBias()).covariance();
+    EXPECT_NEAR(more(2, 2), 0.09 * share_s, 1e-9) << from_s;
+    EXPECT_NEAR(more(8, 8), 4 * share_s, 1e-6) << from_s;
+  }
 }
 
 // Against integration anew at every moved bias.

@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include "tests/eval/calibrate/shaken_camera.h"
 
 namespace alidade::test {
@@ -67,6 +72,64 @@ TEST(CameraGyroCheckTest, ANegatedGyroscopeIsTold) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].severity, Severity::kError);
   EXPECT_THAT(found[0].text, HasSubstr("negated"));
+}
+
+TEST(CameraGyroCheckTest, ANegatedAxisOfTheGyroscopeIsNamed) {
+  constexpr std::array<const char*, 3> kNames = {"the x axis", "the y axis", "the z axis"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto found = Check(PhoneModel(), [axis](MeasurementLog* log) {
+      for (ImuSample& sample : log->imu) {
+        sample.gyro[axis] *= -1;
+      }
+    });
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].severity, Severity::kError);
+    EXPECT_THAT(found[0].text, HasSubstr(std::string(kNames[static_cast<std::size_t>(axis)]) +
+                                         " of the gyroscope is negated"));
+  }
+}
+
+// GIVEN camera stamps that are seconds off THEN the offset is named, and nothing of T_BS or focal length.
+TEST(CameraGyroCheckTest, ClocksSecondsApartAreToldAlone) {
+  for (const double late_s : {4.0, -2.0}) {
+    const auto found = Check(PhoneModel(), [late_s](MeasurementLog* log) {
+      for (TrackFrame& frame : log->frames) {
+        frame.stamp_ns += SecondsToNs(late_s);
+      }
+    });
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].severity, Severity::kError);
+    EXPECT_THAT(found[0].text, HasSubstr("the clocks of camera and imu0 differ"));
+    const std::string key = "time_offset_s: ";
+    const std::size_t at = found[0].text.find(key);
+    ASSERT_NE(at, std::string::npos) << found[0].text;
+    EXPECT_NEAR(std::stod(found[0].text.substr(at + key.size())), -late_s, 0.05);
+  }
+}
+
+TEST(CameraGyroCheckTest, TheGyroscopesUnitIsToldByTheImages) {
+  constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
+      {{180 / M_PI, "in deg/s"}, {1e3, "in mrad/s"}, {1e3 * 180 / M_PI, "in mdeg/s"}}};
+  for (const auto& [factor, said] : kUnits) {
+    const auto found = Check(PhoneModel(), [factor = factor](MeasurementLog* log) {
+      for (ImuSample& sample : log->imu) {
+        sample.gyro *= factor;
+      }
+    });
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].severity, Severity::kError);
+    EXPECT_THAT(found[0].text, HasSubstr(said));
+  }
+}
+
+TEST(CameraGyroCheckTest, AnAccelerometerInPlaceOfTheGyroscopeIsNotCompared) {
+  for (const DatasetFinding& finding : Check(PhoneModel(), [](MeasurementLog* log) {
+         for (ImuSample& sample : log->imu) {
+           std::swap(sample.gyro, sample.accel);
+         }
+       })) {
+    ADD_FAILURE() << finding.text;
+  }
 }
 
 TEST(CameraGyroCheckTest, ATurnedCameraIsTold) {

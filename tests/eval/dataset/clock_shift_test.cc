@@ -79,6 +79,17 @@ TEST(ClockShift, CheckNamesItOfSensorsWithoutCommonTime) {
               testing::AllOf(HasSubstr("another clock?"), Not(HasSubstr("added to its stamps"))));
 }
 
+TEST(ClockShift, WithoutCommonTimeNoSecondsWithoutTheOtherAreTold) {
+  Dataset dataset = Healthy();
+  for (TrackFrame& frame : dataset.frames) {
+    frame.stamp_ns += 18 * kSecondNs;
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("cam0: shares no time with imu0"));
+  EXPECT_EQ(Complaints(dataset, Severity::kWarning), "");
+  EXPECT_THAT(Complaints(WithTruthShifted(-1.5e9 + 3600, 10), Severity::kError),
+              HasSubstr("truth: shares no time with imu0: another clock, or another unit of time?"));
+}
+
 TEST(ClockShift, CheckNamesItOfSensorsThatAreOffAtBothEnds) {
   EXPECT_THAT(
       Complaints(WithTruthShifted(18, 60), Severity::kWarning),

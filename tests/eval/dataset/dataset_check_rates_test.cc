@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/numbers.h"
 #include "core/random.h"
@@ -43,13 +44,21 @@ Dataset WithImuStep(TimeNs step_ns) {
   return dataset;
 }
 
-TEST(CheckRates, GivenAnImuOfAFewHertzOrOfStampsInMicrosecondsThenItIsNamed) {
+TEST(CheckRates, GivenAnImuOfAFewHertzOrOfStampsInAnotherUnitThenItIsNamed) {
   EXPECT_THAT(Complaints(WithImuStep(300'000'000), Severity::kError),
               HasSubstr("imu0: a rate of 3.33333 Hz, expected 50 to 10000 Hz"));
   EXPECT_THAT(Complaints(WithImuStep(50'000'000), Severity::kWarning), HasSubstr("imu0: a rate of 20 Hz"));
   EXPECT_THAT(
-      Complaints(WithImuStep(5'000), Severity::kError),
-      HasSubstr("imu0: a rate of 200000 Hz, expected 50 to 10000 Hz: stamps in another unit than ns?"));
+      Complaints(WithImuStep(60'000), Severity::kWarning),
+      HasSubstr("imu0: a rate of 16666.7 Hz, expected 50 to 10000 Hz: stamps in another unit than ns?"));
+  EXPECT_THAT(Complaints(WithImuStep(66), Severity::kError), HasSubstr("imu0: a rate of 1.51515e+07 Hz"))
+      << "in us too fast, in ms too slow";
+  const Dataset in_us = WithImuStep(5'000);
+  EXPECT_EQ(
+      Complaints(in_us, Severity::kError),
+      "imu0: the stamps as nanoseconds give 2e+05 Hz, expected at most 1e+04 Hz: they seem to be in us, "
+      "which gives 200 Hz; expected ns, multiply them by 1000\n");
+  EXPECT_THAT(Complaints(in_us, Severity::kWarning), Not(HasSubstr("a rate of")));
   EXPECT_THAT(Complaints(AtRest(), Severity::kWarning), Not(HasSubstr("a rate of")));
 }
 
@@ -110,7 +119,7 @@ TEST(CheckNoise, GivenDensitiesInDegreesOrMilligThenTheyAreNamedBesideWhatTheSam
   EXPECT_THAT(
       Complaints(in_degrees, Severity::kWarning),
       testing::AllOf(HasSubstr("imu0/sensor.yaml: gyroscope_noise_density: found 0.0115 rad/s/sqrt(Hz)"),
-                     HasSubstr("the quietest second shows at most 0.0001")));
+                     HasSubstr("the quietest second shows at most 0.0002")));
   Dataset in_ug = AtRest();
   in_ug.rig.imu_noise.accel_noise_density_mps2_sqrthz *= 1e6 / 9.81;
   EXPECT_THAT(Complaints(in_ug, Severity::kWarning),
@@ -131,6 +140,19 @@ TEST(CheckNoise, GivenAGoodSensorInDegreesThenTheSamplesTell) {
   EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("noise_density")));
 }
 
+// GIVEN the two groups of columns exchanged WHEN the sheet is right for either THEN the samples of the other
+// are no bound of its densities.
+TEST(CheckNoise, GivenExchangedColumnsThenTheSheetIsNotDoubted) {
+  Dataset dataset = AtRest();
+  dataset.rig.imu_noise.accel_noise_density_mps2_sqrthz = 0.04;  // enlarged, within what is in use
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("noise_density")));
+  for (ImuSample& sample : dataset.imu) {
+    std::swap(sample.gyro, sample.accel);
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("seem to be exchanged"));
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("noise_density")));
+}
+
 TEST(CheckScale, GivenAnAccelerometerThatIsOffByFivePerCentAtRestThenTheRatioIsNamed) {
   for (const auto& [scale, said] :
        {std::pair(1.05, "is 1.050 of gravity"), std::pair(0.95, "is 0.950 of gravity")}) {
@@ -140,6 +162,16 @@ TEST(CheckScale, GivenAnAccelerometerThatIsOffByFivePerCentAtRestThenTheRatioIsN
     }
     EXPECT_THAT(Complaints(dataset, Severity::kWarning), HasSubstr(said));
   }
+  Dataset far = AtRest();
+  Dataset in_g = AtRest();
+  for (std::size_t i = 0; i < far.imu.size(); ++i) {
+    far.imu[i].accel *= 1.2;
+    in_g.imu[i].accel /= 9.81;
+  }
+  EXPECT_THAT(Complaints(far, Severity::kWarning),
+              testing::AllOf(HasSubstr("is 1.20"), Not(HasSubstr("imu0: mean specific force"))));
+  EXPECT_THAT(Complaints(in_g, Severity::kError), HasSubstr("in g, expected m/s^2"));
+  EXPECT_THAT(Complaints(in_g, Severity::kWarning), Not(HasSubstr("of gravity")));
   Dataset biased = AtRest();
   for (ImuSample& sample : biased.imu) {
     sample.accel.z() += 0.25;  // 25 mg

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "eval/dataset/dataset.h"
 #include "eval/dataset/dataset_reader.h"
 #include "eval/dataset/dataset_writer.h"
@@ -49,6 +51,49 @@ TEST(DatasetCheck, GivenWrongUnitsThenTheyAreErrors) {
   EXPECT_THAT(Complaints(in_degrees, Severity::kError), HasSubstr("in deg/s, expected rad/s"));
 }
 
+/// At rest for half of the time, then turning at `rate` [rad/s]; the rates are written times `factor`.
+std::string GyroErrors(double rate, double factor) {
+  Dataset dataset = Healthy();
+  for (size_t i = 0; i < dataset.imu.size(); ++i) {
+    const double turn = i < 500 ? 0 : rate;
+    dataset.imu[i].gyro = factor * (Eigen::Vector3d(0.01, 0, turn) + 1e-3 * Eigen::Vector3d::Random());
+  }
+  return Complaints(dataset, Severity::kError);
+}
+
+TEST(DatasetCheck, GivenAGyroscopeInAnyOfItsUnitsThenThatUnitIsNamed) {
+  constexpr double kDegrees = 180 / 3.14159265;
+  EXPECT_EQ(GyroErrors(1.2, 1), "");
+  EXPECT_THAT(GyroErrors(1.2, kDegrees), HasSubstr("seems to be in deg/s, expected rad/s"));
+  EXPECT_THAT(GyroErrors(3, 1e3), HasSubstr("seems to be in mrad/s, expected rad/s"));
+  EXPECT_THAT(GyroErrors(3, 1e3 * kDegrees), HasSubstr("seems to be in mdeg/s, expected rad/s"));
+  // 0.4 rad/s as mrad/s are also 7 rad/s in deg/s.
+  EXPECT_THAT(GyroErrors(0.4, 1e3), HasSubstr("seems to be in deg/s or mrad/s, expected rad/s"));
+  EXPECT_THAT(GyroErrors(3, 1e7), HasSubstr("none of deg/s, mrad/s and mdeg/s explains it"));
+}
+
+TEST(DatasetCheck, GivenExchangedGroupsOfColumnsThenTheyAreNamedAndNoUnit) {
+  Dataset dataset = Healthy();
+  for (ImuSample& sample : dataset.imu) {
+    std::swap(sample.gyro, sample.accel);
+  }
+  const std::string errors = Complaints(dataset, Severity::kError);
+  EXPECT_THAT(errors, HasSubstr("the two groups of columns seem to be exchanged"));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("seems to be in")));
+}
+
+TEST(DatasetCheck, GivenADeadAxisOfTheAccelerometerThenItIsNamedInsteadOfTheUnit) {
+  Dataset dataset = Healthy();
+  for (ImuSample& sample : dataset.imu) {
+    sample.accel.x() += 1;  // as an accelerometer in g would say
+    sample.accel.z() = 0;
+  }
+  const std::string errors = Complaints(dataset, Severity::kError);
+  EXPECT_THAT(errors, HasSubstr("accelerometer z is 0 in all samples, a dead axis?"));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("unit")));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("in g")));
+}
+
 TEST(DatasetCheck, GivenAnAxisThatNeverChangesThenItIsNamed) {
   Dataset dataset = Healthy();
   for (ImuSample& sample : dataset.imu) {
@@ -77,10 +122,22 @@ TEST(DatasetCheck, GivenRepeatedRowsThenTheirShareIsNamed) {
 TEST(DatasetCheck, GivenAnotherClockThenTheSensorsShareNoTime) {
   Dataset dataset = Healthy();
   for (TrackFrame& frame : dataset.frames) {
-    frame.stamp_ns /= 1000;
+    frame.stamp_ns -= 1'400'000'000'000'000'000;
   }
   EXPECT_THAT(Complaints(dataset, Severity::kError),
-              HasSubstr("cam0: shares no time with imu0: another unit of time?"));
+              HasSubstr("cam0: shares no time with imu0: another clock?"));
+}
+
+TEST(DatasetCheck, GivenNormalisedTracksThenTheyAreNamed) {
+  Dataset dataset = Healthy();
+  for (TrackFrame& frame : dataset.frames) {
+    for (TrackObservation& observation : frame.observations) {
+      observation.pixel = (observation.pixel - Eigen::Vector2d(320, 240)) / 400;
+    }
+  }
+  const std::string errors = Complaints(dataset, Severity::kError);
+  EXPECT_THAT(errors, HasSubstr("within +-0.79, the image has 640 x 480 px: they seem to be normalised"));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("resolution")));
 }
 
 TEST(DatasetCheck, GivenPixelsOutsideTheImageThenTheResolutionIsDoubted) {

@@ -10,11 +10,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Half a minute of figure-8 after three seconds at rest, with the accelerometer's axes times `signs`.
-MeasurementLog LogWithSigns(const Eigen::Vector3d& signs) {
+/// Figure-8 of 27 s after a rest, with the accelerometer's axes times `signs`.
+MeasurementLog LogWithSigns(const Eigen::Vector3d& signs, double rest_s = 3) {
   SimulatorConfig simulation;
-  simulation.duration_s = 30;
-  simulation.rest_s = 3;
+  simulation.duration_s = 27 + rest_s;
+  simulation.rest_s = rest_s;
   simulation.path_m = 35;
   simulation.max_features = 80;
   const Dataset dataset = SimulateOrDie(simulation, 9);
@@ -48,6 +48,47 @@ TEST(FailureDiagnosisTest, ANegatedAxisIsNamed) {
       DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("z axis negated"));
+}
+
+// GIVEN a rest that is longer than what is looked at WHEN the run is lost behind it THEN the data around the
+// loss are looked at.
+TEST(FailureDiagnosisTest, ALossAfterALongRestIsDiagnosedWhereItIs) {
+  const MeasurementLog log = LogWithSigns({-1, -1, -1}, 40);
+  const RunResult failed = RunEstimator(SmallFilter(), log, {});
+  ASSERT_TRUE(Failed(failed));
+  const std::optional<std::string> cause =
+      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  ASSERT_TRUE(cause.has_value());
+  EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
+}
+
+// GIVEN a failure that has nothing to do with signs THEN those given pass first and nothing else is tried.
+TEST(FailureDiagnosisTest, SoundDataEndTheSearchAtTheFirstCombination) {
+  const MeasurementLog log = LogWithSigns({1, 1, 1});
+  RunResult failed;
+  failed.status = Status::Diverged("never started");
+  RunOptions options;
+  std::vector<size_t> told;
+  options.progress = [&told](size_t choice, size_t /*choices*/) { told.push_back(choice); };
+  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, options).has_value());
+  EXPECT_EQ(told, std::vector<size_t>{1});
+}
+
+TEST(FailureDiagnosisTest, WhatIsUnderWayIsToldAndAStopEndsIt) {
+  const MeasurementLog log = LogWithSigns({1, 1, -1});
+  RunResult failed;
+  failed.status = Status::Diverged("never started");
+  std::atomic<bool> stop = false;
+  RunOptions options;
+  options.stop = &stop;
+  std::vector<std::pair<size_t, size_t>> told;
+  options.progress = [&](size_t choice, size_t choices) {
+    told.emplace_back(choice, choices);
+    stop = choice == 2;
+  };
+  EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, options).has_value());
+  const std::vector<std::pair<size_t, size_t>> expected = {{1, 8}, {2, 8}};
+  EXPECT_EQ(told, expected);
 }
 
 // GIVEN an IMU that tells nonsense in the middle of a log WHEN the run is lost there THEN its signs are not

@@ -92,6 +92,24 @@ TEST_P(FaultRunTest, ASilentImuIsToldAndCovered) {
   EXPECT_LT(run.rmse_m, 1.5 * clean.rmse_m + 0.01);
 }
 
+// GIVEN an axis that repeats its last value, THEN it is told while it lasts, and the estimate goes on.
+TEST_P(FaultRunTest, AStuckAxisIsToldWhileItLasts) {
+  for (const SimFaultKind fault : {SimFaultKind::kGyroStuck, SimFaultKind::kAccelStuck}) {
+    const Faulty run = Run(fault, 3);
+    ExpectToldAtOnce(run, 3.6);
+    EXPECT_EQ(run.result.imu_rejected, 1);
+    EXPECT_GT(run.SecondsAfterTheFault("degraded").back(), 2.9);
+  }
+}
+
+TEST_P(FaultRunTest, AGyroscopeThatChangesToDegreesIsConvertedAndTold) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  const Faulty run = Run(SimFaultKind::kImuUnit, 3);
+  ExpectToldAtOnce(run, 1);
+  EXPECT_EQ(run.result.imu_rejected, 1);
+  EXPECT_LT(run.rmse_m, 1.1 * clean.rmse_m + 0.003);
+}
+
 TEST_P(FaultRunTest, ImagesThatRepeatThemselvesAreNotUsedAndToldAtOnce) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kFrozen, 2);

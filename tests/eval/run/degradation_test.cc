@@ -71,6 +71,23 @@ TEST(DegradationTest, ASilentImuIsToldUntilTheEstimateHasSettled) {
   EXPECT_EQ(degradation.Check(SecondsToNs(1.3), Saw(20)), "");
 }
 
+TEST(DegradationTest, AnAxisThatDoesNotMeasureIsToldUntilTheEstimateHasSettled) {
+  Degradation degradation;
+  for (int k = 0; k < 150; ++k) {
+    const TimeNs stamp_ns = k * (kSecondNs / 100);
+    degradation.OnImu(stamp_ns, k >= 40 && k < 60 ? "the gyroscope's x axis repeats" : "");
+    const bool told = k >= 40 && k < 109;
+    EXPECT_EQ(degradation.Check(stamp_ns, Saw(20)), told ? "the gyroscope's x axis repeats" : "") << k;
+  }
+}
+
+TEST(DegradationTest, AChangeOfUnitIsToldUntilTheEstimateHasSettled) {
+  Degradation degradation;
+  degradation.OnGyroUnit(SecondsToNs(1));
+  EXPECT_THAT(degradation.Check(SecondsToNs(1.4), Saw(20)), HasSubstr("changed its unit"));
+  EXPECT_EQ(degradation.Check(SecondsToNs(1.6), Saw(20)), "");
+}
+
 FrameStatistics Weighed(double nis, int dof) {
   FrameStatistics statistics = Saw(20);
   statistics.nis = nis;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,16 +21,17 @@ using testing::HasSubstr;
 
 constexpr double kRateHz = 200;
 
-/// A vehicle in motion whose frame vibrates: steps of up to 0.1 rad/s and 6 m/s^2 from sample to sample.
-std::vector<ImuSample> Flight(int count, unsigned seed) {
+/// A vehicle in motion whose frame vibrates: steps of up to 0.1 rad/s and 6 m/s^2 from sample to sample,
+/// times `vibration`.
+std::vector<ImuSample> Flight(int count, unsigned seed, double vibration = 1) {
   RandomStream gyro(seed, "gyro"), accel(seed, "accel");
   std::vector<ImuSample> samples;
   for (int k = 0; k < count; ++k) {
     const double t = k / kRateHz;
     samples.push_back({SecondsToNs(t), Vector3d(0.8 * std::sin(3 * t), 0.2, -0.5 * std::cos(2 * t)),
                        Vector3d(3 * std::sin(4 * t), 2 * std::cos(5 * t), 9.81)});
-    samples.back().gyro += 0.03 * gyro.Normal3();
-    samples.back().accel += 1.5 * accel.Normal3();
+    samples.back().gyro += 0.03 * vibration * gyro.Normal3();
+    samples.back().accel += 1.5 * vibration * accel.Normal3();
   }
   return samples;
 }
@@ -115,6 +117,50 @@ TEST(ImuGuardTest, TellsWhichSensorJumpedAndByHowMuch) {
   }
 }
 
+/// Samples in another unit from sample `at` on.
+std::vector<ImuSample> InDegreesFrom(size_t at, std::vector<ImuSample> samples) {
+  for (size_t k = at; k < samples.size(); ++k) {
+    samples[k].gyro *= 180 / M_PI;
+  }
+  return samples;
+}
+
+// GIVEN a gyroscope that changes to deg/s at any place of the interval between two frames, and back, WHEN the
+// samples are delivered, THEN each change is told once, and all of them are in rad/s.
+TEST(ImuGuardTest, AGyroscopeThatChangesItsUnitIsConverted) {
+  const std::vector<ImuSample> clean = Flight(1000, 4, 0.1);
+  for (size_t at = 500; at < 512; ++at) {
+    std::vector<ImuSample> samples = InDegreesFrom(at, clean);
+    std::copy(clean.begin() + 800, clean.end(), samples.begin() + 800);
+    int faults = 0;
+    const std::vector<ImuSample> used = Delivered(samples, 10, &faults);
+    EXPECT_EQ(faults, 2) << at;
+    EXPECT_LT(LargestError(used, clean), 1e-12) << at;
+  }
+}
+
+TEST(ImuGuardTest, ARateThatGrowsInAnotherDirectionIsNoChangeOfUnit) {
+  std::vector<ImuSample> samples = Flight(1000, 5, 0.1);
+  for (size_t k = 500; k < samples.size(); ++k) {
+    samples[k].gyro = Vector3d(samples[k].gyro.z(), samples[k].gyro.x(), samples[k].gyro.y()) * 180 / M_PI;
+  }
+  int faults = 0;
+  const std::vector<ImuSample> used = Delivered(samples, 10, &faults);
+  EXPECT_EQ(used.back().gyro, samples[used.size() - 1].gyro);
+}
+
+TEST(ImuGuardTest, WhatWaitsIsInRadiansAfterAChangeOfUnit) {
+  const std::vector<ImuSample> clean = Flight(600, 4, 0.1);
+  ImuStream stream(true);
+  for (const ImuSample& sample : InDegreesFrom(500, clean)) {
+    ASSERT_EQ(stream.Add(sample), ImuStream::Arrival::kTaken);
+  }
+  while (stream.Deliver(clean[550].stamp_ns) != nullptr) {
+  }
+  EXPECT_LT((stream.newest_gyro() - clean.back().gyro).norm(), 1e-12);
+  EXPECT_LT((stream.Since(clean[560].stamp_ns).back().gyro - clean.back().gyro).norm(), 1e-12);
+}
+
 /// A folder of ../shared/data: EuRoC, TUM VI, a phone and a walk, none with a faulty sample.
 class ImuGuardOnRealImu : public testing::TestWithParam<const char*> {};
 
@@ -126,6 +172,10 @@ TEST_P(ImuGuardOnRealImu, TouchesNoSample) {
   const std::vector<ImuSample> used = Delivered(dataset->imu, 10, &faults);
   EXPECT_GT(used.size(), 1000u);
   EXPECT_EQ(faults, 0);
+  for (const ImuSample& sample : used) {
+    ASSERT_EQ(sample.gyro_fault_density_radps_sqrthz, 0);
+    ASSERT_EQ(sample.accel_fault_density_mps2_sqrthz, 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(SharedData, ImuGuardOnRealImu,

@@ -131,5 +131,36 @@ TEST(SimGnssTest, GIVEN_a_start_before_GPST_THEN_the_key_is_named) {
   EXPECT_NE(dataset.message().find("start_time_s"), std::string::npos) << dataset.message();
 }
 
+TEST(SimGnssTest,
+     GIVEN_stale_ephemerides_THEN_they_are_of_the_day_before_and_the_epochs_as_without_the_fault) {
+  SimulatorConfig config = Config();
+  const Dataset clean = Simulated(config);
+  config.fault = SimFaultKind::kStaleEphemerides;
+  const Dataset stale = Simulated(config);
+  const auto& before = clean.gnss->catalog->navigation();
+  const auto& after = stale.gnss->catalog->navigation();
+  ASSERT_EQ(after.kepler.size(), before.kepler.size());
+  ASSERT_EQ(after.glonass.size(), before.glonass.size());
+  for (const auto& [satellite, list] : before.kepler) {
+    EXPECT_EQ(after.kepler.at(satellite).front().toe_ns, list.front().toe_ns - kDayNs);
+  }
+  for (const auto& [number, list] : before.glonass) {
+    EXPECT_EQ(after.glonass.at(number).front().toe_ns, list.front().toe_ns - kDayNs);
+  }
+  MeasurementLog log = LogOf(stale);
+  auto same = std::make_shared<GnssLog>(*stale.gnss);
+  same->catalog = clean.gnss->catalog;
+  log.gnss = same;
+  EXPECT_EQ(DigestOf(log), DigestOf(LogOf(clean)));
+}
+
+TEST(SimGnssTest, GIVEN_no_simulated_ephemerides_THEN_stale_ones_are_refused) {
+  SimulatorConfig config = Config();
+  config.fault = SimFaultKind::kStaleEphemerides;
+  EXPECT_TRUE(config.Validate().ok());
+  config.gnss.rate_hz = 0;
+  EXPECT_EQ(config.Validate().code(), StatusCode::kConfig);
+}
+
 }  // namespace
 }  // namespace alidade

@@ -1,0 +1,143 @@
+#include "eval/run/imu_axis_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+#include "core/imu_gap.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kMemory = 1000;  // measurements
+
+int Other(int axis, int which) {
+  return (axis + 1 + which) % 3;
+}
+
+}  // namespace
+
+ImuAxisWatch::ImuAxisWatch()
+    : signals_{Signal{&ImuSample::gyro, &ImuSample::gyro_fault_density_radps_sqrthz, "gyroscope", "rad/s",
+                      imu_gap::kMinGyroRadps},
+               Signal{&ImuSample::accel, &ImuSample::accel_fault_density_mps2_sqrthz, "accelerometer",
+                      "m/s^2", imu_gap::kMinAccelMps2}} {}
+
+void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
+                         Axis* axis) {
+  const Eigen::Vector3d& before = last.*signal.value;
+  const Eigen::Vector3d& now = sample.*signal.value;
+  const double value = now[index];
+  const double step = std::abs(value - before[index]);
+  const bool others =
+      now[Other(index, 0)] != before[Other(index, 0)] && now[Other(index, 1)] != before[Other(index, 1)];
+  if (step == 0 && !others) {
+    return;
+  }
+  const bool starts = step > 0 || imu_gap::IsInside(last, sample);
+  if (starts) {
+    axis->equal = 1;
+    axis->since_ns = sample.stamp_ns;
+    axis->faulty = false;
+    const bool known = axis->recent.size() == kSaturated;
+    axis->came_from = known ? axis->recent.front().second : value;
+    axis->came_from_s = known ? SecondsBetween(axis->recent.front().first, sample.stamp_ns) : 0;
+  } else {
+    ++axis->equal;
+  }
+  if (step > 0) {
+    ++axis->changed;
+    axis->resolution = axis->resolution == 0 ? step : std::min(axis->resolution, step);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const double other = now[Other(index, i)];
+    const auto k = static_cast<std::size_t>(i);
+    axis->low[k] = starts ? other : std::min(axis->low[k], other);
+    axis->high[k] = starts ? other : std::max(axis->high[k], other);
+  }
+  if (axis->limit > 0 ? value > axis->limit : value < axis->limit) {
+    axis->limit = 0;
+  }
+  axis->recent.emplace_back(sample.stamp_ns, value);
+  if (axis->recent.size() > kSaturated) {
+    axis->recent.pop_front();
+  }
+  axis->lowest = axis->measured == 0 ? value : std::min(axis->lowest, value);
+  axis->highest = axis->measured == 0 ? value : std::max(axis->highest, value);
+  ++axis->measured;
+  if (axis->equal == 1) {
+    const double share = 1 / std::min(kMemory, static_cast<double>(axis->measured));
+    axis->mean += share * (value - axis->mean);
+    axis->mean_square += share * (value * value - axis->mean_square);
+  }
+}
+
+ImuAxisWatch::Fault ImuAxisWatch::Judge(double value, double floor, const Axis& axis) {
+  if (axis.limit != 0 && value == axis.limit) {
+    return Fault::kSaturated;
+  }
+  if (axis.measured < kLeastMeasurements || axis.resolution == 0) {
+    return Fault::kNone;
+  }
+  const bool extreme = value >= axis.highest || value <= axis.lowest;
+  if (axis.equal >= kSaturated && extreme && std::abs(value) > floor &&
+      std::abs(value - axis.came_from) >= kSteps * axis.resolution) {
+    return Fault::kSaturated;
+  }
+  if (2 * axis.changed < axis.measured - axis.equal) {
+    return Fault::kNone;
+  }
+  const double span = std::min(axis.high[0] - axis.low[0], axis.high[1] - axis.low[1]);
+  return axis.equal >= kStuck && span >= kSpan * axis.resolution ? Fault::kStuck : Fault::kNone;
+}
+
+double ImuAxisWatch::Sigma(Fault fault, double value, double floor, double seconds, const Axis& axis) {
+  if (fault == Fault::kStuck) {
+    const double square = axis.mean_square - 2 * value * axis.mean + value * value;
+    return std::max(floor, std::sqrt(std::max(0.0, square)));
+  }
+  const double rate = axis.came_from_s > 0 ? std::abs(value - axis.came_from) / axis.came_from_s : 0;
+  return std::max(floor, std::min(rate * seconds, 0.5 * std::abs(value)));
+}
+
+std::string ImuAxisWatch::AddAxis(const ImuSample& last, int index, Signal* signal, ImuSample* sample) {
+  Axis& axis = signal->axes[static_cast<std::size_t>(index)];
+  Count(*signal, index, last, *sample, &axis);
+  const double value = (sample->*signal->value)[index];
+  const Fault fault = Judge(value, signal->floor, axis);
+  if (fault == Fault::kNone) {
+    return {};
+  }
+  const double seconds = SecondsBetween(axis.since_ns, sample->stamp_ns);
+  const double step_s = SecondsBetween(last.stamp_ns, sample->stamp_ns);
+  const double sigma = Sigma(fault, value, signal->floor, seconds, axis);
+  const double density = axis.faulty ? sigma * std::sqrt(2 * std::min(seconds, kConstantS))
+                                     : sigma * seconds / std::sqrt(step_s);
+  axis.faulty = true;
+  axis.limit = fault == Fault::kSaturated ? value : axis.limit;
+  sample->*signal->fault_density = std::hypot(sample->*signal->fault_density, density);
+  reason_ = Format(fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
+                                              : "the %s's %c axis repeats %.4g %s while the others change",
+                   signal->name, "xyz"[index], value, signal -> unit);
+  const bool told = sample->stamp_ns <= axis.told_until_ns;
+  axis.told_until_ns = sample->stamp_ns + SecondsToNs(kSameFaultS);
+  return told ? std::string() : reason_ + " from " + FormatSeconds(axis.since_ns) + " s on";
+}
+
+std::string ImuAxisWatch::Add(ImuSample* sample) {
+  std::string told;
+  reason_.clear();
+  if (any_) {
+    for (Signal& signal : signals_) {
+      for (int index = 0; index < 3; ++index) {
+        const std::string one = AddAxis(last_, index, &signal, sample);
+        told += one.empty() || told.empty() ? one : "; " + one;
+      }
+    }
+  }
+  any_ = true;
+  last_ = *sample;
+  return told;
+}
+
+}  // namespace alidade

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <string>
+#include <utility>
+
+#include "core/imu_sample.h"
+
+namespace alidade {
+
+/// Finds axes of an inertial sensor that do not measure: saturated at the end of their range, or stuck.
+///
+/// Noise moves every axis, so a value that repeats itself exactly tells. What counts are measurements in
+/// which both other axes of the sensor changed: a row that a driver hands out twice is none. An axis is
+/// saturated when kSaturated measurements in a row have the value that is the largest or smallest of all so
+/// far, its magnitude is above the floor, and the axis came from kSteps of its resolution (smallest step so
+/// far) away within as many measurements before: the top of a smooth motion is flat over few steps only.
+/// Afterwards this value alone tells, until it is exceeded. An axis is stuck when kStuck measurements in a
+/// row are equal while both others span kSpan of its resolution: at rest a coarse sensor may repeat itself,
+/// and a constant value is no error there. An axis that has repeated itself more often than not before is not
+/// judged to be. In recordings of five kinds of sensors, faultless ones, no more
+/// than 7 in a row are equal.
+///
+/// The samples stay as they are. The error of the axis is taken as constant with the deviation sigma for
+/// kConstantS, and as white noise of that correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t
+/// since the first equal sample; the step that detects gets the variance sigma^2 t^2 up to then. Stuck:
+/// sigma^2 = var + (mean - value)^2, of the last thousand measurements before. Saturated: the motion goes on
+/// as it came, at most half beyond the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2
+/// rad/s and 1 m/s^2 (core/imu_gap.h). The noise is that of all three axes.
+///
+/// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
+/// kLeastMeasurements.
+class ImuAxisWatch {
+ public:
+  static constexpr int kSaturated = 5;
+  static constexpr int kStuck = 20;
+  static constexpr double kSteps = 20;
+  static constexpr double kSpan = 10;
+  static constexpr int kLeastMeasurements = 100;
+  static constexpr double kConstantS = 1;
+  /// A fault that returns within this time is the same one.
+  static constexpr double kSameFaultS = 10;
+
+  ImuAxisWatch();
+
+  /// The next sample in order; sets the noise of its fault. Returns what is wrong where it was not told yet,
+  /// else nothing.
+  std::string Add(ImuSample* sample);
+  /// What is wrong with the last sample; empty: nothing.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  struct Axis {
+    // Of the measurements with the newest value.
+    int equal = 1;
+    TimeNs since_ns = 0;
+    std::array<double, 2> low{}, high{};  ///< of the other axes meanwhile
+    double came_from = 0;                 ///< kSaturated measurements before the first of them
+    double came_from_s = 0;               ///< and how long before
+    bool faulty = false;
+    // Of all.
+    std::deque<std::pair<TimeNs, double>> recent;  ///< the last kSaturated measurements
+    int measured = 0;
+    int changed = 0;        ///< of those
+    double resolution = 0;  ///< 0: not known
+    double lowest = 0, highest = 0;
+    double limit = 0;  ///< at which it was saturated; 0: never
+    double mean = 0, mean_square = 0;
+    TimeNs told_until_ns = INT64_MIN;
+  };
+  struct Signal {
+    Eigen::Vector3d ImuSample::*value;
+    double ImuSample::*fault_density;
+    const char* name;
+    const char* unit;
+    double floor;
+    std::array<Axis, 3> axes{};
+  };
+  enum class Fault { kNone, kSaturated, kStuck };
+
+  static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
+                    Axis* axis);
+  [[nodiscard]] static Fault Judge(double value, double floor, const Axis& axis);
+  [[nodiscard]] static double Sigma(Fault fault, double value, double floor, double seconds,
+                                    const Axis& axis);
+  /// What is wrong with one axis, and whether it is to be told.
+  std::string AddAxis(const ImuSample& last, int index, Signal* signal, ImuSample* sample);
+
+  std::array<Signal, 2> signals_;
+  bool any_ = false;
+  ImuSample last_;
+  std::string reason_;
+};
+
+}  // namespace alidade

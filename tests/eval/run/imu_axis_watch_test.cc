@@ -1,0 +1,144 @@
+#include "eval/run/imu_axis_watch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/random.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kRateHz = 200;
+
+/// Motion of some hertz with noise, measured with a resolution of `step`.
+std::vector<ImuSample> Motion(int count, double step, double amplitude = 1) {
+  RandomStream random(7, "imu");
+  const auto rounded = [&](const Vector3d& value) { return Vector3d(step * (value / step).array().round()); };
+  std::vector<ImuSample> samples;
+  for (int k = 0; k < count; ++k) {
+    const double t = k / kRateHz;
+    const Vector3d gyro(std::sin(5 * t), std::cos(4 * t), std::sin(3 * t + 1));
+    const Vector3d accel(3 * std::sin(4 * t), 2 * std::cos(5 * t), 3 * std::sin(6 * t));
+    samples.push_back({SecondsToNs(t), rounded(amplitude * gyro + 1e-3 * random.Normal3()),
+                       rounded(Vector3d(0, 0, 9.81) + amplitude * accel + 1e-2 * random.Normal3())});
+  }
+  return samples;
+}
+
+struct Watched {
+  std::vector<std::string> told;
+  std::vector<bool> faulty;
+  std::vector<ImuSample> samples;
+};
+
+Watched Watch(std::vector<ImuSample> samples) {
+  ImuAxisWatch watch;
+  Watched watched;
+  for (ImuSample& sample : samples) {
+    if (const std::string told = watch.Add(&sample); !told.empty()) {
+      watched.told.push_back(told);
+    }
+    watched.faulty.push_back(!watch.reason().empty());
+  }
+  watched.samples = std::move(samples);
+  return watched;
+}
+
+TEST(ImuAxisWatchTest, MotionPassesUntouchedHoweverCoarseTheSensor) {
+  for (const double step : {1e-9, 1e-3, 4e-3}) {
+    const Watched watched = Watch(Motion(20000, step));
+    EXPECT_TRUE(watched.told.empty()) << step << ": " << watched.told.front();
+    for (const ImuSample& sample : watched.samples) {
+      ASSERT_EQ(sample.gyro_fault_density_radps_sqrthz, 0);
+      ASSERT_EQ(sample.accel_fault_density_mps2_sqrthz, 0);
+    }
+  }
+}
+
+// At rest a coarse sensor repeats itself: noise of a quarter of its resolution.
+TEST(ImuAxisWatchTest, ACoarseSensorAtRestIsNoFault) {
+  EXPECT_TRUE(Watch(Motion(20000, 4e-3, 0)).told.empty());
+}
+
+// Without noise a level motion has the same vertical force throughout, but for rounding.
+TEST(ImuAxisWatchTest, AnAxisThatSeldomChangedBeforeIsNoFault) {
+  std::vector<ImuSample> samples = Motion(4000, 1e-9);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].accel.z() = k % 50 == 0 ? 9.81 + 1e-14 : 9.81;
+  }
+  EXPECT_TRUE(Watch(std::move(samples)).told.empty());
+}
+
+TEST(ImuAxisWatchTest, RowsThatAreHandedOutTwiceAreNoFault) {
+  std::vector<ImuSample> samples = Motion(8000, 1e-9);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const ImuSample& first = samples[k - k % 25];
+    samples[k].gyro = first.gyro;
+    samples[k].accel = first.accel;
+  }
+  EXPECT_TRUE(Watch(std::move(samples)).told.empty());
+}
+
+TEST(ImuAxisWatchTest, AStuckAxisIsToldOnceWithAxisValueAndStampAndGetsItsNoise) {
+  std::vector<ImuSample> samples = Motion(4000, 1e-9);
+  for (std::size_t k = 2000; k < 3000; ++k) {
+    samples[k].gyro.y() = samples[1999].gyro.y();
+  }
+  const Watched watched = Watch(samples);
+  ASSERT_EQ(watched.told.size(), 1u);
+  EXPECT_THAT(watched.told[0], HasSubstr("the gyroscope's y axis repeats "));
+  EXPECT_THAT(watched.told[0], HasSubstr("from 9.995"));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    EXPECT_EQ(watched.faulty[k], k >= 2018 && k < 3000) << k;
+    EXPECT_EQ(watched.samples[k].gyro, samples[k].gyro);
+    EXPECT_EQ(watched.samples[k].accel_fault_density_mps2_sqrthz, 0);
+  }
+  // Over t the noise has the variance sigma^2 t^2 of a constant error; the axis is a cosine of one rad/s.
+  double variance = 0;
+  for (std::size_t k = 2000; k < 2200; ++k) {
+    variance += std::pow(watched.samples[k].gyro_fault_density_radps_sqrthz, 2) / kRateHz;
+  }
+  const double value = samples[1999].gyro.y();
+  EXPECT_NEAR(variance, 0.5 + value * value, 0.2 * variance);
+}
+
+TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsToldOnceAndFoundAtOnceAfterwards) {
+  std::vector<ImuSample> samples = Motion(4000, 1e-3);
+  std::size_t clipped = 0;
+  std::vector<bool> saturated(samples.size(), false);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    saturated[k] = samples[k].gyro.x() > 0.7;
+    samples[k].gyro.x() = std::min(samples[k].gyro.x(), 0.7);
+    clipped += saturated[k] ? 1 : 0;
+  }
+  ASSERT_GT(clipped, 800u);
+  const Watched watched = Watch(samples);
+  ASSERT_EQ(watched.told.size(), 1u);
+  EXPECT_THAT(watched.told[0], HasSubstr("the gyroscope's x axis is saturated at 0.7 rad/s"));
+  for (std::size_t k = 800; k < samples.size(); ++k) {
+    EXPECT_TRUE(watched.faulty[k] || !saturated[k]) << k;
+    EXPECT_TRUE(!watched.faulty[k] || samples[k].gyro.x() == 0.7) << k;
+  }
+}
+
+TEST(ImuAxisWatchTest, AFaultThatReturnsLaterIsToldAgain) {
+  std::vector<ImuSample> samples = Motion(8000, 1e-9);
+  for (const std::size_t from : {2000u, 2200u, 6000u}) {
+    for (std::size_t k = from; k < from + 100; ++k) {
+      samples[k].accel.z() = samples[from].accel.z();
+    }
+  }
+  const Watched watched = Watch(std::move(samples));
+  ASSERT_EQ(watched.told.size(), 2u);
+  EXPECT_THAT(watched.told[1], HasSubstr("the accelerometer's z axis"));
+  EXPECT_THAT(watched.told[1], HasSubstr("from 30.0"));
+}
+
+}  // namespace
+}  // namespace alidade
