@@ -12,7 +12,7 @@ packages=(
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libboost-dev libboost-math-dev libssl-dev
   libcurl4-openssl-dev libgeographiclib-dev zlib1g-dev libbz2-dev liblz4-dev
   libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev libjs-d3 librsvg2-bin
-  dpkg-dev file
+  dpkg-dev file perl
 )
 optional=()
 for option in "$@"; do
