@@ -100,7 +100,8 @@ RunHealth HealthOf(const EstimatorConfig& config, const RunResult& result) {
     health.impairments.push_back(reason);
   }
   if (!result.restarts.empty()) {
-    health.impairments.push_back(Format("%zu restarts", result.restarts.size()));
+    health.impairments.push_back(
+        Format(result.restarts.size() == 1 ? "%zu restart" : "%zu restarts", result.restarts.size()));
   }
   for (const std::string& sensor : EnabledSensors(config)) {
     const auto& missing = result.missing_sensors;
