@@ -103,7 +103,12 @@ class Calibration {
     const GyroCorrelation rates =
         CorrelateGyro(TurnsOfImages(log_.rig.camera, tables.frames), tables.imu, sheet_offset_s);
     if (rates.clocks_differ()) {
-      return Status::Input("cam0: " + DescribeClocks(rates, sheet_offset_s));
+      const std::string text = "cam0: " + DescribeClocks(rates, sheet_offset_s);
+      if (rates.certain()) {
+        return Status::Input(text);
+      }
+      Say(text);
+      result_.remarks.push_back(text);
     }
     const std::vector<FramePair> pairs = FramePairsOf(log_, kMostPairs);
     CameraGyroSearchOptions search;

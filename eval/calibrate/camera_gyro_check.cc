@@ -41,7 +41,12 @@ std::string AxesText(const Matrix3d& R_BC) {
 bool TellClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, Findings* findings) {
   constexpr double kUnitBand = 1.4;  // focal length and translation change the images' rate by less
   if (rates.clocks_differ()) {
-    findings->Error("cam0: " + DescribeClocks(rates, rig.camera_time_offset_s));
+    const std::string text = "cam0: " + DescribeClocks(rates, rig.camera_time_offset_s);
+    if (rates.certain()) {
+      findings->Error(text);
+    } else {
+      findings->Warning(text + Format("; from %.0f s of turns", rates.best.span_s));
+    }
     return true;
   }
   if (!rates.agree() || !(rates.best.scale > 0)) {
@@ -183,8 +188,9 @@ void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, 
   if (rates.best.scale > kMostScale) {
     findings->Fact(
         Format("cam0 against the gyroscope: not compared: its rates are %.3g times those of the "
-               "images, and vary otherwise",
-               rates.best.scale));
+               "images, and vary %s (correlation %.2f)",
+               rates.best.scale, rates.agree() ? "alike: a unit that is not known?" : "otherwise",
+               rates.best.correlation));
     return;
   }
   CameraGyroSearchOptions options;

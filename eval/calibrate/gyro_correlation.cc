@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "core/median.h"
+#include "eval/dataset/sensor_yaml.h"
 
 namespace alidade {
 namespace {
@@ -112,7 +113,7 @@ class RateIntegral {
 
 LaggedRates RatesAt(const std::vector<ImageTurn>& turns, const RateIntegral& gyro, TimeNs offset_ns,
                     double lag_s) {
-  double images = 0, rates = 0, images_square = 0, rates_square = 0, product = 0, span_s = 0;
+  double images = 0, rates = 0, images_square = 0, rates_square = 0, product = 0;
   LaggedRates nothing;
   nothing.lag_s = lag_s;
   LaggedRates lagged = nothing;
@@ -125,12 +126,14 @@ LaggedRates RatesAt(const std::vector<ImageTurn>& turns, const RateIntegral& gyr
       images_square += image * image;
       rates_square += *rate * *rate;
       product += image * *rate;
-      span_s += SecondsBetween(turn.i_ns, turn.j_ns);
+      lagged.span_s += SecondsBetween(turn.i_ns, turn.j_ns);
       ++lagged.turns;
     }
   }
-  constexpr double kLeastSpanS = 5;
-  if (2 * lagged.turns < turns.size() || span_s < kLeastSpanS) {
+  // Over a few seconds of smooth motion, some lag of the many that are tried agrees by chance.
+  constexpr double kLeastSpanS = 15, kLeastNearS = 5;
+  const double least_s = std::abs(lag_s) <= GyroCorrelation::kNearS ? kLeastNearS : kLeastSpanS;
+  if (2 * lagged.turns < turns.size() || lagged.span_s < least_s) {
     return nothing;
   }
   const double n = static_cast<double>(lagged.turns);
@@ -210,12 +213,16 @@ GyroCorrelation CorrelateGyro(const std::vector<ImageTurn>& turns, const Table<I
 }
 
 std::string DescribeClocks(const GyroCorrelation& rates, double sheet_time_offset_s) {
+  const double offset_s = sheet_time_offset_s + rates.best.lag_s;
+  const std::string expected =
+      std::abs(offset_s) <= kMostCameraOffsetS
+          ? Format("expected time_offset_s: %.2f in its sheet", offset_s)
+          : Format("shift the stamps by %+.2f s, as time_offset_s is within +-%.0f s", rates.best.lag_s,
+                   kMostCameraOffsetS);
   return Format(
       "the clocks of camera and imu0 differ: the rotation rates of images and gyroscope agree when the "
-      "camera's stamps are moved by %+.2f s (correlation %.2f), and not as they are (%.2f); expected "
-      "time_offset_s: %.2f in its sheet",
-      rates.best.lag_s, rates.best.correlation, rates.near.correlation,
-      sheet_time_offset_s + rates.best.lag_s);
+      "camera's stamps are moved by %+.2f s (correlation %.2f), and not as they are (%.2f); %s",
+      rates.best.lag_s, rates.best.correlation, rates.near.correlation, expected.c_str());
 }
 
 }  // namespace alidade

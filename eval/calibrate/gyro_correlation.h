@@ -28,7 +28,8 @@ struct ImageTurn {
 struct LaggedRates {
   double lag_s = 0;
   double correlation = 0;
-  double scale = 0;  ///< the gyroscope's root mean square over the images'
+  double scale = 0;   ///< the gyroscope's root mean square over the images'
+  double span_s = 0;  ///< that the turns cover together
   std::size_t turns = 0;
 
   /// The share of the variance that they do not have in common; at least what translation and noise of the
@@ -46,24 +47,30 @@ struct GyroCorrelation {
 
   LaggedRates best;
   LaggedRates near;   ///< best within kNearS of zero; no turns: the sensors share too little time there
-  LaggedRates other;  ///< best peak more than half a second from `best`
+  LaggedRates other;  ///< best peak more than half a second from `best`; no turns: there is none
 
   /// Whether they agree at all. 0.8: turns of recordings in order reach 0.94 to 0.99.
   [[nodiscard]] bool agree() const { return best.correlation >= 0.8; }
   /// Whether the agreement is of another lag than about zero and of no second one, as with periodic motion:
   /// variances of some fifty independent turns differ by a factor of two by chance once in a hundred times.
   [[nodiscard]] bool clocks_differ() const {
-    return agree() && near.turns > 0 && std::abs(best.lag_s) > kNearS &&
+    return agree() && near.turns > 0 && other.turns > 0 && std::abs(best.lag_s) > kNearS &&
            near.unexplained() > 4 * best.unexplained() && other.unexplained() > 2 * best.unexplained();
   }
+  /// Whether clocks_differ is certain. Smooth motion of a shorter time has few independent turns: in
+  /// synthetic recordings of 15 to 30 s of it, up to 2 % of those in order have a distinct lag, and none of
+  /// longer ones.
+  [[nodiscard]] bool certain() const { return best.span_s >= 30; }
 };
 
 /// Correlates turns with the gyroscope. time_offset_s: of the sheet, where the lag is zero. Lags at which
-/// less than half the turns, or less than five seconds of them, lie within the IMU's samples are left out.
+/// less than half the turns, or less than fifteen seconds of them (five within kNearS, which claim nothing),
+/// lie within the IMU's samples are left out.
 [[nodiscard]] GyroCorrelation CorrelateGyro(const std::vector<ImageTurn>& turns, const Table<ImuSample>& imu,
                                             double time_offset_s);
 
-/// What clocks_differ says, with the time offset to enter instead of the sheet's.
+/// What clocks_differ says, with the time offset to enter instead of the sheet's, or by how much to shift the
+/// stamps where a sheet takes no such offset (kMostCameraOffsetS).
 [[nodiscard]] std::string DescribeClocks(const GyroCorrelation& rates, double sheet_time_offset_s);
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/format.h"
 #include "eval/dataset/dataset_findings.h"
@@ -58,31 +59,46 @@ bool IsEarthCentred(const Eigen::Vector3d& position) {
          std::abs(position.z()) > kHighestM;
 }
 
-/// What was expected of a position where nobody is; null of others.
-const char* ExpectedOf(const Eigen::Vector3d& position, bool has_anchor) {
-  constexpr double kEarthM = 1.3e7;  // its diameter
-  constexpr double kFarM = 1e5;      // beyond what a recording travels
-  if (position.norm() > kEarthM) {
-    return "a place on the Earth: another unit?";
-  }
+/// A position where nobody is likely to be.
+struct OddPlace {
+  const char* expected;
+  bool impossible;
+};
+
+std::optional<OddPlace> OddPlaceOf(const Eigen::Vector3d& position, bool has_anchor) {
+  constexpr double kFarM = 1e5;      // beyond what most recordings travel; aircraft and ships go further
+  constexpr double kEarthM = 6.4e6;  // its radius
+  // Eastings of grids that begin with the zone, as those of CGCS2000 and Gauss-Krueger, reach 6e7.
+  constexpr double kGridM = 1e8;
   if (IsEarthCentred(position)) {
-    return "ENU coordinates: is it ECEF?";
+    return OddPlace{"ENU coordinates: is it ECEF?", true};
   }
-  return has_anchor && position.norm() > kFarM
-             ? "within 100 km of anchor_llh_deg: another anchor, or another unit?"
-             : nullptr;
+  if (has_anchor && position.norm() > kFarM) {
+    return OddPlace{"within 100 km of anchor_llh_deg: another anchor, or another unit?",
+                    position.norm() > kEarthM};
+  }
+  if (position.norm() > kGridM) {
+    return OddPlace{"a place on the Earth: another unit?", true};
+  }
+  return std::nullopt;
 }
 
-/// Positions where nobody was: an error when most are so.
+/// Positions where nobody was: an error when most are impossible.
 void CheckPlaces(const char* name, bool has_anchor, const std::vector<const PositionFix*>& fixes,
                  Findings* findings) {
   constexpr std::size_t kManyFixes = 10;
   const PositionFix* first = nullptr;
+  const char* expected = "";
   std::size_t absurd = 0;
+  std::size_t impossible = 0;
   bool all_equal = true;
   for (const PositionFix* fix : fixes) {
-    if (ExpectedOf(fix->p_A, has_anchor) != nullptr) {
-      first = absurd++ == 0 ? fix : first;
+    if (const std::optional<OddPlace> odd = OddPlaceOf(fix->p_A, has_anchor)) {
+      if (absurd++ == 0) {
+        first = fix;
+        expected = odd->expected;
+      }
+      impossible += odd->impossible ? 1 : 0;
     }
     all_equal = all_equal && fix->p_A == fixes.front()->p_A;
   }
@@ -92,8 +108,8 @@ void CheckPlaces(const char* name, bool has_anchor, const std::vector<const Posi
         "m, "
         "expected %s",
         name, absurd, fixes.size(), static_cast<long long>(first->stamp_ns), first->p_A.x(), first->p_A.y(),
-        first->p_A.z(), ExpectedOf(first->p_A, has_anchor));
-    if (2 * absurd > fixes.size()) {
+        first->p_A.z(), expected);
+    if (2 * impossible > fixes.size()) {
       findings->Error(text);
     } else {
       findings->Warning(text);

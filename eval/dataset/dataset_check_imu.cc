@@ -40,7 +40,7 @@ void CheckDensity(const DensityLimits& limits, double density, const std::option
   findings->Warning(Format(
       "imu0/sensor.yaml: %s: found %.3g %s, expected below %.0e%s: in %s, or a standard deviation of the "
       "samples?",
-      limits.key, density, limits.unit, limits.grade,
+      limits.key, density, limits.unit, above_samples ? limits.grade : limits.most,
       quietest ? Format(" (the quietest second shows at most %.2g)", *quietest).c_str() : "",
       limits.wrong_unit));
 }

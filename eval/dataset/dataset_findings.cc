@@ -110,7 +110,8 @@ std::optional<double> CheckStamps(const char* sensor, const std::vector<TimeNs>&
     findings->Warning(
         Format("%s: sensor.yaml states %.2f Hz, the stamps give %.2f Hz", sensor, stated_rate_hz, mean_rate));
   }
-  return 1 / median;
+  // Rows that are stamped on receipt arrive in packets, a few microseconds apart at a mean rate in order.
+  return 1 / median > limits.high_hz ? std::min(1 / median, mean_rate) : 1 / median;
 }
 
 void CheckRate(const char* sensor, double rate_hz, const RateLimits& limits, Findings* findings) {

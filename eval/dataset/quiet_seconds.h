@@ -10,10 +10,10 @@
 
 namespace alidade {
 
-/// What the calm seconds of an IMU say, from one pass in constant memory. A second is calm when its rates and
-/// specific forces spread less than the static start allows (InitConfig) and its mean rate is below
-/// kMostBias. Neglected: steady motion, which spreads as little as rest; medians over seconds bear some of
-/// it.
+/// What the calm seconds of an IMU say, from one pass that keeps one number a second. A second is calm when
+/// its rates and specific forces spread less than the static start allows (InitConfig) and its mean rate is
+/// below kMostBias. Neglected: steady motion, which spreads as little as rest; medians over seconds bear some
+/// of it.
 class QuietSeconds {
  public:
   /// Rising stamps.

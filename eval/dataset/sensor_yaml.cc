@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/format.h"
 #include "eval/dataset/sensor_file.h"
 #include "eval/files/csv.h"
 #include "eval/files/output_file.h"
@@ -156,9 +157,9 @@ Result<CameraSensor> MakeCameraSensor(const Result<YAML::Node>& root, const std:
   ALIDADE_RETURN_IF_ERROR(file->ReadRate(&sensor.rate_hz));
   ALIDADE_RETURN_IF_ERROR(ReadCamera(*file, path, &sensor.camera));
   if (file->Has("time_offset_s")) {
-    ALIDADE_RETURN_IF_ERROR(file->ReadReal("time_offset_s", -10, &sensor.time_offset_s));
-    if (sensor.time_offset_s > 10) {
-      return file->Fault("time_offset_s", "a number within +-10 s");
+    ALIDADE_RETURN_IF_ERROR(file->ReadReal("time_offset_s", -kMostCameraOffsetS, &sensor.time_offset_s));
+    if (sensor.time_offset_s > kMostCameraOffsetS) {
+      return file->Fault("time_offset_s", Format("a number within +-%.0f s", kMostCameraOffsetS));
     }
   }
   if (file->Has("line_delay_s")) {

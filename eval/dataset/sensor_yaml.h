@@ -13,6 +13,9 @@ struct ImuSensor {
   std::optional<double> rate_hz;
 };
 
+/// Of a camera's time_offset_s [s], either sign; stamps that are further off are to be shifted.
+inline constexpr double kMostCameraOffsetS = 10;
+
 struct CameraSensor {
   CameraModel camera;
   Pose T_BC;

@@ -18,7 +18,10 @@ const StampUnit* OtherStampUnit(TimeNs first, TimeNs last, std::size_t count, do
   constexpr std::size_t kLeastStamps = 11;  // fewer are no rate
   constexpr double kMostOff = 0.2;          // from the sheet's rate
   const double rate_hz = MeasuredRate(first, last, count);
-  if (count < kLeastStamps || !(rate_hz > limits.high_hz)) {
+  const auto is_stated = [stated_rate_hz](double hz) {
+    return stated_rate_hz > 0 && std::abs(hz / stated_rate_hz - 1) < kMostOff;
+  };
+  if (count < kLeastStamps || !(rate_hz > limits.high_hz) || is_stated(rate_hz)) {
     return nullptr;
   }
   const auto find = [&](auto fits) -> const StampUnit* {
@@ -29,10 +32,8 @@ const StampUnit* OtherStampUnit(TimeNs first, TimeNs last, std::size_t count, do
     }
     return nullptr;
   };
-  const StampUnit* by_sheet = find([&](double hz) {
-    return stated_rate_hz > 0 && stated_rate_hz <= limits.high_hz &&
-           std::abs(hz / stated_rate_hz - 1) < kMostOff;
-  });
+  const StampUnit* by_sheet =
+      find([&](double hz) { return stated_rate_hz <= limits.high_hz && is_stated(hz); });
   return by_sheet != nullptr ? by_sheet
                              : find([&](double hz) { return hz > limits.unit_hz && hz <= limits.high_hz; });
 }

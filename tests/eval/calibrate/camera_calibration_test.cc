@@ -126,5 +126,27 @@ TEST(CameraCalibrationTest, AGuessedFocalLengthIsEnough) {
   EXPECT_LT(so3::Log(camera->rig.T_BC.rotation.transpose() * recording.model.R_BC).norm(), 0.01);
 }
 
+// GIVEN clocks seconds apart THEN a long recording is refused for it, and with a short one it is said.
+TEST(CalibrateCamera, ClocksSecondsApartAreRefusedOrTold) {
+  for (const double duration_s : {40.0, 20.0}) {
+    MeasurementLog log = ShakenCamera{.model = PhoneModel(), .duration_s = duration_s}.Record();
+    for (TrackFrame& frame : log.frames) {
+      frame.stamp_ns += SecondsToNs(4);
+    }
+    std::string said;
+    CameraCalibrationOptions options;
+    options.lever_arm = false;
+    options.say = [&said](const std::string& line) { said += line + "\n"; };
+    const Result<CalibratedCamera> camera = CalibrateCamera(EstimatorConfig(), log, options);
+    const std::string text = "the clocks of camera and imu0 differ";
+    if (duration_s > 30) {
+      ASSERT_FALSE(camera.ok());
+      EXPECT_THAT(camera.message(), HasSubstr(text));
+    } else {
+      EXPECT_THAT(said, HasSubstr(text));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace alidade::test

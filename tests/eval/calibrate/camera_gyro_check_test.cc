@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "tests/eval/calibrate/shaken_camera.h"
@@ -19,8 +20,8 @@ using Severity = DatasetFinding::Severity;
 
 /// What the check says of a recording whose sheet is changed by `spoil`; facts are left out.
 template <typename Spoil>
-std::vector<DatasetFinding> Check(const CameraGyroModel& truth, const Spoil& spoil) {
-  MeasurementLog log = ShakenCamera{truth}.Record();
+std::vector<DatasetFinding> Check(const CameraGyroModel& truth, const Spoil& spoil, double duration_s = 20) {
+  MeasurementLog log = ShakenCamera{.model = truth, .duration_s = duration_s}.Record();
   spoil(&log);
   Findings findings;
   CheckCameraAgainstGyro(log, 200, &findings);
@@ -89,16 +90,20 @@ TEST(CameraGyroCheckTest, ANegatedAxisOfTheGyroscopeIsNamed) {
   }
 }
 
-// GIVEN camera stamps that are seconds off THEN the offset is named, and nothing of T_BS or focal length.
+// GIVEN camera stamps that are seconds off THEN the offset is named, and nothing of T_BS or focal length. A
+// short recording is not enough for an error.
 TEST(CameraGyroCheckTest, ClocksSecondsApartAreToldAlone) {
-  for (const double late_s : {4.0, -2.0}) {
-    const auto found = Check(PhoneModel(), [late_s](MeasurementLog* log) {
+  for (const auto& [late_s, duration_s, severity] :
+       {std::tuple(4.0, 40.0, Severity::kError), std::tuple(-2.0, 40.0, Severity::kError),
+        std::tuple(4.0, 20.0, Severity::kWarning)}) {
+    const auto delay = [late = late_s](MeasurementLog* log) {
       for (TrackFrame& frame : log->frames) {
-        frame.stamp_ns += SecondsToNs(late_s);
+        frame.stamp_ns += SecondsToNs(late);
       }
-    });
+    };
+    const auto found = Check(PhoneModel(), delay, duration_s);
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_EQ(found[0].severity, Severity::kError);
+    EXPECT_EQ(found[0].severity, severity);
     EXPECT_THAT(found[0].text, HasSubstr("the clocks of camera and imu0 differ"));
     const std::string key = "time_offset_s: ";
     const std::size_t at = found[0].text.find(key);
@@ -120,6 +125,24 @@ TEST(CameraGyroCheckTest, TheGyroscopesUnitIsToldByTheImages) {
     EXPECT_EQ(found[0].severity, Severity::kError);
     EXPECT_THAT(found[0].text, HasSubstr(said));
   }
+}
+
+// GIVEN rates that are too large by a factor of no unit THEN the fact says whether they vary as the images'.
+TEST(CameraGyroCheckTest, RatesThatAreNotComparedAreSaidToVaryAlikeOrOtherwise) {
+  const auto fact = [](const auto& spoil) {
+    MeasurementLog log = ShakenCamera{PhoneModel()}.Record();
+    for (ImuSample& sample : log.imu) {
+      spoil(&sample);
+    }
+    Findings findings;
+    CheckCameraAgainstGyro(log, 200, &findings);
+    const std::vector<DatasetFinding> list = findings.Take();
+    return list.size() == 1 && list[0].severity == Severity::kFact ? list[0].text : "";
+  };
+  EXPECT_THAT(fact([](ImuSample* sample) { sample->gyro *= 12; }), HasSubstr("vary alike"));
+  RandomStream random(3, "another gyroscope");
+  EXPECT_THAT(fact([&random](ImuSample* sample) { sample->gyro = 20 * random.Normal3(); }),
+              HasSubstr("vary otherwise"));
 }
 
 TEST(CameraGyroCheckTest, AnAccelerometerInPlaceOfTheGyroscopeIsNotCompared) {

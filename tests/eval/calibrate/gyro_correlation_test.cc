@@ -1,11 +1,16 @@
 #include "eval/calibrate/gyro_correlation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/eval/calibrate/shaken_camera.h"
 
 namespace alidade::test {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 
 GyroCorrelation Correlate(const MeasurementLog& log) {
   const LogTables tables = TablesOf(log);
@@ -56,6 +61,58 @@ TEST(GyroCorrelationTest, APeriodicMotionHasNoDistinctLag) {
   const GyroCorrelation rates = CorrelateGyro(turns, Table<ImuSample>(imu), 0);
   EXPECT_TRUE(rates.agree());
   EXPECT_FALSE(rates.clocks_differ());
+}
+
+/// A smooth motion of `duration_s` by a camera four seconds early, and a gyroscope from long before to long
+/// after it.
+GyroCorrelation OfSmoothMotion(double duration_s) {
+  const auto rate = [](double t_s) {
+    return 1 + 0.2 * (std::sin(1.1 * t_s) + std::sin(1.9 * t_s) + std::sin(3.1 * t_s));
+  };
+  std::vector<ImageTurn> turns;
+  for (int k = 0; k < static_cast<int>(10 * duration_s); ++k) {
+    const TimeNs i_ns = 100 * kSecondNs + k * (kSecondNs / 10);
+    turns.push_back({i_ns, i_ns + kSecondNs / 10, {rate(0.1 * k + 0.05), 0, 0}});
+  }
+  std::vector<ImuSample> imu;
+  for (int k = -1500; k <= 1500 + static_cast<int>(100 * duration_s); ++k) {
+    ImuSample sample;
+    sample.stamp_ns = 104 * kSecondNs + k * (kSecondNs / 100);
+    sample.gyro.x() = rate(0.01 * k);
+    imu.push_back(sample);
+  }
+  return CorrelateGyro(turns, Table<ImuSample>(imu), 0);
+}
+
+// GIVEN a smooth motion of a few seconds THEN a lag of seconds, which may be chance, is not claimed, and
+// below half a minute not as certain.
+TEST(GyroCorrelationTest, ALagOfSecondsNeedsTime) {
+  EXPECT_FALSE(OfSmoothMotion(12).clocks_differ());
+  EXPECT_GT(OfSmoothMotion(12).near.turns, 0U);
+  const GyroCorrelation some = OfSmoothMotion(20);
+  EXPECT_TRUE(some.clocks_differ());
+  EXPECT_FALSE(some.certain());
+  const GyroCorrelation long_enough = OfSmoothMotion(40);
+  EXPECT_TRUE(long_enough.clocks_differ());
+  EXPECT_TRUE(long_enough.certain());
+  EXPECT_NEAR(long_enough.best.lag_s, 4, 0.01);
+}
+
+TEST(GyroCorrelationTest, WithoutAnotherLagToCompareNoneIsDistinct) {
+  GyroCorrelation rates;
+  rates.best = {.lag_s = 2, .correlation = 0.99, .scale = 1, .span_s = 40, .turns = 400};
+  rates.near = {.lag_s = 0, .correlation = 0.1, .scale = 1, .span_s = 40, .turns = 400};
+  EXPECT_FALSE(rates.clocks_differ());
+  rates.other = rates.near;
+  EXPECT_TRUE(rates.clocks_differ());
+}
+
+TEST(GyroCorrelationTest, AnOffsetThatNoSheetTakesIsToBeAddedToTheStamps) {
+  GyroCorrelation rates;
+  rates.best.lag_s = -4;
+  EXPECT_THAT(DescribeClocks(rates, -6), HasSubstr("expected time_offset_s: -10.00 in its sheet"));
+  EXPECT_THAT(DescribeClocks(rates, -8),
+              AllOf(HasSubstr("shift the stamps by -4.00 s"), Not(HasSubstr("expected time_offset_s"))));
 }
 
 TEST(GyroCorrelationTest, WithoutTracksOrImuNothingAgrees) {

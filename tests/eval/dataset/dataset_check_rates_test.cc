@@ -62,6 +62,17 @@ TEST(CheckRates, GivenAnImuOfAFewHertzOrOfStampsInAnotherUnitThenItIsNamed) {
   EXPECT_THAT(Complaints(AtRest(), Severity::kWarning), Not(HasSubstr("a rate of")));
 }
 
+// GIVEN ten rows at a time, stamped on receipt, THEN the tiny steps within a packet are no rate.
+TEST(CheckRates, GivenAnImuInPacketsThenItsMeanRateIsJudged) {
+  Dataset dataset = AtRest();
+  for (std::size_t i = 0; i < dataset.imu.size(); ++i) {
+    const auto row = static_cast<TimeNs>(i);
+    dataset.imu[i].stamp_ns = 1'500'000'000'000'000'000 + row / 10 * 50'000'000 + row % 10 * 5'000;
+  }
+  EXPECT_THAT(Complaints(dataset, Severity::kError), Not(HasSubstr("a rate of")));
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("a rate of")));
+}
+
 TEST(CheckRates, GivenACameraOf1000HertzThenItIsDoubtedAndFasterThanTheImu) {
   Dataset dataset = Healthy();
   dataset.camera_rate_hz = 0;
@@ -124,6 +135,18 @@ TEST(CheckNoise, GivenDensitiesInDegreesOrMilligThenTheyAreNamedBesideWhatTheSam
   in_ug.rig.imu_noise.accel_noise_density_mps2_sqrthz *= 1e6 / 9.81;
   EXPECT_THAT(Complaints(in_ug, Severity::kWarning),
               HasSubstr("imu0/sensor.yaml: accelerometer_noise_density: found 204 m/s^2/sqrt(Hz)"));
+}
+
+TEST(CheckNoise, GivenADensityBeyondAnySensorThenThatLimitIsPrinted) {
+  Dataset dataset = AtRest();
+  for (ImuSample& sample : dataset.imu) {
+    sample.gyro *= 50;  // 0.01 rad/s/sqrt(Hz): the samples alone do not contradict the sheet
+  }
+  dataset.rig.imu_noise.gyro_noise_density_radps_sqrthz = 6e-3;
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning),
+              HasSubstr("gyroscope_noise_density: found 0.006 rad/s/sqrt(Hz), expected below 5e-03"));
+  dataset.rig.imu_noise.gyro_noise_density_radps_sqrthz = 4e-3;
+  EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("noise_density")));
 }
 
 // A good gyroscope in degrees is within the bounds of a bad one; its own samples tell.

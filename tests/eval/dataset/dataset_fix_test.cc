@@ -209,10 +209,17 @@ TEST(DatasetFix, GIVEN_positions_where_nobody_is_THEN_check_names_them) {
                              HasSubstr("fix1: 12 of 12 positions are absurd"), HasSubstr("is it ECEF?")));
   // The grid of a map is a frame of a sensor's own, too.
   const Dataset grid = shifted(Vector3d(500'000, 6'350'000, 400), 1);
-  EXPECT_THAT(Complaints(grid, DatasetFinding::Severity::kError),
-              testing::AllOf(testing::Not(HasSubstr("ECEF")), testing::Not(HasSubstr("fix1"))));
-  EXPECT_THAT(Complaints(grid, DatasetFinding::Severity::kError),
-              HasSubstr("within 100 km of anchor_llh_deg"));
+  EXPECT_EQ(Complaints(grid, DatasetFinding::Severity::kError), "");
+  EXPECT_THAT(Complaints(grid, DatasetFinding::Severity::kWarning),
+              testing::AllOf(HasSubstr("fix0: 6 of 6 positions are absurd"),
+                             HasSubstr("within 100 km of anchor_llh_deg"),
+                             testing::Not(HasSubstr("fix1: 12 of 12"))));
+  // CGCS2000, zone 39: beyond the Earth, but for a sensor without an anchor a grid.
+  const Dataset zone = shifted(Vector3d(39'500'000, 4'400'000, 50), 1);
+  EXPECT_THAT(
+      Complaints(zone, DatasetFinding::Severity::kError),
+      testing::AllOf(HasSubstr("fix0: 6 of 6 positions are absurd"), testing::Not(HasSubstr("fix1"))));
+  EXPECT_THAT(Complaints(zone, DatasetFinding::Severity::kWarning), testing::Not(HasSubstr("absurd")));
   const std::string in_nm = Complaints(shifted(Vector3d::Zero(), 1e9), DatasetFinding::Severity::kError);
   EXPECT_THAT(in_nm, HasSubstr("fix1: 11 of 11 steps are faster than 1000 m/s"));
   Dataset one = sound;
