@@ -59,20 +59,21 @@ void CountStates(const RunResult& result, RunHealth* health) {
   }));
 }
 
-/// Adds to the impairments of a run of `all` frames when `count` of them exceed the share. `what` they are.
-void LimitShare(std::size_t count, std::size_t all, double most, const char* what, RunHealth* health) {
+/// Adds to the impairments of a run of `all` frames when the share of `count` of them exceeds `most`.
+void LimitShare(std::size_t count, std::size_t all, double most, const char* text, RunHealth* health) {
   const double share = all == 0 ? 0 : static_cast<double>(count) / static_cast<double>(all);
   if (share > most) {
-    health->impairments.push_back(Format("%zu of %zu frames (%.0f %%) %s, expected at most %.0f %%", count,
-                                         all, 100 * share, what, 100 * most));
+    health->impairments.push_back(
+        Format("%zu of %zu frames (%.0f %%) %s %.0f %%", count, all, 100 * share, text, 100 * most));
   }
 }
 
 void LimitUnsound(const RunResult& result, RunHealth* health) {
   const auto skipped = static_cast<std::size_t>(result.frames_skipped);
   const std::size_t all = RecordCount(result) + skipped;
-  LimitShare(Unsound(*health) + skipped, all, kMaxImpairedShare, "without a sound state", health);
-  LimitShare(health->doubted, all, kMaxDoubtedShare, "whose model is in doubt", health);
+  LimitShare(Unsound(*health) + skipped, all, kMaxImpairedShare, "without a sound state, expected at most",
+             health);
+  LimitShare(health->doubted, all, kMaxDoubtedShare, "whose model is in doubt, expected at most", health);
 }
 
 /// ", 47 degraded, 2 suspect (4.90 s)"; empty when all states are sound.
