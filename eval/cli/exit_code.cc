@@ -11,7 +11,7 @@ const std::vector<ExitCode>& ExitCodes() {
       {kExitDiverged, "an estimator diverged or never initialised"},
       {kExitOutput, "output could not be written"},
       {kExitCellsFailed, "some cells of a comparison failed"},
-      {kExitImpaired, "a run was impaired: lost, degraded, or without the GNSS or fixes that it enables"},
+      {kExitImpaired, "a run was impaired: lost, degraded or without GNSS"},
       {kExitInterrupted, "interrupted"}};
   return codes;
 }
