@@ -3,7 +3,10 @@
 namespace alidade {
 
 void FixConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Boolean({"enabled", "-", "loosely coupled position fixes, where the sequence has them"}, &enabled);
+  visitor.Boolean(
+      {"enabled", "-",
+       "use position fixes, loosely coupled; without any in the sequence a run is impaired (exit code 8)"},
+      &enabled);
   visitor.Real({"std_scale", "-",
                 "factor on the standard deviations that the sensor reports; receivers report too small ones "
                 "near buildings"},

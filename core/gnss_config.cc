@@ -114,7 +114,10 @@ void DescribeAlignment(GnssConfig* config, ConfigVisitor& visitor) {
 }  // namespace
 
 void GnssConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Boolean({"enabled", "-", "use raw GNSS, tightly coupled, where the sequence has it"}, &enabled);
+  visitor.Boolean(
+      {"enabled", "-",
+       "use raw GNSS, tightly coupled; without any in the sequence a run is impaired (exit code 8)"},
+      &enabled);
   corrections.Describe(visitor);
   DescribeRobustness(this, visitor);
   DescribeClock(this, visitor);

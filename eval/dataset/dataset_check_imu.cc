@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/format.h"
+#include "core/imu_gap.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/imu_units.h"
 #include "eval/dataset/imu_values.h"
@@ -45,6 +46,17 @@ void CheckDensity(const DensityLimits& limits, double density, const std::option
       limits.wrong_unit));
 }
 
+/// What makes the least rate an error. rate_hz: of the median step, 0 when none is known.
+void CheckSilences(double rate_hz, Findings* findings) {
+  if (rate_hz > 0 && rate_hz < kImuRates.least_hz) {
+    findings->Error(
+        Format("imu0: a median step of %.1f ms, expected at most %.1f ms: steps above %.0f ms count as "
+               "silences, %s",
+               1e3 / rate_hz, 1e3 / kImuRates.least_hz, 1e3 * imu_gap::kMinGapS,
+               rate_hz * imu_gap::kMinGapS < 1 ? "as most here do" : "and jitter makes some so long"));
+  }
+}
+
 /// The accelerometer's scale and bias: against gravity at rest, or else in the mean, which motion may
 /// explain.
 void CheckScale(double mean_force, const QuietSeconds& quiet, Findings* findings) {
@@ -78,6 +90,7 @@ void CheckImu(const Dataset& dataset, Findings* findings) {
   }));
   const std::optional<double> rate_hz = CheckStamps("imu0", stamps, dataset.imu_rate_hz, kImuRates, findings);
   CheckRate("imu0", rate_hz.value_or(0), kImuRates, findings);
+  CheckSilences(rate_hz.value_or(0), findings);
   if (stamps.size() < 2) {
     return;
   }

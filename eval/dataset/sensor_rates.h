@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/imu_gap.h"
+
 namespace alidade {
 
 /// Rates [Hz] that a kind of sensor has.
@@ -15,9 +17,11 @@ struct RateLimits {
 };
 
 /// Motion of a body that carries a camera reaches 10 to 20 Hz, so sampling begins to lose it below 50 Hz;
-/// logs of phones have 25 Hz. No MEMS sensor samples faster than 32 kHz. Unit: above what
-/// such a sensor, read as microseconds, would have.
-inline constexpr RateLimits kImuRates{5, 50, 1e4, 1e5, 33};
+/// logs of phones have 25 Hz. No MEMS sensor samples faster than 32 kHz. Longer steps than
+/// imu_gap::kMinGapS are silences: the estimators add their noise, and the states are degraded. An IMU whose
+/// steps become so long by jitter of a fifth, as loggers on phones have, is always silent: at 12 Hz. Unit:
+/// above what the fastest sensor, read as microseconds, would have.
+inline constexpr RateLimits kImuRates{1.2 / imu_gap::kMinGapS, 50, 1e4, 1e5, 33};
 /// Keyframes may be many seconds apart. Cameras with a sensor of a megapixel end at some 200 Hz, those that
 /// render events at 1 kHz. Unit: cameras of 10 Hz and more of which a fifth of the frames is lost.
 inline constexpr RateLimits kCameraRates{0, 0, 250, 1e4, 8};

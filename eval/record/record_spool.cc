@@ -44,6 +44,7 @@ void Encode(const RunRecord& record, ByteWriter* bytes) {
   bytes->Write(record.backend_ms);
   bytes->Block(record.status);
   bytes->Block(record.reason);
+  bytes->Write(static_cast<std::uint8_t>(record.degradation));
   bytes->Write(static_cast<std::uint8_t>(record.clock.has_value()));
   if (record.clock) {
     EncodeMatrix(record.clock->mean, bytes);
@@ -62,6 +63,7 @@ void Decode(ByteReader* bytes, RunRecord* record) {
   record->backend_ms = bytes->Read<double>();
   record->status = bytes->Block();
   record->reason = bytes->Block();
+  record->degradation = static_cast<DegradationKind>(bytes->Read<std::uint8_t>());
   record->clock.reset();
   if (bytes->Read<std::uint8_t>() != 0) {
     record->clock.emplace();

@@ -98,6 +98,7 @@ void RunBuilder::On(const SuspectEvent& event) {
 
 void RunBuilder::On(const DegradedEvent& event) {
   Mark("degraded", event.reason);
+  result_.records.back().degradation = event.kind;
 }
 
 void RunBuilder::Mark(const char* status, const std::string& reason) {

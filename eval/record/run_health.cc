@@ -12,12 +12,13 @@ namespace {
 constexpr const char* kUnsound[] = {"degraded", "suspect", "lost"};
 constexpr const char* kGnssName = "GNSS";
 
+/// Without those whose model is in doubt.
 std::size_t Unsound(const RunHealth& health) {
   std::size_t count = 0;
   for (const char* status : kUnsound) {
     count += health.states.at(status);
   }
-  return count;
+  return count - health.doubted;
 }
 
 std::string NotUsed(const std::string& sensor, const std::string& why) {
@@ -46,6 +47,8 @@ void CountStates(const RunResult& result, RunHealth* health) {
   // Whoever writes the records tells that they cannot be read.
   static_cast<void>(ForEachRecord(result, [&](const RunRecord& record) {
     ++health->states[record.status];
+    const bool doubted = record.status == "degraded" && record.degradation == DegradationKind::kModel;
+    health->doubted += doubted ? 1 : 0;
     const bool unsound =
         std::find(std::begin(kUnsound), std::end(kUnsound), record.status) != std::end(kUnsound);
     if (unsound && before_ns) {
@@ -56,15 +59,21 @@ void CountStates(const RunResult& result, RunHealth* health) {
   }));
 }
 
-/// Empty: frames enough have a sound state.
-std::string TooFewSound(const RunHealth& health, const RunResult& result) {
-  const std::size_t without = Unsound(health) + static_cast<std::size_t>(result.frames_skipped);
-  const std::size_t all = RecordCount(result) + static_cast<std::size_t>(result.frames_skipped);
-  const double share = all == 0 ? 0 : static_cast<double>(without) / static_cast<double>(all);
-  return share > kMaxImpairedShare
-             ? Format("%zu of %zu frames (%.0f %%) without a sound state, expected at most %.0f %%", without,
-                      all, 100 * share, 100 * kMaxImpairedShare)
-             : std::string();
+/// Adds to the impairments of a run of `all` frames when the share of `count` of them exceeds `most`.
+void LimitShare(std::size_t count, std::size_t all, double most, const char* text, RunHealth* health) {
+  const double share = all == 0 ? 0 : static_cast<double>(count) / static_cast<double>(all);
+  if (share > most) {
+    health->impairments.push_back(
+        Format("%zu of %zu frames (%.0f %%) %s %.0f %%", count, all, 100 * share, text, 100 * most));
+  }
+}
+
+void LimitUnsound(const RunResult& result, RunHealth* health) {
+  const auto skipped = static_cast<std::size_t>(result.frames_skipped);
+  const std::size_t all = RecordCount(result) + skipped;
+  LimitShare(Unsound(*health) + skipped, all, kMaxImpairedShare, "without a sound state, expected at most",
+             health);
+  LimitShare(health->doubted, all, kMaxDoubtedShare, "whose model is in doubt, expected at most", health);
 }
 
 /// ", 47 degraded, 2 suspect (4.90 s)"; empty when all states are sound.
@@ -96,9 +105,7 @@ std::vector<std::string> MissingSensors(const EstimatorConfig& config, const Mea
 RunHealth HealthOf(const EstimatorConfig& config, const RunResult& result) {
   RunHealth health;
   CountStates(result, &health);
-  if (const std::string reason = TooFewSound(health, result); !reason.empty()) {
-    health.impairments.push_back(reason);
-  }
+  LimitUnsound(result, &health);
   if (!result.restarts.empty()) {
     health.impairments.push_back(
         Format(result.restarts.size() == 1 ? "%zu restart" : "%zu restarts", result.restarts.size()));

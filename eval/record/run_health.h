@@ -12,14 +12,19 @@
 
 namespace alidade {
 
-/// The largest share of frames after the start that may be without a sound state (degraded, suspect, lost or
-/// skipped) in a run that counts as unimpaired: that of the images that a sequence may lack, so that a short
-/// fault, which the IMU bridges, does not fail a run. A clean sequence has none (docs/faults.md).
+/// The largest share of frames after the start that may be without a sound state (degraded by data, suspect,
+/// lost or skipped) in a run that counts as unimpaired: that of the images that a sequence may lack, so that
+/// a short fault, which the IMU bridges, does not fail a run. A clean sequence has none (docs/faults.md).
 inline constexpr double kMaxImpairedShare = kMaxUnreadableShare;
+/// The same of frames that are degraded because the model is in doubt. Nothing is missing: the covariance is
+/// too small. Sheets of real sensors are off by a few per cent, which shows in some motions; what is told in
+/// most of a run is not its model.
+inline constexpr double kMaxDoubtedShare = 0.5;
 
 /// How far a run that ended had what its estimator needs.
 struct RunHealth {
   std::map<std::string, std::size_t> states;  ///< by RunRecord::status; those of every run are always there
+  std::size_t doubted = 0;                    ///< of the degraded ones, those by DegradationKind::kModel
   double unsound_s = 0;  ///< from the record before to each that is degraded, suspect or lost, summed
   /// Why the run is impaired, for people; empty: it is not.
   std::vector<std::string> impairments;

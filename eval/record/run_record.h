@@ -6,6 +6,7 @@
 #include "core/estimator/estimator.h"
 #include "eval/audit/observability.h"
 #include "eval/record/calibration_record.h"
+#include "eval/run/degradation_kind.h"
 
 namespace alidade {
 
@@ -19,9 +20,10 @@ struct RunRecord {
   std::optional<ObservabilityRecord> observability;  ///< of an audited run
   /// Covariance of (phi, dp) given the data up to this frame alone; of the batch estimate.
   std::optional<Matrix6d> filtering_covariance;
-  std::optional<ClockState> clock;                 ///< once aligned with GNSS
-  std::optional<CalibrationEstimate> calibration;  ///< of an estimator that calibrates online
-  std::string reason;                              ///< of a status that is not ok
+  std::optional<ClockState> clock;                       ///< once aligned with GNSS
+  std::optional<CalibrationEstimate> calibration;        ///< of an estimator that calibrates online
+  std::string reason;                                    ///< of a status that is not ok
+  DegradationKind degradation = DegradationKind::kData;  ///< of the status degraded; in no file of a run
 };
 
 }  // namespace alidade

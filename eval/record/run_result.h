@@ -33,7 +33,10 @@ struct RunResult {
   TimeNs init_stamp_ns = 0;
   int frames_skipped = 0;   ///< refused by the estimator after initialisation
   std::string skip_report;  ///< why the first of them was
-  int imu_rejected = 0;     ///< samples dropped by the reader or refused by the run
+  /// Samples dropped by the reader, refused by the run or replaced by the guard (eval/run/imu_guard.h). An
+  /// axis that is saturated or stuck counts one an episode, and a change of the gyroscope's unit one,
+  /// although their samples are used.
+  int imu_rejected = 0;
   /// What the configuration enables and the log lacks (run_health.h).
   std::vector<std::string> missing_sensors;
   std::optional<GlobalFrame> global;          ///< once aligned with GNSS or position fixes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/format.h"
 #include "core/imu_gap.h"
@@ -83,8 +84,8 @@ std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameSt
   return dof_ > 0 && nis_ > bound * dof_ ? std::optional(nis_ / dof_) : std::nullopt;
 }
 
-std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
-                               const CalibrationDoubt* doubt) {
+Degradation::Verdict Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
+                                        const CalibrationDoubt* doubt) {
   const std::optional<double> innovations = LargeInnovations(imu_ns, statistics);
   if (statistics.tracks_in > 0 || sighted_ns_ == INT64_MIN) {
     sighted_ns_ = imu_ns;
@@ -92,6 +93,13 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   if (jump_until_ns_ == INT64_MAX) {
     jump_until_ns_ = imu_ns + SecondsToNs(kSettlingS);
   }
+  if (std::string reason = FaultOfData(imu_ns); !reason.empty()) {
+    return {std::move(reason), DegradationKind::kData};
+  }
+  return {DoubtOfModel(innovations, doubt), DegradationKind::kModel};
+}
+
+std::string Degradation::FaultOfData(TimeNs imu_ns) const {
   if (imu_ns < jump_until_ns_) {
     return Format("the camera's clock jumped by %.3f s, which is taken off its stamps", jump_s_);
   }
@@ -111,9 +119,11 @@ std::string Degradation::Check(TimeNs imu_ns, const FrameStatistics& statistics,
   if (imu_ns < unit_until_ns_) {
     return "the gyroscope changed its unit and is converted to rad/s";
   }
-  if (std::string reason = AgainstSensors("vision and IMU"); !reason.empty()) {
-    return reason;
-  }
+  return AgainstSensors("vision and IMU");
+}
+
+std::string Degradation::DoubtOfModel(const std::optional<double>& innovations,
+                                      const CalibrationDoubt* doubt) const {
   const bool doubted = doubt != nullptr && doubt->sigmas >= kMaxDoubtSigmas;
   if (doubted && doubt->pose_sigmas >= kMaxPoseSigmas) {
     return Format("%s is not as given: off by %.3g %s (%.1f sigma), which moves the pose by %.1f sigma",

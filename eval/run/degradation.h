@@ -9,6 +9,7 @@
 #include "core/calibration_watch.h"
 #include "core/estimator/estimator.h"
 #include "core/track_frame.h"
+#include "eval/run/degradation_kind.h"
 
 namespace alidade {
 
@@ -20,6 +21,11 @@ using AbsoluteSource = std::pair<Sensor, int>;
 /// model that does not hold: a camera that is not as given, innovations larger than predicted for long.
 class Degradation {
  public:
+  struct Verdict {
+    std::string reason;  ///< why the estimate is degraded; empty: it is not
+    DegradationKind kind = DegradationKind::kData;
+  };
+
   /// Without tracks for this long the estimate is dead reckoning.
   static constexpr double kMaxBlindS = 0.15;
   /// After a silence of the IMU.
@@ -55,11 +61,11 @@ class Degradation {
   /// very same pixel. A sensor's noise moves each of them even at rest: it is the old image under a new
   /// stamp, and says nothing. Every frame, in order.
   bool IsFrozen(const TrackFrame& frame);
-  /// Why the estimate after a frame at `imu_ns` is degraded; empty: it is not. Every frame, in order, after
-  /// IsFrozen of it.
+  /// Whether the estimate after a frame at `imu_ns` is degraded; by data rather than by the model when both
+  /// hold. Every frame, in order, after IsFrozen of it.
   /// `doubt`: of a watched calibration, else null.
-  [[nodiscard]] std::string Check(TimeNs imu_ns, const FrameStatistics& statistics,
-                                  const CalibrationDoubt* doubt = nullptr);
+  [[nodiscard]] Verdict Check(TimeNs imu_ns, const FrameStatistics& statistics,
+                              const CalibrationDoubt* doubt = nullptr);
   /// After a start.
   void Reset() {
     sighted_ns_ = INT64_MIN;
@@ -68,6 +74,11 @@ class Degradation {
   }
 
  private:
+  // Reasons; empty: there is none.
+  [[nodiscard]] std::string FaultOfData(TimeNs imu_ns) const;
+  /// `innovations`: LargeInnovations.
+  [[nodiscard]] std::string DoubtOfModel(const std::optional<double>& innovations,
+                                         const CalibrationDoubt* doubt) const;
   /// Who may contradict, where the monitors are not sure; else empty.
   [[nodiscard]] std::string AbsoluteHint() const;
   /// The mean of kInnovationsS where it is larger than chance makes it, else nothing.

@@ -100,7 +100,7 @@ void EstimatorLoop::ProcessEpochAlone() {
     ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
     WatchSensor(*gnss_);
     if (const std::string reason = degradation_.AgainstSensors("the IMU"); !reason.empty() && running()) {
-      events_.emplace_back(DegradedEvent{state_ns_, reason});
+      events_.emplace_back(DegradedEvent{state_ns_, reason, DegradationKind::kData});
     }
   }
 }
@@ -180,9 +180,10 @@ void EstimatorLoop::ReportDegraded(TimeNs imu_ns) {
   if (camera && camera->watched) {
     doubt = FindCalibrationDoubt(*camera, estimator_.Latest().covariance);
   }
-  std::string reason = degradation_.Check(imu_ns, estimator_.last_statistics(), doubt ? &*doubt : nullptr);
-  if (!reason.empty()) {
-    events_.emplace_back(DegradedEvent{state_ns_, std::move(reason)});
+  Degradation::Verdict verdict =
+      degradation_.Check(imu_ns, estimator_.last_statistics(), doubt ? &*doubt : nullptr);
+  if (!verdict.reason.empty()) {
+    events_.emplace_back(DegradedEvent{state_ns_, std::move(verdict.reason), verdict.kind});
   }
 }
 

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/estimator/estimator.h"
+#include "eval/run/degradation_kind.h"
 #include "gnss/alignment/alignment.h"
 #include "gnss/model/gnss_epoch.h"
 
@@ -48,6 +49,7 @@ struct SuspectEvent {
 struct DegradedEvent {
   TimeNs stamp_ns = 0;  ///< of the state
   std::string reason;
+  DegradationKind kind = DegradationKind::kData;
 };
 
 /// The estimate was given up; a new start is sought.

@@ -170,8 +170,8 @@ TEST(Run, OnHalfAnImuIsImpairedAndSaysWhy) {
   EXPECT_EQ(json["impaired"].size(), 1u);
 }
 
-// GIVEN a camera whose rotation is wrong by 1 deg, so that most states are degraded WHEN the run ends THEN
-// its last line, exit code and run.json tell it from a clean one.
+// GIVEN a camera whose rotation is wrong by 1 deg, which is told in more than half of the run WHEN it ends
+// THEN its last line, exit code and run.json tell it from a clean one.
 TEST(Run, ThatIsMostlyDegradedIsImpaired) {
   TemporaryFolder folder;
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +
@@ -183,9 +183,9 @@ TEST(Run, ThatIsMostlyDegradedIsImpaired) {
                                     " --config=" + Source("configs/estimators/alidade_filter.yaml") +
                                     " --output=" + folder.File("a"));
   EXPECT_EQ(run.code, 8) << run.output;
-  EXPECT_THAT(run.output, testing::ContainsRegex("^impaired: .* degraded .* without a sound state"));
+  EXPECT_THAT(run.output, testing::ContainsRegex("^impaired: .* degraded .* whose model is in doubt"));
   const auto json = nlohmann::json::parse(ReadFile(folder.File("a/run.json")));
-  EXPECT_GT(json["states"]["degraded"], 0);
+  EXPECT_GT(json["states"]["degraded"], json["states"]["ok"]);
   EXPECT_EQ(json["impaired"].size(), 1u);
 }
 

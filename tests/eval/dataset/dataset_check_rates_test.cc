@@ -47,6 +47,7 @@ Dataset WithImuStep(TimeNs step_ns) {
 TEST(CheckRates, GivenAnImuOfAFewHertzOrOfStampsInAnotherUnitThenItIsNamed) {
   EXPECT_THAT(Complaints(WithImuStep(300'000'000), Severity::kError),
               HasSubstr("imu0: a rate of 3.33333 Hz, expected 50 to 10000 Hz"));
+  EXPECT_EQ(Complaints(WithImuStep(50'000'000), Severity::kError), "");
   EXPECT_THAT(Complaints(WithImuStep(50'000'000), Severity::kWarning), HasSubstr("imu0: a rate of 20 Hz"));
   EXPECT_THAT(
       Complaints(WithImuStep(60'000), Severity::kWarning),
@@ -71,6 +72,18 @@ TEST(CheckRates, GivenAnImuInPacketsThenItsMeanRateIsJudged) {
   }
   EXPECT_THAT(Complaints(dataset, Severity::kError), Not(HasSubstr("a rate of")));
   EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("a rate of")));
+}
+
+// Steps of more than 0.1 s are silences of the IMU to the estimators.
+TEST(CheckRates, GivenAnImuWhoseStepsCountAsSilencesThenItIsAnError) {
+  EXPECT_THAT(Complaints(WithImuStep(125'000'000), Severity::kError),
+              testing::AllOf(HasSubstr("imu0: a rate of 8 Hz, expected 50 to 10000 Hz"),
+                             HasSubstr("imu0: a median step of 125.0 ms, expected at most 83.3 ms: steps "
+                                       "above 100 ms count as silences, as most here do")));
+  EXPECT_THAT(Complaints(WithImuStep(90'000'000), Severity::kError),
+              HasSubstr("imu0: a median step of 90.0 ms, expected at most 83.3 ms: steps above 100 ms count "
+                        "as silences, and jitter makes some so long"));
+  EXPECT_EQ(Complaints(WithImuStep(80'000'000), Severity::kError), "");
 }
 
 TEST(CheckRates, GivenACameraOf1000HertzThenItIsDoubtedAndFasterThanTheImu) {

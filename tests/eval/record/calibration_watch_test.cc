@@ -69,6 +69,7 @@ TEST_P(CalibrationWatchRunTest, NamesWhatIsWrong) {
     ASSERT_TRUE(result.status.ok()) << result.status.message();
     EXPECT_EQ(result.records.back().status, "degraded");
     EXPECT_THAT(result.records.back().reason, HasSubstr(name));
+    EXPECT_EQ(result.records.back().degradation, DegradationKind::kModel);
     const auto degraded = std::count_if(result.records.begin(), result.records.end(),
                                         [](const RunRecord& record) { return record.status == "degraded"; });
     EXPECT_GT(degraded, 50) << "of 200 frames";

@@ -33,11 +33,12 @@ class RunHealthTest : public testing::Test {
     options.truth = &scene_.truth;
     return RunEstimator(config_, scene_.log, options, &estimator);
   }
-  /// A sound run of which `count` states after the first are called `status`.
-  RunResult RunWith(size_t count, const char* status) {
+  /// A sound run of which `count` states after the first are called `status`, of this kind.
+  RunResult RunWith(size_t count, const char* status, DegradationKind kind = DegradationKind::kData) {
     RunResult result = Run();
     for (size_t i = 1; i <= count; ++i) {
       result.records.at(i).status = status;
+      result.records.at(i).degradation = kind;
     }
     return result;
   }
@@ -84,6 +85,40 @@ TEST_F(RunHealthTest, GivenMoreThanTheToleratedShareThenTheRunIsImpaired) {
     EXPECT_THAT(DescribeRun(health, result), HasSubstr(", " + std::to_string(many) + " " + status));
   }
   EXPECT_THAT(HealthOf(config_, RunWith(many, "local")).impairments, IsEmpty());
+}
+
+// GIVEN a model that is doubted in up to half of the run THEN it is told and the run is ok; in more it is
+// not.
+TEST_F(RunHealthTest, GivenADoubtedModelThenHalfOfTheRunIsTolerated) {
+  const size_t half = Run().records.size() / 2;
+  ASSERT_GT(half, 2 * Tolerated(2 * half));
+  RunResult result = RunWith(half, "degraded", DegradationKind::kModel);
+  EXPECT_THAT(HealthOf(config_, result).impairments, IsEmpty());
+  EXPECT_EQ(HealthOf(config_, result).states.at("degraded"), half);
+  EXPECT_THAT(DescribeRun(HealthOf(config_, result), result), StartsWith("ok: "));
+
+  // Missing data have a limit of their own.
+  const size_t few = Tolerated(result.records.size());
+  for (size_t i = half + 1; i <= half + few; ++i) {
+    result.records.at(i).status = "degraded";
+  }
+  EXPECT_THAT(HealthOf(config_, result).impairments, IsEmpty());
+  result.records.at(half + few + 1).status = "degraded";
+  EXPECT_THAT(HealthOf(config_, result).impairments, ElementsAre(HasSubstr("without a sound state")));
+
+  result = RunWith(half + 1, "degraded", DegradationKind::kModel);
+  EXPECT_THAT(HealthOf(config_, result).impairments,
+              ElementsAre(testing::AllOf(StartsWith(std::to_string(half + 1) + " of "),
+                                         HasSubstr("whose model is in doubt, expected at most 50 %"))));
+}
+
+// The kind is that of a degraded state, whatever else became of the record.
+TEST_F(RunHealthTest, GivenStatesThatAreLostOrSuspectThenTheirModelDoesNotExcuseThem) {
+  const size_t many = Tolerated(Run().records.size()) + 1;
+  for (const char* status : {"suspect", "lost"}) {
+    EXPECT_THAT(HealthOf(config_, RunWith(many, status, DegradationKind::kModel)).impairments,
+                ElementsAre(HasSubstr("without a sound state")));
+  }
 }
 
 // GIVEN an IMU that ends before the images THEN the frames without it are counted, and the reason is told.

@@ -12,6 +12,7 @@
 #include "eval/dataset/dataset_writer.h"
 #include "eval/record/record_spool.h"
 #include "eval/record/recorder.h"
+#include "eval/record/run_health.h"
 #include "eval/record/run_options.h"
 #include "eval/record/runner.h"
 #include "eval/simulation/simulator.h"
@@ -117,6 +118,23 @@ TEST(SpooledRun, KeepsTheCalibrationOfRecordsThatAreTurned) {
   const std::string text = test::ReadFile(folder.File("run/calibration.csv"));
   EXPECT_THAT(text, testing::StartsWith("timestamp_ns" + columns + "\n1,"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
+}
+
+// GIVEN states that are degraded by the model WHEN their records are put away THEN they count as such.
+TEST(SpooledRun, KeepsWhyAStateIsDegraded) {
+  const test::TemporaryFolder folder;
+  RunResult result;
+  result.spool = std::make_shared<RecordSpool>(folder.path());
+  for (const DegradationKind kind :
+       {DegradationKind::kData, DegradationKind::kModel, DegradationKind::kModel}) {
+    RunRecord record;
+    record.status = "degraded";
+    record.degradation = kind;
+    ASSERT_TRUE(result.spool->Add(record).ok());
+  }
+  const RunHealth health = HealthOf(EstimatorConfig(), result);
+  EXPECT_EQ(health.states.at("degraded"), 3u);
+  EXPECT_EQ(health.doubted, 2u);
 }
 
 /// Bytes in use, by whatever kind of allocation.

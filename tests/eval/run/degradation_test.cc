@@ -31,10 +31,10 @@ TEST(DegradationTest, AnImageThatMovesIsNotFrozenAndOneThatRepeatsItselfIs) {
   EXPECT_FALSE(degradation.IsFrozen(Frame(0, 20, 0)));
   EXPECT_FALSE(degradation.IsFrozen(Frame(0.05, 20, 1e-9)));
   EXPECT_TRUE(degradation.IsFrozen(Frame(0.1, 20, 1e-9)));
-  EXPECT_THAT(degradation.Check(SecondsToNs(0.1), Saw(0)), HasSubstr("did not change"));
+  EXPECT_THAT(degradation.Check(SecondsToNs(0.1), Saw(0)).reason, HasSubstr("did not change"));
   EXPECT_TRUE(degradation.IsFrozen(Frame(0.15, 20, 1e-9)));
   EXPECT_FALSE(degradation.IsFrozen(Frame(0.2, 20, 3)));
-  EXPECT_EQ(degradation.Check(SecondsToNs(0.2), Saw(20)), "");
+  EXPECT_EQ(degradation.Check(SecondsToNs(0.2), Saw(20)).reason, "");
 }
 
 TEST(DegradationTest, FewEqualPixelsMayBeChance) {
@@ -50,7 +50,7 @@ TEST(DegradationTest, WithoutTracksItIsToldWithinAFifthOfASecondAndTakenBackWith
     const double t = 0.05 * k;
     const bool blind = k >= 5 && k < 15;
     static_cast<void>(degradation.IsFrozen(Frame(t, blind ? 0 : 20, t)));
-    const bool degraded = !degradation.Check(SecondsToNs(t), Saw(blind ? 0 : 20)).empty();
+    const bool degraded = !degradation.Check(SecondsToNs(t), Saw(blind ? 0 : 20)).reason.empty();
     told_s = degraded && told_s == 0 ? t : told_s;
     EXPECT_TRUE(blind || !degraded) << t;
   }
@@ -66,9 +66,9 @@ TEST(DegradationTest, ASilentImuIsToldUntilTheEstimateHasSettled) {
     }
   }
   static_cast<void>(degradation.IsFrozen(Frame(0.6, 20, 0)));
-  EXPECT_THAT(degradation.Check(SecondsToNs(0.6), Saw(20)), HasSubstr("silent for 0.21 s"));
-  EXPECT_NE(degradation.Check(SecondsToNs(1.1), Saw(20)), "");
-  EXPECT_EQ(degradation.Check(SecondsToNs(1.3), Saw(20)), "");
+  EXPECT_THAT(degradation.Check(SecondsToNs(0.6), Saw(20)).reason, HasSubstr("silent for 0.21 s"));
+  EXPECT_NE(degradation.Check(SecondsToNs(1.1), Saw(20)).reason, "");
+  EXPECT_EQ(degradation.Check(SecondsToNs(1.3), Saw(20)).reason, "");
 }
 
 TEST(DegradationTest, AnAxisThatDoesNotMeasureIsToldUntilTheEstimateHasSettled) {
@@ -77,15 +77,15 @@ TEST(DegradationTest, AnAxisThatDoesNotMeasureIsToldUntilTheEstimateHasSettled) 
     const TimeNs stamp_ns = k * (kSecondNs / 100);
     degradation.OnImu(stamp_ns, k >= 40 && k < 60 ? "the gyroscope's x axis repeats" : "");
     const bool told = k >= 40 && k < 109;
-    EXPECT_EQ(degradation.Check(stamp_ns, Saw(20)), told ? "the gyroscope's x axis repeats" : "") << k;
+    EXPECT_EQ(degradation.Check(stamp_ns, Saw(20)).reason, told ? "the gyroscope's x axis repeats" : "") << k;
   }
 }
 
 TEST(DegradationTest, AChangeOfUnitIsToldUntilTheEstimateHasSettled) {
   Degradation degradation;
   degradation.OnGyroUnit(SecondsToNs(1));
-  EXPECT_THAT(degradation.Check(SecondsToNs(1.4), Saw(20)), HasSubstr("changed its unit"));
-  EXPECT_EQ(degradation.Check(SecondsToNs(1.6), Saw(20)), "");
+  EXPECT_THAT(degradation.Check(SecondsToNs(1.4), Saw(20)).reason, HasSubstr("changed its unit"));
+  EXPECT_EQ(degradation.Check(SecondsToNs(1.6), Saw(20)).reason, "");
 }
 
 FrameStatistics Weighed(double nis, int dof) {
@@ -105,7 +105,7 @@ double SecondsTold(double variance, int dof) {
     for (int i = 0; i < dof; ++i) {
       nis += variance * std::pow(random.Normal(), 2);
     }
-    told += degradation.Check(SecondsToNs(0.1 * k), Weighed(nis, dof)).empty() ? 0 : 1;
+    told += degradation.Check(SecondsToNs(0.1 * k), Weighed(nis, dof)).reason.empty() ? 0 : 1;
   }
   return 0.1 * told;
 }
@@ -121,7 +121,7 @@ TEST(DegradationTest, InnovationsThatAreLargerThanPredictedForLongAreTold) {
 TEST(DegradationTest, ACameraThatIsNotAsGivenIsToldOnceItMovesThePose) {
   const auto check = [](double sigmas, double pose_sigmas) {
     const CalibrationDoubt doubt{"the focal length of the camera", "px", sigmas, -2.3, pose_sigmas};
-    return Degradation().Check(SecondsToNs(1), Saw(20), &doubt);
+    return Degradation().Check(SecondsToNs(1), Saw(20), &doubt).reason;
   };
   EXPECT_EQ(check(4.9, 30), "") << "chance";
   EXPECT_EQ(check(30, 1.9), "") << "harmless";
@@ -133,7 +133,7 @@ TEST(DegradationTest, LargeInnovationsNameTheLikelyCause) {
     Degradation degradation;
     std::string reason;
     for (int k = 0; k < 100; ++k) {
-      reason = degradation.Check(SecondsToNs(0.1 * k), Weighed(400, 200), doubt);
+      reason = degradation.Check(SecondsToNs(0.1 * k), Weighed(400, 200), doubt).reason;
     }
     return reason;
   };
@@ -144,11 +144,28 @@ TEST(DegradationTest, LargeInnovationsNameTheLikelyCause) {
   EXPECT_THAT(check(&none), HasSubstr("the noise of pixels or IMU is larger than given"));
 }
 
+// GIVEN innovations that are too large WHEN the tracks end THEN the kind follows: the model, then the data.
+TEST(DegradationTest, MissingDataAndADoubtedModelAreToldApart) {
+  Degradation degradation;
+  for (int k = 0; k < 100; ++k) {
+    static_cast<void>(degradation.Check(SecondsToNs(0.1 * k), Weighed(400, 200)));
+  }
+  const Degradation::Verdict large = degradation.Check(SecondsToNs(10), Weighed(400, 200));
+  EXPECT_THAT(large.reason, HasSubstr("as large as predicted"));
+  EXPECT_EQ(large.kind, DegradationKind::kModel);
+  const Degradation::Verdict blind = degradation.Check(SecondsToNs(10.2), Saw(0));
+  EXPECT_THAT(blind.reason, HasSubstr("no tracks"));
+  EXPECT_EQ(blind.kind, DegradationKind::kData);
+  const CalibrationDoubt doubt{"the focal length of the camera", "px", 9, -2.3, 9};
+  EXPECT_EQ(Degradation().Check(SecondsToNs(1), Saw(20), &doubt).kind, DegradationKind::kModel);
+}
+
 TEST(DegradationTest, OneFrameOfLargeInnovationsIsForgotten) {
   Degradation degradation;
   int told = 0;
   for (int k = 0; k < 600; ++k) {
-    told += degradation.Check(SecondsToNs(0.1 * k), Weighed(k == 100 ? 2000 : 190, 200)).empty() ? 0 : 1;
+    told +=
+        degradation.Check(SecondsToNs(0.1 * k), Weighed(k == 100 ? 2000 : 190, 200)).reason.empty() ? 0 : 1;
   }
   EXPECT_LT(told, 20);
 }
