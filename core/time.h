@@ -11,7 +11,8 @@ using TimeNs = std::int64_t;
 inline constexpr double kNsToSeconds = 1e-9;
 inline constexpr TimeNs kSecondNs = 1'000'000'000;
 
-/// Largest magnitude of a stamp that readers take, 1824 to 2115 of Unix time: the difference of two fits TimeNs.
+/// Largest magnitude of a stamp that readers take, 1824 to 2115 of Unix time: the difference of two fits
+/// TimeNs.
 inline constexpr TimeNs kMaxStampNs = 4'600'000'000'000'000'000;
 /// Largest difference of two clocks that readers take: a stamp and it fit TimeNs. Epochs from 1900 on are
 /// closer to each other.

@@ -58,10 +58,10 @@ void CheckFrozenImages(const Dataset& dataset, Findings* findings) {
   if (equal < kLeast) {
     return;
   }
-  const std::string text =
-      Format("cam0: %zu images, sampled evenly from %zu, are equal to the pixel, expected at least noise: a "
-             "camera that is frozen or covered",
-             equal, dataset.images.size());
+  const std::string text = Format(
+      "cam0: %zu images, sampled evenly from %zu, are equal to the pixel, expected at least noise: a "
+      "camera that is frozen or covered",
+      equal, dataset.images.size());
   if (IsAtRest(dataset, span)) {
     findings->Warning(text + ", or images without noise of a recording at rest?");
   } else {

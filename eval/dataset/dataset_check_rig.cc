@@ -12,6 +12,7 @@
 #include "eval/dataset/clock_shift.h"
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
+#include "eval/rosbag/rosbag_reader.h"
 
 namespace alidade {
 namespace {
@@ -26,7 +27,7 @@ void Tell(bool impossible, std::string text, Findings* findings) {
 
 /// Where a sensor's calibration stands: its sheet, or of a bag the sensor, whose sheet may be any file.
 std::string SheetOf(const Dataset& dataset, const std::string& sensor) {
-  return dataset.path.ends_with(".bag") ? sensor : sensor + "/sensor.yaml";
+  return IsBag(dataset.path) ? sensor : sensor + "/sensor.yaml";
 }
 
 /// One camera of the rig.

@@ -34,8 +34,8 @@ Status CheckStampWithOffset(const std::string& sheet, TimeNs stamp_ns, double of
   return IsStampWithOffset(stamp_ns, offset_s)
              ? Status::Ok()
              : Status::Input(sheet + ": time_offset_s: found " + ShortestDouble(offset_s) +
-                             " s with the stamp " + std::to_string(stamp_ns) + " ns, expected a sum within +-" +
-                             std::to_string(kMaxStampNs) + " ns");
+                             " s with the stamp " + std::to_string(stamp_ns) +
+                             " ns, expected a sum within +-" + std::to_string(kMaxStampNs) + " ns");
 }
 
 double MeasuredRate(TimeNs first, TimeNs last, size_t count) {

@@ -17,13 +17,13 @@ namespace alidade {
 /// saturated when kSaturated measurements in a row have the value that is the largest or smallest of all so
 /// far, its magnitude is above the floor, and the axis came from kSteps of its resolution (smallest step so
 /// far) away within as many measurements before: the top of a smooth motion is flat over few steps only.
-/// Afterwards this value alone tells, until it is exceeded, or until the axis has been within kSteps of it for
-/// kConstantS: a coarse accelerometer that is put down quickly comes to rest at such a value. A saturation that
-/// lasts longer is found as stuck while the others move, and not while they rest. An axis is stuck when kStuck
-/// measurements in a row are equal while both others span kSpan of its resolution: at rest a coarse sensor may
-/// repeat itself, and a constant value is no error there. An axis that has repeated itself more often than not
-/// in the last thousand measurements before is not judged to be. In recordings of five kinds of sensors,
-/// faultless ones, no more than 7 in a row are equal.
+/// Afterwards this value alone tells, until it is exceeded, or until the axis has been within kSteps of it
+/// for kConstantS: a coarse accelerometer that is put down quickly comes to rest at such a value. A
+/// saturation that lasts longer is found as stuck while the others move, and not while they rest. An axis is
+/// stuck when kStuck measurements in a row are equal while both others span kSpan of its resolution: at rest
+/// a coarse sensor may repeat itself, and a constant value is no error there. An axis that has repeated
+/// itself more often than not in the last thousand measurements before is not judged to be. In recordings of
+/// five kinds of sensors, faultless ones, no more than 7 in a row are equal.
 ///
 /// The samples stay as they are. The error of the axis is taken as constant with the deviation sigma for
 /// kConstantS, and as white noise of that correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t

@@ -62,8 +62,7 @@ void AddImu(double from_s, double to_s, Dataset* dataset) {
   for (int i = -500; i < 2500; ++i) {
     const double t = 0.01 * i;
     const double rate = t >= from_s && t < to_s ? 1 : 0;
-    dataset->imu.push_back(
-        {i * TimeNs{10'000'000}, Eigen::Vector3d(0, 0, rate), Eigen::Vector3d(0, 0, 9.8)});
+    dataset->imu.push_back({i * TimeNs{10'000'000}, Eigen::Vector3d(0, 0, rate), Eigen::Vector3d(0, 0, 9.8)});
   }
 }
 
@@ -77,9 +76,9 @@ TEST(FrozenImages, GivenAnImuAtRestThenItIsAWarning) {
     DatasetFinding::Severity severity;
   };
   using enum DatasetFinding::Severity;
-  for (const Motion& motion : {Motion{-9, -9, 0, kWarning}, Motion{19.5, 30, 0, kWarning},
-                               Motion{5, 15, 0, kError}, Motion{0.1, 0.2, 0, kWarning},
-                               Motion{19.5, 30, 5, kError}}) {
+  for (const Motion& motion :
+       {Motion{-9, -9, 0, kWarning}, Motion{19.5, 30, 0, kWarning}, Motion{5, 15, 0, kError},
+        Motion{0.1, 0.2, 0, kWarning}, Motion{19.5, 30, 5, kError}}) {
     Dataset dataset = frozen;
     dataset.rig.camera_time_offset_s = motion.offset_s;
     AddImu(motion.from_s, motion.to_s, &dataset);

@@ -62,7 +62,8 @@ TEST(FailureDiagnosisTest, ALossAfterALongRestIsDiagnosedWhereItIs) {
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }
 
-// GIVEN a camera whose clock is 30 s ahead of the IMU's THEN the data around the loss are looked at all the same.
+// GIVEN a camera whose clock is 30 s ahead of the IMU's THEN the data around the loss are looked at all the
+// same.
 TEST(FailureDiagnosisTest, TheLossIsFoundInTheCamerasTime) {
   MeasurementLog log = LogWithSigns({-1, -1, -1}, 40);
   log.rig.camera_time_offset_s = -30;

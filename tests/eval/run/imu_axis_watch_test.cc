@@ -117,8 +117,8 @@ TEST(ImuAxisWatchTest, ACoarseSensorThatIsPutDownQuicklyIsNotSaturatedForTheWhol
   }
 }
 
-// GIVEN an axis that is saturated for long WHEN the others go on moving THEN it is faulty throughout, and told
-// once.
+// GIVEN an axis that is saturated for long WHEN the others go on moving THEN it is faulty throughout, and
+// told once.
 TEST(ImuAxisWatchTest, ALongSaturationIsFoundThroughoutWhileTheOthersMove) {
   std::vector<ImuSample> samples = Motion(4000, 1e-3);
   for (std::size_t k = 2000; k < 3000; ++k) {
