@@ -102,9 +102,4 @@ Result<BagImport> ReadBag(const std::string& path, const BagImportOptions& optio
   return Importer(path, options, *topics).Execute();
 }
 
-bool IsBag(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) && path.ends_with(".bag");
-}
-
 }  // namespace alidade

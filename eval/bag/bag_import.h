@@ -24,7 +24,4 @@ struct BagImport {
 /// kDiverged: stopped.
 Result<BagImport> ReadBag(const std::string& path, const BagImportOptions& options);
 
-/// Whether a path names a bag: a file, by its extension.
-[[nodiscard]] bool IsBag(const std::string& path);
-
 }  // namespace alidade

@@ -18,7 +18,12 @@ Result<Dataset> ReadDataset(const DatasetSource& source, const DatasetStorage& s
                            ": is not a bag; topics and calibration apply to bags, a folder has its own "
                            "sensor.yaml");
     }
-    return ReadDataset(source.path, storage);
+    DatasetStorage followed = storage;
+    followed.follow_links = storage.follow_links || source.follow_links;
+    return ReadDataset(source.path, followed);
+  }
+  if (source.follow_links) {
+    return Status::Usage(source.path + ": is a bag; follow_links applies to folders");
   }
   BagImportOptions options;
   ALIDADE_RETURN_IF_ERROR(MakeBagTopics(source.topics).status());  // before the calibration's errors

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 /// Of phones and cheap modules, in motion.
 constexpr ImuNoise kConsumerImu = {1e-3, 1e-2, 1e-4, 1e-3};
 
-Result<GreyImage> FirstImage(const fs::path& folder) {
+Result<GreyImage> FirstImage(const fs::path& folder, bool follow_links) {
   const std::string path = (folder / "data.csv").string();
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}, {"filename"}});
   if (!csv.ok()) {
@@ -30,13 +30,13 @@ Result<GreyImage> FirstImage(const fs::path& folder) {
     return Status::Input(path + ": lists no image, expected at least one row");
   }
   ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(2));
-  const Result<std::string> image = ImagePath(*csv, folder.string());
+  const Result<std::string> image = ImageFolder(folder.string(), follow_links).PathOf(*csv);
   ALIDADE_RETURN_IF_ERROR(image.status());
   return ReadGreyImage(*image);
 }
 
-Result<std::string> GuessedCamera(const fs::path& folder) {
-  const Result<GreyImage> image = FirstImage(folder);
+Result<std::string> GuessedCamera(const fs::path& folder, bool follow_links) {
+  const Result<GreyImage> image = FirstImage(folder, follow_links);
   ALIDADE_RETURN_IF_ERROR(image.status());
   constexpr double kFocalShare = 0.8;
   const double focal = kFocalShare * image->width_px;
@@ -76,7 +76,8 @@ Status LinkWithSheet(const fs::path& mav, const char* name, const fs::path& stag
 
 }  // namespace
 
-Result<ProvisionalSequence> CompleteSheets(const std::string& path, const std::string& staging) {
+Result<ProvisionalSequence> CompleteSheets(const std::string& path, const std::string& staging,
+                                           bool follow_links) {
   const fs::path mav = fs::path(path) / "mav0";
   ProvisionalSequence sequence{path};
   std::error_code ignored;
@@ -96,7 +97,7 @@ Result<ProvisionalSequence> CompleteSheets(const std::string& path, const std::s
     return Status::Output(staged.string() + ": " + error.message());
   }
   if (sequence.camera) {
-    const Result<std::string> camera = GuessedCamera(mav / "cam0");
+    const Result<std::string> camera = GuessedCamera(mav / "cam0", follow_links);
     ALIDADE_RETURN_IF_ERROR(camera.status());
     ALIDADE_RETURN_IF_ERROR(LinkWithSheet(mav, "cam0", staged, *camera));
   }

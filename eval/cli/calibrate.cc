@@ -33,7 +33,7 @@ Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const
   DatasetSource source = SourceFromFlags();
   ProvisionalSequence sequence;
   if (!IsBag(source.path)) {
-    Result<ProvisionalSequence> completed = CompleteSheets(source.path, StagingFolder());
+    Result<ProvisionalSequence> completed = CompleteSheets(source.path, StagingFolder(), source.follow_links);
     ALIDADE_RETURN_IF_ERROR(completed.status());
     sequence = *std::move(completed);
     source.path = sequence.path;

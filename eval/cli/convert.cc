@@ -20,7 +20,7 @@ int FolderToBag(BagCompression compression) {
   if (const Status status = CheckOutputFile(FLAGS_output); !status.ok()) {
     return Report(status);
   }
-  const Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  const Result<Dataset> dataset = ReadDataset(FLAGS_dataset, {.follow_links = FLAGS_follow_links});
   if (!dataset.ok()) {
     return Report(dataset.status());
   }

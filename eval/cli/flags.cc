@@ -45,6 +45,8 @@ DEFINE_string(error, "right_invariant", kErrorText.c_str());
 DEFINE_string(estimate, "", "trajectory file to evaluate");
 DEFINE_string(estimator, "",
               "configuration of the filter to analyse: a YAML file, or the name of a shipped one");
+DEFINE_bool(follow_links, false,
+            "read images that are links to files outside of the sequence's folder (git-annex, DVC, ln -s)");
 DEFINE_bool(
     imu_scale, false,
     "estimate a scale factor for each axis of the IMU, and multiply the samples that are written by it");

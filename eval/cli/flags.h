@@ -26,6 +26,7 @@ DECLARE_string(engine);
 DECLARE_string(error);
 DECLARE_string(estimate);
 DECLARE_string(estimator);
+DECLARE_bool(follow_links);
 DECLARE_bool(imu_scale);
 DECLARE_string(input);
 DECLARE_string(export);

@@ -40,7 +40,7 @@ Result<RefineOptions> RefineOptionsFromFlags() {
 }
 
 Result<Dataset> DatasetToRefine() {
-  Result<Dataset> dataset = ReadDataset(FLAGS_dataset);
+  Result<Dataset> dataset = ReadDataset(FLAGS_dataset, {.follow_links = FLAGS_follow_links});
   if (dataset.ok() && !FLAGS_truth.empty()) {
     Result<Trajectory> truth = ReadTrajectory(FLAGS_truth);
     ALIDADE_RETURN_IF_ERROR(truth.status());

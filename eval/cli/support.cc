@@ -46,7 +46,7 @@ Result<EstimatorConfig> EstimatorConfigFromFlags() {
 }
 
 DatasetSource SourceFromFlags() {
-  return {FLAGS_dataset, FLAGS_topics, SplitWords(FLAGS_calibration), FLAGS_camera};
+  return {FLAGS_dataset, FLAGS_topics, SplitWords(FLAGS_calibration), FLAGS_camera, FLAGS_follow_links};
 }
 
 Result<Dataset> ReadDatasetFromFlags(const DatasetStorage& storage) {

@@ -59,7 +59,9 @@ Status PrepareInput(const ExternalCell& cell, const fs::path& output, Values* va
   if (IsBag(dataset)) {
     (*values)["bag"] = dataset;
   } else if (cell.estimator.command.text.find("{bag}") != std::string::npos) {
-    const Result<Dataset> read = ReadDataset(dataset);
+    DatasetSource source = cell.sequence.dataset;
+    source.path = dataset;
+    const Result<Dataset> read = ReadDataset(source);
     ALIDADE_RETURN_IF_ERROR(read.status());
     ALIDADE_RETURN_IF_ERROR(WriteBag(*read, {}, (*values)["bag"]));
   }

@@ -39,7 +39,7 @@ Result<ExternalTimes> ReadExternalTimes(const std::string& path) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(columns));
     ALIDADE_RETURN_IF_ERROR(csv->ReadReal(*frontend, "frontend_ms", &times.frontend_ms.emplace_back()));
     if (stamp) {
-      ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(*stamp, "timestamp_ns", &times.stamps_ns.emplace_back()));
+      ALIDADE_RETURN_IF_ERROR(csv->ReadTime(*stamp, "timestamp_ns", &times.stamps_ns.emplace_back()));
     }
     ALIDADE_RETURN_IF_ERROR(csv->ReadReal(*backend, "backend_ms", &times.backend_ms.emplace_back()));
   }

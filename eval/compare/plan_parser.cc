@@ -174,6 +174,8 @@ class PlanParser {
          {"topics", [&](const Node& n) { return reader_.Text(n, "topics", &sequence.dataset.topics); }},
          {"calibration", [&](const Node& n) { return ReadCalibration(n, &sequence.dataset.calibration); }},
          {"camera", [&](const Node& n) { return reader_.Text(n, "camera", &sequence.dataset.camera); }},
+         {"follow_links",
+          [&](const Node& n) { return reader_.Boolean(n, "follow_links", &sequence.dataset.follow_links); }},
          {"truth", [&](const Node& n) { return reader_.ExistingPath(n, "truth", false, &sequence.truth); }},
          {"config",
           [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &sequence.config); }},
@@ -200,6 +202,9 @@ class PlanParser {
     if (!is_bag && (node["topics"] || node["calibration"] || node["camera"])) {
       return reader_.Fault(node, "sequences",
                            "`topics`, `calibration` and `camera` only with the `path` of a bag");
+    }
+    if (sequence.dataset.follow_links && (is_bag || sequence.dataset.path.empty())) {
+      return reader_.Fault(node, "sequences", "`follow_links` only with the `path` of a folder");
     }
     if (sequence.name.empty()) {
       sequence.name = sequence.dataset.path.empty() || is_bag

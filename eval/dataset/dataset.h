@@ -36,13 +36,15 @@ struct ImuRejections {
   [[nodiscard]] std::size_t dropped() const { return duplicate + late + not_finite; }
 };
 
-/// Where a reader puts what grows with the length of a sequence.
+/// Where a reader puts what grows with the length of a sequence, and which links it follows.
 struct DatasetStorage {
   /// For one pass through a sequence of any length: IMU and tracks go into files without names in this folder
   /// (Dataset::tables). Empty: into memory.
-  std::string spool_folder;
+  std::string spool_folder{};
   /// Of the truth, with spool_folder: what a start needs, up to so long after the first frame [s].
   double truth_s = 0;
+  /// Images may be links to files outside of the sequence (ImageFolder).
+  bool follow_links = false;
 };
 
 /// Of a truth that was not kept whole: stamps and length.

@@ -72,7 +72,8 @@ Status ReadSources(const fs::path& folder, const DatasetStorage& storage, Datase
     dataset->camera_stamps = std::move(stamps).value();
   }
   if (MayExist((folder / "data.csv").string())) {
-    Result<std::vector<ImageEntry>> images = ReadImages(folder.string(), dataset->rig.camera);
+    Result<std::vector<ImageEntry>> images =
+        ReadImages(folder.string(), dataset->rig.camera, storage.follow_links);
     ALIDADE_RETURN_IF_ERROR(images.status());
     dataset->images = std::move(images).value();
   }

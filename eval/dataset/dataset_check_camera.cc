@@ -22,16 +22,6 @@ bool AreNormalized(size_t observations, double largest, const CameraModel& camer
          camera.width_px() >= kLeastWidthPx;
 }
 
-/// A fault without which nothing can be estimated from the camera; with another sensor an estimator may do
-/// without it.
-void TellUseless(const Dataset& dataset, const std::string& text, Findings* findings) {
-  if (dataset.gnss != nullptr || !dataset.fixes.empty()) {
-    findings->Warning(text);
-  } else {
-    findings->Error(text);
-  }
-}
-
 /// `longest`: observations of the longest track.
 void CheckLives(const Dataset& dataset, size_t frames, int longest, Findings* findings) {
   constexpr size_t kLeastFrames = 3;  // of fewer no track can have three observations

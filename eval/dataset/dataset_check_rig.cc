@@ -13,6 +13,7 @@
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/sensor_yaml.h"
+#include "eval/rosbag/rosbag_reader.h"
 
 namespace alidade {
 namespace {
@@ -27,7 +28,7 @@ void Tell(bool impossible, std::string text, Findings* findings) {
 
 /// Where a sensor's calibration stands: its sheet, or of a bag the sensor, whose sheet may be any file.
 std::string SheetOf(const Dataset& dataset, const std::string& sensor) {
-  return dataset.path.ends_with(".bag") ? sensor : sensor + "/sensor.yaml";
+  return IsBag(dataset.path) ? sensor : sensor + "/sensor.yaml";
 }
 
 /// One camera of the rig.

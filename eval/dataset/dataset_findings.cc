@@ -62,6 +62,14 @@ void Findings::Error(std::string text) {
   list_.push_back({DatasetFinding::Severity::kError, std::move(text)});
 }
 
+void TellUseless(const Dataset& dataset, std::string text, Findings* findings) {
+  if (dataset.gnss != nullptr || !dataset.fixes.empty()) {
+    findings->Warning(std::move(text));
+  } else {
+    findings->Error(std::move(text));
+  }
+}
+
 std::optional<double> CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps,
                                   double stated_rate_hz, const RateLimits& limits, Findings* findings) {
   if (stamps.size() < 2) {

@@ -29,6 +29,10 @@ class Findings {
   std::vector<DatasetFinding> list_;
 };
 
+/// A fault without which nothing can be estimated from the camera: an error, or a warning beside GNSS or
+/// fixes, with which an estimator may do without it.
+void TellUseless(const Dataset& dataset, std::string text, Findings* findings);
+
 /// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
 /// no sheet says one. Returns the rate of the median step [Hz], which gaps do not lower, or above
 /// limits.high_hz the mean rate if that is less; 0 of fewer than two stamps. None: the stamps are in another

@@ -71,8 +71,10 @@ Result<FixSheet> MakeFixSheet(const Result<YAML::Node>& root, const std::string&
     ALIDADE_RETURN_IF_ERROR(ReadVector(*file, "p_BA", &sheet.p_BA));
   }
   if (file->Has("time_offset_s")) {
-    constexpr double kAnyS = -1e10;  // receivers and IMUs may count from different epochs
-    ALIDADE_RETURN_IF_ERROR(file->ReadReal("time_offset_s", kAnyS, &sheet.time_offset_s));
+    ALIDADE_RETURN_IF_ERROR(file->ReadReal("time_offset_s", -kMaxClockOffsetS, &sheet.time_offset_s));
+    if (sheet.time_offset_s > kMaxClockOffsetS) {
+      return file->Fault("time_offset_s", kClockOffsetExpected);
+    }
   }
   if (file->Has("anchor_llh_deg")) {
     Eigen::Vector3d llh;
@@ -197,6 +199,9 @@ Status ReadFixFolders(const std::string& mav, const DatasetStorage& /*storage*/,
     const Result<std::vector<PositionFix>> fixes =
         ReadPositions(folder / sheet->positions, sheet_path, sensor, &*sheet);
     ALIDADE_RETURN_IF_ERROR(fixes.status());
+    for (const PositionFix& fix : *fixes) {
+      ALIDADE_RETURN_IF_ERROR(CheckStampWithOffset(sheet_path, fix.stamp_ns, sheet->time_offset_s));
+    }
     dataset->rig.fixes.push_back(*sheet);
     dataset->fixes.insert(dataset->fixes.end(), fixes->begin(), fixes->end());
   }

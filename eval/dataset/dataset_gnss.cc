@@ -1,11 +1,13 @@
 #include "eval/dataset/dataset_gnss.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "core/format.h"
+#include "eval/dataset/sensor_table.h"
 #include "eval/dataset/sensor_yaml.h"
 #include "eval/dataset/stale_parts.h"
 #include "eval/files/input_file.h"
@@ -102,6 +104,9 @@ Result<GnssSensor> MakeGnssSensor(const Result<YAML::Node>& parsed, const std::s
     if (!number.ok()) {
       return Fault(path, offset, "time_offset_s", number.message());
     }
+    if (std::abs(sensor.receiver.time_offset_s) > kMaxClockOffsetS) {
+      return Fault(path, offset, "time_offset_s", kClockOffsetExpected);
+    }
   }
   ALIDADE_RETURN_IF_ERROR(ReadPosition(path, root, "anchor_E", &sensor.receiver.anchor_E));
   ALIDADE_RETURN_IF_ERROR(ReadPosition(path, root, "approximate_position_E", &sensor.approximate_position_E));
@@ -182,6 +187,9 @@ Status ReadGnssFolder(const std::string& mav, const DatasetStorage& /*storage*/,
       sensor->approximate_position_E ? sensor->approximate_position_E : observations->approximate_position_E;
   if (const Status tags = CheckTags(*log); !tags.ok()) {
     return Status::Input((fs::path(folder) / sensor->observations).string() + ": " + tags.message());
+  }
+  for (const ObservationEpoch& epoch : log->epochs) {
+    ALIDADE_RETURN_IF_ERROR(CheckStampWithOffset(sheet, epoch.stamp_ns, sensor->receiver.time_offset_s));
   }
   dataset->gnss = std::move(log);
   dataset->rig.gnss = sensor->receiver;

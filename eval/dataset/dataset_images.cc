@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -11,7 +10,6 @@
 #include "core/regular_file.h"
 #include "eval/dataset/sensor_table.h"
 #include "eval/files/input_file.h"
-#include "eval/files/lies_in.h"
 
 namespace alidade {
 namespace {
@@ -58,38 +56,64 @@ std::optional<fs::path> LinkTarget(const fs::path& image) {
   return error ? std::nullopt : std::optional(target);
 }
 
+/// Whether a path is `folder` or below it; both canonical, an empty folder holds nothing.
+bool StartsWith(const fs::path& path, const fs::path& folder) {
+  return !folder.empty() &&
+         std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
 }  // namespace
 
-Result<std::string> ImagePath(const CsvReader& csv, const std::string& folder) {
+ImageFolder::ImageFolder(std::string folder, bool follow_links)
+    : data_(fs::path(std::move(folder)) / "data"), follow_links_(follow_links) {}
+
+bool ImageFolder::IsWithin(const fs::path& file, const fs::path& folder) {
+  std::error_code error;
+  if (!resolved_) {
+    resolved_ = true;
+    const fs::path camera = data_.parent_path();
+    const fs::path mav = camera.parent_path();
+    // Of a sequence of links to the files of another one.
+    const fs::path list = fs::canonical(camera / "data.csv", error);
+    for (const fs::path& place : {data_, camera, list.parent_path(), mav, mav.parent_path()}) {
+      places_.push_back(fs::canonical(place, error));
+    }
+  }
+  if (last_ != folder) {
+    last_ = folder;
+    last_place_ = fs::canonical(folder, error);
+  }
+  return StartsWith(file, last_place_) ||
+         std::any_of(places_.begin(), places_.end(), [&file](const auto& p) { return StartsWith(file, p); });
+}
+
+Result<std::string> ImageFolder::PathOf(const CsvReader& csv) {
   constexpr size_t kColumn = 1;
   if (!StaysInFolder(csv.field(kColumn))) {
     return csv.Fault(kColumn, "filename", "the name of a file in the folder data beside this one");
   }
-  const fs::path camera = folder;
-  const fs::path image = camera / "data" / csv.field(kColumn);
-  if (const std::optional<fs::path> target = LinkTarget(image)) {
-    const fs::path mav = camera.parent_path();
-    std::error_code error;
-    // Of a sequence of links to the files of another one.
-    const fs::path list = fs::canonical(camera / "data.csv", error);
-    const fs::path places[] = {image.parent_path(), camera / "data", camera, list.parent_path(), mav,
-                               mav.parent_path()};
-    if (std::none_of(std::begin(places), std::end(places),
-                     [&target](const fs::path& place) { return LiesIn(*target, place); })) {
-      return csv.Fault(kColumn, "filename",
-                       "a file of this sequence, not a link to " + target->string() +
-                           " outside of it (a link in place of the folder is fine)");
+  const fs::path image = data_ / csv.field(kColumn);
+  if (!follow_links_) {
+    const std::optional<fs::path> target = LinkTarget(image);
+    if (target && !IsWithin(*target, image.parent_path())) {
+      return csv.Fault(
+          kColumn, "filename",
+          "a file of this sequence, not a link to " + target->string() +
+              " outside of it (a link in place of the folder is fine; --follow_links takes links "
+              "of single images, and in a plan follow_links: true)");
     }
   }
   return image.string();
 }
 
-Result<std::vector<ImageEntry>> ReadImages(const std::string& folder, const CameraModel& camera) {
+Result<std::vector<ImageEntry>> ReadImages(const std::string& folder, const CameraModel& camera,
+                                           bool follow_links) {
   const std::string path = folder + "/data.csv";
   Result<CsvReader> csv = OpenTable(path, {{"timestamp", "ns"}, {"filename"}});
   if (!csv.ok()) {
     return csv.status();
   }
+  ImageFolder image_folder(folder, follow_links);
   std::vector<ImageEntry> images;
   size_t unusable = 0;
   Status first_fault;
@@ -98,7 +122,7 @@ Result<std::vector<ImageEntry>> ReadImages(const std::string& folder, const Came
     ImageEntry image;
     ALIDADE_RETURN_IF_ERROR(
         csv->ReadStamp(images.empty(), images.empty() ? 0 : images.back().stamp_ns, &image.stamp_ns));
-    Result<std::string> path_of_image = ImagePath(*csv, folder);
+    Result<std::string> path_of_image = image_folder.PathOf(*csv);
     ALIDADE_RETURN_IF_ERROR(path_of_image.status());
     image.path = std::move(path_of_image).value();
     if (const Status usable = CheckImage(*csv, image, camera); !usable.ok() && unusable++ == 0) {

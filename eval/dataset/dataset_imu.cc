@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 /// Reads the current row; a NaN or an infinity is a value here, for the intake to drop.
 Status ReadImuRow(const CsvReader& csv, const std::vector<CsvColumn>& header, ImuSample* sample) {
   ALIDADE_RETURN_IF_ERROR(csv.ExpectColumns(header.size()));
-  ALIDADE_RETURN_IF_ERROR(csv.ReadInt64(0, header[0].name, &sample->stamp_ns));
+  ALIDADE_RETURN_IF_ERROR(csv.ReadTime(0, header[0].name, &sample->stamp_ns));
   for (int i = 0; i < 3; ++i) {
     const size_t column = static_cast<size_t>(i) + 1;
     ALIDADE_RETURN_IF_ERROR(csv.ReadRealOrNotFinite(column, header[column].name, &sample->gyro[i]));

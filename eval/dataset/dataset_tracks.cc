@@ -38,7 +38,7 @@ Status ReadFrames(const std::string& path, const std::function<Status(TrackFrame
   while (csv->NextRow()) {
     ALIDADE_RETURN_IF_ERROR(csv->ExpectColumns(header.size()));
     TimeNs stamp = 0;
-    ALIDADE_RETURN_IF_ERROR(csv->ReadInt64(0, "timestamp", &stamp));
+    ALIDADE_RETURN_IF_ERROR(csv->ReadTime(0, "timestamp", &stamp));
     if (!frame || stamp != frame->stamp_ns) {
       if (frame) {
         ALIDADE_RETURN_IF_ERROR(csv->ReadStamp(false, frame->stamp_ns, &stamp));

@@ -50,6 +50,7 @@ void QuietSeconds::Close() {
   if (samples_ >= kLeastOfDensity && square_.tail<3>().minCoeff() > 0) {
     Lower(accel * root_period_s, &accel_density_);
   }
+  judged_ += samples_ >= kLeastSamples ? 1 : 0;
   if (samples_ >= kLeastSamples && gyro < init_.static_max_gyro_std_radps &&
       accel < init_.static_max_accel_std_mps2 && mean_.head<3>().norm() < kMostBias) {
     forces_.push_back(mean_.tail<3>().norm());

@@ -21,6 +21,8 @@ class QuietSeconds {
 
   /// Of calm seconds so far; the one at hand is not among them.
   [[nodiscard]] std::size_t count() const { return forces_.size(); }
+  /// Of seconds so far that were judged: of ten samples or more.
+  [[nodiscard]] std::size_t judged() const { return judged_; }
   /// Median norm of the mean specific force over calm seconds [m/s^2]; none from fewer than three.
   [[nodiscard]] std::optional<double> SpecificForce() const;
   /// Standard deviation of an axis times the root of the period, in the second where it is least: an upper
@@ -39,6 +41,7 @@ class QuietSeconds {
   Vector6d mean_ = Vector6d::Zero();
   Vector6d square_ = Vector6d::Zero();  ///< sum of squared deviations
 
+  std::size_t judged_ = 0;
   std::vector<double> forces_;
   std::optional<double> gyro_density_, accel_density_;
 };

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "eval/files/output_file.h"
+
 namespace alidade {
 
 Result<CsvReader> OpenTable(const std::string& path, const std::vector<CsvColumn>& header) {
@@ -26,6 +28,14 @@ void AppendFields(const Eigen::Vector3d& vector, std::string* row) {
   for (int i = 0; i < 3; ++i) {
     AppendField(vector[i], row);
   }
+}
+
+Status CheckStampWithOffset(const std::string& sheet, TimeNs stamp_ns, double offset_s) {
+  return IsStampWithOffset(stamp_ns, offset_s)
+             ? Status::Ok()
+             : Status::Input(sheet + ": time_offset_s: found " + ShortestDouble(offset_s) +
+                             " s with the stamp " + std::to_string(stamp_ns) +
+                             " ns, expected a sum within +-" + std::to_string(kMaxStampNs) + " ns");
 }
 
 double MeasuredRate(TimeNs first, TimeNs last, size_t count) {

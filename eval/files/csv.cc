@@ -219,8 +219,15 @@ Status CsvReader::ReadRealOrNotFinite(size_t column, std::string_view name, doub
                                                                   : Fault(column, name, "a finite number");
 }
 
+Status CsvReader::ReadTime(size_t column, std::string_view name, TimeNs* stamp) const {
+  ALIDADE_RETURN_IF_ERROR(ReadInt64(column, name, stamp));
+  return -kMaxStampNs <= *stamp && *stamp <= kMaxStampNs
+             ? Status::Ok()
+             : Fault(column, name, "a stamp within +-" + std::to_string(kMaxStampNs) + " ns");
+}
+
 Status CsvReader::ReadStamp(bool first, TimeNs previous, TimeNs* stamp) const {
-  ALIDADE_RETURN_IF_ERROR(ReadInt64(0, "timestamp", stamp));
+  ALIDADE_RETURN_IF_ERROR(ReadTime(0, "timestamp", stamp));
   if (!first && *stamp <= previous) {
     return Fault(0, "timestamp", "a stamp later than " + std::to_string(previous) + " of the row before");
   }

@@ -50,7 +50,9 @@ class CsvReader {
   Status ReadReal(size_t column, std::string_view name, double* value) const;
   /// ReadReal that also takes "nan" and "inf", of either sign and case.
   Status ReadRealOrNotFinite(size_t column, std::string_view name, double* value) const;
-  /// A stamp [ns] in column 0 that must be later than `previous` unless `first`.
+  /// A stamp [ns] of at most kMaxStampNs either way.
+  Status ReadTime(size_t column, std::string_view name, TimeNs* stamp) const;
+  /// A stamp (ReadTime) in column 0 that must be later than `previous` unless `first`.
   Status ReadStamp(bool first, TimeNs previous, TimeNs* stamp) const;
   /// The fault of a column of the current row.
   [[nodiscard]] Status Fault(size_t column, std::string_view name, const std::string& expected) const;

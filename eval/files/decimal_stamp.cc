@@ -47,6 +47,9 @@ bool ParseDecimalSeconds(std::string_view text, TimeNs* stamp_ns) {
   if (kept >= 0 && kept < static_cast<int>(digits.size()) && digits[static_cast<size_t>(kept)] >= '5') {
     ++value;
   }
+  if (value > static_cast<std::uint64_t>(kMaxStampNs)) {
+    return false;
+  }
   *stamp_ns = negative ? -static_cast<TimeNs>(value) : static_cast<TimeNs>(value);
   return true;
 }

@@ -25,7 +25,7 @@ std::vector<Row> RowsWithin(const Table<Row>& table, TimeNs begin_ns, TimeNs end
   return rows;
 }
 
-/// Stamp at which a run was lost, or of its first state that was not sound; empty: it never started.
+/// IMU time at which a run was lost, or of its first state that was not sound; empty: it never started.
 std::optional<TimeNs> LostAt(const RunResult& failed) {
   if (!failed.restarts.empty()) {
     return failed.restarts.front().lost_ns;
@@ -50,8 +50,8 @@ MeasurementLog SpanOfStart(const MeasurementLog& log, const LogTables& tables, c
   span.rig = log.rig;
   const std::optional<TimeNs> lost_ns = LostAt(failed);
   const TimeNs first_ns = tables.frames.front().stamp_ns;
-  const TimeNs begin_ns = lost_ns ? std::max(first_ns, *lost_ns - kBeforeLossNs) : first_ns;
   const TimeNs offset_ns = SecondsToNs(log.rig.camera_time_offset_s);
+  const TimeNs begin_ns = lost_ns ? std::max(first_ns, *lost_ns - offset_ns - kBeforeLossNs) : first_ns;
   span.imu =
       RowsWithin(tables.imu, begin_ns + offset_ns - kSecondNs, begin_ns + offset_ns + kLengthNs + kSecondNs);
   span.frames = RowsWithin(tables.frames, begin_ns, begin_ns + kLengthNs);
@@ -121,6 +121,10 @@ std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& con
   quiet.audit = false;
   const auto stopped = [&options] { return options.stop != nullptr && options.stop->load(); };
   const MeasurementLog span = SpanOfStart(log, tables, failed);
+  const auto holds = [&](const MeasurementLog& data) {
+    const double held_s = SecondsHeld(RunEstimator(filter, data, quiet));
+    return stopped() || held_s <= kLeastS ? std::nullopt : std::optional(held_s);
+  };
   int reruns = 0;
   for (std::size_t k = 0; k < SignChoices().size() && reruns < kMostReruns && !stopped(); ++k) {
     const AccelerometerSigns& choice = SignChoices()[k];
@@ -134,13 +138,15 @@ std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& con
     if (k == 0) {
       return std::nullopt;  // as given
     }
+    if (reruns == 0 && holds(span)) {
+      return std::nullopt;  // the failure has another cause
+    }
     ++reruns;
-    const double held_s = SecondsHeld(RunEstimator(filter, changed, quiet));
-    if (held_s > kLeastS && !stopped()) {
+    if (const std::optional<double> held_s = holds(changed)) {
       return Format(
           "imu0: with %s negated a filter runs through %.0f s around the failed start without a fault: wrong "
           "sign of the specific force (at rest it points up)",
-          choice.name, held_s);
+          choice.name, *held_s);
     }
   }
   return std::nullopt;

@@ -20,10 +20,12 @@ namespace alidade {
 /// images, gyroscope and accelerometer meet. Of 25 s of data, from 10 s before the loss on or from the first
 /// frame, each of the eight combinations is first tried by starts in motion (StartsInMotion), without a run;
 /// one that passes is confirmed by a run of the filter over the same data, at most kMostReruns of them.
+/// Before the first of these the filter must fail with the signs as given.
 ///
 /// options.progress is called before each combination with its number from 1 and that of all; options.stop
 /// ends the search between and within them. A sentence for people, or empty: the run was sound for more than
-/// 5 s in motion, no other signs do better, the log has no camera, or the search was stopped. Deterministic.
+/// 5 s in motion, the filter holds with the signs as given, no others do better, the log has no camera, or
+/// the search was stopped. Deterministic.
 [[nodiscard]] std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& config,
                                                                     const MeasurementLog& log,
                                                                     const LogTables& tables,

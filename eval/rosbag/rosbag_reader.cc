@@ -1,5 +1,7 @@
 #include "eval/rosbag/rosbag_reader.h"
 
+#include <filesystem>
+
 #include "core/regular_file.h"
 #include "eval/files/byte_io.h"
 #include "eval/rosbag/rosbag_chunk.h"
@@ -169,6 +171,11 @@ Result<std::string_view> RosbagReader::ReadAgain(const BagPlace& place) {
                          " has become shorter");
   }
   return std::string_view(kept_).substr(place.offset, place.length);
+}
+
+bool IsBag(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && path.ends_with(".bag");
 }
 
 }  // namespace alidade

@@ -88,4 +88,7 @@ class RosbagReader {
   std::string kept_;  // its bytes, unpacked
 };
 
+/// Whether a path names a bag: a file, by its extension.
+[[nodiscard]] bool IsBag(const std::string& path);
+
 }  // namespace alidade

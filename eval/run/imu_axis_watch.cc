@@ -23,6 +23,13 @@ ImuAxisWatch::ImuAxisWatch()
                Signal{&ImuSample::accel, &ImuSample::accel_fault_density_mps2_sqrthz, "accelerometer",
                       "m/s^2", imu_gap::kMinAccelMps2}} {}
 
+void ImuAxisWatch::CountShare(bool changed, Axis* axis) {
+  constexpr double kKept = 1 - 1 / kMemory;
+  const double kept = std::pow(kKept, static_cast<double>(axis->equal - 1));
+  axis->counted = kKept * (kept * axis->counted + kMemory * (1 - kept)) + 1;
+  axis->changed = kKept * kept * axis->changed + (changed ? 1 : 0);
+}
+
 void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                          Axis* axis) {
   const Eigen::Vector3d& before = last.*signal.value;
@@ -36,6 +43,7 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
   }
   const bool starts = step > 0 || imu_gap::IsInside(last, sample);
   if (starts) {
+    CountShare(step > 0, axis);
     axis->equal = 1;
     axis->since_ns = sample.stamp_ns;
     axis->faulty = false;
@@ -46,7 +54,6 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
     ++axis->equal;
   }
   if (step > 0) {
-    ++axis->changed;
     axis->resolution = axis->resolution == 0 ? step : std::min(axis->resolution, step);
   }
   for (int i = 0; i < 2; ++i) {
@@ -57,6 +64,12 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
   }
   if (axis->limit > 0 ? value > axis->limit : value < axis->limit) {
     axis->limit = 0;
+  }
+  if (axis->limit == 0 || std::abs(value - axis->limit) >= kSteps * axis->resolution) {
+    axis->near_limit_since_ns = sample.stamp_ns;
+  } else if (SecondsBetween(axis->near_limit_since_ns, sample.stamp_ns) > kConstantS) {
+    axis->limit = 0;
+    axis->came_from = value;
   }
   axis->recent.emplace_back(sample.stamp_ns, value);
   if (axis->recent.size() > kSaturated) {
@@ -84,7 +97,7 @@ ImuAxisWatch::Fault ImuAxisWatch::Judge(double value, double floor, const Axis& 
       std::abs(value - axis.came_from) >= kSteps * axis.resolution) {
     return Fault::kSaturated;
   }
-  if (2 * axis.changed < axis.measured - axis.equal) {
+  if (2 * axis.changed < axis.counted) {
     return Fault::kNone;
   }
   const double span = std::min(axis.high[0] - axis.low[0], axis.high[1] - axis.low[1]);

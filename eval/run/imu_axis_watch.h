@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <string>
 #include <utility>
@@ -16,11 +17,13 @@ namespace alidade {
 /// saturated when kSaturated measurements in a row have the value that is the largest or smallest of all so
 /// far, its magnitude is above the floor, and the axis came from kSteps of its resolution (smallest step so
 /// far) away within as many measurements before: the top of a smooth motion is flat over few steps only.
-/// Afterwards this value alone tells, until it is exceeded. An axis is stuck when kStuck measurements in a
-/// row are equal while both others span kSpan of its resolution: at rest a coarse sensor may repeat itself,
-/// and a constant value is no error there. An axis that has repeated itself more often than not before is not
-/// judged to be. In recordings of five kinds of sensors, faultless ones, no more
-/// than 7 in a row are equal.
+/// Afterwards this value alone tells, until it is exceeded, or until the axis has been within kSteps of it
+/// for kConstantS: a coarse accelerometer that is put down quickly comes to rest at such a value. A
+/// saturation that lasts longer is found as stuck while the others move, and not while they rest. An axis is
+/// stuck when kStuck measurements in a row are equal while both others span kSpan of its resolution: at rest
+/// a coarse sensor may repeat itself, and a constant value is no error there. An axis that has repeated
+/// itself more often than not in the last thousand measurements before is not judged to be. In recordings of
+/// five kinds of sensors, faultless ones, no more than 7 in a row are equal.
 ///
 /// The samples stay as they are. The error of the axis is taken as constant with the deviation sigma for
 /// kConstantS, and as white noise of that correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t
@@ -53,7 +56,7 @@ class ImuAxisWatch {
  private:
   struct Axis {
     // Of the measurements with the newest value.
-    int equal = 1;
+    std::int64_t equal = 1;
     TimeNs since_ns = 0;
     std::array<double, 2> low{}, high{};  ///< of the other axes meanwhile
     double came_from = 0;                 ///< kSaturated measurements before the first of them
@@ -61,11 +64,14 @@ class ImuAxisWatch {
     bool faulty = false;
     // Of all.
     std::deque<std::pair<TimeNs, double>> recent;  ///< the last kSaturated measurements
-    int measured = 0;
-    int changed = 0;        ///< of those
+    std::int64_t measured = 0;
     double resolution = 0;  ///< 0: not known
     double lowest = 0, highest = 0;
-    double limit = 0;  ///< at which it was saturated; 0: never
+    double limit = 0;  ///< at which it was saturated; 0: none is known
+    TimeNs near_limit_since_ns = 0;
+    // Of the last thousand before the newest value's repetitions, weighted exponentially.
+    double counted = 0;
+    double changed = 0;  ///< of those
     double mean = 0, mean_square = 0;
     TimeNs told_until_ns = INT64_MIN;
   };
@@ -79,6 +85,8 @@ class ImuAxisWatch {
   };
   enum class Fault { kNone, kSaturated, kStuck };
 
+  /// Adds the repetitions of the last value and the first measurement of the next one to what came before.
+  static void CountShare(bool changed, Axis* axis);
   static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                     Axis* axis);
   [[nodiscard]] static Fault Judge(double value, double floor, const Axis& axis);

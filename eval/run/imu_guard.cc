@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/format.h"
+#include "core/numbers.h"
 
 namespace alidade {
 namespace {
@@ -18,7 +18,6 @@ constexpr int kMemorySamples = 100;
 constexpr double kMaxStepS = 0.05;
 constexpr double kKnownRatio = 10;     // of a rate that tells a unit to the root mean square of the steps
 constexpr double kContinuesRatio = 4;  // of a step to that
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 bool AreNeighbours(const ImuSample& a, const ImuSample& b) {
   return SecondsBetween(a.stamp_ns, b.stamp_ns) <= kMaxStepS;
@@ -58,7 +57,7 @@ std::string ImuGuard::MendUnit(const ImuSample* next, ImuSample* sample) {
     const auto continues = [&](const Vector3d& before, const Vector3d& gyro, double unit) {
       return (gyro / unit - before).norm() <= kContinuesRatio * rms;
     };
-    const double other = unit_ == 1 ? kDegrees : 1;
+    const double other = unit_ == 1 ? kDegreesPerRadian : 1;
     const double jump = (sample->gyro / unit_ - last_->gyro).norm();
     // In rad/s the same jump is smaller by the ratio of the units.
     const double least = kUnconfirmedFloor * gyro_.floor / unit_;

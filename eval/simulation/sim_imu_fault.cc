@@ -1,8 +1,8 @@
 #include "eval/simulation/sim_imu_fault.h"
 
 #include <algorithm>
-#include <numbers>
 
+#include "core/numbers.h"
 #include "core/random.h"
 
 namespace alidade {
@@ -74,7 +74,7 @@ void Stick(const FaultSpan& span, std::uint64_t seed, Signal signal, std::vector
 
 void ChangeUnit(const FaultSpan& span, std::vector<ImuSample>* imu) {
   for (ImuSample& sample : *imu) {
-    sample.gyro *= sample.stamp_ns >= span.begin_ns ? 180 / std::numbers::pi : 1;
+    sample.gyro *= sample.stamp_ns >= span.begin_ns ? kDegreesPerRadian : 1;
   }
 }
 

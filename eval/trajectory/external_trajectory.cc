@@ -56,7 +56,7 @@ Status ReadAnyStamp(const CsvReader& csv, const Trajectory& before, TimeNs* stam
   const bool nanoseconds =
       text.size() >= kDigitsOfNanoseconds && text.find_first_of(".eE") == std::string::npos;
   if (nanoseconds) {
-    ALIDADE_RETURN_IF_ERROR(csv.ReadInt64(0, "stamp", stamp_ns));
+    ALIDADE_RETURN_IF_ERROR(csv.ReadTime(0, "stamp", stamp_ns));
   } else if (!ParseDecimalSeconds(text, stamp_ns)) {
     return csv.Fault(0, "stamp", "decimal seconds or nanoseconds");
   }

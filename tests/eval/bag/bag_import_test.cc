@@ -254,6 +254,9 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
           .ok());
   EXPECT_NE(DigestOf(source).value(), digest)
       << "the front end's tracks would be taken for those of another rig";
+  source.follow_links = true;
+  EXPECT_THAT(ReadDataset(source).message(), HasSubstr("is a bag; follow_links applies to folders"));
+  source.follow_links = false;
   source.topics = "cam0=/none";
   EXPECT_THAT(ReadDataset(source).message(), HasSubstr("no topic /none"));
   source.path = folder_.path();

@@ -268,6 +268,27 @@ TEST_F(PlanTest, ABagMayBringItsTopicsAndCalibration) {
   EXPECT_THAT(of_folder.message(), HasSubstr("`path` of a bag"));
 }
 
+TEST_F(PlanTest, AFolderMayHaveItsLinksFollowed) {
+  const std::string head = "estimators: [estimators/a.yaml]\nskip_missing: true\nsequences:\n";
+  const std::string simulation = "  - {config: sim.yaml, seeds: 1}\n";
+  const auto read = [&](const std::string& entry) {
+    return Read(head + simulation + "  - {" + entry + ", name: linked}\n", folder_.File("data"));
+  };
+  for (const bool follow : {true, false}) {
+    const Result<Plan> plan =
+        read("path: '${data}/seq', follow_links: " + std::string(follow ? "true" : "false"));
+    ASSERT_TRUE(plan.ok()) << plan.message();
+    EXPECT_EQ(plan->sequences.at(1).dataset.follow_links, follow);
+  }
+  EXPECT_FALSE(read("path: '${data}/seq'")->sequences.at(1).dataset.follow_links);
+  folder_.Write("data/walk.bag", "");
+  for (const char* other : {"path: '${data}/walk.bag'", "config: sim.yaml"}) {
+    const Result<Plan> plan = read(std::string(other) + ", follow_links: true");
+    EXPECT_EQ(plan.code(), StatusCode::kConfig) << other;
+    EXPECT_THAT(plan.message(), HasSubstr("`follow_links` only with the `path` of a folder"));
+  }
+}
+
 TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
   const std::string rest =
       "estimators: [estimators/a.yaml]\nsequences:\n  - path: ${data}/seq\n  - {path: '${data}/gone', name: "

@@ -101,6 +101,33 @@ TEST(BadSequenceLink, GivenAnImageThatIsALinkOutOfTheSequenceThenItIsRefused) {
               HasSubstr("data.csv:2: column 2 (filename): found '1.png', expected a file of "
                         "this sequence, not a link to "));
   EXPECT_THAT(dataset.message(), HasSubstr("secret.png outside of it"));
+  EXPECT_THAT(dataset.message(), HasSubstr("--follow_links"));
+  const Result<Dataset> followed = ReadDataset(folder.File("seq"), {.follow_links = true});
+  ASSERT_TRUE(followed.ok()) << followed.message();
+  EXPECT_EQ(followed->images.size(), 2u);
+}
+
+// GIVEN a folder beside the sequence whose name begins with the sequence's WHEN an image leads there THEN it
+// is refused: names are compared whole; WHEN images of several subfolders are links THEN each is judged by
+// its own folder.
+TEST(BadSequenceLink, GivenALinkToANeighbourThenItIsRefused) {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  WriteSequenceWithAnImage(folder, "seq");
+  folder.Write("disk/1.png", "x");
+  folder.Write("sequel/1.png", "x");
+  fs::create_directory_symlink(folder.File("disk"), folder.File("seq/mav0/cam0/data/a"));
+  fs::create_directory(folder.File("seq/mav0/cam0/data/b"));
+  fs::create_symlink("1.png", folder.File("disk/2.png"));
+  folder.Write("seq/mav0/cam0/data.csv", "#timestamp [ns],filename\n1000,a/2.png\n2000,b/1.png\n");
+  const auto message = [&folder](const std::string& target) {
+    const std::string link = folder.File("seq/mav0/cam0/data/b/1.png");
+    fs::remove(link);
+    fs::create_symlink(folder.File(target), link);
+    return ReadDataset(folder.File("seq")).message();
+  };
+  EXPECT_THAT(message("sequel/1.png"), HasSubstr("data.csv:3: column 2 (filename): found 'b/1.png'"));
+  EXPECT_THAT(message("disk/1.png"), HasSubstr("data.csv:3: column 2 (filename): found 'b/1.png'"));
 }
 
 // GIVEN links that users make (of folders, within the sequence, of every file of another sequence) THEN the

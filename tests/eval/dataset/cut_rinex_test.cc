@@ -57,5 +57,16 @@ TEST_F(CutRinex, WithinANumberOrBehindOneItIsNamed) {
               HasSubstr("obs.rnx: the last line has no line end, expected one"));
 }
 
+TEST_F(CutRinex, AnOffsetWithWhichNoTimeCanBeToldIsRefused) {
+  const auto message = [this](const char* offset) {
+    folder_.Write("mav0/gnss0/sensor.yaml", std::string("p_BA: [0, 0, 0]\ntime_offset_s: ") + offset + "\n");
+    return ReadDataset(folder_.path()).message();
+  };
+  EXPECT_THAT(message("-4.7e9"),
+              HasSubstr("sensor.yaml:2:16: time_offset_s: found '-4.7e9', expected a number "
+                        "within +-4.6e9 s"));
+  EXPECT_THAT(message("4.6e9"), HasSubstr("sensor.yaml: time_offset_s: found 4.6e+09 s with the stamp "));
+}
+
 }  // namespace
 }  // namespace alidade

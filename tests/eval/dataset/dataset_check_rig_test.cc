@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "tests/eval/dataset/healthy_dataset.h"
+#include "tests/support/temporary_folder.h"
 
 // Calibrations that `check` knows no rig to have.
 
@@ -156,6 +157,20 @@ TEST(PlausibleRig, ACameraOffsetOfSecondsIsNoComplaint) {
   for (const Severity severity : {Severity::kWarning, Severity::kError}) {
     EXPECT_THAT(Complaints(dataset, severity), testing::Not(HasSubstr("time_offset_s")));
   }
+}
+
+// GIVEN a folder whose name ends as a bag's THEN its sheets are named as a folder's; GIVEN a bag THEN the
+// sensor is.
+TEST(SheetOfRig, TheSheetOfABagIsNamedByItsSensor) {
+  const test::TemporaryFolder folder;
+  folder.Write("folder.bag/mav0/x", "");
+  folder.Write("file.bag", "");
+  Dataset dataset = Healthy();
+  WithIntrinsics(4, 4, 320, 240)(&dataset);
+  dataset.path = folder.File("folder.bag");
+  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("cam0/sensor.yaml: intrinsics: found fu"));
+  dataset.path = folder.File("file.bag");
+  EXPECT_THAT(Complaints(dataset, Severity::kError), HasSubstr("cam0: intrinsics: found fu"));
 }
 
 // The camera's span is that of its stamps in IMU time.

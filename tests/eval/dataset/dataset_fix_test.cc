@@ -130,6 +130,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadFix{"arm", "time_offset_s: 0\n", kGood.c_str(), "p_BA: is missing"},
         BadFix{"offset", "p_BA: [0, 0, 0]\ntime_offset_s: soon\n", kGood.c_str(), "sensor.yaml:2:16"},
+        BadFix{"clock", "p_BA: [0, 0, 0]\ntime_offset_s: 4.7e9\n", kGood.c_str(),
+               "sensor.yaml:2:16: time_offset_s: found '4.7e9', expected a number within +-4.6e9 s"},
+        BadFix{"far behind", "p_BA: [0, 0, 0]\ntime_offset_s: -1e10\n", kGood.c_str(), "-1e10"},
+        BadFix{"sum", "p_BA: [0, 0, 0]\ntime_offset_s: 4.6e9\n", kGood.c_str(),
+               "sensor.yaml: time_offset_s: found 4.6e+09 s with the stamp 10 ns, expected a sum within "
+               "+-4600000000000000000 ns"},
         BadFix{"anchor", "p_BA: unknown\nanchor_llh_deg: [95, 8, 400]\n", kGood.c_str(),
                "anchor_llh_deg: found"},
         BadFix{"type", "sensor_type: camera\np_BA: unknown\n", kGood.c_str(), "'position'"},

@@ -62,6 +62,22 @@ TEST(FailureDiagnosisTest, ALossAfterALongRestIsDiagnosedWhereItIs) {
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }
 
+// GIVEN a camera whose clock is 30 s ahead of the IMU's THEN the data around the loss are looked at all the
+// same.
+TEST(FailureDiagnosisTest, TheLossIsFoundInTheCamerasTime) {
+  MeasurementLog log = LogWithSigns({-1, -1, -1}, 40);
+  log.rig.camera_time_offset_s = -30;
+  for (TrackFrame& frame : log.frames) {
+    frame.stamp_ns += 30 * kSecondNs;
+  }
+  const RunResult failed = RunEstimator(SmallFilter(), log, {});
+  ASSERT_TRUE(Failed(failed));
+  const std::optional<std::string> cause =
+      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  ASSERT_TRUE(cause.has_value());
+  EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
+}
+
 // GIVEN a failure that has nothing to do with signs THEN those given pass first and nothing else is tried.
 TEST(FailureDiagnosisTest, SoundDataEndTheSearchAtTheFirstCombination) {
   const MeasurementLog log = LogWithSigns({1, 1, 1});

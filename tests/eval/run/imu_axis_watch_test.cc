@@ -75,6 +75,63 @@ TEST(ImuAxisWatchTest, AnAxisThatSeldomChangedBeforeIsNoFault) {
   EXPECT_TRUE(Watch(std::move(samples)).told.empty());
 }
 
+// GIVEN noise-free data WHEN a level motion follows a longer one in three dimensions THEN what the axis does
+// now tells that it is not stuck, not what it did then.
+TEST(ImuAxisWatchTest, ALevelMotionAfterOneInThreeDimensionsIsNoFaultForLong) {
+  std::vector<ImuSample> samples = Motion(20000, 1e-9);
+  for (std::size_t k = 10000; k < samples.size(); ++k) {
+    samples[k].accel.z() = k % 50 == 0 ? 9.81 + 1e-14 : 9.81;
+  }
+  const Watched watched = Watch(std::move(samples));
+  for (std::size_t k = 12000; k < watched.faulty.size(); ++k) {
+    ASSERT_FALSE(watched.faulty[k]) << k;
+  }
+}
+
+/// A coarse accelerometer, whose vertical axis jumps at 10 s to the largest value so far and rests there. All
+/// repeat themselves but for every third measurement of the horizontal axes and every `period`-th of the
+/// vertical one, a step lower.
+std::vector<ImuSample> PutDown(std::size_t period) {
+  constexpr double kStep = 0.04;
+  std::vector<ImuSample> samples = Motion(10000, 4e-3);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (k < 2000) {
+      samples[k].accel.z() = kStep * (std::round(samples[k].accel.z() / kStep) - 100);
+    } else {
+      const double step = k % 3 == 0 ? kStep : 0;
+      samples[k].accel = Vector3d(step, -step, kStep * (k % period == 1 ? 244 : 245));
+    }
+  }
+  return samples;
+}
+
+// GIVEN a coarse accelerometer that is put down quickly THEN it is taken for saturated for a second at most,
+// whether its noise moves it at rest or not.
+TEST(ImuAxisWatchTest, ACoarseSensorThatIsPutDownQuicklyIsNotSaturatedForTheWholeRest) {
+  for (const std::size_t period : {100000u, 101u, 22u}) {
+    const Watched watched = Watch(PutDown(period));
+    for (std::size_t k = 0; k < watched.faulty.size(); ++k) {
+      const double rest_s = (static_cast<double>(k) - 2000) / kRateHz;
+      ASSERT_FALSE(watched.faulty[k] && rest_s > ImuAxisWatch::kConstantS + 0.2) << period << " " << rest_s;
+    }
+  }
+}
+
+// GIVEN an axis that is saturated for long WHEN the others go on moving THEN it is faulty throughout, and
+// told once.
+TEST(ImuAxisWatchTest, ALongSaturationIsFoundThroughoutWhileTheOthersMove) {
+  std::vector<ImuSample> samples = Motion(4000, 1e-3);
+  for (std::size_t k = 2000; k < 3000; ++k) {
+    samples[k].gyro.x() = 1.2;
+  }
+  const Watched watched = Watch(std::move(samples));
+  ASSERT_EQ(watched.told.size(), 1u);
+  EXPECT_THAT(watched.told[0], HasSubstr("the gyroscope's x axis is saturated at 1.2 rad/s"));
+  for (std::size_t k = 0; k < watched.faulty.size(); ++k) {
+    EXPECT_EQ(watched.faulty[k], k >= 2004 && k < 3000) << k;
+  }
+}
+
 TEST(ImuAxisWatchTest, RowsThatAreHandedOutTwiceAreNoFault) {
   std::vector<ImuSample> samples = Motion(8000, 1e-9);
   for (std::size_t k = 0; k < samples.size(); ++k) {
