@@ -106,17 +106,19 @@ ImuAxisWatch::Fault ImuAxisWatch::Judge(double value, double floor, const Axis& 
 
 double ImuAxisWatch::Sigma(Fault fault, double value, double floor, double seconds, const Axis& axis) {
   if (fault == Fault::kStuck) {
-    const double square = axis.mean_square - 2 * value * axis.mean + value * value;
+    const double replaced = axis.faulty ? axis.mean : value;
+    const double square = axis.mean_square - 2 * replaced * axis.mean + replaced * replaced;
     return std::max(floor, std::sqrt(std::max(0.0, square)));
   }
   const double rate = axis.came_from_s > 0 ? std::abs(value - axis.came_from) / axis.came_from_s : 0;
   return std::max(floor, std::min(rate * seconds, 0.5 * std::abs(value)));
 }
 
-std::string ImuAxisWatch::AddAxis(const ImuSample& last, int index, Signal* signal, ImuSample* sample) {
+std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,
+                                  ImuSample* sample) {
   Axis& axis = signal->axes[static_cast<std::size_t>(index)];
-  Count(*signal, index, last, *sample, &axis);
-  const double value = (sample->*signal->value)[index];
+  Count(*signal, index, last, measured, &axis);
+  const double value = (measured.*signal->value)[index];
   const Fault fault = Judge(value, signal->floor, axis);
   if (fault == Fault::kNone) {
     return {};
@@ -127,6 +129,9 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, int index, Signal* sign
   const double density = axis.faulty ? sigma * std::sqrt(2 * std::min(seconds, kConstantS))
                                      : sigma * seconds / std::sqrt(step_s);
   axis.faulty = true;
+  if (fault == Fault::kStuck) {
+    (sample->*signal->value)[index] = axis.mean;
+  }
   axis.limit = fault == Fault::kSaturated ? value : axis.limit;
   sample->*signal->fault_density = std::hypot(sample->*signal->fault_density, density);
   reason_ = Format(fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
@@ -139,17 +144,18 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, int index, Signal* sign
 
 std::string ImuAxisWatch::Add(ImuSample* sample) {
   std::string told;
+  const ImuSample measured = *sample;
   reason_.clear();
   if (any_) {
     for (Signal& signal : signals_) {
       for (int index = 0; index < 3; ++index) {
-        const std::string one = AddAxis(last_, index, &signal, sample);
+        const std::string one = AddAxis(last_, measured, index, &signal, sample);
         told += one.empty() || told.empty() ? one : "; " + one;
       }
     }
   }
   any_ = true;
-  last_ = *sample;
+  last_ = measured;
   return told;
 }
 

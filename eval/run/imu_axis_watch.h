@@ -25,12 +25,13 @@ namespace alidade {
 /// itself more often than not in the last thousand measurements before is not judged to be. In recordings of
 /// five kinds of sensors, faultless ones, no more than 7 in a row are equal.
 ///
-/// The samples stay as they are. The error of the axis is taken as constant with the deviation sigma for
-/// kConstantS, and as white noise of that correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t
-/// since the first equal sample; the step that detects gets the variance sigma^2 t^2 up to then. Stuck:
-/// sigma^2 = var + (mean - value)^2, of the last thousand measurements before. Saturated: the motion goes on
-/// as it came, at most half beyond the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2
-/// rad/s and 1 m/s^2 (core/imu_gap.h). The noise is that of all three axes.
+/// A stuck axis reads its mean of the last thousand measurements before; a saturated one stays as it is. The
+/// error of the axis is taken as constant with the deviation sigma for kConstantS, and as white noise of that
+/// correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t since the first equal sample; the step
+/// that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the mean, in
+/// the step that detects about the stuck value. Saturated: the motion goes on as it came, at most half beyond
+/// the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2 rad/s and 1 m/s^2
+/// (core/imu_gap.h). The noise is that of all three axes.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
 /// kLeastMeasurements.
@@ -47,8 +48,8 @@ class ImuAxisWatch {
 
   ImuAxisWatch();
 
-  /// The next sample in order; sets the noise of its fault. Returns what is wrong where it was not told yet,
-  /// else nothing.
+  /// The next sample in order; sets the noise of its fault and replaces a stuck axis. Returns what is wrong
+  /// where it was not told yet, else nothing.
   std::string Add(ImuSample* sample);
   /// What is wrong with the last sample; empty: nothing.
   [[nodiscard]] const std::string& reason() const { return reason_; }
@@ -93,7 +94,8 @@ class ImuAxisWatch {
   [[nodiscard]] static double Sigma(Fault fault, double value, double floor, double seconds,
                                     const Axis& axis);
   /// What is wrong with one axis, and whether it is to be told.
-  std::string AddAxis(const ImuSample& last, int index, Signal* signal, ImuSample* sample);
+  std::string AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,
+                      ImuSample* sample);
 
   std::array<Signal, 2> signals_;
   bool any_ = false;

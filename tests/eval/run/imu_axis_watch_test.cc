@@ -153,7 +153,14 @@ TEST(ImuAxisWatchTest, AStuckAxisIsToldOnceWithAxisValueAndStampAndGetsItsNoise)
   EXPECT_THAT(watched.told[0], HasSubstr("from 9.995"));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     EXPECT_EQ(watched.faulty[k], k >= 2018 && k < 3000) << k;
-    EXPECT_EQ(watched.samples[k].gyro, samples[k].gyro);
+    EXPECT_EQ(watched.samples[k].gyro.x(), samples[k].gyro.x());
+    EXPECT_EQ(watched.samples[k].gyro.z(), samples[k].gyro.z());
+    if (watched.faulty[k]) {  // the mean before, which differs from that of a period by the memory's end
+      EXPECT_NEAR(watched.samples[k].gyro.y(), 0, 0.25) << k;
+      EXPECT_EQ(watched.samples[k].gyro.y(), watched.samples[2018].gyro.y());
+    } else {
+      EXPECT_EQ(watched.samples[k].gyro.y(), samples[k].gyro.y());
+    }
     EXPECT_EQ(watched.samples[k].accel_fault_density_mps2_sqrthz, 0);
   }
   // Over t the noise has the variance sigma^2 t^2 of a constant error; the axis is a cosine of one rad/s.
@@ -161,8 +168,7 @@ TEST(ImuAxisWatchTest, AStuckAxisIsToldOnceWithAxisValueAndStampAndGetsItsNoise)
   for (std::size_t k = 2000; k < 2200; ++k) {
     variance += std::pow(watched.samples[k].gyro_fault_density_radps_sqrthz, 2) / kRateHz;
   }
-  const double value = samples[1999].gyro.y();
-  EXPECT_NEAR(variance, 0.5 + value * value, 0.2 * variance);
+  EXPECT_NEAR(variance, 0.5, 0.2 * variance);
 }
 
 TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsToldOnceAndFoundAtOnceAfterwards) {
