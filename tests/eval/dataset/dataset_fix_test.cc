@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFix{"offset", "p_BA: [0, 0, 0]\ntime_offset_s: soon\n", kGood.c_str(), "sensor.yaml:2:16"},
         BadFix{"clock", "p_BA: [0, 0, 0]\ntime_offset_s: 4.7e9\n", kGood.c_str(),
                "sensor.yaml:2:16: time_offset_s: found '4.7e9', expected a number within +-4.6e9 s"},
-        BadFix{"far behind", "p_BA: [0, 0, 0]\ntime_offset_s: -1e10\n", kGood.c_str(), "-1e10"},
+        BadFix{"far_behind", "p_BA: [0, 0, 0]\ntime_offset_s: -1e10\n", kGood.c_str(), "-1e10"},
         BadFix{"sum", "p_BA: [0, 0, 0]\ntime_offset_s: 4.6e9\n", kGood.c_str(),
                "sensor.yaml: time_offset_s: found 4.6e+09 s with the stamp 10 ns, expected a sum within "
                "+-4600000000000000000 ns"},
