@@ -70,4 +70,26 @@ Status CheckPlan(const Plan& plan, const YAML::Node& root) {
   return CheckAnyThere(plan);
 }
 
+Status CheckSequenceKeys(const PlanReader& reader, const YAML::Node& node, const PlanSequence& sequence,
+                         bool is_bag) {
+  const bool is_dataset = !sequence.dataset.path.empty();
+  if (is_dataset == !sequence.config.empty()) {
+    return reader.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
+  }
+  if (is_dataset && !sequence.settings.empty()) {
+    return reader.Fault(node, "sequences", "`set` only with `config`: a dataset has no settings");
+  }
+  if (!is_dataset && !sequence.truth.empty()) {
+    return reader.Fault(node, "sequences", "`truth` only with `path`: a simulation has its own");
+  }
+  if (!is_bag && (node["topics"] || node["calibration"] || node["camera"])) {
+    return reader.Fault(node, "sequences",
+                        "`topics`, `calibration` and `camera` only with the `path` of a bag");
+  }
+  if (sequence.dataset.follow_links && (is_bag || !is_dataset)) {
+    return reader.Fault(node, "sequences", "`follow_links` only with the `path` of a folder");
+  }
+  return Status::Ok();
+}
+
 }  // namespace alidade

@@ -189,23 +189,8 @@ class PlanParser {
          {"estimator_set", [&](const Node& n) {
             return reader_.Settings(n, "estimator_set", &sequence.estimator_settings);
           }}}));
-    if (sequence.dataset.path.empty() == sequence.config.empty()) {
-      return reader_.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
-    }
-    if (!sequence.dataset.path.empty() && !sequence.settings.empty()) {
-      return reader_.Fault(node, "sequences", "`set` only with `config`: a dataset has no settings");
-    }
-    if (sequence.dataset.path.empty() && !sequence.truth.empty()) {
-      return reader_.Fault(node, "sequences", "`truth` only with `path`: a simulation has its own");
-    }
     const bool is_bag = sequence.dataset.path.ends_with(".bag");  // it may be absent
-    if (!is_bag && (node["topics"] || node["calibration"] || node["camera"])) {
-      return reader_.Fault(node, "sequences",
-                           "`topics`, `calibration` and `camera` only with the `path` of a bag");
-    }
-    if (sequence.dataset.follow_links && (is_bag || sequence.dataset.path.empty())) {
-      return reader_.Fault(node, "sequences", "`follow_links` only with the `path` of a folder");
-    }
+    ALIDADE_RETURN_IF_ERROR(CheckSequenceKeys(reader_, node, sequence, is_bag));
     if (sequence.name.empty()) {
       sequence.name = sequence.dataset.path.empty() || is_bag
                           ? Stem(sequence.dataset.path.empty() ? sequence.config : sequence.dataset.path)

@@ -1,9 +1,7 @@
 #include "eval/config/config_yaml.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include "eval/config/config_keys.h"
 #include "eval/files/csv.h"
@@ -258,39 +256,6 @@ Status ApplySettings(const std::vector<std::string>& settings,
                                                    : ": unknown key" + schema.Hint(key)));
     }
     ALIDADE_RETURN_IF_ERROR(ApplyTree(*tree, where, schema, describe));
-  }
-  return Status::Ok();
-}
-
-std::vector<std::string> SplitSettings(std::string_view list) {
-  std::vector<std::string> settings;
-  std::string current;
-  int depth = 0;
-  for (const char c : list) {
-    depth += (c == '[' ? 1 : 0) - (c == ']' ? 1 : 0);
-    if (c == ',' && depth <= 0) {
-      settings.push_back(current);
-      current.clear();
-    } else {
-      current.push_back(c);
-    }
-  }
-  if (!current.empty()) {
-    settings.push_back(current);
-  }
-  return settings;
-}
-
-Status CheckSettingsAgree(const std::vector<std::string>& settings) {
-  std::map<std::string_view, std::string_view> values;
-  for (const std::string_view setting : settings) {
-    const size_t equals = std::min(setting.find('='), setting.size());
-    const std::string_view value = setting.substr(std::min(equals + 1, setting.size()));
-    const auto [given, first] = values.try_emplace(setting.substr(0, equals), value);
-    if (!first && given->second != value) {
-      return Status::Config("setting " + Quoted(given->first) + ": found " + Quoted(given->second) + " and " +
-                            Quoted(value) + ", expected one value");
-    }
   }
   return Status::Ok();
 }

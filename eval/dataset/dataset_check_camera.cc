@@ -44,6 +44,26 @@ void CheckLives(const Dataset& dataset, size_t frames, int longest, Findings* fi
   }
 }
 
+/// `outside`: how many of the observations are not in the image; `largest`: of all coordinates.
+void CheckCoordinates(const CameraModel& camera, size_t observations, size_t outside, double largest,
+                      Findings* findings) {
+  if (AreNormalized(observations, largest, camera)) {
+    findings->Error(
+        Format("cam0: all coordinates of the tracks are within +-%.2f, the image has %d x %d px: they seem "
+               "to be normalised (x/z, y/z); expected raw pixels",
+               largest, camera.width_px(), camera.height_px()));
+  } else if (outside > 0) {
+    const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
+                                    camera.width_px(), camera.height_px());
+    // A few per mille sit on the border; more means the resolution is not that of the tracks.
+    if (outside * 20 > observations) {
+      findings->Error(text + ": wrong resolution?");
+    } else {
+      findings->Warning(text);
+    }
+  }
+}
+
 void CheckTracks(const Dataset& dataset, Findings* findings) {
   struct Life {
     size_t last_frame = 0;
@@ -77,21 +97,7 @@ void CheckTracks(const Dataset& dataset, Findings* findings) {
              total, lives.size(), static_cast<double>(total) / static_cast<double>(frames),
              static_cast<double>(total) / static_cast<double>(std::max<size_t>(1, lives.size())), useful));
   CheckLives(dataset, frames, longest, findings);
-  if (AreNormalized(total, largest, dataset.rig.camera)) {
-    findings->Error(
-        Format("cam0: all coordinates of the tracks are within +-%.2f, the image has %d x %d px: they seem "
-               "to be normalised (x/z, y/z); expected raw pixels",
-               largest, dataset.rig.camera.width_px(), dataset.rig.camera.height_px()));
-  } else if (outside > 0) {
-    const std::string text = Format("cam0: %zu observations are outside %d x %d px", outside,
-                                    dataset.rig.camera.width_px(), dataset.rig.camera.height_px());
-    // A few per mille sit on the border; more means the resolution is not that of the tracks.
-    if (outside * 20 > total) {
-      findings->Error(text + ": wrong resolution?");
-    } else {
-      findings->Warning(text);
-    }
-  }
+  CheckCoordinates(dataset.rig.camera, total, outside, largest, findings);
   if (returned > 0) {
     findings->Warning(
         Format("cam0: %zu times a track is missing in some frames and reappears with the same id", returned));

@@ -16,7 +16,10 @@ const char* Contradicts(const AbsoluteSource& source) {
 
 }  // namespace
 
-void Degradation::OnImu(TimeNs stamp_ns, const std::string& doubt) {
+void Degradation::OnImu(TimeNs stamp_ns, const std::string& doubt, std::optional<TimeNs> unit_changed_ns) {
+  if (unit_changed_ns == stamp_ns) {
+    unit_until_ns_ = stamp_ns + SecondsToNs(kSettlingS);
+  }
   if (last_imu_ns_ != INT64_MIN && SecondsBetween(last_imu_ns_, stamp_ns) > imu_gap::kMinGapS) {
     silent_until_ns_ = stamp_ns;
     silence_s_ = SecondsBetween(last_imu_ns_, stamp_ns);

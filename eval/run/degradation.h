@@ -54,9 +54,9 @@ class Degradation {
     jump_until_ns_ = INT64_MAX;
   }
   /// Every sample that is delivered, in order. `doubt`: what is wrong with it, empty: nothing.
-  void OnImu(TimeNs stamp_ns, const std::string& doubt = {});
-  /// The gyroscope has changed its unit at this sample, and is converted from here on.
-  void OnGyroUnit(TimeNs stamp_ns) { unit_until_ns_ = stamp_ns + SecondsToNs(kSettlingS); }
+  /// `unit_changed_ns`: when the gyroscope changed its unit last, and is converted from there on.
+  void OnImu(TimeNs stamp_ns, const std::string& doubt = {},
+             std::optional<TimeNs> unit_changed_ns = std::nullopt);
   /// Whether the frame shows what the one before showed: every track of both, at least kMinFrozen, on the
   /// very same pixel. A sensor's noise moves each of them even at rest: it is the old image under a new
   /// stamp, and says nothing. Every frame, in order.

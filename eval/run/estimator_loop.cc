@@ -126,12 +126,9 @@ void EstimatorLoop::ProcessMessage(SensorRun* sensor) {
 void EstimatorLoop::DeliverImu(TimeNs stamp_ns) {
   while (const ImuSample* sample = imu_.Deliver(stamp_ns)) {
     gyro_radps_ = sample->gyro;
-    degradation_.OnImu(sample->stamp_ns, imu_.guard().doubt());
+    degradation_.OnImu(sample->stamp_ns, imu_.guard().doubt(), imu_.guard().unit_changed_ns());
     if (!imu_.fault().empty()) {
       events_.emplace_back(SkippedEvent{Sensor::kImu, sample->stamp_ns, imu_.fault()});
-      if (imu_.guard().unit_changed_ns() == sample->stamp_ns) {
-        degradation_.OnGyroUnit(sample->stamp_ns);
-      }
     }
     if (running()) {
       AddImu(*sample);

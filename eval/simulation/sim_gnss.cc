@@ -267,31 +267,30 @@ Status AddSimulatedGnss(const SimulatorConfig& config, const ContinuousTrajector
     return Status::Ok();
   }
   const TimeNs end_ns = start_ns + SecondsToNs(trajectory.DurationSeconds());
-  NavigationData navigation;
+  const auto simulated = [&](TimeNs age_ns) {
+    return std::make_shared<const SatelliteCatalog>(
+        SimulateConstellations(gnss.systems, start_ns - age_ns, end_ns - age_ns));
+  };
+  std::shared_ptr<const SatelliteCatalog> catalog;
   if (gnss.navigation_file == kNoPath) {
-    navigation = SimulateConstellations(gnss.systems, start_ns, end_ns);
+    catalog = simulated(0);
   } else {
     Result<NavigationData> read = ReadRinexNavigation(gnss.navigation_file);
     ALIDADE_RETURN_IF_ERROR(read.status());
-    navigation = *std::move(read);
+    catalog = std::make_shared<const SatelliteCatalog>(*std::move(read));
   }
-  const auto catalog = std::make_shared<const SatelliteCatalog>(std::move(navigation));
   Receiver receiver(gnss, trajectory, start_ns, SimPull(config, seed), seed, catalog);
   auto log = std::make_shared<GnssLog>();
   log->epochs = receiver.Run();
-  if (std::all_of(log->epochs.begin(), log->epochs.end(),
-                  [](const ObservationEpoch& epoch) { return epoch.satellites.empty(); })) {
+  // An epoch without satellites is none.
+  std::erase_if(log->epochs, [](const ObservationEpoch& epoch) { return epoch.satellites.empty(); });
+  if (log->epochs.empty()) {
     return Status::Input(
         "gnss.navigation_file: found no satellite above the mask during the sequence, "
         "expected ephemerides of its time (start_time_s)");
   }
-  // An epoch without satellites is none.
-  std::erase_if(log->epochs, [](const ObservationEpoch& epoch) { return epoch.satellites.empty(); });
   log->glonass_channels = receiver.channels();
-  log->catalog = config.fault == SimFaultKind::kStaleEphemerides
-                     ? std::make_shared<const SatelliteCatalog>(
-                           SimulateConstellations(gnss.systems, start_ns - kDayNs, end_ns - kDayNs))
-                     : catalog;
+  log->catalog = config.fault == SimFaultKind::kStaleEphemerides ? simulated(kDayNs) : catalog;
   log->approximate_position_E = receiver.enu().origin_E;
   dataset->gnss = std::move(log);
   dataset->rig.gnss = {gnss.lever_arm_m, gnss.time_offset_s, receiver.enu().origin_E, true};

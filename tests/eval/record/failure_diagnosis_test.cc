@@ -31,12 +31,15 @@ EstimatorConfig SmallFilter() {
   return config;
 }
 
+std::optional<std::string> CauseOf(const MeasurementLog& log, const RunResult& failed) {
+  return DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+}
+
 TEST(FailureDiagnosisTest, ANegatedAccelerometerIsNamed) {
   const MeasurementLog log = LogWithSigns({-1, -1, -1});
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
   EXPECT_TRUE(Failed(failed));
-  const std::optional<std::string> cause =
-      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  const std::optional<std::string> cause = CauseOf(log, failed);
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }
@@ -44,8 +47,7 @@ TEST(FailureDiagnosisTest, ANegatedAccelerometerIsNamed) {
 TEST(FailureDiagnosisTest, ANegatedAxisIsNamed) {
   const MeasurementLog log = LogWithSigns({1, 1, -1});
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
-  const std::optional<std::string> cause =
-      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  const std::optional<std::string> cause = CauseOf(log, failed);
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("z axis negated"));
 }
@@ -56,8 +58,7 @@ TEST(FailureDiagnosisTest, ALossAfterALongRestIsDiagnosedWhereItIs) {
   const MeasurementLog log = LogWithSigns({-1, -1, -1}, 40);
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
   ASSERT_TRUE(Failed(failed));
-  const std::optional<std::string> cause =
-      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  const std::optional<std::string> cause = CauseOf(log, failed);
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }
@@ -72,8 +73,7 @@ TEST(FailureDiagnosisTest, TheLossIsFoundInTheCamerasTime) {
   }
   const RunResult failed = RunEstimator(SmallFilter(), log, {});
   ASSERT_TRUE(Failed(failed));
-  const std::optional<std::string> cause =
-      DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, {});
+  const std::optional<std::string> cause = CauseOf(log, failed);
   ASSERT_TRUE(cause.has_value());
   EXPECT_THAT(*cause, HasSubstr("with all axes of the accelerometer negated"));
 }

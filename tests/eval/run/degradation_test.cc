@@ -83,7 +83,7 @@ TEST(DegradationTest, AnAxisThatDoesNotMeasureIsToldUntilTheEstimateHasSettled) 
 
 TEST(DegradationTest, AChangeOfUnitIsToldUntilTheEstimateHasSettled) {
   Degradation degradation;
-  degradation.OnGyroUnit(SecondsToNs(1));
+  degradation.OnImu(SecondsToNs(1), "", SecondsToNs(1));
   EXPECT_THAT(degradation.Check(SecondsToNs(1.4), Saw(20)).reason, HasSubstr("changed its unit"));
   EXPECT_EQ(degradation.Check(SecondsToNs(1.6), Saw(20)).reason, "");
 }
