@@ -136,4 +136,25 @@ ImuIncrement StepIncrement(const Vector3d& omega, const Vector3d& accel, double 
   return step;
 }
 
+void AddAxisNoise(const Vector3d& omega, const Vector3d& accel, double dt_s, const Vector3d& gyro_densities,
+                  const Vector3d& accel_densities, Matrix15d* covariance) {
+  // The responses of StepCovariance, with the noise of each axis in its own direction.
+  const Matrix3d M = so3::Exp(0.5 * dt_s * omega);
+  const Matrix3d A = M * Skew(accel);
+  const Matrix3d G = (dt_s * gyro_densities.cwiseAbs2()).asDiagonal();
+  const Matrix3d AG = A * G;
+  const Matrix3d AGAt = AG * A.transpose();
+  const Matrix3d AGEt = AG * M;  // E = M^T
+  const Matrix3d force = M * (dt_s * accel_densities.cwiseAbs2()).asDiagonal() * M.transpose();
+  const double dt2 = dt_s * dt_s;
+  Matrix15d q = Matrix15d::Zero();
+  Set(&q, kTheta, kTheta, M.transpose() * G * M);
+  Set(&q, kAlpha, kTheta, -dt2 / 6 * AGEt);
+  Set(&q, kBeta, kTheta, -dt_s / 2 * AGEt);
+  Set(&q, kAlpha, kAlpha, dt2 / 3 * force + dt2 * dt2 / 20 * AGAt);
+  Set(&q, kAlpha, kBeta, dt_s / 2 * force + dt2 * dt_s / 8 * AGAt);
+  Set(&q, kBeta, kBeta, force + dt2 / 3 * AGAt);
+  *covariance += q;
+}
+
 }  // namespace alidade

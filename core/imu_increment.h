@@ -47,4 +47,10 @@ struct ImuIncrement {
 [[nodiscard]] ImuIncrement StepIncrement(const Eigen::Vector3d& omega, const Eigen::Vector3d& accel,
                                          double dt_s, const ImuNoise& noise);
 
+/// Adds to the covariance of that step the white noise of single axes of the body: densities of gyroscope
+/// [rad/s/sqrt(Hz)] and accelerometer [m/s^2/sqrt(Hz)]. Equal ones have the effect of those of ImuNoise.
+void AddAxisNoise(const Eigen::Vector3d& omega, const Eigen::Vector3d& accel, double dt_s,
+                  const Eigen::Vector3d& gyro_densities, const Eigen::Vector3d& accel_densities,
+                  Matrix15d* covariance);
+
 }  // namespace alidade

@@ -16,9 +16,9 @@ struct ImuSample {
   // zero where they are not known. An interpolated sample has those of the measured one after it.
   Eigen::Vector3d gyro_curvature = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_curvature = Eigen::Vector3d::Zero();
-  // White noise that a fault of the sensor adds in the step that ends here (eval/run/imu_axis_watch.h).
-  double gyro_fault_density_radps_sqrthz = 0;
-  double accel_fault_density_mps2_sqrthz = 0;
+  // White noise that a fault of single axes adds in the step that ends here (eval/run/imu_axis_watch.h).
+  Eigen::Vector3d gyro_fault_density_radps_sqrthz = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_fault_density_mps2_sqrthz = Eigen::Vector3d::Zero();
 };
 
 /// Continuous-time noise of an IMU (one axis), EuRoC's sensor.yaml units.

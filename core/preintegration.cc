@@ -1,7 +1,5 @@
 #include "core/preintegration.h"
 
-#include <cmath>
-
 #include "core/check.h"
 #include "core/imu_gap.h"
 #include "core/imu_step.h"
@@ -15,18 +13,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// `noise` of the sensor in the step between two consecutive samples of an interval.
-ImuNoise NoiseOfStep(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
-  ImuNoise with = imu_gap::IsInside(from, to) ? imu_gap::AddNoise(from, to, noise) : noise;
-  if (to.gyro_fault_density_radps_sqrthz > 0) {
-    with.gyro_noise_density_radps_sqrthz =
-        std::hypot(with.gyro_noise_density_radps_sqrthz, to.gyro_fault_density_radps_sqrthz);
-  }
-  if (to.accel_fault_density_mps2_sqrthz > 0) {
-    with.accel_noise_density_mps2_sqrthz =
-        std::hypot(with.accel_noise_density_mps2_sqrthz, to.accel_fault_density_mps2_sqrthz);
-  }
-  return with;
+bool HasFaultyAxis(const ImuSample& sample) {
+  return !sample.gyro_fault_density_radps_sqrthz.isZero(0) ||
+         !sample.accel_fault_density_mps2_sqrthz.isZero(0);
 }
 
 }  // namespace
@@ -42,13 +31,19 @@ void Preintegration::Add(const ImuSample& from, const ImuSample& to, const ImuNo
   const Eigen::Matrix<double, 9, 3> over_accel = step.bias_jacobian.rightCols<3>();
   step.bias_jacobian << over_gyro * mean.gyro_over_gyro + over_accel * mean.accel_over_gyro,
       over_accel * mean.gyro_over_gyro;
+  if (HasFaultyAxis(to)) {
+    AddAxisNoise(mean.gyro, mean.accel, dt_s, to.gyro_fault_density_radps_sqrthz,
+                 to.accel_fault_density_mps2_sqrthz, &step.covariance);
+  }
   increment_.Append(step);
 }
 
 void Preintegration::Add(std::span<const ImuSample> samples) {
   const ImuNoise noise = noise_.with_vibration ? AddVibration(samples, noise_) : noise_;
   for (size_t k = 0; k + 1 < samples.size(); ++k) {
-    Add(samples[k], samples[k + 1], NoiseOfStep(samples[k], samples[k + 1], noise));
+    const ImuSample& from = samples[k];
+    const ImuSample& to = samples[k + 1];
+    Add(from, to, imu_gap::IsInside(from, to) ? imu_gap::AddNoise(from, to, noise) : noise);
   }
 }
 

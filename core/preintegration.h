@@ -17,7 +17,8 @@ class Preintegration {
  public:
   Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
 
-  /// Appends one step between two samples with the given densities; stamps strictly increasing.
+  /// Appends one step between two samples with the given densities and what the second says of faulty axes;
+  /// stamps strictly increasing.
   void Add(const ImuSample& from, const ImuSample& to) { Add(from, to, noise_); }
   /// Appends all steps of consecutive samples, with their vibration as white noise where the noise says so,
   /// and what a silence of the IMU hides (core/imu_gap.h); fewer than two add nothing.

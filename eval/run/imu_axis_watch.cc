@@ -133,7 +133,7 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
     (sample->*signal->value)[index] = axis.mean;
   }
   axis.limit = fault == Fault::kSaturated ? value : axis.limit;
-  sample->*signal->fault_density = std::hypot(sample->*signal->fault_density, density);
+  (sample->*signal->fault_density)[index] = density;
   reason_ = Format(fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
                                               : "the %s's %c axis repeats %.4g %s while the others change",
                    signal->name, "xyz"[index], value, signal -> unit);

@@ -31,7 +31,7 @@ namespace alidade {
 /// that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the mean, in
 /// the step that detects about the stuck value. Saturated: the motion goes on as it came, at most half beyond
 /// the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2 rad/s and 1 m/s^2
-/// (core/imu_gap.h). The noise is that of all three axes.
+/// (core/imu_gap.h). The noise is that of the axis alone.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
 /// kLeastMeasurements.
@@ -78,7 +78,7 @@ class ImuAxisWatch {
   };
   struct Signal {
     Eigen::Vector3d ImuSample::*value;
-    double ImuSample::*fault_density;
+    Eigen::Vector3d ImuSample::*fault_density;
     const char* name;
     const char* unit;
     double floor;

@@ -137,5 +137,31 @@ TEST(ImuIncrementTest, CovarianceIsPositiveSemiDefiniteForAnyNoise) {
   }
 }
 
+// GIVEN white noise of single axes, THEN each moves attitude and velocity in its own direction, and equal
+// ones of all axes together have the covariance of the sensor's noise.
+TEST(ImuIncrementTest, NoiseOfSingleAxesAddsUpToThatOfAll) {
+  RandomStates random(25);
+  for (const double dt : {1e-3, 1e-2, 0.2}) {
+    const Vector3d omega = random.Vector(3);
+    const Vector3d accel = random.Vector(30);
+    const Eigen::Matrix3d middle = so3::Exp(0.5 * dt * omega);
+    Matrix15d sum = Matrix15d::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d unit = Vector3d::Unit(axis);
+      Matrix15d gyro = Matrix15d::Zero(), force = Matrix15d::Zero();
+      AddAxisNoise(omega, accel, dt, 0.2 * unit, Vector3d::Zero(), &gyro);
+      AddAxisNoise(omega, accel, dt, Vector3d::Zero(), 0.7 * unit, &force);
+      const Vector3d turned = middle.transpose() * unit;
+      const Vector3d pushed = middle * unit;
+      EXPECT_LT((gyro.topLeftCorner<3, 3>() - 0.04 * dt * turned * turned.transpose()).norm(), 1e-15);
+      EXPECT_LT((force.block<3, 3>(6, 6) - 0.49 * dt * pushed * pushed.transpose()).norm(), 1e-15);
+      EXPECT_EQ(force.topRows<3>().norm(), 0);
+      sum += gyro + force;
+    }
+    const Matrix15d all = StepIncrement(omega, accel, dt, ImuNoise{0.2, 0.7, 0, 0}).covariance;
+    EXPECT_LT((sum - all).norm(), 1e-13 * all.norm()) << dt;
+  }
+}
+
 }  // namespace
 }  // namespace alidade

@@ -38,15 +38,17 @@ ImuBias Moved(const ImuBias& bias, const Eigen::VectorXd& xi) {
   return {bias.gyro + xi.segment<3>(9), bias.accel + xi.tail<3>()};
 }
 
-// GIVEN a fault of the sensor at one sample, WHEN a frame falls into the step before it, THEN its noise lies
-// in both parts of that step and in no other.
+// GIVEN a fault of one axis at one sample, WHEN a frame falls into the step before it, THEN its noise lies
+// in both parts of that step and in no other, and in the direction of that axis alone.
 TEST(PreintegrationTest, TheNoiseOfAFaultLiesInTheStepThatEndsAtItsSample) {
   ImuBuffer clean(0.5), faulty(0.5);
   for (int k = 0; k <= 5; ++k) {
     ImuSample sample{SecondsToNs(0.01 * k), Vector3d::Zero(), Vector3d(0, 0, 9.81)};
     ASSERT_TRUE(clean.Add(sample).ok());
-    sample.gyro_fault_density_radps_sqrthz = k == 2 ? 0.3 : 0;
-    sample.accel_fault_density_mps2_sqrthz = k == 2 ? 2 : 0;
+    if (k == 2) {
+      sample.gyro_fault_density_radps_sqrthz.z() = 0.3;
+      sample.accel_fault_density_mps2_sqrthz.z() = 2;
+    }
     ASSERT_TRUE(faulty.Add(sample).ok());
   }
   for (const auto& [from_s, to_s, share_s] :
@@ -58,6 +60,7 @@ TEST(PreintegrationTest, TheNoiseOfAFaultLiesInTheStepThatEndsAtItsSample) {
         Integrated(with_fault, ImuBias()).covariance() - Integrated(samples, ImuBias()).covariance();
     EXPECT_NEAR(more(2, 2), 0.09 * share_s, 1e-9) << from_s;
     EXPECT_NEAR(more(8, 8), 4 * share_s, 1e-6) << from_s;
+    EXPECT_EQ(more.topLeftCorner(2, 2).norm() + more.block(6, 6, 2, 2).norm(), 0) << from_s;
   }
 }
 

@@ -173,8 +173,8 @@ TEST_P(ImuGuardOnRealImu, TouchesNoSample) {
   EXPECT_GT(used.size(), 1000u);
   EXPECT_EQ(faults, 0);
   for (const ImuSample& sample : used) {
-    ASSERT_EQ(sample.gyro_fault_density_radps_sqrthz, 0);
-    ASSERT_EQ(sample.accel_fault_density_mps2_sqrthz, 0);
+    ASSERT_TRUE(sample.gyro_fault_density_radps_sqrthz.isZero(0));
+    ASSERT_TRUE(sample.accel_fault_density_mps2_sqrthz.isZero(0));
   }
 }
 
