@@ -4,6 +4,7 @@
 
 #include "core/imu_buffer.h"
 #include "core/lie.h"
+#include "core/visual_observation.h"
 
 namespace alidade {
 namespace {
@@ -67,6 +68,18 @@ BodyMotion MotionOf(const MeasuredTurn& turn, const Vector3d& gyro_bias, const M
 
 Pose CameraAfter(const BodyMotion& motion, const Pose& T_BC, double later_s) {
   return T_BC.Inverse() * motion.After(later_s) * T_BC;
+}
+
+ExposedRow ExposeRow(const BodyMotion& motion, const Pose& T_BC, const Matrix3d& R_WB, double line_delay_s,
+                     double row_px) {
+  const double later_s = line_delay_s * row_px;
+  const Matrix3d R_WC = R_WB * T_BC.rotation;
+  ExposedRow row;
+  row.T_CR = CameraAfter(motion, T_BC, later_s);
+  row.row_from_camera = BodyToCameraJacobian(R_WC, row.T_CR);
+  row.R_WB = R_WB * motion.After(later_s).rotation;
+  row.row_from_line_delay = row_px * (BodyToCameraJacobian(row.R_WB, T_BC) * motion.Rates(R_WB, later_s));
+  return row;
 }
 
 }  // namespace alidade

@@ -45,4 +45,17 @@ struct MeasuredTurn {
 /// T_BC^-1 After(s) T_BC.
 [[nodiscard]] Pose CameraAfter(const BodyMotion& motion, const Pose& T_BC, double later_s);
 
+/// The camera of a body in motion when a rolling shutter exposed a row r: what carries a camera C of the
+/// instant, and the chain of its error, to that row. Charts are the canonical (phi, dp) of the pose in W.
+struct ExposedRow {
+  Pose T_CR;                     ///< T_WR = T_WC T_CR
+  Matrix6d row_from_camera;      ///< d zeta_R / d zeta_C, the body in motion as one rigid body
+  Eigen::Matrix3d R_WB;          ///< of the body when the row was exposed
+  Vector6d row_from_line_delay;  ///< d zeta_R / d line delay: row_px times [rad/s, m/s]
+};
+/// `row_px`: the row less that exposed at the instant; it is exposed line_delay_s * row_px later. R_WB: of
+/// the body at the instant, where the Jacobians are taken; the camera's rotation is R_WB R_BC.
+[[nodiscard]] ExposedRow ExposeRow(const BodyMotion& motion, const Pose& T_BC, const Eigen::Matrix3d& R_WB,
+                                   double line_delay_s, double row_px);
+
 }  // namespace alidade

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <vector>
 
+#include "core/equidistant_lens.h"
+
 namespace alidade {
 namespace {
 
@@ -178,6 +180,14 @@ Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB) 
   return (Vector6d() << omega_B, v_WB).finished();
 }
 
+Pose BodyAfter(const Pose& T_WB, const Vector6d& rates, double later_s, Eigen::Matrix3d* turn) {
+  const Eigen::Matrix3d R_BL = so3::Exp(Eigen::Vector3d(later_s * rates.head<3>()));
+  if (turn != nullptr) {
+    *turn = R_BL;
+  }
+  return {T_WB.rotation * R_BL, T_WB.translation + later_s * rates.tail<3>()};
+}
+
 bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
                         Eigen::Matrix<double, 2, 8>* jacobian) {
   if (camera.is_spherical()) {
@@ -197,10 +207,10 @@ bool IntrinsicsJacobian(const CameraModel& camera, const Vector2d& ideal,
       break;
     case DistortionModel::kEquidistant: {
       const double r = std::sqrt(r2);
-      const double t = std::atan(r);
-      const double t2 = t * t;
-      const Eigen::RowVector4d powers = t2 * t * Eigen::RowVector4d(1, t2, t2 * t2, t2 * t2 * t2);
-      lens = r > 1e-12 ? Eigen::Matrix<double, 2, 4>(ideal / r * powers) : lens;
+      double by_angle = 0;
+      Eigen::RowVector4d by_coefficients;
+      EquidistantRadius(std::atan(r), camera.coefficients().head<4>(), &by_angle, &by_coefficients);
+      lens = r > 1e-12 ? Eigen::Matrix<double, 2, 4>(ideal / r * by_coefficients) : lens;
       break;
     }
     case DistortionModel::kFov: {

@@ -103,6 +103,13 @@ bool Retract(const CalibrationLayout& layout, const Eigen::Ref<const Eigen::Vect
 /// d zeta_B / d t of a moving body in the canonical chart: (omega_B, v_W). A camera with a time-offset error
 /// dt observes from the pose that the body has dt later (Li & Mourikis, IJRR 2014).
 [[nodiscard]] Vector6d BodyRates(const Eigen::Vector3d& omega_B, const Eigen::Vector3d& v_WB);
+/// The body `later_s` seconds later, moving on at constant BodyRates: R_WB Exp(omega s), p_WB + v s. `turn`,
+/// unless null: Exp(omega s), so that d zeta_later / d zeta = blockdiag(turn^T, I).
+///
+/// Of the time offsets of camera and GNSS. BodyMotion (core/body_motion.h), of the rows of an image, has the
+/// angular acceleration besides, and the velocity in the body's axes: over 2 ms at 10 rad/s^2, 2e-5 rad.
+[[nodiscard]] Pose BodyAfter(const Pose& T_WB, const Vector6d& rates, double later_s,
+                             Eigen::Matrix3d* turn = nullptr);
 
 /// d pixel / d (fu, fv, cu, cv, coefficients) at an ideal point, 2 x 8; columns of coefficients that the lens
 /// model has not are zero. False outside the camera's domain.

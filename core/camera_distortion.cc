@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/camera_model.h"
+#include "core/equidistant_lens.h"
 
 // What a lens does to a point of the normalised plane, and its derivatives.
 
@@ -35,11 +36,10 @@ double CameraModel::RadialDistortion(double radius, double* derivative) const {
       return radius * (1 + r2 * (k[0] + k[1] * r2));
     }
     case DistortionModel::kEquidistant: {
-      const double t = std::atan(radius);
-      const double t2 = t * t;
-      const double dt = 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
-      *derivative = dt / (1 + radius * radius);
-      return t * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+      double by_angle = 0;
+      const double distorted = EquidistantRadius(std::atan(radius), k.head<4>(), &by_angle);
+      *derivative = by_angle / (1 + radius * radius);
+      return distorted;
     }
     case DistortionModel::kFov: {
       const double a = 2 * std::tan(0.5 * k[0]);

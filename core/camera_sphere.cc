@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/camera_model.h"
+#include "core/equidistant_lens.h"
 
 // Spherical lenses: equidistant, double-sphere and eucm over directions of the whole sphere. All three turn
 // about their axis, so that each is a distorted radius over the angle off axis, taken by its sine and cosine.
@@ -62,13 +63,7 @@ double CameraModel::RadialOfAngle(const Angle& angle, double* derivative,
   const double s = angle.sine;
   const double c = angle.cosine;
   if (model_ == DistortionModel::kEquidistant) {
-    const double t = std::atan2(s, c);
-    const double t2 = t * t;
-    *derivative = 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
-    if (by_coefficients != nullptr) {
-      *by_coefficients = t2 * t * RowVector4d(1, t2, t2 * t2, t2 * t2 * t2);
-    }
-    return t * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+    return EquidistantRadius(std::atan2(s, c), k.head<4>(), derivative, by_coefficients);
   }
   const Denominator denominator =
       model_ == DistortionModel::kEucm ? Eucm(s, c, k[0], k[1]) : DoubleSphere(s, c, k[0], k[1]);

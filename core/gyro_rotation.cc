@@ -10,6 +10,11 @@ namespace alidade {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+Vector3d TurnOverStep(const Vector3d& from_radps, const Vector3d& to_radps, double dt_s,
+                      const Vector3d& bias_radps) {
+  return (0.5 * (from_radps + to_radps) - bias_radps) * dt_s;
+}
+
 bool GyroRotation::Add(const ImuSample& sample) {
   if (!sample.gyro.allFinite() || (!samples_.empty() && sample.stamp_ns <= samples_.back().stamp_ns)) {
     return false;
@@ -60,8 +65,8 @@ std::optional<Matrix3d> GyroRotation::Between(TimeNs t0_ns, TimeNs t1_ns, const 
   Matrix3d R_B0B = Matrix3d::Identity();
   TimeNs from_ns = t0_ns;
   const auto advance = [&](TimeNs to_ns) {
-    const Vector3d mean_rate = 0.5 * (RateAt(from_ns) + RateAt(to_ns)) - bias;
-    R_B0B = R_B0B * so3::Exp(mean_rate * SecondsBetween(from_ns, to_ns));
+    R_B0B =
+        R_B0B * so3::Exp(TurnOverStep(RateAt(from_ns), RateAt(to_ns), SecondsBetween(from_ns, to_ns), bias));
     from_ns = to_ns;
   };
   for (const ImuSample& sample : samples_) {

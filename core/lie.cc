@@ -125,6 +125,11 @@ Matrix3d Normalize(const Matrix3d& m) {
   return u * svd.matrixV().transpose();
 }
 
+double NearestYaw(const Matrix3d& m) {
+  // trace(Rz(yaw)^T m) = (m00 + m11) cos(yaw) + (m10 - m01) sin(yaw) + m22 is largest.
+  return std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
+}
+
 Matrix3d Between(const Vector3d& from, const Vector3d& to) {
   const Vector3d a = from.normalized();
   const Vector3d b = to.normalized();

@@ -42,6 +42,10 @@ namespace so3 {
 /// The rotation matrix nearest to `m` in the Frobenius norm. Of m = sum_i b_i a_i^T: the one that turns the
 /// a_i into the b_i with the least squares (Kabsch).
 [[nodiscard]] Eigen::Matrix3d Normalize(const Eigen::Matrix3d& m);
+/// The angle [rad] of the rotation about z nearest to `m` in the Frobenius norm, in [-pi, pi]. Of
+/// m = sum_i b_i a_i^T: the one that turns the a_i about z into the b_i with the least squares. 0 where all
+/// angles are as near.
+[[nodiscard]] double NearestYaw(const Eigen::Matrix3d& m);
 /// The least rotation that turns the direction of `from` into that of `to`.
 [[nodiscard]] Eigen::Matrix3d Between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/dense_solvers.h"
+#include "core/gyro_rotation.h"
 #include "core/imu_statistics.h"
 #include "core/lever_arm.h"
 #include "core/lie.h"
@@ -68,8 +69,8 @@ void RestDetector::AddImu(std::span<const ImuSample> samples) {
 void RestDetector::Turn(const Vector3d& gyro_bias_radps) {
   for (size_t i = 1; i < imu_.size(); ++i) {
     if (imu_[i - 1].stamp_ns >= turned_ns_) {
-      const Vector3d rate_radps = 0.5 * (imu_[i - 1].gyro + imu_[i].gyro) - gyro_bias_radps;
-      R_0B_ *= so3::Exp(rate_radps * SecondsBetween(imu_[i - 1].stamp_ns, imu_[i].stamp_ns));
+      const double dt_s = SecondsBetween(imu_[i - 1].stamp_ns, imu_[i].stamp_ns);
+      R_0B_ *= so3::Exp(TurnOverStep(imu_[i - 1].gyro, imu_[i].gyro, dt_s, gyro_bias_radps));
     }
   }
   turned_ns_ = imu_.empty() ? INT64_MIN : imu_.back().stamp_ns;

@@ -255,18 +255,15 @@ Pose FilterState::CameraPoseAt(const Clone& clone, const NormalizedObservation& 
 }
 
 ExposedCamera FilterState::CameraAt(const Clone& clone, const NormalizedObservation& observation) const {
-  const double later_s = *calibration_.line_delay_s * observation.row_px;
-  const Pose moved = CameraAfter(clone.motion, calibration_.T_BC, later_s);
   const Matrix3d& R_WB = (first_estimates_ ? clone.T_WB_first : clone.T_WB).rotation;
+  const ExposedRow row =
+      ExposeRow(clone.motion, calibration_.T_BC, R_WB, *calibration_.line_delay_s, observation.row_px);
   ExposedCamera exposed;
-  exposed.T_WC = clone.T_WC * moved;
-  exposed.T_WC_jacobian = clone.T_WC_jacobian * moved;
-  exposed.camera_from_error =
-      BodyToCameraJacobian(clone.T_WC_jacobian.rotation, moved) * clone.camera_from_error;
-  exposed.R_WB = R_WB * clone.motion.After(later_s).rotation;
-  exposed.camera_from_line_delay =
-      observation.row_px *
-      (BodyToCameraJacobian(exposed.R_WB, calibration_.T_BC) * clone.motion.Rates(R_WB, later_s));
+  exposed.T_WC = clone.T_WC * row.T_CR;
+  exposed.T_WC_jacobian = clone.T_WC_jacobian * row.T_CR;
+  exposed.camera_from_error = row.row_from_camera * clone.camera_from_error;
+  exposed.R_WB = row.R_WB;
+  exposed.camera_from_line_delay = row.row_from_line_delay;
   return exposed;
 }
 

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "core/format.h"
+#include "core/gyro_rotation.h"
 #include "core/median.h"
+#include "core/robust.h"
 #include "eval/dataset/sensor_yaml.h"
 
 namespace alidade {
@@ -68,7 +70,7 @@ std::optional<Vector3d> RotationOf(const std::vector<RayChange>& rays) {
     constexpr double kLeastScale = 1e-6;  // of noise-free rays
     const double scale = Median(residuals) + kLeastScale;
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      weights[k] = 1 / (1 + std::pow(residuals[k] / scale, 2));  // Cauchy
+      weights[k] = RobustWeight(RobustKernel::kCauchy, scale, residuals[k] * residuals[k]);
     }
   }
   return rotation.allFinite() ? std::optional(rotation) : std::nullopt;
@@ -81,7 +83,7 @@ class RateIntegral {
   void Add(const ImuSample& sample) {
     if (!stamps_ns_.empty()) {
       const double dt_s = SecondsBetween(stamps_ns_.back(), sample.stamp_ns);
-      integrals_.emplace_back(integrals_.back() + 0.5 * dt_s * (last_ + sample.gyro));
+      integrals_.emplace_back(integrals_.back() + TurnOverStep(last_, sample.gyro, dt_s));
     } else {
       integrals_.emplace_back(Vector3d::Zero());
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/gyro_rotation.h"
 #include "core/lie.h"
 #include "core/time.h"
 
@@ -22,7 +23,7 @@ GyroPath::GyroPath(const std::vector<ImuSample>& imu, const Vector3d& bias, doub
     if (!points_.empty()) {
       const double dt_s = time_s - times_s_.back();
       const Matrix3d before = point.R_0t;
-      const Vector3d turn = 0.5 * (point.rate_B + rate) * dt_s;
+      const Vector3d turn = TurnOverStep(point.rate_B, rate, dt_s);
       point.R_0t = before * so3::Exp(turn);
       point.integral += before * so3::LeftJacobian(turn) * dt_s;
     }
@@ -42,7 +43,7 @@ GyroPath::Point GyroPath::At(double t_s) const {
   const double share = dt_s / (times_s_[k + 1] - times_s_[k]);
   Point point;
   point.rate_B = from.rate_B + share * (to.rate_B - from.rate_B);
-  const Vector3d turn = 0.5 * (from.rate_B + point.rate_B) * dt_s;
+  const Vector3d turn = TurnOverStep(from.rate_B, point.rate_B, dt_s);
   point.R_0t = from.R_0t * so3::Exp(turn);
   point.integral = from.integral + from.R_0t * so3::LeftJacobian(turn) * dt_s;
   return point;

@@ -1,7 +1,8 @@
 #include "eval/metrics/trajectory_alignment.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
+
+#include "core/yaw_shift.h"
 
 namespace alidade {
 namespace {
@@ -15,13 +16,10 @@ Eigen::Matrix3Xd Positions(const std::vector<StatePair>& pairs, TrajectoryPoint 
   return positions;
 }
 
-/// Yaw about z that minimises sum |truth_c - R_z(yaw) estimate_c|^2 of centred positions: the cost is
-/// constant - 2 (cos(yaw) a + sin(yaw) b). Identity when all horizontal positions coincide.
+/// Turn about z that minimises sum |truth_c - R_z(yaw) estimate_c|^2 of centred positions. Identity when all
+/// horizontal positions coincide.
 Eigen::Matrix3d BestYaw(const Eigen::Matrix3Xd& truth_centred, const Eigen::Matrix3Xd& estimate_centred) {
-  const Eigen::Matrix3d moment = truth_centred * estimate_centred.transpose();
-  const double a = moment(0, 0) + moment(1, 1);
-  const double b = moment(1, 0) - moment(0, 1);
-  return Eigen::AngleAxisd(std::atan2(b, a), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return YawShift{so3::NearestYaw(truth_centred * estimate_centred.transpose())}.Rotation();
 }
 
 /// Umeyama, "Least-squares estimation of transformation parameters between two point patterns", 1991.
@@ -51,11 +49,8 @@ AlignmentTransform AlignUmeyama(const Eigen::Matrix3Xd& truth, const Eigen::Matr
 AlignmentTransform AnchorAtFirst(const std::vector<StatePair>& pairs) {
   const NavState& truth = pairs.front().truth.nav;
   const NavState& estimate = pairs.front().estimate.nav;
-  const Eigen::Matrix3d turn = truth.R_WB * estimate.R_WB.transpose();
   AlignmentTransform transform;
-  transform.rotation = Eigen::AngleAxisd(std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1)),
-                                         Eigen::Vector3d::UnitZ())
-                           .toRotationMatrix();
+  transform.rotation = YawShift{so3::NearestYaw(truth.R_WB * estimate.R_WB.transpose())}.Rotation();
   transform.translation = truth.p_WB - transform.rotation * estimate.p_WB;
   return transform;
 }

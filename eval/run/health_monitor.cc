@@ -1,7 +1,5 @@
 #include "eval/run/health_monitor.h"
 
-#include <cmath>
-
 #include "core/estimator/estimator.h"
 #include "core/format.h"
 #include "core/yaw_shift.h"
@@ -9,7 +7,6 @@
 namespace alidade {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kSlipMps = 1.0;        // by which a sound reckoning may slip besides the speed itself
@@ -17,12 +14,6 @@ constexpr double kUnknownYawRad = 1.0;  // deviation of a yaw that nothing has f
 
 std::string Exceeds(const char* what, double value, const char* unit, double limit) {
   return value <= limit ? std::string() : Format("%s %.3g %s, limit %.3g", what, value, unit, limit);
-}
-
-/// The turn about the vertical that brings R_WB closest to `base` (in the Frobenius norm).
-double YawTo(const Matrix3d& base, const Matrix3d& R_WB) {
-  const Matrix3d turn = base * R_WB.transpose();
-  return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
 }
 
 /// A rotation about the vertical through the position, and a shift, in the canonical chart of a state: 15
@@ -80,7 +71,7 @@ NavEstimate ContinueFrom(const NavEstimate& sound, const NavEstimate& reckoned, 
     turn_std = kUnknownYawRad;
   }
   YawShift onto;
-  onto.yaw_rad = YawTo(base.nav.R_WB, start.nav.R_WB);
+  onto.yaw_rad = so3::NearestYaw(base.nav.R_WB * start.nav.R_WB.transpose());
   onto.p_NW = base.nav.p_WB - onto.Rotation() * start.nav.p_WB;
   NavEstimate moved = start;
   moved.nav = onto * start.nav;

@@ -93,8 +93,7 @@ std::string TableRow(const std::string& name, const std::vector<const StartOutco
 }  // namespace
 
 Vector15d GaugeFreeError(const NavEstimate& estimate, const TrajectoryPoint& truth) {
-  const Eigen::Matrix3d difference = truth.nav.R_WB * estimate.nav.R_WB.transpose();
-  const double yaw = std::atan2(difference(1, 0) - difference(0, 1), difference(0, 0) + difference(1, 1));
+  const double yaw = so3::NearestYaw(truth.nav.R_WB * estimate.nav.R_WB.transpose());
   const Eigen::Matrix3d turn = so3::Exp(Eigen::Vector3d(0, 0, -yaw));
   Vector15d error;
   error << so3::Log(estimate.nav.R_WB.transpose() * turn * truth.nav.R_WB), Eigen::Vector3d::Zero(),

@@ -5,13 +5,13 @@
 
 #include "core/format.h"
 #include "core/imu_propagation.h"
+#include "core/yaw_shift.h"
 #include "frontend/initialization/start_problem.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 constexpr int kMaxIterations = 30;
 constexpr int kMinRefinedTracks = 8;
@@ -63,18 +63,18 @@ bool Minimize(const Round& round, StartProblem* problem, int* iterations) {
 void ApplyGauge(RefinedStart* refined) {
   const Matrix3d& R = refined->newest.nav.R_WB;
   const double yaw = std::atan2(R(1, 0), R(0, 0));
-  const Matrix3d turn = so3::Exp(Vector3d(0, 0, -yaw));
-  const Vector3d origin = refined->newest.nav.p_WB;
-  const auto move = [&](const NavState& state) {
-    return NavState{so3::Normalize(turn * state.R_WB), turn * (state.p_WB - origin), turn * state.v_WB};
+  YawShift gauge{-yaw};
+  gauge.p_NW = -(gauge.Rotation() * refined->newest.nav.p_WB);
+  const auto move = [&](NavState* state) {
+    *state = gauge * *state;
+    state->R_WB = so3::Normalize(state->R_WB);
   };
   for (NavState& state : refined->states) {
-    state = move(state);
+    move(&state);
   }
-  refined->newest.nav = move(refined->newest.nav);
+  move(&refined->newest.nav);
   Matrix15d chart = Matrix15d::Identity();
-  chart.block<3, 3>(3, 3) = turn;
-  chart.block<3, 3>(6, 6) = turn;
+  chart.topLeftCorner<9, 9>() = gauge.StateJacobian();
   const Matrix15d covariance = chart * refined->newest.covariance * chart.transpose();
   refined->newest.covariance = 0.5 * (covariance + covariance.transpose());
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/calibration.h"
 #include "core/dense_solvers.h"
 #include "core/robust.h"
 #include "core/yaw_shift.h"
@@ -91,9 +92,8 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
   // Where the epoch's offset puts the state.
   const Vector3d acceleration_N = R_NW * state.acceleration_W;
   const Vector3d omega_B = state.gyro_radps - state.bias.gyro;
-  point.nav.p_WB += guess->time_offset_s * point.nav.v_WB;
-  point.nav.v_WB += guess->time_offset_s * acceleration_N;
-  point.nav.R_WB = point.nav.R_WB * so3::Exp(guess->time_offset_s * omega_B);
+  const Pose T_NB = BodyAfter(point.nav.T_WB(), BodyRates(omega_B, point.nav.v_WB), guess->time_offset_s);
+  point.nav = {T_NB.rotation, T_NB.translation, point.nav.v_WB + guess->time_offset_s * acceleration_N};
   point.clock[ClockState::kClock] = guess->clock_m[index];
   point.clock[ClockState::kDrift] = guess->drift_mps[index];
   Epoch epoch;
@@ -117,8 +117,7 @@ AlignmentFit::Epoch AlignmentFit::Linearize(std::size_t index, AlignmentGuess* g
     row.deviation = std::sqrt(row.deviation * row.deviation + e.dot(e * variance_N));
   }
   epoch.chart.block<9, 4>(0, kYaw) = transform.ParameterJacobian(point.nav);
-  epoch.chart.block<3, 1>(0, kOffset) = omega_B;
-  epoch.chart.block<3, 1>(3, kOffset) = point.nav.v_WB;
+  epoch.chart.block<6, 1>(0, kOffset) = BodyRates(omega_B, point.nav.v_WB);
   epoch.chart.block<3, 1>(6, kOffset) = acceleration_N;
   epoch.chart.block<3, 3>(3, kVelocity) = since_newest_s * R_NW;
   epoch.chart.block<3, 3>(6, kVelocity) = R_NW;

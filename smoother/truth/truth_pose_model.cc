@@ -44,7 +44,7 @@ void TruthPoseModel::Evaluate(const NavState& state, const Vector3d& angular_rat
     jacobian_constants->block<3, 3>(3, kLeverColumn) = R_TB;
     jacobian_constants->block<3, 1>(0, kTimeColumn) = of_phi * angular_rate_B;
     jacobian_constants->block<3, 1>(3, kTimeColumn) =
-        constants.R_TW * state.v_WB + R_TB * angular_rate_B.cross(p_BM);
+        constants.R_TW * LeverArm{p_BM}.Velocity(state, ImuBias{}, angular_rate_B);
   }
 }
 

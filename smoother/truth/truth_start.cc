@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/gyro_rotation.h"
 #include "core/imu_buffer.h"
 #include "core/median.h"
 
@@ -27,8 +28,7 @@ class GyroTurns {
  public:
   explicit GyroTurns(std::span<const ImuSample> imu) : imu_(imu), turns_(imu.size(), Matrix3d::Identity()) {
     for (size_t i = 1; i < imu.size(); ++i) {
-      turns_[i] =
-          turns_[i - 1] * so3::Exp(Rate(i - 1) * SecondsBetween(imu[i - 1].stamp_ns, imu[i].stamp_ns));
+      turns_[i] = turns_[i - 1] * TurnSince(i - 1, imu[i].stamp_ns);
     }
     for (Matrix3d& turn : turns_) {
       turn = so3::Normalize(turn);
@@ -40,7 +40,7 @@ class GyroTurns {
   }
   [[nodiscard]] Matrix3d At(TimeNs stamp_ns) const {
     const size_t i = Before(stamp_ns);
-    return turns_[i] * so3::Exp(Rate(i) * SecondsBetween(imu_[i].stamp_ns, stamp_ns));
+    return turns_[i] * TurnSince(i, stamp_ns);
   }
   /// Index of the sample at or before the stamp, never the last one.
   [[nodiscard]] size_t Before(TimeNs stamp_ns) const {
@@ -50,7 +50,10 @@ class GyroTurns {
   }
 
  private:
-  [[nodiscard]] Vector3d Rate(size_t i) const { return 0.5 * (imu_[i].gyro + imu_[i + 1].gyro); }
+  /// Since sample i, at the mean rate of the step that follows it.
+  [[nodiscard]] Matrix3d TurnSince(size_t i, TimeNs stamp_ns) const {
+    return so3::Exp(TurnOverStep(imu_[i].gyro, imu_[i + 1].gyro, SecondsBetween(imu_[i].stamp_ns, stamp_ns)));
+  }
 
   std::span<const ImuSample> imu_;
   std::vector<Matrix3d> turns_;

@@ -4,7 +4,6 @@ namespace alidade {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 /// Where the body of a frame was when the camera saw, and the camera with it.
 FrameGeometry Seeing(const WindowFrame& frame, const NavState& state, const CameraCalibration& camera) {
@@ -14,11 +13,11 @@ FrameGeometry Seeing(const WindowFrame& frame, const NavState& state, const Came
     geometry.camera_from_time = geometry.camera_from_body * frame.rates;
     return geometry;
   }
-  const Matrix3d turn = so3::Exp(Vector3d(frame.rates.head<3>() * later_s));
+  Matrix3d turn;
+  const Pose T_WB = BodyAfter(state.T_WB(), frame.rates, later_s, &turn);
   FrameGeometry geometry;
-  geometry.R_WB = state.R_WB * turn;
-  const Vector3d p_WB = state.p_WB + frame.rates.tail<3>() * later_s;
-  geometry.T_WC = Pose{geometry.R_WB, p_WB} * camera.T_BC;
+  geometry.R_WB = T_WB.rotation;
+  geometry.T_WC = T_WB * camera.T_BC;
   const Matrix6d camera_from_moved = BodyToCameraJacobian(geometry.R_WB, camera.T_BC);
   geometry.camera_from_body = camera_from_moved;
   geometry.camera_from_body.leftCols<3>() = camera_from_moved.leftCols<3>() * turn.transpose();
@@ -56,19 +55,16 @@ const FrameGeometry& AtRow(const FrameGeometry& frame, double row_px, FrameGeome
     return frame;
   }
   const auto& [motion, T_BC, line_delay_s] = *frame.read_out;
-  const double later_s = line_delay_s * row_px;
-  const Pose moved = CameraAfter(*motion, T_BC, later_s);
-  const Matrix6d row_from_frame = BodyToCameraJacobian(frame.Linearized().rotation, moved);
-  scratch->T_WC = frame.T_WC * moved;
+  const ExposedRow row = ExposeRow(*motion, T_BC, frame.R_WB, line_delay_s, row_px);
+  scratch->T_WC = frame.T_WC * row.T_CR;
   scratch->T_WC_first.reset();
   if (frame.T_WC_first) {
-    scratch->T_WC_first = *frame.T_WC_first * moved;
+    scratch->T_WC_first = *frame.T_WC_first * row.T_CR;
   }
-  scratch->camera_from_body.noalias() = row_from_frame * frame.camera_from_body;
-  scratch->camera_from_time.noalias() = row_from_frame * frame.camera_from_time;
-  scratch->R_WB = frame.R_WB * motion->After(later_s).rotation;
-  scratch->camera_from_line_delay =
-      row_px * (BodyToCameraJacobian(scratch->R_WB, T_BC) * motion->Rates(frame.R_WB, later_s));
+  scratch->camera_from_body.noalias() = row.row_from_camera * frame.camera_from_body;
+  scratch->camera_from_time.noalias() = row.row_from_camera * frame.camera_from_time;
+  scratch->R_WB = row.R_WB;
+  scratch->camera_from_line_delay = row.row_from_line_delay;
   scratch->read_out.reset();
   return *scratch;
 }

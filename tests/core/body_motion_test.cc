@@ -78,6 +78,37 @@ TEST(BodyMotionTest, TheRatesAreThoseOfThePose) {
   }
 }
 
+TEST(BodyMotionTest, TheChainOfARowIsThatOfCentralDifferences) {
+  RandomStates random(33);
+  for (int trial = 0; trial < 20; ++trial) {
+    const BodyMotion motion{random.Vector(3), random.Vector(20), random.Vector(4)};
+    const Pose T_WB = random.RandomPose(2);
+    const Pose T_BC = random.RandomPose(0.3);
+    const Pose T_WC = T_WB * T_BC;
+    const double line_delay_s = 5e-3;
+    const double row_px = random.Uniform(-4, 4);
+    const ExposedRow row = ExposeRow(motion, T_BC, T_WB.rotation, line_delay_s, row_px);
+    const Pose T_WR = T_WC * row.T_CR;
+    const Pose body_then = T_WB * motion.After(line_delay_s * row_px);
+    EXPECT_LT((T_WR.translation - (body_then * T_BC).translation).norm(), 1e-12);
+    EXPECT_LT((row.R_WB - body_then.rotation).norm(), 1e-12);
+    const auto from_row = [&](const Pose& moved) -> VectorXd {
+      return (Vector6d() << so3::Log(T_WR.rotation.transpose() * moved.rotation),
+              moved.translation - T_WR.translation)
+          .finished();
+    };
+    const auto of_camera = [&](const VectorXd& zeta) -> VectorXd {
+      return from_row(Retract(ErrorConvention::kSo3xRn, T_WC, Vector6d(zeta)) * row.T_CR);
+    };
+    EXPECT_EQ(test::CompareJacobians(row.row_from_camera, test::NumericJacobian(of_camera, 6), 1e-8), "");
+    const auto of_line_delay = [&](const VectorXd& longer) -> VectorXd {
+      return from_row(T_WB * motion.After((line_delay_s + longer[0]) * row_px) * T_BC);
+    };
+    EXPECT_EQ(test::CompareJacobians(row.row_from_line_delay, test::NumericJacobian(of_line_delay, 1), 1e-7),
+              "");
+  }
+}
+
 TEST(BodyMotionTest, TheCameraMovesWithTheBody) {
   RandomStates random(32);
   const Pose T_BC = random.RandomPose(0.3);

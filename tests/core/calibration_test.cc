@@ -47,6 +47,34 @@ TEST(CalibrationTest, LocalUndoesRetract) {
   }
 }
 
+TEST(CalibrationTest, TheBodyMovesOnAtItsRates) {
+  RandomStates random(53);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Pose T_WB = random.RandomPose(2);
+    const Vector6d rates = BodyRates(random.Vector(3), random.Vector(4));
+    const double later_s = random.Uniform(-0.1, 0.1);
+    Eigen::Matrix3d turn;
+    const Pose later = BodyAfter(T_WB, rates, later_s, &turn);
+    EXPECT_EQ(later.rotation, T_WB.rotation * turn);
+    const auto local = [](const Pose& from, const Pose& to) -> VectorXd {
+      return (Vector6d() << so3::Log(from.rotation.transpose() * to.rotation),
+              to.translation - from.translation)
+          .finished();
+    };
+    const auto of_time = [&](const VectorXd& longer) -> VectorXd {
+      return local(later, BodyAfter(T_WB, rates, later_s + longer[0]));
+    };
+    EXPECT_EQ(test::CompareJacobians(rates, test::NumericJacobian(of_time, 1), 1e-9), "");
+    const auto of_body = [&](const VectorXd& zeta) -> VectorXd {
+      const Pose moved = Retract(ErrorConvention::kSo3xRn, T_WB, Vector6d(zeta));
+      return local(later, BodyAfter(moved, rates, later_s));
+    };
+    Matrix6d chart = Matrix6d::Identity();
+    chart.topLeftCorner<3, 3>() = turn.transpose();
+    EXPECT_EQ(test::CompareJacobians(chart, test::NumericJacobian(of_body, 6), 1e-9), "");
+  }
+}
+
 TEST(CalibrationTest, NoCameraIsRefusedAndLeavesTheCalibration) {
   CameraCalibration calibration{MakeCamera(DistortionModel::kNone), {}, 0};
   const CalibrationLayout layout(Everything(), calibration.camera);

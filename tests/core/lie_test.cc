@@ -24,6 +24,25 @@ class So3AtAngle : public ::testing::TestWithParam<double> {
 };
 INSTANTIATE_TEST_SUITE_P(AllAngles, So3AtAngle, ::testing::ValuesIn(kAngles));
 
+TEST(So3Test, TheNearestYawIsNearerThanAnyOther) {
+  RandomStates random(17);
+  for (int trial = 0; trial < 20; ++trial) {
+    // A rotation, and the moment of two sets of vectors that no rotation maps onto each other.
+    Matrix3d m = random.RandomPose(1).rotation;
+    for (int i = 0; trial % 2 == 1 && i < 4; ++i) {
+      m += random.Vector(1) * random.Vector(1).transpose();
+    }
+    const auto distance = [&](double yaw) { return (m - so3::Exp(Vector3d(0, 0, yaw))).norm(); };
+    const double yaw = so3::NearestYaw(m);
+    EXPECT_LE(std::abs(yaw), M_PI);
+    for (int k = 1; k < 360; ++k) {
+      EXPECT_LT(distance(yaw), distance(yaw + k * M_PI / 180));
+    }
+  }
+  EXPECT_NEAR(so3::NearestYaw(so3::Exp(Vector3d(0, 0, -2.5))), -2.5, 1e-15);
+  EXPECT_EQ(so3::NearestYaw(Matrix3d::Zero()), 0);
+}
+
 TEST_P(So3AtAngle, ExpIsTheMatrixExponential) {
   const Matrix3d reference = Skew(phi_).exp();
   EXPECT_LT((so3::Exp(phi_) - reference).norm(), 1e-13);
