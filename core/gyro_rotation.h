@@ -11,7 +11,7 @@ namespace alidade {
 /// Rotation vector [rad] of a body over a step of dt_s by the trapezoid: the mean of the rates [rad/s] at
 /// both ends, less `bias_radps`, in the body's axes.
 ///
-/// For turns over some tenths of a second that are compared with images or poses. Against MeanOverStep
+/// For turns over two seconds at most that are compared with images or poses. Against MeanOverStep
 /// (core/imu_step.h), which estimators integrate, the curvature of the rate, dt^3/12 w'', and the coning,
 /// dt^2/12 w_k x w_{k+1}, are left out. At 0.8 rad/s an axis, 1 Hz and 200 samples a second that is 5e-7 and
 /// 6e-8 rad a step, and 3e-5 rad at most within 1 s: 0.01 px at 460 pixels a radian.

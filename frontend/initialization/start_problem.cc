@@ -16,7 +16,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Cost of an observation whose landmark lies behind its view: far outside the kernel.
+// Cost of an observation whose landmark lies behind its view: far outside the kernel. LandmarkCost
+// (core/landmark_solver.h) is infinite there, and one such view would refuse every step of the whole window.
 constexpr double kBehindSquared = 400.0;
 constexpr double kMinDepthM = 1e-3;
 
@@ -114,7 +115,7 @@ void StartProblem::AddTrack(size_t t) {
     return;
   }
   // J^T (I - Q Q^T) J with J block diagonal and Q a base of the landmark's columns: a landmark eliminated at
-  // a cost quadratic in its views.
+  // a cost quadratic in its views. EliminateLandmark leaves a dense J, whose J^T J costs the cube.
   const Eigen::Index views = static_cast<Eigen::Index>(track.frames.size());
   const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> factor(rows.point_jacobian);
   Eigen::Matrix<double, Eigen::Dynamic, 3> base =
