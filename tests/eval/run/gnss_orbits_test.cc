@@ -7,6 +7,7 @@
 
 #include "eval/config/config_yaml.h"
 #include "eval/record/runner.h"
+#include "eval/run/gnss_feed.h"
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
 
