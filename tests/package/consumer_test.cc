@@ -54,6 +54,27 @@ int LinesWith(const std::string& text, const std::string& part) {
   return lines;
 }
 
+/// Expects build/robot of the folder to start and follow on a simulated log.
+void ExpectRobotFollowsALog(const TemporaryFolder& folder) {
+  const CommandResult simulated =
+      ShellIn(folder.path(), Installed("bin/alidade") +
+                                 " simulate --quiet --config=figure8_short "
+                                 "--set=duration_s=12,path_m=12,rest_s=3 --output=log");
+  ASSERT_EQ(simulated.code, 0) << simulated.output;
+  const CommandResult run = ShellIn(folder.path(), "build/robot log");
+  ASSERT_EQ(run.code, 0) << run.output;
+  EXPECT_EQ(LinesWith(run.output, "started at") - LinesWith(run.output, "not started at"), 1) << run.output;
+  EXPECT_GT(LinesWith(run.output, "state at"), 100);  // 10 Hz from the end of the first second on
+  EXPECT_EQ(LinesWith(run.output, "too late") + LinesWith(run.output, "is skipped"), 0) << run.output;
+  double newest_s = 0, speed_mps = 0;
+  const std::size_t last = run.output.find("newest at");
+  ASSERT_NE(last, std::string::npos) << run.output;
+  ASSERT_EQ(std::sscanf(run.output.c_str() + last, "newest at %lf s, speed %lf m/s", &newest_s, &speed_mps),
+            2);
+  EXPECT_EQ(newest_s, 1012);
+  EXPECT_NEAR(speed_mps, TrueSpeedAtTheEnd(folder.File("log")), 0.1);
+}
+
 // GIVEN a program that links alidade::run alone, WHEN it streams a recorded log into a session, THEN the
 // session starts and follows, and the program needs neither OpenCV nor yaml nor what reads bags and
 // downloads.
@@ -73,24 +94,12 @@ TEST(Consumer, ARobotNeedsTheSessionAlone) {
   for (const char* unneeded : {"opencv", "yaml", "libssl", "libcrypto", "libcurl", "libbz2", "liblz4"}) {
     EXPECT_THAT(libraries.output, testing::Not(testing::HasSubstr(unneeded)));
   }
+  // Of headers alone, such as a JSON library's, symbols remain.
+  const CommandResult symbols = ShellIn(folder.path(), "nm -C build/robot");
+  ASSERT_THAT(symbols.output, testing::HasSubstr("alidade::Session"));
+  EXPECT_THAT(symbols.output, testing::Not(testing::HasSubstr("nlohmann")));
 
-  const CommandResult simulated =
-      ShellIn(folder.path(), Installed("bin/alidade") +
-                                 " simulate --quiet --config=figure8_short "
-                                 "--set=duration_s=12,path_m=12,rest_s=3 --output=log");
-  ASSERT_EQ(simulated.code, 0) << simulated.output;
-  const CommandResult run = ShellIn(folder.path(), "build/robot log");
-  ASSERT_EQ(run.code, 0) << run.output;
-  EXPECT_EQ(LinesWith(run.output, "started at"), 1) << run.output;
-  EXPECT_GT(LinesWith(run.output, "state at"), 100);  // 10 Hz from the end of the first second on
-  EXPECT_EQ(LinesWith(run.output, "too late") + LinesWith(run.output, "is skipped"), 0) << run.output;
-  double newest_s = 0, speed_mps = 0;
-  const std::size_t last = run.output.find("newest at");
-  ASSERT_NE(last, std::string::npos) << run.output;
-  ASSERT_EQ(std::sscanf(run.output.c_str() + last, "newest at %lf s, speed %lf m/s", &newest_s, &speed_mps),
-            2);
-  EXPECT_EQ(newest_s, 1012);
-  EXPECT_NEAR(speed_mps, TrueSpeedAtTheEnd(folder.File("log")), 0.1);
+  ExpectRobotFollowsALog(folder);
 
   // A log that ends before a start is possible.
   folder.Write("short/mav0/imu0/data.csv", "#\n1000000000,0,0,0,0,0,9.81\n1010000000,0,0,0,0,0,9.81\n");
