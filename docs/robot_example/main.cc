@@ -1,80 +1,80 @@
-#include <cmath>
+#include <cinttypes>
 #include <cstdio>
-#include <random>
+#include <fstream>
+#include <string>
 #include <vector>
 
 #include "eval/run/session.h"
 
-// A camera and an IMU on a circle of 3 m, streamed into a session as a robot's drivers would. Samples and
-// tracks are computed here; on a robot they come from the sensors.
+// Streams a folder with imu0/data.csv and cam0/tracks.csv into a session, in the order of arrival: samples at
+// once, frames 60 ms late. On a robot the drivers take the place of the files.
 namespace {
-using Eigen::Vector3d;
-constexpr double kRadiusM = 3, kRateRadps = 0.6;
-
-/// Body x along the path, z up, moving up and down by 0.2 m.
-alidade::NavState TrueState(double t) {
-  const double a = kRateRadps * t, speed = kRadiusM * kRateRadps;
-  return {alidade::so3::Exp(Vector3d(0, 0, a)),
-          {kRadiusM * std::sin(a), -kRadiusM * std::cos(a), 0.2 * std::sin(2 * t)},
-          {speed * std::cos(a), speed * std::sin(a), 0.4 * std::cos(2 * t)}};
-}
-
-alidade::ImuSample SampleAt(alidade::TimeNs stamp_ns) {
-  const double t = 1e-9 * static_cast<double>(stamp_ns), centripetal = kRadiusM * kRateRadps * kRateRadps;
-  return {stamp_ns, Vector3d(0, 0, kRateRadps), Vector3d(0, centripetal, 9.81 - 0.8 * std::sin(2 * t))};
-}
-
-alidade::TrackFrame FrameAt(alidade::TimeNs stamp_ns, const alidade::RigCalibration& rig,
-                            const std::vector<Vector3d>& landmarks, std::mt19937_64* random) {
-  std::normal_distribution<double> noise_px(0, 0.5);
-  const alidade::Pose T_CW = (TrueState(1e-9 * static_cast<double>(stamp_ns)).T_WB() * rig.T_BC).Inverse();
-  alidade::TrackFrame frame{stamp_ns, {}};
-  Eigen::Vector2d pixel;
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    if (rig.camera.Project(T_CW * landmarks[i], &pixel) && rig.camera.InImage(pixel)) {
-      pixel += Eigen::Vector2d(noise_px(*random), noise_px(*random));
-      frame.observations.push_back({static_cast<std::int64_t>(i), pixel});
+std::vector<alidade::ImuSample> ReadImu(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<alidade::ImuSample> samples;
+  for (std::string line; std::getline(file, line);) {
+    alidade::ImuSample s;
+    if (std::sscanf(line.c_str(), "%" SCNd64 ",%lf,%lf,%lf,%lf,%lf,%lf", &s.stamp_ns, &s.gyro[0], &s.gyro[1],
+                    &s.gyro[2], &s.accel[0], &s.accel[1], &s.accel[2]) == 7) {
+      samples.push_back(s);
     }
   }
-  return frame;
+  return samples;
+}
+
+std::vector<alidade::TrackFrame> ReadTracks(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<alidade::TrackFrame> frames;
+  for (std::string line; std::getline(file, line);) {
+    alidade::TimeNs stamp_ns = 0;
+    alidade::TrackObservation o;
+    if (std::sscanf(line.c_str(), "%" SCNd64 ",%" SCNd64 ",%lf,%lf", &stamp_ns, &o.track_id, &o.pixel[0],
+                    &o.pixel[1]) == 4) {
+      if (frames.empty() || frames.back().stamp_ns != stamp_ns) {
+        frames.push_back({stamp_ns, {}});
+      }
+      frames.back().observations.push_back(o);
+    }
+  }
+  return frames;
+}
+
+void Print(alidade::Session* session) {
+  for (const alidade::SessionEvent& event : session->TakeEvents()) {
+    std::printf("%s\n", alidade::Describe(event).c_str());
+  }
 }
 }  // namespace
 
-int main() {
-  alidade::RigCalibration rig;
+int main(int argc, char** argv) {
+  const std::string folder = argc == 2 ? argv[1] : "";
+  const auto samples = ReadImu(folder + "/mav0/imu0/data.csv");
+  const auto frames = ReadTracks(folder + "/mav0/cam0/tracks.csv");
+  alidade::RigCalibration rig;  // of the simulator; a robot has its own
   rig.camera =
-      *alidade::CameraModel::Create(alidade::DistortionModel::kNone, {400, 400, 320, 240}, {}, 640, 480);
+      *alidade::CameraModel::Create(alidade::DistortionModel::kNone, {460, 460, 376, 240}, {}, 752, 480);
   rig.T_BC.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;  // the camera looks along the body's x axis
+  rig.T_BC.translation << 0.1, -0.05, 0.04;
   alidade::SessionOptions options;
   options.lateness.camera_s = 0.1;
-  auto made = alidade::Session::Make(alidade::EstimatorConfig(), rig, options);
-  if (!made.ok()) {
-    std::fprintf(stderr, "%s\n", made.message().c_str());
+  const auto session = alidade::Session::Make(alidade::EstimatorConfig(), rig, options);
+  if (samples.empty() || frames.empty() || !session.ok()) {
+    std::fprintf(stderr, "usage: robot FOLDER; %s\n", session.message().c_str());
     return 1;
   }
-  alidade::Session& session = **made;
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> place(-15, 15);
-  std::vector<Vector3d> landmarks;
-  for (int i = 0; i < 600; ++i) {
-    landmarks.emplace_back(place(random), place(random), 0.3 * place(random));
-  }
-  int states = 0;
-  for (alidade::TimeNs now = 0; now <= 15'000'000'000; now += 5'000'000) {
-    session.AddImu(SampleAt(now));
-    if (now >= 60'000'000 && (now - 60'000'000) % 100'000'000 == 0) {  // a frame, 60 ms late
-      session.AddFrame(FrameAt(now - 60'000'000, rig, landmarks, &random));
+  auto frame = frames.begin();
+  for (const alidade::ImuSample& sample : samples) {
+    (*session)->AddImu(sample);
+    for (; frame != frames.end() && frame->stamp_ns + 60'000'000 <= sample.stamp_ns; ++frame) {
+      (*session)->AddFrame(*frame);
     }
-    for (const alidade::SessionEvent& event : session.TakeEvents()) {
-      if (std::holds_alternative<alidade::StateEvent>(event)) {
-        ++states;
-      } else if (!std::holds_alternative<alidade::WaitingEvent>(event)) {
-        std::printf("%s\n", alidade::Describe(event).c_str());
-      }
-    }
+    Print(session->get());
   }
-  const alidade::NewestState newest = *session.Newest();
-  std::printf("%d states, newest at %s s, speed %.3f m/s\n", states,
-              alidade::FormatSeconds(newest.estimate.stamp_ns).c_str(), newest.v_B.norm());
-  return 0;
+  const auto newest = (*session)->Newest();  // without the frames that still wait
+  if (!newest.ok()) {
+    std::fprintf(stderr, "no estimate: %s\n", newest.message().c_str());
+    return 1;
+  }
+  std::printf("newest at %s s, speed %.3f m/s\n", alidade::FormatSeconds(newest->estimate.stamp_ns).c_str(),
+              newest->v_B.norm());
 }

@@ -1,5 +1,9 @@
 #include "eval/bag/bag_fixes.h"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
 #include "eval/dataset/dataset_fix.h"
 #include "gnss/base/anchor_llh.h"
 
@@ -7,6 +11,8 @@ namespace alidade {
 namespace {
 
 constexpr std::size_t kMaxSensors = 16;
+/// The word in --topics that gives the standard deviation of positions without a covariance [m].
+constexpr const char* kDeviation = "fix_std_m";
 
 /// In ENU at the sheet's anchor, or at the first of them.
 void AddOnEarth(const std::vector<NavSatFix>& messages, int sensor, FixSensor* sheet,
@@ -37,14 +43,43 @@ NavSatFix OnEarth(const PositionFix& fix, const Eigen::Vector3d& anchor_llh_deg)
   return {fix.stamp_ns, LlhDegOf(position_E), turn * fix.covariance * turn.transpose()};
 }
 
+bool IsLocalPosition(const std::string& type) {
+  const std::vector<std::string>& types = LocalPositionTypes();
+  return std::find(types.begin(), types.end(), type) != types.end();
+}
+
+/// Of the positions of a message's topic that have no covariance.
+Result<double> DeviationOf(const BagMessage& message, const BagContext& bag) {
+  const std::string& text = bag.topics[kDeviation];
+  if (text.empty()) {
+    return Status::Input(bag.path + ": " + message.connection->topic + " (" + message.connection->type +
+                         "): found a position without a covariance, expected --topics=...," + kDeviation +
+                         "=METRES with its standard deviation");
+  }
+  double deviation_m = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), deviation_m);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(deviation_m) ||
+      deviation_m <= 0) {
+    return Status::Usage(std::string("--topics: ") + kDeviation + ": found '" + text +
+                         "', expected metres greater than 0");
+  }
+  return deviation_m;
+}
+
 }  // namespace
 
 std::vector<BagTopic> FixTopics() {
-  return {{"fix", "/fix0/fix", {"sensor_msgs/NavSatFix"}, BagTopic::Search::kWhenNamed}};
+  std::vector<std::string> types = LocalPositionTypes();
+  types.insert(types.begin(), "sensor_msgs/NavSatFix");
+  return {{"fix", "/fix0/fix", std::move(types), BagTopic::Search::kWhenNamed}, {kDeviation, "", {}}};
 }
 
 Result<bool> BagFixes::Take(const BagMessage& message, BagContext* bag) {
   const std::string& topic = message.connection->topic;
+  if (IsLocalPosition(message.connection->type) && topic == bag->topics["fix"]) {
+    ALIDADE_RETURN_IF_ERROR(TakeLocal(message, bag));
+    return true;
+  }
   const bool is_position = message.connection->type == "alidade/Position";
   if (!is_position && message.connection->type != "sensor_msgs/NavSatFix") {
     return false;
@@ -67,6 +102,24 @@ Result<bool> BagFixes::Take(const BagMessage& message, BagContext* bag) {
   }
   others_.insert(topic);
   return true;
+}
+
+Status BagFixes::TakeLocal(const BagMessage& message, BagContext* bag) {
+  const auto position = DecodeLocalPosition(message.connection->type, message.data);
+  if (!position) {
+    bag->remarks.AddSkipped(message.connection->topic, "does not decode");
+    return Status::Ok();
+  }
+  PositionFix fix{position->stamp_ns, 0, position->p_A, Eigen::Matrix3d::Identity()};
+  if (position->covariance) {
+    fix.covariance = *position->covariance;
+  } else {
+    const Result<double> deviation_m = DeviationOf(message, *bag);
+    ALIDADE_RETURN_IF_ERROR(deviation_m.status());
+    fix.covariance *= *deviation_m * *deviation_m;
+  }
+  sensors_[0].local.push_back(fix);
+  return Status::Ok();
 }
 
 Status BagFixes::Assemble(BagContext* bag) {

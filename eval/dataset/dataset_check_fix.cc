@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/format.h"
+#include "eval/dataset/dataset_check_rig.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/dataset_fix.h"
 
@@ -159,6 +160,7 @@ void CheckFixes(const Dataset& dataset, Findings* findings) {
   for (std::size_t sensor = 0; sensor < dataset.rig.fixes.size(); ++sensor) {
     const FixSensor& sheet = dataset.rig.fixes[sensor];
     const std::string name = "fix" + std::to_string(sensor);
+    CheckAntenna(dataset, name, sheet.p_BA, sheet.time_offset_s, findings);
     own_frames += sheet.anchor_llh_deg ? 0 : 1;
     std::vector<const PositionFix*> fixes;
     std::vector<TimeNs> stamps;

@@ -169,8 +169,14 @@ void CheckReceiverOffset(const std::string& sheet, double offset_s, const std::o
 
 }  // namespace
 
+void CheckAntenna(const Dataset& dataset, const std::string& sensor, const Eigen::Vector3d& p_BA,
+                  double time_offset_s, Findings* findings) {
+  const std::string sheet = SheetOf(dataset, sensor);
+  CheckArm(sheet + ": p_BA", p_BA, kAntennaArm, findings);
+  CheckReceiverOffset(sheet, time_offset_s, ImuSpan(dataset), findings);
+}
+
 void CheckRig(const Dataset& dataset, Findings* findings) {
-  const std::optional<TimeSpan> imu = ImuSpan(dataset);
   const RigCalibration& rig = dataset.rig;
   if (HasCamera(dataset)) {
     CheckCameraSheet({SheetOf(dataset, "cam0"), rig.camera, rig.T_BC, rig.camera_time_offset_s}, findings);
@@ -182,14 +188,7 @@ void CheckRig(const Dataset& dataset, Findings* findings) {
                      findings);
   }
   if (dataset.gnss != nullptr) {
-    const std::string sheet = SheetOf(dataset, "gnss0");
-    CheckArm(sheet + ": p_BA", rig.gnss.p_BA, kAntennaArm, findings);
-    CheckReceiverOffset(sheet, rig.gnss.time_offset_s, imu, findings);
-  }
-  for (std::size_t k = 0; k < rig.fixes.size(); ++k) {
-    const std::string sheet = SheetOf(dataset, "fix" + std::to_string(k));
-    CheckArm(sheet + ": p_BA", rig.fixes[k].p_BA, kAntennaArm, findings);
-    CheckReceiverOffset(sheet, rig.fixes[k].time_offset_s, imu, findings);
+    CheckAntenna(dataset, "gnss0", rig.gnss.p_BA, rig.gnss.time_offset_s, findings);
   }
 }
 

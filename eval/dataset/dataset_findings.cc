@@ -63,7 +63,10 @@ void Findings::Error(std::string text) {
 }
 
 void TellUseless(const Dataset& dataset, std::string text, Findings* findings) {
-  if (dataset.gnss != nullptr || !dataset.fixes.empty()) {
+  bool has_positions = dataset.gnss != nullptr;
+  ForEachSensorEntry(
+      [&](auto entry, Sensor) { has_positions = has_positions || !entry.Measurements(dataset).empty(); });
+  if (has_positions) {
     findings->Warning(std::move(text));
   } else {
     findings->Error(std::move(text));

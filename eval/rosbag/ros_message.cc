@@ -16,6 +16,21 @@ const std::map<std::string, std::string>& Fields() {
       {"std_msgs/String", "string data\n"},
       {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
       {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+      {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+      {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+      {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+      {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+      {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+      {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+      {"geometry_msgs/PointStamped", "std_msgs/Header header\ngeometry_msgs/Point point\n"},
+      {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+      {"geometry_msgs/PoseWithCovarianceStamped",
+       "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
+      {"geometry_msgs/TransformStamped",
+       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+      {"nav_msgs/Odometry",
+       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
+       "geometry_msgs/TwistWithCovariance twist\n"},
       {"sensor_msgs/Imu",
        "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
        "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"

@@ -30,6 +30,33 @@ Eigen::Matrix3d TakeMatrix(ByteReader* in) {
   return matrix;
 }
 
+/// The covariance of the translation in one of a pose (x, y, z, three angles).
+std::optional<Eigen::Matrix3d> TakePoseCovariance(ByteReader* in) {
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> of_pose;
+  for (int i = 0; i < 36; ++i) {
+    of_pose(i / 6, i % 6) = in->Read<double>();
+  }
+  const Eigen::Matrix3d of_position = of_pose.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d symmetric = 0.5 * (of_position + of_position.transpose());
+  return symmetric.allFinite() && IsPositiveDefinite(symmetric) ? std::optional(symmetric) : std::nullopt;
+}
+
+/// What follows the header in a message of a local position.
+struct LocalLayout {
+  bool has_child_frame;
+  bool has_rotation;
+  bool has_covariance;
+  int further_numbers;  ///< behind the covariance
+};
+
+LocalLayout LayoutOf(std::string_view type) {
+  if (type == "nav_msgs/Odometry") {
+    return {true, true, true, 6 + 36};  // twist and its covariance
+  }
+  const bool has_covariance = type == "geometry_msgs/PoseWithCovarianceStamped";
+  return {type == "geometry_msgs/TransformStamped", type != "geometry_msgs/PointStamped", has_covariance, 0};
+}
+
 Eigen::Matrix3d UsualCovariance(std::int8_t status) {
   const double deviation = status == kGbas ? 0.5 : status == kSbas ? 1 : 3;
   return Eigen::Vector3d(deviation, deviation, 2 * deviation).cwiseAbs2().asDiagonal();
@@ -97,6 +124,32 @@ std::optional<PositionFix> DecodePosition(std::string_view bytes) {
   const bool fine = in.ok() && fix.p_A.allFinite() && fix.covariance.allFinite() &&
                     fix.covariance == fix.covariance.transpose() && IsPositiveDefinite(fix.covariance);
   return fine ? std::optional(fix) : std::nullopt;
+}
+
+const std::vector<std::string>& LocalPositionTypes() {
+  static const std::vector<std::string> types = {
+      "geometry_msgs/PoseStamped", "geometry_msgs/PoseWithCovarianceStamped",
+      "geometry_msgs/TransformStamped", "geometry_msgs/PointStamped", "nav_msgs/Odometry"};
+  return types;
+}
+
+std::optional<LocalPosition> DecodeLocalPosition(std::string_view type, std::string_view bytes) {
+  const LocalLayout layout = LayoutOf(type);
+  ByteReader in(bytes);
+  LocalPosition position;
+  position.stamp_ns = TakeRosHeader(&in);
+  if (layout.has_child_frame) {
+    static_cast<void>(in.Block());
+  }
+  position.p_A = TakeRosVector(&in);
+  if (layout.has_rotation) {
+    static_cast<void>(in.Take(4 * sizeof(double)));
+  }
+  if (layout.has_covariance) {
+    position.covariance = TakePoseCovariance(&in);
+  }
+  static_cast<void>(in.Take(static_cast<std::size_t>(layout.further_numbers) * sizeof(double)));
+  return in.ok() && position.p_A.allFinite() ? std::optional(position) : std::nullopt;
 }
 
 }  // namespace alidade

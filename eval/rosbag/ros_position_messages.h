@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/position_fix.h"
 
@@ -27,5 +28,17 @@ struct DecodedNavSatFix {
 /// alidade/Position: a position in a frame of the sensor's own. PositionFix::sensor is not part of it.
 [[nodiscard]] std::string EncodePosition(const PositionFix& fix);
 [[nodiscard]] std::optional<PositionFix> DecodePosition(std::string_view bytes);
+
+/// Types of other programs that hold a position in a frame of their own, such as motion capture and UWB:
+/// geometry_msgs/PointStamped, PoseStamped, PoseWithCovarianceStamped, TransformStamped, nav_msgs/Odometry.
+[[nodiscard]] const std::vector<std::string>& LocalPositionTypes();
+struct LocalPosition {
+  TimeNs stamp_ns = 0;                            ///< of the header
+  Eigen::Vector3d p_A = Eigen::Vector3d::Zero();  ///< of the moving frame's origin [m]
+  /// Of p_A [m^2]; nothing: the type has none, or it is not positive definite, such as zeros for unknown.
+  std::optional<Eigen::Matrix3d> covariance;
+};
+/// `type`: one of LocalPositionTypes.
+[[nodiscard]] std::optional<LocalPosition> DecodeLocalPosition(std::string_view type, std::string_view bytes);
 
 }  // namespace alidade

@@ -10,8 +10,12 @@
 namespace alidade {
 namespace {
 
-const char* Contradicts(const AbsoluteSource& source) {
-  return source.first == Sensor::kGnss ? "GNSS contradicts" : "position fixes contradict";
+std::string Contradicts(const AbsoluteSource& source) {
+  const auto& [sensor, index] = source;
+  if (sensor == Sensor::kGnss) {
+    return "GNSS contradicts";
+  }
+  return Format("%s (%s%d) contradict", PluralNameOf(sensor), std::string(ToString(sensor)).c_str(), index);
 }
 
 }  // namespace
@@ -64,7 +68,7 @@ std::string Degradation::AgainstSensors(const char* by) const {
   for (const auto& [source, monitor] : absolute_) {
     if (const std::optional<Contradiction>& found = monitor.contradiction()) {
       return Format("%s %s: %.1f m (%.1f sigma) from the predicted position within %.0f s",
-                    Contradicts(source), by, found->distance_m, found->sigmas, found->window_s);
+                    Contradicts(source).c_str(), by, found->distance_m, found->sigmas, found->window_s);
     }
   }
   return {};
@@ -73,8 +77,7 @@ std::string Degradation::AgainstSensors(const char* by) const {
 std::string Degradation::AbsoluteHint() const {
   const auto found = std::find_if(absolute_.begin(), absolute_.end(),
                                   [](const auto& entry) { return entry.second.sigmas() > kHintSigmas; });
-  return found == absolute_.end() ? std::string()
-                                  : std::string("; or ") + Contradicts(found->first) + " vision and IMU";
+  return found == absolute_.end() ? std::string() : "; or " + Contradicts(found->first) + " vision and IMU";
 }
 
 std::optional<double> Degradation::LargeInnovations(TimeNs imu_ns, const FrameStatistics& statistics) {

@@ -272,7 +272,7 @@ void EstimatorLoop::PassTime(TimeNs now_ns) {
   if (running()) {
     if (SecondsBetween(state_ns_, now_ns) > options_.max_silence_s) {
       GiveUp(state_ns_ + SecondsToNs(options_.max_silence_s),
-             Status::Diverged(Format("no frame, epoch or fix was used for %g s", options_.max_silence_s)));
+             Status::Diverged(Format("no frame or measurement was used for %g s", options_.max_silence_s)));
     }
     return;
   }

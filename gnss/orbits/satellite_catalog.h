@@ -32,6 +32,9 @@ struct GroupDelay {
 class SatelliteCatalog {
  public:
   explicit SatelliteCatalog(NavigationData navigation, PreciseProducts precise = {});
+  SatelliteCatalog(const SatelliteCatalog&) = delete;
+  SatelliteCatalog& operator=(const SatelliteCatalog&) = delete;
+  virtual ~SatelliteCatalog() = default;
 
   /// State at transmission of a signal that was received at `tag_ns` of the receiver's clock with this
   /// pseudorange: t = tag - P / c - dt_S, whatever the receiver's clock error (IS-GPS-200 20.3.3.3.3.1).
@@ -40,9 +43,9 @@ class SatelliteCatalog {
   /// s) the one with the nearest reference time is used, of Galileo I/NAV before F/NAV; of equals the latest.
   /// Its health flag for `signal` applies. A single GLONASS signal (`ionosphere_free` false) whose delay
   /// against the pair of precise clocks is not broadcast keeps to the broadcast orbit and clock: those delays
-  /// are metres.
-  [[nodiscard]] SatelliteFix AtTransmission(SatelliteId satellite, SignalCode signal, TimeNs tag_ns,
-                                            double pseudorange_m, bool ionosphere_free = false) const;
+  /// are metres. Virtual, so that calls can be counted.
+  [[nodiscard]] virtual SatelliteFix AtTransmission(SatelliteId satellite, SignalCode signal, TimeNs tag_ns,
+                                                    double pseudorange_m, bool ionosphere_free = false) const;
 
   [[nodiscard]] const NavigationData& navigation() const { return navigation_; }
   [[nodiscard]] bool has_precise() const { return !precise_.orbits.empty(); }

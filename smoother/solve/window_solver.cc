@@ -61,9 +61,10 @@ class AcceptedSteps final : public ceres::IterationCallback {
   int accepted_ = 0;
 };
 
-ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBlocks* blocks) {
+ceres::Solver::Options SolverOptions(int max_iterations, const ceres::Problem& problem,
+                                     ParameterBlocks* blocks) {
   ceres::Solver::Options solver;
-  solver.max_num_iterations = (1 + kRejectedSteps) * config.max_iterations;
+  solver.max_num_iterations = (1 + kRejectedSteps) * max_iterations;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   // Dogleg takes the undamped Gauss-Newton step; Levenberg-Marquardt would damp the weakly observed drift
@@ -79,8 +80,7 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBloc
   // First group: blocks no factor couples with one another. Landmarks where they are explicit; else every
   // second bias, which makes Ceres form the normal equations block by block and leaves the dense
   // factorisation fewer columns. Not the first one: the prior couples it with every frame.
-  const bool explicit_landmarks =
-      config.landmark == SmootherLandmark::kInverseDepth && blocks->landmarks() > 0;
+  const bool explicit_landmarks = blocks->landmarks() > 0 && problem.HasParameterBlock(blocks->Landmark(0));
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (int i = 0; explicit_landmarks && i < blocks->landmarks(); ++i) {
     solver.linear_solver_ordering->AddElementToGroup(blocks->Landmark(i), 0);
@@ -109,7 +109,7 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
   }
   UseOneThreadPerBlasCall();
   ceres::Solver::Summary summary;
-  ceres::Solver::Options options = SolverOptions(config, &blocks);
+  ceres::Solver::Options options = SolverOptions(config.max_iterations, *problem, &blocks);
   AcceptedSteps steps(config.max_iterations, remaining_sigma);
   options.callbacks.push_back(&steps);
   ceres::Solve(options, problem.get(), &summary);

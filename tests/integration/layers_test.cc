@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "tests/integration/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -47,6 +49,19 @@ TEST_F(LayersTest, GivenAPackageWhereItMustNotBeThenItIsNamed) {
   const CommandResult result = Check();
   EXPECT_THAT(result.output, HasSubstr("filter must not include <ceres/problem.h>: only"));
   EXPECT_THAT(result.output, testing::Not(HasSubstr("smoother/window")));
+}
+
+TEST_F(LayersTest, GivenAPackageOfOtherRoomsThenTheRoomIsNamed) {
+  tree_.Write("eval/run/session.cc",
+              "#include <bzlib.h>\n#include <lz4frame.h>\n#include <nlohmann/json.hpp>\n");
+  tree_.Write("eval/rosbag/rosbag_chunk.cc", "#include <bzlib.h>\n#include <lz4frame.h>\n");
+  tree_.Write("eval/report/report_json.cc", "#include <nlohmann/json.hpp>\n");
+  const CommandResult result = Check();
+  for (const char* header : {"bzlib.h", "lz4frame.h", "nlohmann/json.hpp"}) {
+    EXPECT_THAT(result.output, HasSubstr("eval/run must not include <" + std::string(header) + ">: only"));
+  }
+  EXPECT_THAT(result.output, testing::Not(HasSubstr("eval/rosbag must not")));
+  EXPECT_THAT(result.output, testing::Not(HasSubstr("eval/report must not")));
 }
 
 TEST_F(LayersTest, GivenUnitsOfARoomThatIncludeEachOtherThenTheCircleIsNamed) {

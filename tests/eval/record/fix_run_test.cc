@@ -26,7 +26,7 @@ struct FixScore {
 };
 
 /// Figure-8 of 500 m in 120 s (4 m/s) with position fixes, a tenth of them wrong, and an outage of 30 s. Two
-/// seeds here; configs/plans/fix.yaml runs twelve of it.
+/// seeds here; scripts/fix_acceptance.sh runs twelve.
 SimulatorConfig Scene(double std_m) {
   SimulatorConfig config;
   config.duration_s = 120;
@@ -115,9 +115,9 @@ void ExpectConsistent(Backend backend, double std_m, unsigned first_seed, int ru
     nis += score.nis;
     nis_dof += score.nis_dof;
   }
-  // Errors of a run are correlated over seconds: about ten independent ones a run.
-  const double band = 4 * std::sqrt(2.0 * 3 / (10 * runs));
-  EXPECT_NEAR(nees, 3, band);
+  // Coarse, for the errors of two runs are hardly more than two independent ones. scripts/fix_acceptance.sh
+  // compares twelve seeds with their band of chi-square.
+  EXPECT_NEAR(nees, 3, 2.2);
   EXPECT_NEAR(nis / nis_dof, 1, 0.25);
 }
 

@@ -224,6 +224,11 @@ TEST(RosDefinitions, HaveThePublishedSums) {
   EXPECT_EQ(RosMd5("sensor_msgs/CompressedImage"), "8f7a12909da2c9d3332d540a0977563f");
   EXPECT_EQ(RosMd5("sensor_msgs/NavSatStatus"), "331cdbddfa4bc96ffc3b9ad98900a54c");
   EXPECT_EQ(RosMd5("sensor_msgs/NavSatFix"), "2d3a8cd499b9b4a0249fb98fd05cfa48");
+  EXPECT_EQ(RosMd5("geometry_msgs/PointStamped"), "c63aecb41bfdfd6b7e1fac37c7cbe7bf");
+  EXPECT_EQ(RosMd5("geometry_msgs/PoseStamped"), "d3812c3cbc69362b77dc0b19b345f8f5");
+  EXPECT_EQ(RosMd5("geometry_msgs/PoseWithCovarianceStamped"), "953b798c0f514ff060a53a3498ce6246");
+  EXPECT_EQ(RosMd5("geometry_msgs/TransformStamped"), "b5764a33bfeb3588febc2682852579b0");
+  EXPECT_EQ(RosMd5("nav_msgs/Odometry"), "cd5e73d190d741a2f92e81eda573aca7");
   EXPECT_EQ(RosMd5("sensor_msgs/Nothing"), "");
 }
 

@@ -193,5 +193,18 @@ TEST(DegradationTest, AGoodSensorDoesNotHideABadOne) {
   EXPECT_THAT(degradation.AgainstSensors("vision and IMU"), HasSubstr("GNSS contradicts"));
 }
 
+// GIVEN two sensors of one kind, of which the second is pulled away, THEN its kind and its number are named.
+TEST(DegradationTest, OfSeveralSensorsOfAKindTheNumberIsNamed) {
+  Degradation degradation;
+  constexpr Sensor kFix = SensorOf<PositionFixEntry>();
+  for (int i = 0; i < 100; ++i) {
+    AbsoluteComparison comparison = Beside(0.2 * i, i % 2 == 1 ? 0.5 * i : 0);
+    comparison.index = i % 2;
+    degradation.OnAbsolute(kFix, comparison);
+  }
+  EXPECT_THAT(degradation.AgainstSensors("vision and IMU"),
+              HasSubstr(std::string(PluralNameOf(kFix)) + " (fix1) contradict vision and IMU"));
+}
+
 }  // namespace
 }  // namespace alidade

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <memory>
 #include <variant>
@@ -7,7 +9,9 @@
 
 #include "core/random.h"
 #include "eval/dataset/dataset.h"
+#include "eval/record/run_record.h"
 #include "eval/run/session.h"
+#include "gnss/alignment/alignment.h"
 #include "gnss/model/gnss_epoch.h"
 
 namespace alidade::test {
@@ -117,6 +121,38 @@ inline std::vector<NavEstimate> StatesOf(const std::vector<SessionEvent>& events
   return a.stamp_ns == b.stamp_ns && a.nav.R_WB == b.nav.R_WB && a.nav.p_WB == b.nav.p_WB &&
          a.nav.v_WB == b.nav.v_WB && a.bias.gyro == b.bias.gyro && a.bias.accel == b.bias.accel &&
          a.covariance == b.covariance;
+}
+
+/// Expects a session's states to be those of the ordered log's records in the frame of the alignment: bit by
+/// bit after it; to 1e-9 up to it, where the session's are in its local world and are turned here
+/// (covariances relative to their norm).
+inline void ExpectStatesOfLog(const std::vector<RunRecord>& records, const AlignedEvent& aligned,
+                              const std::vector<NavEstimate>& states) {
+  constexpr double kRounding = 1e-9;
+  constexpr double kRootRounding = 1e-6;
+  ASSERT_EQ(states.size(), records.size());
+  size_t before = 0;
+  for (size_t i = 0; i < states.size(); ++i) {
+    const NavEstimate& expected = records[i].estimate;
+    if (states[i].stamp_ns > aligned.global.stamp_ns) {
+      ASSERT_TRUE(SameBits(states[i], expected)) << i;
+      continue;
+    }
+    ++before;
+    const NavEstimate turned = TurnIntoEnu(aligned.alignment, states[i]);
+    ASSERT_EQ(turned.stamp_ns, expected.stamp_ns);
+    ASSERT_LT((turned.nav.R_WB - expected.nav.R_WB).norm(), kRounding) << i;
+    ASSERT_LT((turned.nav.p_WB - expected.nav.p_WB).norm(), kRounding) << i;
+    ASSERT_LT((turned.nav.v_WB - expected.nav.v_WB).norm(), kRounding) << i;
+    ASSERT_LT((turned.bias.gyro - expected.bias.gyro).norm(), kRounding) << i;
+    ASSERT_LT((turned.bias.accel - expected.bias.accel).norm(), kRounding) << i;
+    // The state of the alignment itself is turned by the estimator, which may hold a root of its covariance.
+    ASSERT_TRUE(turned.covariance.isApprox(
+        expected.covariance, states[i].stamp_ns < aligned.global.stamp_ns ? kRounding : kRootRounding))
+        << i;
+  }
+  EXPECT_GT(before, 5u);
+  EXPECT_GT(states.size() - before, 50u);
 }
 
 }  // namespace alidade::test
