@@ -20,6 +20,8 @@ struct SmootherConfig {
   int max_landmarks = 150;
   int slam_features = 0;
   bool first_estimates = false;
+  /// Not a key. Solves go on to the minimum itself, undamped: for a comparison with another estimator.
+  bool solve_to_rounding = false;
 
   void Describe(ConfigVisitor& visitor);
 };

@@ -213,9 +213,7 @@ void FilterEstimator::Correct() {
     gnss_.Correct(Correction(), state_);
   }
   state_.Correct(Correction());
-  if (state_.layout().intrinsics() >= 0) {
-    tracks_.Renormalize(state_.calibration().camera, pixel_noise_.px());
-  }
+  tracks_.Renormalize(state_.layout(), state_.calibration().camera, pixel_noise_.px());
 }
 
 void FilterEstimator::LeaveMemories(size_t leaving) {

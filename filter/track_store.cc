@@ -68,7 +68,11 @@ int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int s
   return invalid;
 }
 
-void TrackStore::Renormalize(const CameraModel& camera, double pixel_noise_px) {
+void TrackStore::Renormalize(const CalibrationLayout& layout, const CameraModel& camera,
+                             double pixel_noise_px) {
+  if (layout.intrinsics() < 0) {
+    return;
+  }
   for (Track& track : tracks_) {
     for (TrackView& view : track.views) {
       static_cast<void>(RenormalizeObservation(camera, view.pixel, pixel_noise_px, &view.observation));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/calibration.h"
 #include "core/track_frame.h"
 #include "core/visual_observation.h"
 #include "filter/track_memory.h"
@@ -44,8 +45,8 @@ class TrackStore {
   int AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
                const std::vector<TrackObservation>& observations);
   /// Observations of all views anew, after the camera's intrinsics have changed. A view that the camera's
-  /// domain no longer holds stays as it is.
-  void Renormalize(const CameraModel& camera, double pixel_noise_px);
+  /// domain no longer holds stays as it is. Nothing where the layout has no intrinsics.
+  void Renormalize(const CalibrationLayout& layout, const CameraModel& camera, double pixel_noise_px);
   /// Removes tracks that have ended (not seen by `serial`) and those without views.
   void RemoveEnded(int serial);
   /// Forgets the views of a clone; a base that goes takes its round count with it.

@@ -33,10 +33,6 @@ void StoreCalibration(const Eigen::Matrix2Xd& rows, const WindowCalibration& cal
   out.leftCols(rows.cols()).noalias() = rows * calibration.BlockJacobian(block);
 }
 
-NormalizedObservation Seen(const WindowCalibration& at, const WindowView& view) {
-  return at.layout.intrinsics() < 0 ? view.observation : Renormalized(at.mean.camera, view).observation;
-}
-
 }  // namespace
 
 InverseDepthFactor::InverseDepthFactor(const WindowFrame* base, const WindowView* view,
@@ -61,7 +57,7 @@ bool InverseDepthFactor::Evaluate(const double* const* parameters, double* resid
   if (camera == nullptr) {
     return false;
   }
-  const NormalizedObservation observation = Seen(*camera, *view_);
+  const NormalizedObservation observation = Renormalized(*camera, *view_).observation;
   const FrameGeometry& base_frame = cache_->Frame(*base_, parameters[0]);
   const FrameGeometry& view_frame = cache_->Frame(*view_->frame, parameters[1]);
   FrameGeometry base_row;
@@ -104,7 +100,7 @@ bool BaseBearingFactor::Evaluate(const double* const* parameters, double* residu
   if (!calibration_->At(parameters[1], &camera.mean)) {
     return false;
   }
-  const NormalizedObservation observation = Seen(camera, *view_);
+  const NormalizedObservation observation = Renormalized(camera, *view_).observation;
   Eigen::Map<Vector2d> r(residual);
   r = observation.sqrt_information * (landmark.head<2>() - observation.z);
   if (tangent_jacobians != nullptr && tangent_jacobians[0] != nullptr) {

@@ -27,15 +27,6 @@ PoseOnlyFactor::PoseOnlyFactor(const Window& window, std::vector<const WindowTra
   blocks_.push_back(BlockKind::kCalibration);
 }
 
-const std::vector<WindowView>& PoseOnlyFactor::Views(const WindowTrack& track,
-                                                     std::vector<WindowView>* renormalized) const {
-  if (memo_->camera.layout.intrinsics() < 0) {
-    return track.views;
-  }
-  *renormalized = Renormalized(memo_->camera.mean.camera, track.views);
-  return *renormalized;
-}
-
 bool PoseOnlyFactor::SolveLandmarks(const double* const* parameters) const {
   const double* block = parameters[frames_];
   WindowCalibration camera{calibration_->layout, {}};
@@ -64,8 +55,8 @@ bool PoseOnlyFactor::SolveLandmarks(const double* const* parameters) const {
     const WindowTrack& track = *tracks_[i];
     Eigen::Vector3d landmark = track.landmark;
     double cost = 0;
-    if (SolveLandmark(Views(track, &renormalized), memo.geometry, kernel_, kMaxLandmarkIterations, &landmark,
-                      track.depth_prior, &cost)) {
+    if (SolveLandmark(Renormalized(camera, track.views, &renormalized), memo.geometry, kernel_,
+                      kMaxLandmarkIterations, &landmark, track.depth_prior, &cost)) {
       memo.landmarks[i] = landmark;
     } else {
       cost = kBehindChiSquare;
@@ -82,8 +73,8 @@ void PoseOnlyFactor::Linearize() const {
   std::vector<WindowView> renormalized;
   for (size_t i = 0; i < tracks_.size(); ++i) {
     if (memo.landmarks[i]) {  // one whose views do not determine it says nothing of the poses
-      AddTrack(Views(*tracks_[i], &renormalized), memo.geometry, kernel_, *memo.landmarks[i], &memo.workspace,
-               &system, tracks_[i]->depth_prior);
+      AddTrack(Renormalized(memo.camera, tracks_[i]->views, &renormalized), memo.geometry, kernel_,
+               *memo.landmarks[i], &memo.workspace, &system, tracks_[i]->depth_prior);
     }
   }
   Eigen::VectorXd rows;

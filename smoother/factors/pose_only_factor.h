@@ -59,8 +59,6 @@ class PoseOnlyFactor {
   /// False when the calibration block is no camera.
   bool SolveLandmarks(const double* const* parameters) const;
   void Linearize() const;
-  /// Of a track, as the camera of the memo sees it.
-  const std::vector<WindowView>& Views(const WindowTrack& track, std::vector<WindowView>* renormalized) const;
 
   const Window* window_;
   int frames_;

@@ -34,6 +34,25 @@ ColumnMap LinearPrior::columns() const {
                       landmarks.size());
 }
 
+Vector9d LinearPrior::NavError(size_t anchor, const NavState& state) const {
+  return Local(convention, anchors[anchor].origin, state);
+}
+
+Vector6d LinearPrior::BiasError(const ImuBias& bias) const {
+  const ImuBias& origin = anchors.front().bias_origin;
+  Vector6d error;
+  error << bias.gyro - origin.gyro, bias.accel - origin.accel;
+  return error;
+}
+
+Vector6d LinearPrior::ClockError(const Vector6d& clock) const {
+  return clock - *clock_origin;
+}
+
+Eigen::VectorXd LinearPrior::CalibrationError(const CameraCalibration& camera) const {
+  return Local(calibration_origin.layout, calibration_origin.mean, camera);
+}
+
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior) {
   const NavState state = frame.nav_state();
@@ -91,7 +110,7 @@ void PriorFactor::AddFrame(size_t anchor, const double* block, double* residual,
   const Eigen::Index width = std::min(columns.size, kNavColumns);
   const auto jacobian = prior_->jacobian.middleCols(columns.first, width);
   const NavState state = UnpackNavState(block);
-  const Vector9d xi = Local(prior_->convention, at.origin, state);
+  const Vector9d xi = prior_->NavError(anchor, state);
   Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * xi.head(width);
   if (tangent != nullptr) {
     const Matrix9d chain =
@@ -101,10 +120,7 @@ void PriorFactor::AddFrame(size_t anchor, const double* block, double* residual,
 }
 
 void PriorFactor::AddBias(const double* block, double* residual, double* tangent) const {
-  const ImuBias& origin = prior_->anchors.front().bias_origin;
-  const ImuBias bias = UnpackBias(block);
-  Vector6d shift;
-  shift << bias.gyro - origin.gyro, bias.accel - origin.accel;
+  const Vector6d shift = prior_->BiasError(UnpackBias(block));
   const auto jacobian = prior_->jacobian.middleCols<6>(columns_.Frame(0).first + kNavColumns);
   Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * shift;
   if (tangent != nullptr) {
@@ -115,7 +131,7 @@ void PriorFactor::AddBias(const double* block, double* residual, double* tangent
 void PriorFactor::AddClock(const double* block, double* residual, double* tangent) const {
   const Eigen::Map<const Vector6d> clock(block);
   const auto jacobian = prior_->jacobian.middleCols<6>(columns_.Clock(0).first);
-  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * (clock - *prior_->clock_origin);
+  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * prior_->ClockError(clock);
   if (tangent != nullptr) {
     RowMap<6>(tangent, rows(), 6) = jacobian;
   }
@@ -129,8 +145,7 @@ bool PriorFactor::AddCalibration(const double* block, double* residual, double* 
     return false;
   }
   const auto jacobian = prior_->jacobian.middleCols(columns_.Calibration().first, origin.size());
-  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() +=
-      jacobian * Local(origin.layout, origin.mean, camera);
+  Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * prior_->CalibrationError(camera);
   if (tangent != nullptr) {
     RowMap<kWidth> out(tangent, rows(), kWidth);
     out.setZero();

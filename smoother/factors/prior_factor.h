@@ -44,6 +44,11 @@ struct LinearPrior {
 
   /// Frames by their place among the anchors, landmarks by theirs.
   [[nodiscard]] ColumnMap columns() const;
+  // Parts of xi.
+  [[nodiscard]] Vector9d NavError(size_t anchor, const NavState& state) const;
+  [[nodiscard]] Vector6d BiasError(const ImuBias& bias) const;     ///< of the first frame
+  [[nodiscard]] Vector6d ClockError(const Vector6d& clock) const;  ///< precondition: clock_origin
+  [[nodiscard]] Eigen::VectorXd CalibrationError(const CameraCalibration& camera) const;
 };
 
 /// The columns of a prior on so many frames and landmarks.

@@ -81,12 +81,8 @@ struct SlamPrior::Views {
 struct SlamPrior::Scene {
   std::vector<FrameGeometry> geometry;
   WindowCalibration calibration;
-  std::vector<std::vector<WindowView>> renormalized;  ///< of each track, where the intrinsics are estimated
-
-  [[nodiscard]] const std::vector<WindowView>& Views(const std::vector<const WindowTrack*>& tracks,
-                                                     size_t track) const {
-    return renormalized.empty() ? tracks[track]->views : renormalized[track];
-  }
+  std::vector<const std::vector<WindowView>*> views;  ///< of each track; null: lost
+  std::vector<std::vector<WindowView>> renormalized;  ///< likewise: what `views` may refer to
 };
 
 SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
@@ -115,11 +111,11 @@ SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
     const WindowFrame& frame = window_->frame(static_cast<int>(i));
     scene.geometry.push_back(MakeGeometry(frame, point.states[i], point.camera));
   }
-  if (calibration_->layout.intrinsics() >= 0) {
-    for (const WindowTrack* track : tracks_) {
-      scene.renormalized.push_back(track == nullptr ? std::vector<WindowView>()
-                                                    : Renormalized(point.camera.camera, track->views));
-    }
+  scene.renormalized.resize(tracks_.size());
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    scene.views.push_back(tracks_[i] == nullptr
+                              ? nullptr
+                              : &Renormalized(scene.calibration, tracks_[i]->views, &scene.renormalized[i]));
   }
   return scene;
 }
@@ -135,7 +131,6 @@ VectorXd SlamPrior::StartingLandmarks() const {
 }
 
 bool SlamPrior::See(const Scene& scene, const VectorXd& landmarks, bool with_frames, Views* views) const {
-  const std::vector<FrameGeometry>& geometry = scene.geometry;
   const ColumnMap::Range camera = columns_.Calibration();
   views->landmark_hessian.assign(tracks_.size(), Eigen::Matrix3d::Zero());
   views->landmark_gradient.setZero(landmarks.size());
@@ -151,12 +146,10 @@ bool SlamPrior::See(const Scene& scene, const VectorXd& landmarks, bool with_fra
     }
     const Index row = 3 * static_cast<Index>(i);
     const int anchor = tracks_[i]->anchor->index;
-    for (const WindowView& view : scene.Views(tracks_, i)) {
+    for (const WindowView& view : *scene.views[i]) {
       AnchoredRows rows;
-      FrameGeometry row_geometry;
-      if (!LinearizeAnchoredView(geometry[static_cast<size_t>(anchor)], AtRow(geometry, view, &row_geometry),
-                                 view.observation, kernel_, landmarks.segment<3>(row), &rows, with_frames,
-                                 scene.calibration, tracks_[i]->plane())) {
+      if (!LinearizeAnchoredView(*tracks_[i], view, scene.geometry, kernel_, landmarks.segment<3>(row), &rows,
+                                 with_frames, scene.calibration)) {
         return false;
       }
       views->robust_cost += kernel_.Rho(rows.squared_norm);

@@ -17,18 +17,14 @@ VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
     const ColumnMap::Range columns = prior_columns_.Frame(static_cast<int>(i));
     const Index width = std::min(columns.size, kNavColumns);
     xi.segment(columns.first, width) =
-        Local(prior_->convention, anchor.origin, point.states[static_cast<size_t>(anchor.frame->index)])
-            .head(width);
+        prior_->NavError(i, point.states[static_cast<size_t>(anchor.frame->index)]).head(width);
   }
-  const ImuBias& origin = prior_->anchors.front().bias_origin;
-  xi.segment<kBiasColumns>(prior_columns_.Frame(0).first + kNavColumns) << point.bias.gyro - origin.gyro,
-      point.bias.accel - origin.accel;
+  xi.segment<kBiasColumns>(prior_columns_.Frame(0).first + kNavColumns) = prior_->BiasError(point.bias);
   if (prior_->clock_origin) {
-    xi.segment<kClockColumns>(prior_columns_.Clock(0).first) = *point.clock - *prior_->clock_origin;
+    xi.segment<kClockColumns>(prior_columns_.Clock(0).first) = prior_->ClockError(*point.clock);
   }
-  const WindowCalibration& camera = prior_->calibration_origin;
-  xi.segment(prior_columns_.Calibration().first, camera.size()) =
-      Local(camera.layout, camera.mean, point.camera);
+  const ColumnMap::Range camera = prior_columns_.Calibration();
+  xi.segment(camera.first, camera.size) = prior_->CalibrationError(point.camera);
   return xi;
 }
 

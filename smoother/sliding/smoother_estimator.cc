@@ -228,12 +228,11 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   }
   terms.resize(without_vision);
   statistics_.iterations = report->iterations;
-  if (solved.layout.intrinsics() >= 0) {
-    window_.Renormalize(camera().camera);
-  }
-  if (watched) {
+  window_.Renormalize(solved);
+  if (watched) {  // the same terms over the calibration's columns, too
+    terms.clear();
     slam = SetPriorTerm(prior_, calibration_, &terms);
-    ALIDADE_RETURN_IF_ERROR(AddLeverArmRows(&terms));
+    ALIDADE_RETURN_IF_ERROR(AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), &terms));
   }
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
@@ -251,14 +250,6 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   }
   AddJudgedVision(*tracks, &terms);
   return UpdateLatest(terms);
-}
-
-Status SmootherEstimator::AddLeverArmRows(WindowTerms* terms) const {
-  if (calibration_.layout.lever_arm() < 0) {
-    return Status::Ok();
-  }
-  terms->resize(1);
-  return AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), terms);
 }
 
 void SmootherEstimator::AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) {

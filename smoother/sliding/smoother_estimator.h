@@ -98,8 +98,6 @@ class SmootherEstimator final : public Estimator {
   Status TakeLandmarks(const SlamPriorTerm& slam);
   /// SLAM features that have views in the window.
   [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
-  /// Where a lever arm is watched: the sensors' terms once more, with rows over it, behind the prior.
-  Status AddLeverArmRows(WindowTerms* terms) const;
   /// What the tracks say once the gates have judged their views: appended, and counted.
   void AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);

@@ -9,6 +9,24 @@
 
 namespace alidade {
 
+Matrix6d PosePriorChart(ErrorConvention convention, const WindowFrame& frame) {
+  if (frame.first) {
+    return StatePriorChart(convention, frame).topLeftCorner<6, 6>();
+  }
+  return ChartJacobian(convention, frame.nav_state().T_WB());
+}
+
+Matrix15d StatePriorChart(ErrorConvention convention, const WindowFrame& frame) {
+  const NavState state = frame.nav_state();
+  Matrix15d chart = ImuChartJacobian(convention, state);
+  if (frame.first) {
+    // The columns are the prior's coordinates, around the first estimate.
+    const Matrix9d moved = LocalJacobian(convention, frame.first->Point(state), state);
+    chart.topLeftCorner<9, 9>() = (chart.topLeftCorner<9, 9>() * moved.inverse()).eval();
+  }
+  return chart;
+}
+
 MarginalStack::MarginalStack(const Window& window, ErrorConvention convention, ColumnMap columns,
                              Index leaving)
     : window_(window), convention_(convention), columns_(std::move(columns)), leaving_(leaving) {
@@ -25,25 +43,6 @@ MarginalStack::Index MarginalStack::NewRows(Index count) {
   return first;
 }
 
-Matrix6d MarginalStack::PoseChart(int frame) const {
-  if (window_.frame(frame).first) {
-    return StateChart(frame).topLeftCorner<6, 6>();
-  }
-  return ChartJacobian(convention_, window_.frame(frame).nav_state().T_WB());
-}
-
-Matrix15d MarginalStack::StateChart(int frame) const {
-  const WindowFrame& of = window_.frame(frame);
-  const NavState state = of.nav_state();
-  Matrix15d chart = ImuChartJacobian(convention_, state);
-  if (of.first) {
-    // The columns are the prior's coordinates, around the first estimate.
-    const Matrix9d moved = LocalJacobian(convention_, of.first->Point(state), state);
-    chart.topLeftCorner<9, 9>() = (chart.topLeftCorner<9, 9>() * moved.inverse()).eval();
-  }
-  return chart;
-}
-
 void MarginalStack::Add(LinearTerm* term) {
   term->MakeRows();
   const Index count = term->residual.size();
@@ -52,16 +51,23 @@ void MarginalStack::Add(LinearTerm* term) {
     const ColumnMap::Range at = columns_.Find(part.of);
     CHECK_GE(at.size, part.width) << "a term concerns coordinates that the next prior cannot hold";
     auto block = stack_.block(first, at.first, count, part.width);
-    if (part.of.kind != Unknown::Kind::kFrame) {
+    if (part.of.kind != Unknown::Kind::kFrame || term->chart == LinearTerm::Chart::kPrior) {
       block = term->jacobian.middleCols(part.first, part.width);
-    } else if (part.width == kPoseColumns) {
-      block.noalias() = term->jacobian.middleCols<kPoseColumns>(part.first) * PoseChart(part.of.index);
-    } else {
+      continue;
+    }
+    const WindowFrame& frame = window_.frame(part.of.index);
+    if (part.width != kPoseColumns) {
       block.noalias() = term->jacobian.middleCols(part.first, part.width) *
-                        StateChart(part.of.index).topLeftCorner(part.width, part.width);
+                        StatePriorChart(convention_, frame).topLeftCorner(part.width, part.width);
+    } else if (count == 2) {  // a view: of fixed size, its rounding does not depend on where the block lies
+      const Eigen::Matrix<double, 2, 6> view = term->jacobian.middleCols<kPoseColumns>(part.first);
+      block = Eigen::Matrix<double, 2, 6>(view * PosePriorChart(convention_, frame));
+    } else {
+      block.noalias() =
+          term->jacobian.middleCols<kPoseColumns>(part.first) * PosePriorChart(convention_, frame);
     }
   }
-  Residual(first, count) = term->residual;
+  stack_.col(columns_.size()).segment(first, count) = term->residual;
 }
 
 void MarginalStack::Eliminate(Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {

@@ -7,6 +7,12 @@
 
 namespace alidade {
 
+/// d (phi, dp) of a frame's body / d its columns in the next prior: errors of the convention around the
+/// present state, or around the first estimate where the frame has one.
+[[nodiscard]] Matrix6d PosePriorChart(ErrorConvention convention, const WindowFrame& frame);
+/// The same of its whole state.
+[[nodiscard]] Matrix15d StatePriorChart(ErrorConvention convention, const WindowFrame& frame);
+
 /// Whitened rows over the coordinates of priors (errors of a convention around the present states, or around
 /// first estimates where frames have such). QR eliminates the leading columns.
 class MarginalStack {
@@ -16,26 +22,15 @@ class MarginalStack {
   /// `leaving`: how many of the columns come first and are eliminated.
   MarginalStack(const Window& window, ErrorConvention convention, ColumnMap columns, Index leaving);
 
-  [[nodiscard]] const ColumnMap& columns() const { return columns_; }
-  /// Zero rows at the end; the first of them.
-  Index NewRows(Index count);
-  /// Of some of the rows.
-  [[nodiscard]] auto Columns(const ColumnMap::Range& range, Index first_row, Index rows) {
-    return stack_.block(first_row, range.first, rows, range.size);
-  }
-  [[nodiscard]] auto Residual(Index first_row, Index rows) {
-    return stack_.col(columns_.size()).segment(first_row, rows);
-  }
-  /// d (phi, dp) of a frame's body / d its columns.
-  [[nodiscard]] Matrix6d PoseChart(int frame) const;
-  /// The same of its whole state.
-  [[nodiscard]] Matrix15d StateChart(int frame) const;
-  /// The rows of a term.
+  /// The rows of a term; those of a prior as they are.
   void Add(LinearTerm* term);
   /// The rows that are left, over the columns that stay.
   void Eliminate(Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual);
 
  private:
+  /// Zero rows at the end; the first of them.
+  Index NewRows(Index count);
+
   const Window& window_;
   ErrorConvention convention_;
   ColumnMap columns_;

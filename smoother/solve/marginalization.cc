@@ -1,23 +1,26 @@
 #include "smoother/solve/marginalization.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/check.h"
+#include "smoother/solve/carried_terms.h"
 #include "smoother/solve/marginal_stack.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 /// The columns of a window whose oldest frame leaves. First what is eliminated: the oldest frame, its clock,
 /// landmarks that leave. Then those of the next prior.
 struct LeavingColumns {
   LeavingColumns(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
                  const SlamChange& slam);
+
+  /// Whether a term concerns what leaves.
+  [[nodiscard]] bool Reach(const InformationTerm& term) const;
 
   ColumnMap columns;
   Index leaving = 0;
@@ -58,145 +61,51 @@ LeavingColumns::LeavingColumns(const Window& window, const LinearPrior& prior,
   }
 }
 
-/// What the old prior and the landmarks' views contribute.
-class PriorRows {
- public:
-  PriorRows(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
-            const SlamChange& slam, const LeavingColumns& leaving, MarginalStack* stack)
-      : window_(window),
-        prior_(prior),
-        columns_(prior.columns()),
-        calibration_(calibration),
-        slam_(slam),
-        leaving_(leaving),
-        stack_(*stack) {
-    CHECK(slam.before.size() == prior.landmarks.size());
-    CHECK(calibration.size() == prior.calibration_origin.size());
-    if (!slam.before.empty() || !slam.after.empty()) {
-      geometry_ = MakeGeometry(window, calibration.mean);
-    }
-  }
+bool LeavingColumns::Reach(const InformationTerm& term) const {
+  return std::any_of(term.parts().begin(), term.parts().end(), [&](const TermPart& part) {
+    const ColumnMap::Range at = columns.Find(part.of);
+    return at.size > 0 && at.first < leaving;
+  });
+}
 
-  void AddPrior();
-  void AddLandmarkViews();
+/// The old prior and the views of its landmarks and of the next prior's, as terms.
+class CarriedTerms {
+ public:
+  CarriedTerms(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
+               const SlamChange& slam, const LeavingColumns& leaving);
+
+  [[nodiscard]] const InformationTerm& prior() const { return *prior_; }
+  [[nodiscard]] const std::vector<AnchoredViewTerm>& views() const { return views_; }
 
  private:
-  [[nodiscard]] ColumnMap::Range Pose(int frame) const {
-    return {stack_.columns().Frame(frame).first, kPoseColumns};
-  }
-  void AddLandmark(size_t landmark, Index rows, VectorXd* residual);
-  void AddView(const WindowTrack& track, const WindowView& view, int landmark);
-
-  const Window& window_;
-  const LinearPrior& prior_;
-  ColumnMap columns_;  ///< of the old prior
-  const WindowCalibration& calibration_;
-  const SlamChange& slam_;
-  const LeavingColumns& leaving_;
-  MarginalStack& stack_;
   std::vector<FrameGeometry> geometry_;
+  std::optional<CarriedPrior> prior_;
+  std::vector<AnchoredViewTerm> views_;
 };
 
-void PriorRows::AddPrior() {
-  const Index count = prior_.jacobian.rows();
-  const Index first = stack_.NewRows(count);
-  const auto columns = [&](const ColumnMap::Range& of) {
-    return prior_.jacobian.middleCols(of.first, of.size);
+CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior,
+                           const WindowCalibration& calibration, const SlamChange& slam,
+                           const LeavingColumns& leaving) {
+  if (!slam.before.empty() || !slam.after.empty()) {
+    geometry_ = MakeGeometry(window, calibration.mean);
+  }
+  CHECK(slam.before.size() == prior.landmarks.size());
+  std::vector<PriorLandmark> landmarks;
+  const auto add_views = [&](const WindowTrack& track, int number) {
+    for (const WindowView& view : track.views) {
+      views_.emplace_back(geometry_, calibration, slam.kernel, track, view, number);
+    }
   };
-  VectorXd residual = prior_.residual;
-  for (size_t i = 0; i < prior_.anchors.size(); ++i) {
-    const LinearPrior::Anchor& anchor = prior_.anchors[i];
-    const ColumnMap::Range from = columns_.Frame(static_cast<int>(i));
-    Vector15d xi;
-    xi.head<9>() = Local(prior_.convention, anchor.origin, anchor.frame->nav_state());
-    const ImuBias bias = anchor.frame->imu_bias();
-    xi.tail<6>() << bias.gyro - anchor.bias_origin.gyro, bias.accel - anchor.bias_origin.accel;
-    const ColumnMap::Range to{stack_.columns().Frame(anchor.frame->index).first, from.size};
-    stack_.Columns(to, first, count) = columns(from);
-    residual.noalias() += columns(from) * xi.head(from.size);
-  }
-  if (prior_.clock_origin) {
-    const MatrixXd jacobian = columns(columns_.Clock(0));
-    stack_.Columns(stack_.columns().Clock(0), first, count) = jacobian;
-    residual.noalias() += jacobian * (window_.frame(0).clock_state() - *prior_.clock_origin);
-  }
-  const WindowCalibration& origin = prior_.calibration_origin;
-  const MatrixXd jacobian = columns(columns_.Calibration());
-  stack_.Columns(stack_.columns().Calibration(), first, count) = jacobian;
-  residual.noalias() += jacobian * Local(origin.layout, origin.mean, calibration_.mean);
-  for (size_t i = 0; i < prior_.landmarks.size(); ++i) {
-    AddLandmark(i, count, &residual);
-  }
-  stack_.Residual(first, count) = residual;
-}
-
-void PriorRows::AddLandmark(size_t landmark, Index rows, VectorXd* residual) {
-  const LinearPrior::Landmark& known = prior_.landmarks[landmark];
-  const WindowTrack* track = slam_.before[landmark];
-  const MatrixXd columns =
-      prior_.jacobian.middleCols<kLandmarkColumns>(columns_.Landmark(static_cast<int>(landmark)).first);
-  auto own = stack_.Columns(stack_.columns().Landmark(leaving_.before[landmark]), 0, rows);
-  if (track == nullptr) {
-    own = columns;
-    return;
-  }
-  if (track->anchor == known.anchor) {
-    own = columns;
-    residual->noalias() += columns * (track->landmark - known.origin);
-    return;
-  }
-  // The track has changed its anchor: the old coordinates as a function of the new ones and both frames.
-  const int from = known.anchor->index;
-  const int to = track->anchor->index;
-  AnchorChange back;
-  CHECK(ChangeAnchor(geometry_[static_cast<size_t>(to)], geometry_[static_cast<size_t>(from)],
-                     track->landmark, &back, {}, {track->plane(), known.plane}));
-  AnchorChange change;
-  CHECK(ChangeAnchor(geometry_[static_cast<size_t>(from)], geometry_[static_cast<size_t>(to)], back.to,
-                     &change, calibration_.layout, {known.plane, track->plane()}));
-  own.noalias() = columns * change.landmark;
-  stack_.Columns(Pose(from), 0, rows).noalias() += columns * (change.from_frame * stack_.PoseChart(from));
-  stack_.Columns(Pose(to), 0, rows).noalias() += columns * (change.to_frame * stack_.PoseChart(to));
-  stack_.Columns(stack_.columns().Calibration(), 0, rows).noalias() += columns * change.calibration;
-  residual->noalias() += columns * (back.to - known.origin);
-}
-
-void PriorRows::AddView(const WindowTrack& track, const WindowView& view, int landmark) {
-  AnchoredRows rows;
-  const int anchor = track.anchor->index;
-  const int seen = view.frame->index;
-  FrameGeometry row;
-  if (!LinearizeAnchoredView(geometry_[static_cast<size_t>(anchor)], AtRow(geometry_, view, &row),
-                             view.observation, slam_.kernel, track.landmark, &rows, true, calibration_,
-                             track.plane())) {
-    return;
-  }
-  const Index first = stack_.NewRows(2);
-  const double root = std::sqrt(rows.weight);
-  if (anchor != seen) {
-    stack_.Columns(Pose(anchor), first, 2) =
-        Eigen::Matrix<double, 2, 6>(root * rows.anchor * stack_.PoseChart(anchor));
-    stack_.Columns(Pose(seen), first, 2) =
-        Eigen::Matrix<double, 2, 6>(root * rows.view * stack_.PoseChart(seen));
-  }
-  stack_.Columns(stack_.columns().Calibration(), first, 2) = root * rows.calibration;
-  stack_.Columns(stack_.columns().Landmark(landmark), first, 2) = root * rows.landmark;
-  stack_.Residual(first, 2) = root * rows.residual;
-}
-
-void PriorRows::AddLandmarkViews() {
-  for (size_t i = 0; i < slam_.before.size(); ++i) {
-    for (size_t k = 0; leaving_.leaves[i] && slam_.before[i] != nullptr && k < slam_.before[i]->views.size();
-         ++k) {
-      AddView(*slam_.before[i], slam_.before[i]->views[k], leaving_.before[i]);
+  for (size_t i = 0; i < slam.before.size(); ++i) {
+    landmarks.push_back({slam.before[i], leaving.before[i]});
+    if (leaving.leaves[i] && slam.before[i] != nullptr) {
+      add_views(*slam.before[i], leaving.before[i]);
     }
   }
-  for (size_t i = 0; i < slam_.after.size(); ++i) {
-    const std::vector<WindowView>& views = slam_.after[i]->views;
-    if (!views.empty() && views.front().frame->index == 0) {
-      AddView(*slam_.after[i], views.front(), leaving_.after[i]);
-    }
+  for (size_t i = 0; i < slam.after.size(); ++i) {
+    add_views(*slam.after[i], leaving.after[i]);
   }
+  prior_.emplace(prior, window, calibration, std::move(landmarks), geometry_);
 }
 
 /// Names what the rows of a new prior are about. They hold at the present states.
@@ -228,16 +137,21 @@ Result<LinearPrior> MarginalizeOldest(const Window& window, const LinearPrior& p
                                       const SlamChange& slam) {
   const LeavingColumns leaving(window, prior, calibration, slam);
   MarginalStack stack(window, prior.convention, leaving.columns, leaving.leaving);
-  PriorRows rows(window, prior, calibration, slam, leaving, &stack);
-  rows.AddPrior();
-  LinearTerm linear;
+  const CarriedTerms carried(window, prior, calibration, slam, leaving);
+  std::vector<const InformationTerm*> all = {&carried.prior()};
   for (const std::unique_ptr<WindowTerm>& term : terms) {
-    if (term->Concerns({Unknown::Kind::kFrame, 0}) || term->Concerns({Unknown::Kind::kClock, 0})) {
+    all.push_back(term.get());
+  }
+  for (const AnchoredViewTerm& view : carried.views()) {
+    all.push_back(&view);
+  }
+  LinearTerm linear;
+  for (const InformationTerm* term : all) {
+    if (leaving.Reach(*term)) {
       ALIDADE_RETURN_IF_ERROR(term->Linearize(&linear));
       stack.Add(&linear);
     }
   }
-  rows.AddLandmarkViews();
   LinearPrior next;
   next.convention = prior.convention;
   stack.Eliminate(&next.jacobian, &next.residual);

@@ -13,16 +13,17 @@ struct SlamChange {
   /// Tracks of the old prior's landmarks (PriorTracks).
   std::vector<const WindowTrack*> before;
   /// Tracks of the new prior's, with anchor and landmark as they are to be: those that stay, and new ones
-  /// based in the oldest frame. A view in the oldest frame goes into the prior. Of the tracks of `before`
-  /// that are not among them every view does, and the landmark is eliminated.
+  /// based in the oldest frame. None is anchored there. A view in the oldest frame goes into the prior. Of
+  /// the tracks of `before` that are not among them every view does, and the landmark is eliminated.
   std::vector<const WindowTrack*> after;
   ObservationKernel kernel;
 };
 
-/// Marginalises the oldest frame: the old prior, the landmarks' views and those of `terms` that concern the
-/// frame or its clock (the tracks that leave with it among them) are stacked as whitened rows, linearised at
-/// the present states, and QR eliminates the frame. What remains is the exact Schur complement as a square
-/// root; nothing is inverted, so directions without information need no care.
+/// Marginalises the oldest frame. The old prior (CarriedPrior), `terms` (the tracks that leave among them)
+/// and the landmarks' views (AnchoredViewTerm) are one list of terms. Those that concern the frame, its clock
+/// or a landmark that leaves are stacked as whitened rows, linearised at the present states, and QR
+/// eliminates what leaves. What remains is the exact Schur complement as a square root; nothing is inverted,
+/// so directions without information need no care.
 ///
 /// The new prior is anchored at the present states. The old prior's rows are carried over with their Jacobian
 /// unchanged (first estimates): re-linearising them would let a direction that was never observed leak in.

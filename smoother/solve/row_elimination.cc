@@ -16,6 +16,7 @@ RowElimination::RowElimination(ColumnMap columns, bool with_residual)
 }
 
 void RowElimination::Add(LinearTerm* term) {
+  CHECK(term->chart == LinearTerm::Chart::kCanonical);
   term->MakeRows();
   const Index added = term->jacobian.rows();
   const Index first = count_;

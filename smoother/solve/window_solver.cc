@@ -61,10 +61,10 @@ class AcceptedSteps final : public ceres::IterationCallback {
   int accepted_ = 0;
 };
 
-ceres::Solver::Options SolverOptions(int max_iterations, const ceres::Problem& problem,
+ceres::Solver::Options SolverOptions(const SmootherConfig& config, const ceres::Problem& problem,
                                      ParameterBlocks* blocks) {
   ceres::Solver::Options solver;
-  solver.max_num_iterations = (1 + kRejectedSteps) * max_iterations;
+  solver.max_num_iterations = (1 + kRejectedSteps) * config.max_iterations;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   // Dogleg takes the undamped Gauss-Newton step; Levenberg-Marquardt would damp the weakly observed drift
@@ -75,6 +75,13 @@ ceres::Solver::Options SolverOptions(int max_iterations, const ceres::Problem& p
   solver.function_tolerance = 1e-6;
   solver.parameter_tolerance = 1e-9;
   solver.gradient_tolerance = 1e-12;
+  if (config.solve_to_rounding) {
+    // No tolerance, and a damping of 1e-20 of the squared norms of the scaled columns. In the end the cost is
+    // only rounded differently by a step; such steps are no failure.
+    solver.min_lm_diagonal = solver.max_lm_diagonal = 1e-12;
+    solver.function_tolerance = solver.parameter_tolerance = solver.gradient_tolerance = 0;
+    solver.max_num_consecutive_invalid_steps = solver.max_num_iterations;
+  }
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.dense_linear_algebra_library_type = ceres::LAPACK;
   // First group: blocks no factor couples with one another. Landmarks where they are explicit; else every
@@ -109,8 +116,8 @@ Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const Window
   }
   UseOneThreadPerBlasCall();
   ceres::Solver::Summary summary;
-  ceres::Solver::Options options = SolverOptions(config.max_iterations, *problem, &blocks);
-  AcceptedSteps steps(config.max_iterations, remaining_sigma);
+  ceres::Solver::Options options = SolverOptions(config, *problem, &blocks);
+  AcceptedSteps steps(config.max_iterations, config.solve_to_rounding ? 0 : remaining_sigma);
   options.callbacks.push_back(&steps);
   ceres::Solve(options, problem.get(), &summary);
   if (summary.termination_type == ceres::FAILURE || !blocks.IsFinite()) {

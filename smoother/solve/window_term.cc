@@ -17,6 +17,7 @@ Index ColumnsOf(const std::vector<TermPart>& parts) {
 }  // namespace
 
 void LinearTerm::ResizeRows(const std::vector<TermPart>& of, Index rows) {
+  chart = Chart::kCanonical;
   parts = of;
   jacobian.setZero(rows, ColumnsOf(of));
   residual.setZero(rows);
@@ -26,6 +27,7 @@ void LinearTerm::ResizeRows(const std::vector<TermPart>& of, Index rows) {
 
 void LinearTerm::SetInformation(const std::vector<TermPart>& of, const Eigen::MatrixXd& information,
                                 const Eigen::VectorXd& slope) {
+  chart = Chart::kCanonical;
   parts = of;
   hessian = information;
   gradient = slope;
@@ -39,6 +41,7 @@ void LinearTerm::MakeRows() {
 }
 
 void LinearTerm::AddTo(const ColumnMap& columns, Eigen::MatrixXd* total, Eigen::VectorXd* slope) const {
+  CHECK(chart == Chart::kCanonical);
   const bool information = hessian.size() > 0;
   std::vector<ColumnMap::Range> at;
   for (const TermPart& part : parts) {
@@ -73,19 +76,13 @@ void LinearTerm::AddTo(const ColumnMap& columns, Eigen::MatrixXd* total, Eigen::
   }
 }
 
-bool WindowTerm::Concerns(const Unknown& unknown) const {
-  return std::any_of(parts_.begin(), parts_.end(), [&](const TermPart& part) {
-    return part.of.kind == unknown.kind && part.of.index == unknown.index;
-  });
-}
-
-void WindowTerm::AddPart(const Unknown& of, Index width) {
+void InformationTerm::AddPart(const Unknown& of, Index width) {
   if (width > 0) {
     parts_.push_back({of, columns(), width});
   }
 }
 
-Index WindowTerm::columns() const {
+Index InformationTerm::columns() const {
   return ColumnsOf(parts_);
 }
 

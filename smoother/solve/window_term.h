@@ -19,16 +19,22 @@ struct TermPart {
   Eigen::Index width = 0;  ///< the leading coordinates of the unknown
 };
 
-/// A term linearised at the present states, over the canonical chart: whitened rows |r + J x|^2, or, where
-/// landmarks have been eliminated, normal equations.
+/// A term linearised at the present states: whitened rows |r + J x|^2, or, where landmarks have been
+/// eliminated, normal equations.
 struct LinearTerm {
+  /// What the columns of a frame are over.
+  enum class Chart {
+    kCanonical,
+    kPrior,  ///< the errors that a LinearPrior is over: rows of a prior, which keep their Jacobian
+  };
+  Chart chart = Chart::kCanonical;
   std::vector<TermPart> parts;
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;
   Eigen::MatrixXd hessian;   ///< lower triangle; empty where rows are given
   Eigen::VectorXd gradient;  ///< with hessian
 
-  /// Rows of these parts, zero.
+  /// Rows of these parts, zero, over the canonical chart.
   void ResizeRows(const std::vector<TermPart>& of, Eigen::Index rows);
   /// Normal equations of these parts.
   void SetInformation(const std::vector<TermPart>& of, const Eigen::MatrixXd& hessian,
@@ -40,33 +46,36 @@ struct LinearTerm {
   void AddTo(const ColumnMap& columns, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
 };
 
-/// One term of a window's least squares: what a sensor, a track or the prior says about some of the unknowns.
-/// It is put into Ceres, counted in the covariance, marginalised with its oldest frame and solved in the
-/// batch through this interface alone. A sensor is a factor (smoother/manifold/lifted_cost.h) and the line of
-/// AddSensorTerms (smoother/solve/sensor_terms.h) that makes a FactorTerm of it.
-class WindowTerm {
+/// Information about some of a window's unknowns that can be linearised: all that marginalisation needs.
+class InformationTerm {
  public:
-  virtual ~WindowTerm() = default;
+  virtual ~InformationTerm() = default;
 
-  /// The number of its rows in Ceres.
-  [[nodiscard]] virtual int rows() const = 0;
   /// The unknowns that it concerns.
   [[nodiscard]] const std::vector<TermPart>& parts() const { return parts_; }
   /// At the present states; Jacobians at first estimates where frames have such. kDiverged: undefined there.
   virtual Status Linearize(LinearTerm* linear) const = 0;
-  /// Adds its residual block; the term must outlive the problem.
-  virtual void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) = 0;
-
-  [[nodiscard]] bool Concerns(const Unknown& unknown) const;
 
  protected:
-  WindowTerm() = default;
+  InformationTerm() = default;
   /// Columns after those there are; none for a width of 0.
   void AddPart(const Unknown& of, Eigen::Index width);
   [[nodiscard]] Eigen::Index columns() const;
 
  private:
   std::vector<TermPart> parts_;
+};
+
+/// One term of a window's least squares: the information of a sensor, a track or the prior about some of the
+/// unknowns. It is put into Ceres, counted in the covariance, marginalised with its oldest frame and solved
+/// in the batch through this interface alone. A sensor is a factor (smoother/manifold/lifted_cost.h) and the
+/// line of AddSensorTerms (smoother/solve/sensor_terms.h) that makes a FactorTerm of it.
+class WindowTerm : public InformationTerm {
+ public:
+  /// The number of its rows in Ceres.
+  [[nodiscard]] virtual int rows() const = 0;
+  /// Adds its residual block; the term must outlive the problem.
+  virtual void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) = 0;
 };
 
 using WindowTerms = std::vector<std::unique_ptr<WindowTerm>>;

@@ -45,17 +45,24 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
   return true;
 }
 
+bool LinearizeAnchoredView(const WindowTrack& track, const WindowView& view,
+                           std::span<const FrameGeometry> geometry, const ObservationKernel& kernel,
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames,
+                           const WindowCalibration& calibration) {
+  FrameGeometry row;
+  return LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
+                               AtRow(geometry, view, &row), view.observation, kernel, landmark, rows,
+                               with_frames, calibration, track.plane());
+}
+
 double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> geometry) {
   if (track.anchor == nullptr) {
     return TrackChiSquare(track.views, geometry, track.landmark);
   }
   double chi2 = 0;
   AnchoredRows rows;
-  FrameGeometry row;
   for (const WindowView& view : track.views) {
-    if (!LinearizeAnchoredView(geometry[static_cast<size_t>(track.anchor->index)],
-                               AtRow(geometry, view, &row), view.observation, {}, track.landmark, &rows,
-                               false, NotCalibrated(), track.plane())) {
+    if (!LinearizeAnchoredView(track, view, geometry, {}, track.landmark, &rows, false, NotCalibrated())) {
       return std::numeric_limits<double>::infinity();
     }
     chi2 += rows.squared_norm;

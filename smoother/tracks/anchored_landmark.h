@@ -26,6 +26,12 @@ bool LinearizeAnchoredView(const FrameGeometry& anchor, const FrameGeometry& vie
                            const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames = true,
                            const WindowCalibration& calibration = NotCalibrated(),
                            const BearingPlane& plane = kNormalizedPlane);
+/// The same of a view of a SLAM feature's track, at a landmark in the track's anchor. `geometry`: of every
+/// frame.
+bool LinearizeAnchoredView(const WindowTrack& track, const WindowView& view,
+                           std::span<const FrameGeometry> geometry, const ObservationKernel& kernel,
+                           const Eigen::Vector3d& landmark, AnchoredRows* rows, bool with_frames,
+                           const WindowCalibration& calibration);
 
 /// Sum of whitened squared residuals (no kernel) of a track at its landmark, SLAM feature or not; infinite
 /// when behind a view.

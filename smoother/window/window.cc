@@ -66,18 +66,26 @@ int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
   return invalid;
 }
 
-WindowView Renormalized(const CameraModel& camera, const WindowView& view) {
+WindowView Renormalized(const WindowCalibration& calibration, const WindowView& view) {
   WindowView seen = view;
-  static_cast<void>(
-      RenormalizeObservation(camera, view.pixel, 1 / view.root_weight_per_px, &seen.observation));
+  if (calibration.layout.intrinsics() >= 0) {
+    static_cast<void>(RenormalizeObservation(calibration.mean.camera, view.pixel, 1 / view.root_weight_per_px,
+                                             &seen.observation));
+  }
   return seen;
 }
 
-std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views) {
-  for (WindowView& view : views) {
-    view = Renormalized(camera, view);
+const std::vector<WindowView>& Renormalized(const WindowCalibration& calibration,
+                                            const std::vector<WindowView>& views,
+                                            std::vector<WindowView>* scratch) {
+  if (calibration.layout.intrinsics() < 0) {
+    return views;
   }
-  return views;
+  scratch->clear();
+  for (const WindowView& view : views) {
+    scratch->push_back(Renormalized(calibration, view));
+  }
+  return *scratch;
 }
 
 void UpdateRates(WindowFrame* frame) {
@@ -93,9 +101,11 @@ void Window::UpdateRates() {
   }
 }
 
-void Window::Renormalize(const CameraModel& camera) {
+void Window::Renormalize(const WindowCalibration& calibration) {
   for (auto& [id, track] : tracks_) {
-    track.views = Renormalized(camera, std::move(track.views));
+    for (WindowView& view : track.views) {
+      view = Renormalized(calibration, view);
+    }
   }
 }
 

@@ -17,6 +17,7 @@
 #include "smoother/manifold/first_estimate.h"
 #include "smoother/window/frame_epoch.h"
 #include "smoother/window/frame_measurement.h"
+#include "smoother/window/window_calibration.h"
 
 namespace alidade {
 
@@ -112,7 +113,7 @@ class Window {
   /// UpdateRates of every frame.
   void UpdateRates();
   /// Rays of all views anew, after the camera's intrinsics have changed; see Renormalized.
-  void Renormalize(const CameraModel& camera);
+  void Renormalize(const WindowCalibration& calibration);
   /// Takes the newest frame out, its observations with it, and returns it.
   std::unique_ptr<WindowFrame> RemoveNewest();
   /// Takes the oldest frame out. Tracks based there must have been restarted or lose that view: the next one
@@ -137,10 +138,13 @@ class Window {
   std::map<std::int64_t, WindowTrack> tracks_;  // ordered: iteration must not depend on addresses
 };
 
-/// Views with the rays that their pixels have in `camera`, on the planes they had. One outside its domain
-/// stays as it is.
-[[nodiscard]] WindowView Renormalized(const CameraModel& camera, const WindowView& view);
-[[nodiscard]] std::vector<WindowView> Renormalized(const CameraModel& camera, std::vector<WindowView> views);
+/// A view with the ray that its pixel has in the camera of `calibration`, on the plane it had. It stays as it
+/// is where the intrinsics are not estimated, and outside the camera's domain.
+[[nodiscard]] WindowView Renormalized(const WindowCalibration& calibration, const WindowView& view);
+/// Likewise: `views` themselves where the intrinsics are not estimated, else what is computed in `scratch`.
+[[nodiscard]] const std::vector<WindowView>& Renormalized(const WindowCalibration& calibration,
+                                                          const std::vector<WindowView>& views,
+                                                          std::vector<WindowView>* scratch);
 
 /// Mean rotation-compensated motion of the tracks common to two frames, on the planes of the first frame's
 /// observations, and their number.

@@ -104,7 +104,11 @@ TEST(FilterCalibrationTest, ViewsKeepTheirPixelsWhenTheIntrinsicsMove) {
   TrackStore tracks(4, false);
   tracks.AddFrame(make(400), 1.0, 1, {{7, {420, 240}}});
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.z.x(), 0.25, 1e-12);
-  tracks.Renormalize(make(500), 1.0);
+  tracks.Renormalize(CalibrationLayout(), make(500), 1.0);
+  EXPECT_NEAR(tracks.tracks()[0].views[0].observation.z.x(), 0.25, 1e-12) << "no intrinsics that could move";
+  CalibrationConfig config;
+  config.intrinsics = true;
+  tracks.Renormalize(CalibrationLayout(config, make(500)), make(500), 1.0);
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.z.x(), 0.2, 1e-12);
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.sqrt_information(0, 0), 500, 1e-9);
 }

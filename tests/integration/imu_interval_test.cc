@@ -1,13 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <vector>
 
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
+#include "core/position_fix.h"
 #include "filter/filter.h"
 #include "smoother/manifold/nav_state_manifold.h"
 #include "smoother/sliding/smoother.h"
@@ -193,6 +197,35 @@ TEST(ImuIntervalTest, RowsOfTheSmootherHoldTheCovarianceOfTheFilter) {
     const Matrix15d root = chart_end * root_information.inverse();
     EXPECT_LT(RelativeDifference(root * root.transpose(), end.covariance), 1e-9) << ToString(convention);
   }
+}
+
+// GIVEN a fix as late after its frame as the smoother attaches one, as precise as a fix can be, THEN the IMU
+// noise that the smoother neglects is less than a hundredth of the filter's innovation covariance.
+TEST(ImuIntervalTest, TheNoiseUpToAnAttachedFixIsSmall) {
+  const FixConfig config;
+  const Vector3d p_BA(0.5, -0.3, 1);
+  const RigCalibration rig;
+  test::RandomStates random(15);
+  std::vector<ImuSample> samples;
+  const int last = static_cast<int>(std::lround(config.max_interpolation_s * kImuRateHz));
+  for (int k = 0; k <= last; ++k) {
+    samples.push_back(
+        {SecondsToNs(k / kImuRateHz), random.Vector(1), Vector3d(0, 0, kGravity) + random.Vector(2)});
+  }
+  NavEstimate carried = RandomStart(&random);
+  carried.covariance.setZero();  // any other makes the share smaller
+  PositionFix fix;
+  fix.covariance = 1e-12 * Eigen::Matrix3d::Identity();
+  const Result<FixMeasurement> measured = MakeFixMeasurement(config, p_BA, fix);
+  ASSERT_TRUE(measured.ok()) << measured.message();
+  ASSERT_TRUE(PropagateEstimate(samples, rig.imu_noise, GravityInWorld(kGravity), &carried).ok());
+  FixMeasurement::Residual whitened;
+  FixMeasurement::Jacobian jacobian;
+  measured->Evaluate(carried.nav, &whitened, &jacobian);
+  const Eigen::Matrix3d neglected = jacobian * carried.covariance * jacobian.transpose();
+  const double share = neglected.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  EXPECT_LT(share, 0.01) << "of the fix's own covariance, and so of the innovation's";
+  EXPECT_GT(share, 1e-6) << "there is something to neglect";
 }
 
 // GIVEN one sample that no sensor measures among good ones, THEN both back ends refuse it and go on.

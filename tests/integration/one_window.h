@@ -12,6 +12,7 @@
 #include "core/estimator/measurement_log.h"
 #include "core/imu_propagation.h"
 #include "core/imu_step.h"
+#include "core/position_fix.h"
 #include "core/random.h"
 
 namespace alidade::test {
@@ -29,6 +30,7 @@ struct OneWindow {
   NavEstimate carried;  ///< the start at the last frame, by the IMU alone
   std::vector<ImuSample> samples;
   std::vector<TrackFrame> frames;
+  std::vector<PositionFix> fixes;  ///< at stamps of frames
 };
 
 inline RigCalibration MakeRig() {
@@ -108,9 +110,24 @@ inline std::vector<TrackFrame> MakeTracks(const RigCalibration& rig, const std::
   return frames;
 }
 
+/// What GNSS-like fixes of an antenna have measured at every second frame but the first and the last.
+inline std::vector<PositionFix> MakeFixes(const std::vector<NavState>& states, const Eigen::Vector3d& p_BA,
+                                          double scale) {
+  RandomStream random(22, "fixes of one window");
+  constexpr double kFixStdM = 0.02;
+  std::vector<PositionFix> fixes;
+  for (size_t i = 2; i + 1 < states.size(); i += 2) {
+    PositionFix& fix = fixes.emplace_back();
+    fix.stamp_ns = SecondsToNs(static_cast<double>(i) * kSamplesPerFrame / kImuRateHz);
+    fix.p_A = states[i].p_WB + states[i].R_WB * p_BA + scale * kFixStdM * random.Normal3();
+    fix.covariance = kFixStdM * kFixStdM * Eigen::Matrix3d::Identity();
+  }
+  return fixes;
+}
+
 /// One window whose errors, of the start, the IMU and the pixels, are `scale` times draws from what the back
 /// ends are told of them.
-inline OneWindow MakeWindow(double scale) {
+inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
   RandomStream random(21, "one window");
   OneWindow window;
   window.rig = MakeRig();
@@ -121,6 +138,10 @@ inline OneWindow MakeWindow(double scale) {
   truth.bias = {Eigen::Vector3d(0.01, -0.02, 0.005), Eigen::Vector3d(0.1, 0.05, -0.2)};
   const std::vector<NavState> states = MakeMotion(truth, window.rig.imu_noise, &window.samples);
   window.frames = MakeTracks(window.rig, states, &random);
+  if (with_fixes) {
+    window.rig.fixes = {{Eigen::Vector3d(0.3, -0.2, 0.4)}};
+    window.fixes = MakeFixes(states, window.rig.fixes.front().p_BA, scale);
+  }
   for (TrackFrame& frame : window.frames) {
     for (TrackObservation& observation : frame.observations) {
       observation.pixel += scale * Eigen::Vector2d(random.Normal(), random.Normal());
@@ -135,6 +156,41 @@ inline OneWindow MakeWindow(double scale) {
   }
   SetCurvatures(window.samples);
   window.start.covariance = StartCovariance(&random);
+  Vector15d draw;
+  for (double& entry : draw) {
+    entry = random.Normal();
+  }
+  const Matrix15d root = window.start.covariance.llt().matrixL();
+  const Vector15d error = scale * (root * draw);
+  window.start.nav = Retract(ErrorConvention::kSo3xRn, truth.nav, Vector9d(error.head<9>()));
+  window.start.bias = {truth.bias.gyro + error.segment<3>(9), truth.bias.accel + error.tail<3>()};
+  window.carried = window.start;
+  EXPECT_TRUE(
+      PropagateEstimate(window.samples, window.rig.imu_noise, GravityInWorld(kGravity), &window.carried)
+          .ok());
+  return window;
+}
+
+/// The same rig, standing still before landmarks.
+inline OneWindow MakeWindowAtRest(double scale) {
+  RandomStream random(23, "one window at rest");
+  OneWindow window = MakeWindow(scale);
+  NavEstimate truth;
+  truth.nav.R_WB = so3::Exp(Eigen::Vector3d(0.1, -0.2, 0.5));
+  truth.bias = {Eigen::Vector3d(0.01, -0.02, 0.005), Eigen::Vector3d(0.1, 0.05, -0.2)};
+  const Eigen::Vector3d up_B = truth.nav.R_WB.transpose() * Eigen::Vector3d(0, 0, kGravity);
+  const double root_rate = std::sqrt(kImuRateHz);
+  for (ImuSample& sample : window.samples) {
+    sample.gyro = truth.bias.gyro +
+                  scale * root_rate * window.rig.imu_noise.gyro_noise_density_radps_sqrthz * random.Normal3();
+    sample.accel =
+        truth.bias.accel + up_B +
+        scale * root_rate * window.rig.imu_noise.accel_noise_density_mps2_sqrthz * random.Normal3();
+  }
+  SetCurvatures(window.samples);
+  for (TrackFrame& frame : window.frames) {
+    frame.observations = window.frames.front().observations;
+  }
   Vector15d draw;
   for (double& entry : draw) {
     entry = random.Normal();

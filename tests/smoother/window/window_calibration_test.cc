@@ -206,5 +206,27 @@ TEST(WindowCalibrationTest, InverseDepthRowsAgainstDifferences) {
   }
 }
 
+// GIVEN intrinsics that have moved, THEN the rays of views follow them where they are estimated; with a
+// layout that has none, views are those that were given.
+TEST(WindowCalibrationTest, RaysMoveOnlyWithIntrinsicsThatAreEstimated) {
+  CalibratedWindow fixture(1);
+  VectorXd error = VectorXd::Zero(fixture.calibration.size());
+  error.segment<2>(fixture.calibration.layout.intrinsics()).setConstant(20);
+  ASSERT_TRUE(Retract(fixture.calibration.layout, error, &fixture.calibration.mean));
+  const std::vector<WindowView> views = fixture.tracks().front()->views;
+  std::vector<WindowView> scratch;
+  const WindowCalibration fixed{{}, fixture.calibration.mean};
+  EXPECT_EQ(&Renormalized(fixed, views, &scratch), &views);
+  EXPECT_EQ(Renormalized(fixed, views.front()).observation.z, views.front().observation.z);
+  EXPECT_EQ(&Renormalized(fixture.calibration, views, &scratch), &scratch);
+  ASSERT_EQ(scratch.size(), views.size());
+  EXPECT_GT((scratch.front().observation.z - views.front().observation.z).norm(), 1e-4);
+
+  fixture.window.Renormalize(fixed);
+  EXPECT_EQ(fixture.tracks().front()->views.front().observation.z, views.front().observation.z);
+  fixture.window.Renormalize(fixture.calibration);
+  EXPECT_EQ(fixture.tracks().front()->views.front().observation.z, scratch.front().observation.z);
+}
+
 }  // namespace
 }  // namespace alidade

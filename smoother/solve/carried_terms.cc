@@ -1,0 +1,168 @@
+#include "smoother/solve/carried_terms.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+#include "smoother/solve/marginal_stack.h"
+#include "smoother/tracks/anchored_landmark.h"
+
+namespace alidade {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+}  // namespace
+
+/// Rows in the making.
+struct CarriedPrior::Rows {
+  Rows(Index rows, Index columns) : count(rows), jacobian(MatrixXd::Zero(rows + rows % 2, columns)) {}
+
+  [[nodiscard]] auto Columns(const ColumnMap::Range& range) {
+    return jacobian.block(0, range.first, count, range.size);
+  }
+
+  Index count;
+  /// An even number of rows: all columns are aligned alike, so that products are rounded alike in each.
+  MatrixXd jacobian;
+  VectorXd residual;
+};
+
+CarriedPrior::CarriedPrior(const LinearPrior& prior, const Window& window,
+                           const WindowCalibration& calibration, std::vector<PriorLandmark> landmarks,
+                           const std::vector<FrameGeometry>& geometry)
+    : prior_(prior),
+      window_(window),
+      calibration_(calibration),
+      landmarks_(std::move(landmarks)),
+      geometry_(geometry),
+      prior_columns_(prior.columns()) {
+  CHECK(landmarks_.size() == prior.landmarks.size());
+  CHECK(calibration.size() == prior.calibration_origin.size());
+  for (int i = 0; i < window.size(); ++i) {  // a landmark may be anchored in any frame
+    AddPart({Unknown::Kind::kFrame, i}, i == 0 ? kStateColumns : kPoseColumns);
+  }
+  AddPart({Unknown::Kind::kClock, 0}, prior.clock_origin ? kClockColumns : 0);
+  AddPart({Unknown::Kind::kCalibration, 0}, calibration.size());
+  for (const PriorLandmark& landmark : landmarks_) {
+    AddPart({Unknown::Kind::kLandmark, landmark.number}, kLandmarkColumns);
+  }
+  for (const TermPart& part : parts()) {
+    columns_.Add(part.of, part.width);
+  }
+}
+
+Status CarriedPrior::Linearize(LinearTerm* linear) const {
+  Rows rows(prior_.jacobian.rows(), columns_.size());
+  rows.residual = prior_.residual;
+  AddFrames(&rows);
+  AddClockAndCalibration(&rows);
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    AddLandmark(i, &rows);
+  }
+  linear->ResizeRows(parts(), rows.count);
+  linear->chart = LinearTerm::Chart::kPrior;
+  linear->jacobian = rows.jacobian.topRows(rows.count);
+  linear->residual = rows.residual;
+  return Status::Ok();
+}
+
+void CarriedPrior::AddFrames(Rows* rows) const {
+  for (size_t i = 0; i < prior_.anchors.size(); ++i) {
+    const WindowFrame& frame = *prior_.anchors[i].frame;
+    const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
+    const auto columns = prior_.jacobian.middleCols(from.first, from.size);
+    Vector15d xi;
+    xi << prior_.NavError(i, frame.nav_state()), prior_.BiasError(frame.imu_bias());
+    rows->Columns({columns_.Frame(frame.index).first, from.size}) = columns;
+    rows->residual.noalias() += columns * xi.head(from.size);
+  }
+}
+
+void CarriedPrior::AddClockAndCalibration(Rows* rows) const {
+  if (prior_.clock_origin) {
+    const ColumnMap::Range from = prior_columns_.Clock(0);
+    const MatrixXd jacobian = prior_.jacobian.middleCols(from.first, from.size);
+    rows->Columns(columns_.Clock(0)) = jacobian;
+    rows->residual.noalias() += jacobian * prior_.ClockError(window_.frame(0).clock_state());
+  }
+  const ColumnMap::Range from = prior_columns_.Calibration();
+  const MatrixXd jacobian = prior_.jacobian.middleCols(from.first, from.size);
+  rows->Columns(columns_.Calibration()) = jacobian;
+  rows->residual.noalias() += jacobian * prior_.CalibrationError(calibration_.mean);
+}
+
+void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
+  const LinearPrior::Landmark& known = prior_.landmarks[landmark];
+  const WindowTrack* track = landmarks_[landmark].track;
+  const MatrixXd columns =
+      prior_.jacobian.middleCols<kLandmarkColumns>(prior_columns_.Landmark(static_cast<int>(landmark)).first);
+  auto own = rows->Columns(columns_.Landmark(landmarks_[landmark].number));
+  if (track == nullptr) {
+    own = columns;
+    return;
+  }
+  if (track->anchor == known.anchor) {
+    own = columns;
+    rows->residual.noalias() += columns * (track->landmark - known.origin);
+    return;
+  }
+  // The track has changed its anchor: the old coordinates as a function of the new ones and both frames.
+  const WindowFrame& from = *known.anchor;
+  const WindowFrame& to = *track->anchor;
+  const FrameGeometry& from_geometry = geometry_[static_cast<size_t>(from.index)];
+  const FrameGeometry& to_geometry = geometry_[static_cast<size_t>(to.index)];
+  AnchorChange back;
+  CHECK(ChangeAnchor(to_geometry, from_geometry, track->landmark, &back, {}, {track->plane(), known.plane}));
+  AnchorChange change;
+  CHECK(ChangeAnchor(from_geometry, to_geometry, back.to, &change, calibration_.layout,
+                     {known.plane, track->plane()}));
+  const auto pose = [&](const WindowFrame& frame) {
+    return rows->Columns({columns_.Frame(frame.index).first, kPoseColumns});
+  };
+  own.noalias() = columns * change.landmark;
+  pose(from).noalias() += columns * (change.from_frame * PosePriorChart(prior_.convention, from));
+  pose(to).noalias() += columns * (change.to_frame * PosePriorChart(prior_.convention, to));
+  rows->Columns(columns_.Calibration()).noalias() += columns * change.calibration;
+  rows->residual.noalias() += columns * (back.to - known.origin);
+}
+
+AnchoredViewTerm::AnchoredViewTerm(const std::vector<FrameGeometry>& geometry,
+                                   const WindowCalibration& calibration, const ObservationKernel& kernel,
+                                   const WindowTrack& track, const WindowView& view, int landmark)
+    : geometry_(geometry),
+      calibration_(calibration),
+      kernel_(kernel),
+      track_(track),
+      view_(view),
+      by_anchor_(track.anchor == view.frame) {
+  if (!by_anchor_) {  // seen from its own anchor a landmark concerns no pose
+    AddPart({Unknown::Kind::kFrame, track.anchor->index}, kPoseColumns);
+    AddPart({Unknown::Kind::kFrame, view.frame->index}, kPoseColumns);
+  }
+  AddPart({Unknown::Kind::kLandmark, landmark}, kLandmarkColumns);
+  AddPart({Unknown::Kind::kCalibration, 0}, calibration.size());
+}
+
+Status AnchoredViewTerm::Linearize(LinearTerm* linear) const {
+  AnchoredRows rows;
+  if (!LinearizeAnchoredView(track_, view_, geometry_, kernel_, track_.landmark, &rows, true, calibration_)) {
+    linear->ResizeRows(parts(), 0);
+    return Status::Ok();
+  }
+  linear->ResizeRows(parts(), 2);
+  const double root = std::sqrt(rows.weight);
+  const Index landmark = by_anchor_ ? 0 : 2 * kPoseColumns;
+  if (!by_anchor_) {
+    linear->jacobian.leftCols<kPoseColumns>() = root * rows.anchor;
+    linear->jacobian.middleCols<kPoseColumns>(kPoseColumns) = root * rows.view;
+  }
+  linear->jacobian.middleCols<kLandmarkColumns>(landmark) = root * rows.landmark;
+  linear->jacobian.rightCols(calibration_.size()) = root * rows.calibration;
+  linear->residual = root * rows.residual;
+  return Status::Ok();
+}
+
+}  // namespace alidade
