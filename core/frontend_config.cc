@@ -28,8 +28,7 @@ void FrontendConfig::Describe(ConfigVisitor& visitor) {
       &template_px, 0, 41);
   visitor.Real({"min_correlation", "-",
                 "smallest correlation of the image with that patch; below it the track must be followed "
-                "back, and takes a "
-                "new patch"},
+                "back, and takes a new patch"},
                &min_correlation, 0, 1);
   visitor.Real({"ransac_threshold_px", "px", "largest distance to the epipolar line"}, &ransac_threshold_px,
                0.1, 20);

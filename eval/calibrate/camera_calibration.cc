@@ -121,8 +121,7 @@ class Calibration {
     if (result_.fit.model.gyro_sign < 0) {
       return Status::Input(
           "the gyroscope's rates agree with the rotation of the images only once they are negated: wrong "
-          "sign, or an "
-          "axis of a left-handed system; no sheet can express that");
+          "sign, or an axis of a left-handed system; no sheet can express that");
     }
     Say(Format("camera and gyroscope: %d pairs, %.2f px", result_.fit.pairs, result_.fit.residual_px));
     const auto middle = pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2);

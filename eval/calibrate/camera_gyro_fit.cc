@@ -376,8 +376,7 @@ Result<CameraGyroFit> FitCameraToGyro(const std::vector<FramePair>& pairs, const
   if (pairs.size() < kLeastPairs) {
     return Status::Input(
         Format("%zu pairs of images in motion share enough tracks, expected at least %zu: the recording is "
-               "too short, at "
-               "rest, or its tracks are",
+               "too short, at rest, or its tracks are",
                pairs.size(), kLeastPairs));
   }
   return Fit(pairs, imu, start, options).Execute();

@@ -57,9 +57,8 @@ DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into f
 DEFINE_bool(interpolate, false,
             "interpolate the truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(jobs, 1,
-             "number of parallel runs, of images rendered or of likelihoods evaluated in parallel; parallel "
-             "runs share the caches, so "
-             "their times are not comparable");
+             "number of parallel jobs: runs, rendered images or likelihoods; times of parallel runs are not "
+             "comparable");
 DEFINE_bool(json, false, "print the result as JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: kind of the configuration file");
 DEFINE_double(limit, 5, "duration of the data available to a start [s]");

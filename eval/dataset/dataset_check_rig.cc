@@ -77,8 +77,7 @@ void CheckField(const CameraSheet& sheet, Findings* findings) {
   const Eigen::Vector4d& intrinsics = sheet.camera.intrinsics();
   Tell(field_deg < kLeastDeg || field_deg > most_deg,
        Format("%s: intrinsics: found fu %.6g px, fv %.6g px for %d x %d px, a field of view of %.3g deg, "
-              "expected "
-              "%.0f to %.0f deg: focal lengths in another unit, or of another resolution?",
+              "expected %.0f to %.0f deg: focal lengths in another unit, or of another resolution?",
               sheet.name.c_str(), intrinsics[0], intrinsics[1], sheet.camera.width_px(),
               sheet.camera.height_px(), field_deg, kNarrowDeg, wide_deg),
        findings);

@@ -67,8 +67,7 @@ Status ValidateFault(const SimulatorConfig& config) {
       (config.gnss.rate_hz == 0 || config.gnss.navigation_file != kNoPath)) {
     return Status::Config(
         "fault: stale_ephemerides replaces the simulated ephemerides; expected gnss.rate_hz greater than 0 "
-        "and "
-        "gnss.navigation_file: none");
+        "and gnss.navigation_file: none");
   }
   ALIDADE_RETURN_IF_ERROR(Expect(fault != SimFaultKind::kImuClock || config.fault_clock_jump_s > 0,
                                  "fault_clock_jump_s", config.fault_clock_jump_s,

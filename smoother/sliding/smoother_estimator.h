@@ -25,11 +25,10 @@ namespace alidade {
 ///
 /// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval.
 ///           2. When the window is full the oldest frame is marginalised together with every track based
-///           there: all
-///              observations of such a track, in newer frames too, go into the prior, each exactly once. A
-///              track still seen starts anew with its next observation. (Re-anchoring it and using its
-///              observations again, as VINS-Mono does, would count them twice.) A track without parallax only
-///              loses its oldest view.
+///              there: all observations of such a track, in newer frames too, go into the prior, each exactly
+///              once. A track still seen starts anew with its next observation. (Re-anchoring it and using
+///              its observations again, as VINS-Mono does, would count them twice.) A track without parallax
+///              only loses its oldest view.
 ///           3. IMU prediction of the new frame, rest measurement when it stands still, landmarks of new
 ///              tracks, solve.
 ///           4. Chi-square gate on each track at the solution: a refused track forgets its observations. When
