@@ -74,7 +74,7 @@ class ImuAxisWatch {
     double counted = 0;
     double changed = 0;  ///< of those
     double mean = 0, mean_square = 0;
-    TimeNs told_until_ns = INT64_MIN;
+    TimeNs reported_until_ns = INT64_MIN;
   };
   struct Signal {
     Eigen::Vector3d ImuSample::*value;
@@ -90,7 +90,7 @@ class ImuAxisWatch {
   static void CountShare(bool changed, Axis* axis);
   static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                     Axis* axis);
-  [[nodiscard]] static Fault Judge(double value, double floor, const Axis& axis);
+  [[nodiscard]] static Fault Classify(double value, double floor, const Axis& axis);
   [[nodiscard]] static double Sigma(Fault fault, double value, double floor, double seconds,
                                     const Axis& axis);
   /// What is wrong with one axis, and whether it is to be told.

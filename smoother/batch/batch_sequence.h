@@ -27,7 +27,7 @@ struct BatchTrack {
 /// A measurement between frames of a whole sequence, in W as it was aligned.
 struct BatchMeasurement {
   FrameMeasurement attached;  ///< with its own noise, before its weight
-  int frame = 0;              ///< index of the frame that it hangs on
+  int frame = 0;              ///< index of the frame that it is attached to
   double weight = 0;          ///< of its information; 0: refused
 };
 

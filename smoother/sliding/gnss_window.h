@@ -13,7 +13,7 @@
 namespace alidade {
 
 /// The smoother's part of GNSS. Every frame has a clock block, tied to the next one by the clock's process;
-/// an epoch hangs on the frame before it. Prior and marginalisation take the first frame's clock along.
+/// an epoch is attached to the frame before it. Prior and marginalisation take the first frame's clock along.
 class GnssWindow {
  public:
   GnssWindow(const GnssConfig& config, const GnssReceiver& receiver, const Eigen::Vector3d& gravity_W);

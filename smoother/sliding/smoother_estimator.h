@@ -69,16 +69,16 @@ class SmootherEstimator final : public Estimator {
   /// The camera as it is known now.
   [[nodiscard]] const CameraCalibration& camera() const { return calibration_.mean; }
   [[nodiscard]] std::vector<FrameGeometry> Geometry() const { return MakeGeometry(window_, camera()); }
-  /// How a measurement between frames hangs on the newest one.
-  struct Hook {
+  /// How a measurement between frames is attached to the newest one.
+  struct Attachment {
     bool own_state = false;      ///< the newest frame was made for it
     std::vector<ImuSample> imu;  ///< from the newest frame to it; the sample there where they coincide
   };
   /// Makes a frame at the stamp where the newest one lies more than `max_interpolation_s` before it. `what`
   /// names the measurement in messages. kDiverged: not aligned. kInput: older than the newest frame.
-  Result<Hook> ReachMeasurement(const char* what, TimeNs stamp_ns, double max_interpolation_s);
+  Result<Attachment> ReachMeasurement(const char* what, TimeNs stamp_ns, double max_interpolation_s);
   /// Solves where the measurement has a state of its own.
-  Status SolveWithMeasurement(const Hook& hook);
+  Status SolveWithMeasurement(const Attachment& attachment);
   [[nodiscard]] bool NewestIsKeyframe() const;
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
@@ -100,7 +100,7 @@ class SmootherEstimator final : public Estimator {
   /// Where a lever arm is watched: the sensors' terms once more, with rows over it, behind the prior.
   Status AddLeverArmRows(WindowTerms* terms) const;
   /// What the tracks say once the gates have judged their views: appended, and counted.
-  void AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
+  void AddGatedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   enum class Landmark { kReady, kWaiting, kDegenerate };

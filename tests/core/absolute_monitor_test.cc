@@ -61,7 +61,7 @@ TEST(AbsoluteMonitorTest, IsSilentWhereNoiseIsAsStatedEvenIfItLasts) {
 
 // GIVEN positions that are pulled off at 0.5 m/s, THEN it is told before 10 m, with the distance as far as
 // the window reaches.
-TEST(AbsoluteMonitorTest, TellsAPull) {
+TEST(AbsoluteMonitorTest, DetectsAPull) {
   RandomStream random(4, "noise");
   Follower follower;
   AbsoluteMonitor monitor;

@@ -81,7 +81,7 @@ TEST(ImuBufferTest, AStartAfterALossBeginsAnew) {
   EXPECT_EQ(buffer.samples().size(), 2u) << "a start directly behind needs the last samples";
 }
 
-TEST(ImuBufferTest, SaysWhatIsMissing) {
+TEST(ImuBufferTest, ReportsWhatIsMissing) {
   ImuBuffer buffer(0.05);
   std::vector<ImuSample> samples;
   EXPECT_FALSE(buffer.Interval(0, 10, &samples).ok());

@@ -57,11 +57,11 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      NavEstimate told = estimate_;
+      NavEstimate given = estimate_;
       if (t < doubt_from_s_) {
-        told.nav.v_WB.setZero();
+        given.nav.v_WB.setZero();
       }
-      verdict = detector.AddFrame(frame, told_noise_px_, told, Pose());
+      verdict = detector.AddFrame(frame, given_noise_px_, given, Pose());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
@@ -84,7 +84,7 @@ class RestDetectorTest : public ::testing::Test {
   NavEstimate estimate_;
   double doubt_from_s_ = 0;    ///< before, the estimate's velocity is zero
   double camera_ahead_s_ = 0;  ///< the frames' stamps less the IMU's
-  double told_noise_px_ = 1;
+  double given_noise_px_ = 1;
   Vector3d mean_gyro_;
 };
 
@@ -97,18 +97,18 @@ TEST_F(RestDetectorTest, StandingStillIsRest) {
 
 // GIVEN a motion that moves tracks by less than the limit THEN the verdict says that their flow is more than
 // noise.
-TEST_F(RestDetectorTest, SlowMotionIsTold) {
+TEST_F(RestDetectorTest, SlowMotionIsDetected) {
   EXPECT_LT(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 3.5);
   const RestVerdict verdict = AfterOneSecond(Vector3d(0.013, 0, 0), 0, 0.1);
   EXPECT_TRUE(verdict.no_translation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
 }
 
-TEST_F(RestDetectorTest, FlowIsJudgedByTheNoiseThatIsTold) {
+TEST_F(RestDetectorTest, FlowIsTestedAgainstTheGivenNoise) {
   const RandomStream start = random_;
   const double usual = AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations;
   random_ = start;
-  told_noise_px_ = 2;
+  given_noise_px_ = 2;
   EXPECT_NEAR(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 0.5 * usual, 1e-12);
 }
 
@@ -160,7 +160,7 @@ TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
 
 // GIVEN a turn that the gyroscope knows but that moves the image by less than the limit, WHEN it is taken for
 // rest, THEN the verdict says that the flow is more than noise.
-TEST_F(RestDetectorTest, ASlowTurnIsTold) {
+TEST_F(RestDetectorTest, ASlowTurnIsDetected) {
   const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0.003, 0.1);
   EXPECT_TRUE(verdict.no_rotation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
@@ -168,7 +168,7 @@ TEST_F(RestDetectorTest, ASlowTurnIsTold) {
 
 // GIVEN scenery so far that a slow motion stays below the limit of the flow, WHEN the estimate knows of the
 // motion, THEN that is no rest; the images alone cannot tell.
-TEST_F(RestDetectorTest, FarSceneryHidesNoMotionThatTheEstimateKnows) {
+TEST_F(RestDetectorTest, FarSceneryHidesNoMotionOfTheEstimate) {
   for (Vector3d& landmark : landmarks_) {
     landmark *= 20;
   }

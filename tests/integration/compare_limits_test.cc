@@ -69,7 +69,7 @@ TEST_F(CompareLimits, ACellThatTakesAllMemoryIsEnded) {
             kShort + "}, {config: " + Source("configs/datasets/figure8_short.yaml") +
                 ", name: long, set: {duration_s: 2000, path_m: 2600}}");
   const std::string limit = "--cell-memory-limit-mib=250 ";
-  const auto expect_told = [](const std::string& text) {
+  const auto expect_reported = [](const std::string& text) {
     for (const char* cell : {"theirs/short/1", "po_invio_multi/long/1"}) {
       EXPECT_THAT(text, HasSubstr(std::string(cell) +
                                   ": failed, took more than 250 MiB of memory (--cell-memory-limit-mib)"));
@@ -79,11 +79,11 @@ TEST_F(CompareLimits, ACellThatTakesAllMemoryIsEnded) {
   const CommandResult whole = Shell(Words(limit));
   EXPECT_EQ(whole.code, 7) << whole.output;
   EXPECT_THAT(Out("summary.csv"), HasSubstr("po_invio_multi,filter,short,1,ok,"));
-  expect_told(Shell(Words("--status=" + folder_.File("out"))).output);
+  expect_reported(Shell(Words("--status=" + folder_.File("out"))).output);
 
   std::filesystem::remove_all(folder_.File("out/scores"));  // cells.csv stays, as where tasks begin
   EXPECT_EQ(Shell(Words(limit + "--stage=cells")).code, 0);
-  expect_told(Shell(Words("--status=" + folder_.File("out"))).output);
+  expect_reported(Shell(Words("--status=" + folder_.File("out"))).output);
   EXPECT_EQ(Shell(Words(limit + "--stage=tables")).code, 7);
   EXPECT_THAT(Out("summary.csv"), HasSubstr("po_invio_multi,filter,short,1,ok,"));
 }

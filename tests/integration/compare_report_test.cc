@@ -103,7 +103,7 @@ TEST_F(CompareReport, ADateThatIsNoneIsRefusedBeforeAnythingRuns) {
 
 // GIVEN runs of ours and of a program that ended well, never began, failed, and stopped halfway WHEN compared
 // THEN each tells how much it completed, how fast it was and whether it uses later data.
-TEST_F(CompareReport, EveryRunTellsCompletionSpeedAndMode) {
+TEST_F(CompareReport, EveryRunHasCompletionSpeedAndMode) {
   const std::string half =
       "awk -F, '!/#/ && n++ < 251 {printf \"%.9f %s %s %s %s %s %s %s\\n\", $1/1e9, $2, $3, $4, $6, $7, $8, "
       "$5}' "

@@ -78,7 +78,7 @@ TEST(Run, BackendSwitchLeavesTheInputDigestUnchanged) {
   EXPECT_NE(ReadFile(folder.File("filter/states.csv")), ReadFile(folder.File("smoother/states.csv")));
 }
 
-TEST(Run, AuditTellsTheInvariantErrorFromTheOrdinaryOneAndRefusesTheSmoother) {
+TEST(Run, AuditSeparatesTheInvariantErrorFromTheOrdinaryOneAndRefusesTheSmoother) {
   TemporaryFolder folder;
   const Sequence& sequence = Sequence::Get();
   const auto last_rank = [&](const std::string& error) {
@@ -153,7 +153,7 @@ TEST(Run, QuietPrintsTheResultAlone) {
 
 // GIVEN an IMU that ends halfway WHEN an estimator has run THEN the warning names the spans, and the result
 // is not "ok" and says why.
-TEST(Run, OnHalfAnImuIsImpairedAndSaysWhy) {
+TEST(Run, OnHalfAnImuIsImpairedWithAReason) {
   TemporaryFolder folder;
   std::filesystem::copy(Sequence::Get().path(), folder.File("half"),
                         std::filesystem::copy_options::recursive);

@@ -10,7 +10,7 @@ using testing::HasSubstr;
 
 const std::string kPage = Installed("share/man/man1/alidade.1");
 
-TEST(Manual, TheInstalledPageIsWhatTheProgramSays) {
+TEST(Manual, TheInstalledPageIsThatOfTheProgram) {
   EXPECT_EQ(ReadFile(kPage), Alidade("manual").output);
   EXPECT_THAT(ReadFile(kPage), HasSubstr("alidade " ALIDADE_VERSION));
 }

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Path, NotAFile,
                                          "cam0/tracks.csv", "cam0/data.csv", "cam0/timestamps.csv",
                                          "state_groundtruth_estimate0/data_pose.csv"));
 
-TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsTold) {
+TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsReported) {
   const test::TemporaryFolder folder;
   const Result<Dataset> longer = ReadDataset(folder.File(std::string(300, 'x')));
   EXPECT_EQ(longer.code(), StatusCode::kInput);
@@ -68,7 +68,7 @@ TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsTold) {
   EXPECT_THAT(loop.message(), HasSubstr("Too many levels of symbolic links"));
 }
 
-TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
+TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageNamesWhatToGive) {
   const test::TemporaryFolder folder;
   WriteGoodSequence(folder);
   const Result<Dataset> inside = ReadDataset(folder.File("mav0"));

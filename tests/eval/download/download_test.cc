@@ -164,7 +164,7 @@ TEST_F(DownloadTest, GivenABodyShorterThanItsLengthThenItIsNotTakenForWhole) {
   ExpectNone();
 }
 
-TEST_F(DownloadTest, GivenABodyWithoutLengthThatEndsEarlyThenTheExpectedSizeTells) {
+TEST_F(DownloadTest, GivenABodyWithoutLengthThatEndsEarlyThenTheExpectedSizeRevealsIt) {
   const FaultServer server([&](int, const HttpRequest& asked) {
     return asked.range_first < 0 ? "HTTP/1.0 200 OK\r\n\r\n" + content_.substr(0, 50'000)
                                  : Honest(content_, asked);

@@ -114,7 +114,7 @@ TEST_P(RecoveryRunTest, EndsTheRunWhenItIsOff) {
   }
 }
 
-TEST_P(RecoveryRunTest, StatusTellsWhenAndWhy) {
+TEST_P(RecoveryRunTest, StatusHoldsWhenAndWhy) {
   const Result<Dataset> dataset = Simulate(Failing(SimFaultKind::kBlackoutAndImu, 2), 103);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   const EstimatorConfig config = Config(GetParam());

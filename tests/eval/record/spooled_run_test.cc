@@ -173,7 +173,7 @@ TEST_P(SpooledRun, HoldsItsMemory) {
 
 INSTANTIATE_TEST_SUITE_P(BackEnds, SpooledRun, testing::Values("filter", "smoother"));
 
-TEST(SpooledRun, GivenNoRoomThenTheRunEndsAndSaysSo) {
+TEST(SpooledRun, GivenNoRoomThenTheRunEndsWithAnError) {
   const Dataset dataset = SimulateOf("figure8_short.yaml", {"duration_s=60", "path_m=79"});
   RunOptions options;
   options.truth = &*dataset.truth;

@@ -101,7 +101,7 @@ TEST(ImuGuardTest, AStepThatLastsIsMotionAfterOneSample) {
   }
 }
 
-TEST(ImuGuardTest, TellsWhichSensorJumpedAndByHowMuch) {
+TEST(ImuGuardTest, NamesTheSensorThatJumpedAndByHowMuch) {
   ImuGuard guard;
   for (int k = 0; k < 200; ++k) {
     ImuSample sample{SecondsToNs(k / kRateHz), Vector3d::Zero(), Vector3d(0, 0, 9.81)};

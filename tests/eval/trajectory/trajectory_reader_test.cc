@@ -59,7 +59,7 @@ TEST(TrajectoryReader, GivenTumThenStampsKeepEveryNanosecond) {
   EXPECT_FALSE(read->has_velocity || read->has_bias || read->has_covariance);
 }
 
-TEST(TrajectoryReader, GivenNanosecondsWhereTumWantsSecondsThenTheMessageSaysSo) {
+TEST(TrajectoryReader, GivenNanosecondsWhereTumWantsSecondsThenTheMessageNamesTheUnit) {
   const test::TemporaryFolder folder;
   const Result<Trajectory> read =
       ReadTrajectory(folder.Write("a.tum", "1403715273262142976 1 2 3 0 0 0 1\n"));
