@@ -80,7 +80,7 @@ class FilterEstimator : public Estimator {
   bool CorrectWithDueTracks(int leaving_serial);
   /// False as above.
   bool UpdateWithDueTracks(int leaving_serial);
-  /// Zero velocity and zero angular rate, as far as the rest detector says so. False as above.
+  /// Zero velocity and zero angular rate, where the rest detector finds them. False as above.
   bool UpdateAtRest(const RestVerdict& rest);
   /// Normalised innovation squared of every appended track, against the state before the update.
   void MeasureBlocks(const PreparedRows& rows);

@@ -151,7 +151,7 @@ class Calibration {
   }
 
   /// A camera with a rolling shutter adapts its exposure time as a rule, and half of that moves the time
-  /// offset along: what one part of a recording says of another is no better than this.
+  /// offset along: one part of a recording predicts another no better than this.
   static void AllowForExposure(CameraGyroFit* fit) {
     constexpr double kExposureStdS = 2e-3;
     if (HasRollingShutter(*fit) && fit->deviations[Coordinate::kReadout] > 0) {

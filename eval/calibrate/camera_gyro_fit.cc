@@ -352,7 +352,7 @@ class Fit {
       }
       squares += (covariance * of_block).cwiseAbs2();
     }
-    // The blocks' gradients sum to about zero at the estimate, and a few blocks know their own scatter badly.
+    // The blocks' gradients sum to about zero at the estimate, and the scatter of a few blocks is uncertain.
     const auto count = static_cast<double>(blocks.size());
     return squares * ((count + 2) / (count - 1));
   }

@@ -40,7 +40,7 @@ class WorkerProcess {
   void Kill() const;
   /// Of the process and all that it started (MemoryOfTree) [bytes].
   [[nodiscard]] int64_t Memory() const;
-  /// Closes its input, waits for its end, and says how it ended: "code 3", "signal 9 (Killed)".
+  /// Closes its input, waits for its end, and returns how it ended: "code 3", "signal 9 (Killed)".
   std::string Join();
 
  private:

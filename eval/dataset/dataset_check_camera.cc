@@ -135,7 +135,7 @@ void CheckTimes(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findi
   const TimeNs offset_ns = SecondsToNs(dataset.rig.camera_time_offset_s);
   const TimeNs first_ns = stamps.front() + offset_ns;
   const TimeNs last_ns = stamps.back() + offset_ns;
-  // In this order: a span that tells the unit explains the rate.
+  // In this order: a span that reveals the unit explains the rate.
   if (!rate_hz || !CheckSpan("cam0", first_ns, last_ns, dataset, findings)) {
     return;
   }

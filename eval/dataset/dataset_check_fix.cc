@@ -10,7 +10,7 @@
 namespace alidade {
 namespace {
 
-/// What the covariances of one sensor's fixes say of its deviation along its least and most certain axis.
+/// The deviation by the covariances of one sensor's fixes, along its least and most certain axis.
 struct Deviations {
   double least_m = INFINITY;
   double largest_m = 0;

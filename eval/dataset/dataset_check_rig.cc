@@ -137,7 +137,7 @@ void CheckCameraSheet(const CameraSheet& sheet, Findings* findings) {
   CheckPixels(sheet, findings);
   CheckPrincipalPoint(sheet, findings);
   CheckArm(sheet.name + ": T_BS: translation", sheet.T_BC.translation, kCameraArm, findings);
-  // Clocks may be seconds apart; an offset that leaves no common time is CheckSpan's to tell.
+  // Clocks may be seconds apart; an offset that leaves no common time is reported by CheckSpan.
   if (std::abs(sheet.time_offset_s) > kMostCameraOffsetS) {
     findings->Warning(Format("%s: time_offset_s: found %g s, expected within +-%g s: in ms?",
                              sheet.name.c_str(), sheet.time_offset_s, kMostCameraOffsetS));

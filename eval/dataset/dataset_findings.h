@@ -34,7 +34,7 @@ class Findings {
 void TellUseless(const Dataset& dataset, std::string text, Findings* findings);
 
 /// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
-/// no sheet says one. Returns the rate of the median step [Hz], which gaps do not lower, or above
+/// no sheet has one. Returns the rate of the median step [Hz], which gaps do not lower, or above
 /// limits.high_hz the mean rate if that is less; 0 of fewer than two stamps. None: the stamps are in another
 /// unit than nanoseconds, an error of which nothing else is to be said.
 std::optional<double> CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps,

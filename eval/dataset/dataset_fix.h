@@ -33,7 +33,7 @@ Status WriteFixFolders(const Dataset& dataset, const std::string& mav);
 
 /// The text of sensor.yaml.
 [[nodiscard]] std::string FixSensorYaml(const FixSensor& sensor);
-/// What a sensor.yaml says about the sensor; the file it names does not matter. `where` stands for the file
+/// The sensor as a sensor.yaml describes it; the file it names does not matter. `where` stands for the file
 /// in messages.
 Result<FixSensor> ParseFixSheet(const std::string& text, const std::string& where);
 

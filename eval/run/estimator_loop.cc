@@ -245,7 +245,7 @@ void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double fronten
   event.backend_ms = stopwatch.ElapsedMs();
   const bool suspect = event.statistics.suspect;
   if (gnss_ && is_frame) {
-    gnss_->CollectResiduals();  // the smoother judges an epoch with the frame after it
+    gnss_->CollectResiduals();  // the smoother gates an epoch with the frame after it
     gnss_->Remember(state_ns_, event.clock);
   }
   events_.emplace_back(std::move(event));

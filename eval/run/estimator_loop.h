@@ -16,7 +16,7 @@
 namespace alidade {
 
 /// Drives one estimator over messages that come in the order of their IMU time: finds the first state, hands
-/// over IMU, frames, epochs and other measurements, judges the state, and after a loss finds a new start.
+/// over IMU, frames, epochs and other measurements, checks the state, and after a loss finds a new start.
 /// Reports all of it as events.
 class EstimatorLoop {
  public:
@@ -83,7 +83,8 @@ class EstimatorLoop {
   void ReportDegraded(TimeNs imu_ns);
   void AlignAfterFrame(TimeNs stamp_ns);
   Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
-  /// Tells the measurements of sensors other than `by`, which aligned the run; null: GNSS did.
+  /// Passes the alignment to the measurements of sensors other than `by`, which aligned the run; null: GNSS
+  /// did.
   void TellAligned(const std::optional<EnuFrame>& enu, const MeasurementRun* by);
   void ReportState(Sensor source, TimeNs message_ns, double frontend_ms, const Stopwatch& stopwatch);
   void GiveUp(TimeNs stamp_ns, const Status& status);

@@ -9,7 +9,7 @@ namespace alidade {
 
 /// Observations of a rolling shutter as the camera would have made them had it turned no further than it had
 /// when it exposed the middle row: each ray goes back by the body's rotation since, at `gyro_radps`. What the
-/// camera moves meanwhile needs the depths, which nobody knows before a start, and stays: v t / depth, 2e-3
+/// camera moves meanwhile needs the depths, which are unknown before a start, and stays: v t / depth, 2e-3
 /// rad at 1 m/s, 10 ms and 5 m. Without a line delay, and where a ray leaves the camera's domain, an
 /// observation stays as it is.
 [[nodiscard]] TrackFrame AtMiddleRow(const RigCalibration& rig, const Eigen::Vector3d& gyro_radps,

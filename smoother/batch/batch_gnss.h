@@ -27,7 +27,7 @@ class BatchGnss {
   void AddEpoch(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise,
                 WindowFrame* frame);
 
-  /// Puts the epochs on their frames, linked at the present biases; with `gate` their rows are judged at the
+  /// Puts the epochs on their frames, linked at the present biases; with `gate` their rows are gated at the
   /// present states. True when the verdict on a row has changed.
   bool Select(bool gate, const ImuNoise& noise, const WindowFrames& frames);
   /// The satellites that the last Select with a gate used and refused at a frame.

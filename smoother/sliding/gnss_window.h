@@ -31,7 +31,7 @@ class GnssWindow {
   /// Links the epoch to the frame; `imu` spans from the frame to the epoch, empty at the frame itself. False
   /// when the epoch was skipped because the clock was lost; it is re-initialised at the next frame.
   bool Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame);
-  /// After a solve: the gate of each row of each epoch of a frame; statistics of those that are judged for
+  /// After a solve: the gate of each row of each epoch of a frame; statistics of those that are gated for
   /// the first time.
   void Gate(WindowFrame* frame, FrameStatistics* statistics);
 

@@ -99,7 +99,7 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
   /// Where a lever arm is watched: the sensors' terms once more, with rows over it, behind the prior.
   Status AddLeverArmRows(WindowTerms* terms) const;
-  /// What the tracks say once the gates have judged their views: appended, and counted.
+  /// Appends the terms of the tracks whose views passed the gates, and counts them.
   void AddGatedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();

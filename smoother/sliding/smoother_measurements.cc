@@ -14,7 +14,8 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   if (!initialized_) {
     return Status::Diverged("smoother: not initialised");
   }
-  // The window begins anew at the newest state in the ENU frame: what it knew is in that state's covariance.
+  // The window begins anew at the newest state in the ENU frame: its information is in that state's
+  // covariance.
   ALIDADE_RETURN_IF_ERROR(Begin(TurnIntoEnu(alignment, latest_)));
   aligned_ = true;
   if (alignment.clock) {
@@ -24,7 +25,7 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   }
   if (given_.watched) {
     AddCalibrationPrior(given_,
-                        &prior_);  // what the window knew of its error together with the state is lost
+                        &prior_);  // its correlation with the state is lost
   } else {
     AddCalibrationPrior({calibration_.layout, calibration_.mean, calibration_deviations_}, &prior_);
   }

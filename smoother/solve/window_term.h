@@ -35,15 +35,15 @@ struct LinearTerm {
                       const Eigen::VectorXd& gradient);
   /// Replaces normal equations by rows of a square root (SquareRootRows).
   void MakeRows();
-  /// Adds its information to normal equations over `columns`, of which lower triangles count. What a term
-  /// says of coordinates that have no columns must be nothing: zero.
+  /// Adds its information to normal equations over `columns`, of which lower triangles count. Its entries
+  /// of coordinates that have no columns must be zero.
   void AddTo(const ColumnMap& columns, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
 };
 
-/// One term of a window's least squares: what a sensor, a track or the prior says about some of the unknowns.
-/// It is put into Ceres, counted in the covariance, marginalised with its oldest frame and solved in the
-/// batch through this interface alone. A sensor is a factor (smoother/manifold/lifted_cost.h) and the line of
-/// AddSensorTerms (smoother/solve/sensor_terms.h) that makes a FactorTerm of it.
+/// One term of a window's least squares: the rows of a sensor, a track or the prior over some of the
+/// unknowns. It is put into Ceres, counted in the covariance, marginalised with its oldest frame and solved
+/// in the batch through this interface alone. A sensor is a factor (smoother/manifold/lifted_cost.h) and the
+/// line of AddSensorTerms (smoother/solve/sensor_terms.h) that makes a FactorTerm of it.
 class WindowTerm {
  public:
   virtual ~WindowTerm() = default;

@@ -67,7 +67,7 @@ class RestDetectorTest : public ::testing::Test {
     return verdict;
   }
 
-  /// The bias of 0.01 rad/s about y is told as this much larger, with this deviation.
+  /// The bias of 0.01 rad/s about y is given as this much larger, with this deviation.
   void TellBias(double error_radps, double std_radps) {
     estimate_.bias.gyro.y() = 0.01 + error_radps;
     estimate_.covariance.diagonal().segment<3>(9).setConstant(std_radps * std_radps);
@@ -95,7 +95,7 @@ TEST_F(RestDetectorTest, StandingStillIsRest) {
   EXPECT_NEAR(mean_gyro_.y(), 0.01, 0.001) << "the gyroscope's bias";
 }
 
-// GIVEN a motion that moves tracks by less than the limit THEN the verdict says that their flow is more than
+// GIVEN a motion that moves tracks by less than the limit THEN the verdict is that their flow is more than
 // noise.
 TEST_F(RestDetectorTest, SlowMotionIsDetected) {
   EXPECT_LT(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 3.5);
@@ -158,16 +158,16 @@ TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
   }
 }
 
-// GIVEN a turn that the gyroscope knows but that moves the image by less than the limit, WHEN it is taken for
-// rest, THEN the verdict says that the flow is more than noise.
+// GIVEN a turn that the gyroscope measures but that moves the image by less than the limit, WHEN it is taken
+// for rest, THEN the verdict is that the flow is more than noise.
 TEST_F(RestDetectorTest, ASlowTurnIsDetected) {
   const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0.003, 0.1);
   EXPECT_TRUE(verdict.no_rotation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
 }
 
-// GIVEN scenery so far that a slow motion stays below the limit of the flow, WHEN the estimate knows of the
-// motion, THEN that is no rest; the images alone cannot tell.
+// GIVEN scenery so far that a slow motion stays below the limit of the flow, WHEN the estimate contains the
+// motion, THEN that is no rest; the images alone do not show it.
 TEST_F(RestDetectorTest, FarSceneryHidesNoMotionOfTheEstimate) {
   for (Vector3d& landmark : landmarks_) {
     landmark *= 20;
@@ -198,8 +198,9 @@ TEST_F(RestDetectorTest, RestBeforeTheDoubtDoesNotCount) {
   EXPECT_TRUE(After(4.6, Vector3d::Zero(), 0, 0.1).no_translation);
 }
 
-// GIVEN an IMU whose rate tells the time, WHEN no frame comes for ten minutes, THEN the mean over the samples
-// that are kept shows that they reach back no farther than twice the four windows of a verdict in doubt.
+// GIVEN an IMU whose rate is proportional to time, WHEN no frame comes for ten minutes, THEN the mean over
+// the samples that are kept shows that they reach back no farther than twice the four windows of a verdict in
+// doubt.
 TEST_F(RestDetectorTest, ASilenceOfTheCameraKeepsABoundedNumberOfSamples) {
   const double bound_s = 2 * 4 * VisionConfig().rest_window_s;
   RestDetector detector(VisionConfig(), InitConfig(), camera_);

@@ -46,7 +46,7 @@ class ScaleDirectionTest : public test::ClonedWindow {
 INSTANTIATE_TEST_SUITE_P(Conventions, ScaleDirectionTest, ::testing::ValuesIn(test::kAllConventions));
 
 // GIVEN corrections that change the window's shape THEN an error of scale before is one of scale after them,
-// also where the tracks have told the first clones alone.
+// also where the tracks have determined the first clones alone.
 TEST_P(ScaleDirectionTest, AnErrorOfScaleStaysOne) {
   for (const size_t determined : {state_.clones().size(), size_t{6}}) {
     ScaleDirection direction(state_.covariance().capacity());

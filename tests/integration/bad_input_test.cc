@@ -47,7 +47,7 @@ class BadInput : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are told and
+// GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are reported and
 // counted, and its states are those of a clean file.
 TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
   std::filesystem::copy(folder_.File("seq"), folder_.File("faulty"),

@@ -109,7 +109,7 @@ inline std::vector<TrackFrame> MakeTracks(const RigCalibration& rig, const std::
 }
 
 /// One window whose errors, of the start, the IMU and the pixels, are `scale` times draws from what the back
-/// ends are told of them.
+/// ends are given to them.
 inline OneWindow MakeWindow(double scale) {
   RandomStream random(21, "one window");
   OneWindow window;

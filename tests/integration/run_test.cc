@@ -152,7 +152,7 @@ TEST(Run, QuietPrintsTheResultAlone) {
 }
 
 // GIVEN an IMU that ends halfway WHEN an estimator has run THEN the warning names the spans, and the result
-// is not "ok" and says why.
+// is not "ok" and has a reason.
 TEST(Run, OnHalfAnImuIsImpairedWithAReason) {
   TemporaryFolder folder;
   std::filesystem::copy(Sequence::Get().path(), folder.File("half"),
@@ -170,8 +170,8 @@ TEST(Run, OnHalfAnImuIsImpairedWithAReason) {
   EXPECT_EQ(json["impaired"].size(), 1u);
 }
 
-// GIVEN a camera whose rotation is wrong by 1 deg, which is told in more than half of the run WHEN it ends
-// THEN its last line, exit code and run.json tell it from a clean one.
+// GIVEN a camera whose rotation is wrong by 1 deg, which is reported in more than half of the run WHEN it
+// ends THEN its last line, exit code and run.json distinguish it from a clean one.
 TEST(Run, ThatIsMostlyDegradedIsImpaired) {
   TemporaryFolder folder;
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +
@@ -200,8 +200,8 @@ TEST(Run, WithoutTheSensorsItIsToUseIsImpaired) {
   EXPECT_EQ(json["impaired"].size(), 2u);
 }
 
-// GIVEN an output that cannot be used and an input with a fault THEN the output is told, which costs no time;
-// GIVEN the fault alone THEN nothing is made.
+// GIVEN an output that cannot be used and an input with a fault THEN the output is reported, which costs no
+// time; GIVEN the fault alone THEN nothing is made.
 TEST(Run, ChecksTheOutputBeforeItReadsTheInput) {
   TemporaryFolder folder;
   folder.Write("full/file", "");
@@ -224,7 +224,7 @@ TEST(Run, ChecksTheOutputBeforeItReadsTheInput) {
 }
 
 // GIVEN a run that is lost and starts again, and one whose GNSS never aligns WHEN they end THEN their exit
-// code and their last lines tell them from a clean one.
+// code and their last lines distinguish them from a clean one.
 TEST(Run, ThatWasLostOrNeverUsedItsGnssEndsWithItsOwnCode) {
   TemporaryFolder folder;
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +

@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using Severity = DatasetFinding::Severity;
 
-/// What the check says of a recording whose sheet is changed by `spoil`; facts are left out.
+/// The findings of the check on a recording whose sheet is changed by `spoil`; facts are left out.
 template <typename Spoil>
 std::vector<DatasetFinding> Check(const CameraGyroModel& truth, const Spoil& spoil, double duration_s = 20) {
   MeasurementLog log = ShakenCamera{.model = truth, .duration_s = duration_s}.Record();
@@ -127,7 +127,8 @@ TEST(CameraGyroCheckTest, TheGyroscopesUnitIsFoundFromTheImages) {
   }
 }
 
-// GIVEN rates that are too large by a factor of no unit THEN the fact says whether they vary as the images'.
+// GIVEN rates that are too large by a factor of no unit THEN the fact states whether they vary as the
+// images'.
 TEST(CameraGyroCheckTest, RatesThatAreNotComparedAreSaidToVaryAlikeOrOtherwise) {
   const auto fact = [](const auto& spoil) {
     MeasurementLog log = ShakenCamera{PhoneModel()}.Record();

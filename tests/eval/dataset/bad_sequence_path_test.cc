@@ -108,7 +108,7 @@ TEST(BadSequenceLink, GivenAnImageThatIsALinkOutOfTheSequenceThenItIsRefused) {
 }
 
 // GIVEN a folder beside the sequence whose name begins with the sequence's WHEN an image leads there THEN it
-// is refused: names are compared whole; WHEN images of several subfolders are links THEN each is judged by
+// is refused: names are compared whole; WHEN images of several subfolders are links THEN each is checked by
 // its own folder.
 TEST(BadSequenceLink, GivenALinkToANeighbourThenItIsRefused) {
   namespace fs = std::filesystem;

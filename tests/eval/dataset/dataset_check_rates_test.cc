@@ -162,7 +162,7 @@ TEST(CheckNoise, GivenADensityBeyondAnySensorThenThatLimitIsPrinted) {
   EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("noise_density")));
 }
 
-// A good gyroscope in degrees is within the bounds of a bad one; its own samples tell.
+// A good gyroscope in degrees is within the bounds of a bad one; its own samples reveal it.
 TEST(CheckNoise, GivenAGoodSensorInDegreesThenTheSamplesRevealIt) {
   Dataset dataset = AtRest();
   for (ImuSample& sample : dataset.imu) {

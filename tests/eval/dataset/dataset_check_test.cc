@@ -85,7 +85,7 @@ TEST(DatasetCheck, GivenExchangedGroupsOfColumnsThenTheyAreNamedAndNoUnit) {
 TEST(DatasetCheck, GivenADeadAxisOfTheAccelerometerThenItIsNamedInsteadOfTheUnit) {
   Dataset dataset = Healthy();
   for (ImuSample& sample : dataset.imu) {
-    sample.accel.x() += 1;  // as an accelerometer in g would say
+    sample.accel.x() += 1;  // as of an accelerometer in g
     sample.accel.z() = 0;
   }
   const std::string errors = Complaints(dataset, Severity::kError);

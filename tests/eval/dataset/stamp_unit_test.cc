@@ -52,7 +52,7 @@ TEST(StampUnit, MicrosecondsAndMillisecondsAreRecognisedByTheRateWhereverTheStam
   }
 }
 
-// A camera of less than 1 Hz: in range of no unit, but the sheet knows.
+// A camera of less than 1 Hz: in range of no unit, but the sheet has the rate.
 TEST(StampUnit, TheRateOfTheSheetDecidesWhereTheRangeCannot) {
   EXPECT_EQ(UnitOf(0.9, kDateNs, 1000, 0, kCameraRates), "ns");
   EXPECT_EQ(UnitOf(0.9, kDateNs, 1000, 0.91, kCameraRates), "us");
@@ -129,7 +129,7 @@ TEST(StampUnit, GivenTheCameraAloneInMicrosecondsThenItAloneIsNamed) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
-// 2 Hz are too few to tell the unit by the rate.
+// 2 Hz are too few to find the unit by the rate.
 TEST(StampUnit, GivenASlowCameraInMicrosecondsThenTheClocksRevealTheUnitAndItsRateIsNotDoubted) {
   Dataset dataset = InUnits(1, 1000, 1);
   std::vector<TrackFrame> frames;

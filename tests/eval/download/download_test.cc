@@ -158,7 +158,7 @@ TEST_F(DownloadTest, GivenABodyShorterThanItsLengthThenItIsNotTakenForWhole) {
     return asked.range_first < 0 ? Whole(content_).substr(0, 100'000) : std::string();
   });
   request = Request(server);
-  request.expected = {};  // only the server says how long it is
+  request.expected = {};  // only the server gives its length
   const Status status = Download(request);
   EXPECT_FALSE(status.ok());
   ExpectNone();

@@ -107,8 +107,8 @@ TEST(FailureDiagnosisTest, WhatIsUnderWayIsShownAndAStopEndsIt) {
   EXPECT_EQ(reported, expected);
 }
 
-// GIVEN an IMU that tells nonsense in the middle of a log WHEN the run is lost there THEN its signs are not
-// blamed: it was sound before.
+// GIVEN an IMU that measures nonsense in the middle of a log WHEN the run is lost there THEN its signs are
+// not blamed: it was sound before.
 TEST(FailureDiagnosisTest, ALossAfterSoundMotionIsNotBlamedOnSigns) {
   MeasurementLog log = LogWithSigns({1, 1, 1});
   const TimeNs begin_ns = log.imu.front().stamp_ns + SecondsToNs(14), end_ns = begin_ns + SecondsToNs(1);

@@ -92,7 +92,7 @@ TEST_P(FaultRunTest, ASilentImuIsReportedAndCovered) {
   EXPECT_LT(run.rmse_m, 1.5 * clean.rmse_m + 0.01);
 }
 
-// GIVEN an axis that repeats its last value, THEN it is told while it lasts, and the estimate goes on.
+// GIVEN an axis that repeats its last value, THEN it is reported while it lasts, and the estimate goes on.
 TEST_P(FaultRunTest, AStuckAxisIsReportedWhileItLasts) {
   for (const SimFaultKind fault : {SimFaultKind::kGyroStuck, SimFaultKind::kAccelStuck}) {
     const Faulty run = Run(fault, 3);
@@ -121,7 +121,7 @@ TEST_P(FaultRunTest, ABlackoutIsReportedAtOnce) {
   ExpectReportedAtOnce(Run(SimFaultKind::kBlackout, 2), 2.2);
 }
 
-// GIVEN a camera whose clock jumps, THEN the jump is told and taken off its stamps, and no frame is lost.
+// GIVEN a camera whose clock jumps, THEN the jump is reported and taken off its stamps, and no frame is lost.
 TEST_P(FaultRunTest, AJumpOfTheCamerasClockIsTakenOffItsStamps) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kCameraClock, 1);

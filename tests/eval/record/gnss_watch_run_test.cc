@@ -7,7 +7,7 @@
 #include "eval/simulation/simulator_config.h"
 #include "tests/eval/record/estimator_runs.h"
 
-// What calibration.watch tells of GNSS and position fixes, with both back ends.
+// What calibration.watch reports of GNSS and position fixes, with both back ends.
 
 namespace alidade {
 namespace {
@@ -96,7 +96,7 @@ TEST_P(GnssWatchRunTest, NamesALeverArmThatIsOffByHalfAMetre) {
   }
 }
 
-// GIVEN positions pulled off at 0.5 m/s, THEN it is told before 10 m that they contradict vision and IMU.
+// GIVEN positions pulled off at 0.5 m/s, THEN it is reported before 10 m that they contradict vision and IMU.
 TEST_P(GnssWatchRunTest, DetectsAPull) {
   SimulatorConfig with_rates = Scene(Absolute::kGnss);
   with_rates.fault = SimFaultKind::kGnssRamp;

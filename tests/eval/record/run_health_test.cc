@@ -87,7 +87,7 @@ TEST_F(RunHealthTest, GivenMoreThanTheToleratedShareThenTheRunIsImpaired) {
   EXPECT_THAT(HealthOf(config_, RunWith(many, "local")).impairments, IsEmpty());
 }
 
-// GIVEN a model that is doubted in up to half of the run THEN it is told and the run is ok; in more it is
+// GIVEN a model that is doubted in up to half of the run THEN it is reported and the run is ok; in more it is
 // not.
 TEST_F(RunHealthTest, GivenADoubtedModelThenHalfOfTheRunIsTolerated) {
   const size_t half = Run().records.size() / 2;
@@ -121,7 +121,8 @@ TEST_F(RunHealthTest, GivenStatesThatAreLostOrSuspectThenTheirModelDoesNotExcuse
   }
 }
 
-// GIVEN an IMU that ends before the images THEN the frames without it are counted, and the reason is told.
+// GIVEN an IMU that ends before the images THEN the frames without it are counted, and the reason is
+// reported.
 TEST_F(RunHealthTest, GivenFramesBeyondTheImuThenTheRunIsImpairedWithAReason) {
   test::RestingScene scene;
   scene.log.imu.resize(scene.log.imu.size() / 2);

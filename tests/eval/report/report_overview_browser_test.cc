@@ -1,4 +1,4 @@
-// What the report tells in words and tables, as a browser shows it.
+// The report's words and tables, as a browser shows it.
 #include <regex>
 
 #include "tests/eval/report/report_in_browser.h"

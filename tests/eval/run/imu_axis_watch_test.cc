@@ -76,7 +76,7 @@ TEST(ImuAxisWatchTest, AnAxisThatSeldomChangedBeforeIsNoFault) {
 }
 
 // GIVEN noise-free data WHEN a level motion follows a longer one in three dimensions THEN what the axis does
-// now tells that it is not stuck, not what it did then.
+// now shows that it is not stuck, not what it did then.
 TEST(ImuAxisWatchTest, ALevelMotionAfterOneInThreeDimensionsIsNoFaultForLong) {
   std::vector<ImuSample> samples = Motion(20000, 1e-9);
   for (std::size_t k = 10000; k < samples.size(); ++k) {

@@ -104,7 +104,7 @@ TEST(EpipolarRejection, FindsOutliersWithABiasedGyroscope) {
     const Matrix3d R_measured = so3::Exp({0.002, -0.003, 0.002}) * R_21;
     const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, R_measured, kOptions));
     EXPECT_GE(verdict.good_kept, verdict.good * 95 / 100) << "seed " << seed;
-    // An outlier along its own epipolar line, the right way, cannot be told from a near point.
+    // An outlier along its own epipolar line, the right way, is indistinguishable from a near point.
     EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
   }
 }
@@ -121,7 +121,7 @@ TEST(EpipolarRejection, OnTheSphereItFindsOutliersBesideAndBehindTheCamera) {
     EXPECT_GE(verdict.good_kept, verdict.good * 95 / 100) << "seed " << seed;
     EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
   }
-  // Without a rotation the fundamental matrix tells what lies ahead alone.
+  // Without a rotation the fundamental matrix classifies only what lies ahead.
   const Scene scene = MakeWideScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 3);
   const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, std::nullopt, options));
   EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
