@@ -101,13 +101,13 @@ bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* 
   }
   if (Angle(sheet.R_BC.transpose(), found.R_BC) < kSameDeg) {
     findings->Error(
-        Format("cam0: T_BS is the inverse of what the images' rotation against the gyroscope says (body to "
-               "camera instead of camera to body; %.0f deg away)",
+        Format("cam0: T_BS is the inverse of the rotation found from images and gyroscope (body to camera "
+               "instead of camera to body; %.0f deg away)",
                angle_deg));
   } else {
     findings->Error(
-        Format("cam0: T_BS has other axes than the images' rotation against the gyroscope says, %.0f deg "
-               "away; found: %s",
+        Format("cam0: T_BS has other axes than the rotation found from images and gyroscope, %.0f deg away; "
+               "found: %s",
                angle_deg, AxesText(found.R_BC).c_str()));
   }
   return true;
@@ -119,7 +119,7 @@ void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Fin
   const double time_std_s = fit.deviations[Coordinate::kTimeOffset];
   if (std::abs(time_s) > kTimeS && std::abs(time_s) > kSigmas * time_std_s) {
     findings->Warning(
-        Format("cam0: time_offset_s: images and gyroscope agree at %.4f +- %.4f s, the sheet says %.4f",
+        Format("cam0: time_offset_s: images and gyroscope agree at %.4f +- %.4f s, the sheet has %.4f",
                fit.model.time_offset_s, time_std_s, sheet.time_offset_s));
   }
   const Vector3d turn = so3::Log(sheet.R_BC.transpose() * fit.model.R_BC) * kDegreesPerRadian;
@@ -144,7 +144,7 @@ void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Fin
       std::abs(readout_s - of_sheet_s) > kSigmas * fit.deviations[Coordinate::kReadout]) {
     findings->Warning(
         Format("cam0: rolling shutter: images and gyroscope agree with the rows of an image exposed over "
-               "%.1f +- %.1f ms, line_delay_s of the sheet says %.1f",
+               "%.1f +- %.1f ms, by line_delay_s of the sheet over %.1f",
                1e3 * readout_s, 1e3 * fit.deviations[Coordinate::kReadout], 1e3 * of_sheet_s));
   }
 }

@@ -41,7 +41,7 @@ TEST(CameraGyroCheckTest, ATimeOffsetIsReported) {
   const auto found = Check(PhoneModel(), [](MeasurementLog* log) { log->rig.camera_time_offset_s = 0.04; });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].severity, Severity::kWarning);
-  EXPECT_THAT(found[0].text, AllOf(HasSubstr("time_offset_s"), HasSubstr("the sheet says 0.0400")));
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("time_offset_s"), HasSubstr("the sheet has 0.0400")));
 }
 
 TEST(CameraGyroCheckTest, AnInvertedTransformIsReported) {
