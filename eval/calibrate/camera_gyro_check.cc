@@ -38,7 +38,7 @@ std::string AxesText(const Matrix3d& R_BC) {
 }
 
 /// Clocks far apart, and rates in another unit: neither leaves anything to compare.
-bool TellClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, Findings* findings) {
+bool ReportClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, Findings* findings) {
   constexpr double kUnitBand = 1.4;  // focal length and translation change the images' rate by less
   if (rates.clocks_differ()) {
     const std::string text = "cam0: " + DescribeClocks(rates, rig.camera_time_offset_s);
@@ -79,7 +79,7 @@ std::string NegatedAxis(const Matrix3d& R_BC_sheet, const Matrix3d& R_BC_found) 
 }
 
 /// Other axes than the sheet's; nothing else is compared then.
-bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
+bool ReportAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
   constexpr double kOtherAxesDeg = 30;
   constexpr double kSameDeg = 15;
   constexpr double kMostStdDeg = 3;
@@ -113,7 +113,7 @@ bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* 
   return true;
 }
 
-void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
+void ReportDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
   constexpr double kTimeS = 2e-3, kRotationDeg = 0.5, kFocal = 0.01, kReadoutS = 3e-3;
   const double time_s = fit.model.time_offset_s - sheet.time_offset_s;
   const double time_std_s = fit.deviations[Coordinate::kTimeOffset];
@@ -182,7 +182,7 @@ void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, 
   const CameraGyroModel sheet = ModelOfSheet(rig);
   const GyroCorrelation rates =
       CorrelateGyro(TurnsOfImages(rig.camera, tables.frames), tables.imu, sheet.time_offset_s);
-  if (TellClocksOrUnit(rig, rates, findings)) {
+  if (ReportClocksOrUnit(rig, rates, findings)) {
     return;
   }
   if (rates.best.scale > kMostScale) {
@@ -212,8 +212,8 @@ void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, 
       fit->deviations[Coordinate::kTimeOffset], Angle(sheet.R_BC, fit->model.R_BC),
       100 * (fit->model.camera.intrinsics()[0] / sheet.camera.intrinsics()[0] - 1),
       100 * fit->deviations[Coordinate::kFocal]));
-  if (!TellAxes(sheet, *fit, findings)) {
-    TellDifferences(sheet, *fit, findings);
+  if (!ReportAxes(sheet, *fit, findings)) {
+    ReportDifferences(sheet, *fit, findings);
   }
 }
 

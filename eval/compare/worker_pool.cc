@@ -67,7 +67,7 @@ void WorkerPool::Feed() {
       worker->cell = queue_.Next(worker->last);
       if (worker->cell) {
         worker->begin = Clock::now();
-        worker->process.Tell(std::to_string(*worker->cell));
+        worker->process.Send(std::to_string(*worker->cell));
       }
     }
     worker =

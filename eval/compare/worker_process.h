@@ -26,7 +26,7 @@ class WorkerProcess {
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   /// Sends a line. Lines to a process that has ended are lost.
-  void Tell(const std::string& line) const;
+  void Send(const std::string& line) const;
   /// Reads what has come; blocks when nothing has. False: the process closed its output.
   bool Read();
   /// The next whole line that was read.

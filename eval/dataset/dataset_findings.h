@@ -31,7 +31,7 @@ class Findings {
 
 /// A fault without which nothing can be estimated from the camera: an error, or a warning beside GNSS or
 /// fixes, with which an estimator may do without it.
-void TellUseless(const Dataset& dataset, std::string text, Findings* findings);
+void ReportUseless(const Dataset& dataset, std::string text, Findings* findings);
 
 /// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
 /// no sheet has one. Returns the rate of the median step [Hz], which gaps do not lower, or above

@@ -188,7 +188,7 @@ Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_n
   if (gnss_) {
     Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
     if (alignment.ok() && *alignment) {
-      TellAligned(gnss_->enu(), nullptr);
+      PassAlignment(gnss_->enu(), nullptr);
     }
     return alignment;
   }
@@ -198,14 +198,14 @@ Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_n
       return alignment;
     }
     if (*alignment) {
-      TellAligned((*alignment)->enu, run.get());
+      PassAlignment((*alignment)->enu, run.get());
       return alignment;
     }
   }
   return std::optional<GnssAlignment>();
 }
 
-void EstimatorLoop::TellAligned(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
+void EstimatorLoop::PassAlignment(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
   for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
     if (run.get() != by) {
       run->AlignedByAnother(enu);

@@ -21,7 +21,7 @@ class RestDetectorTest : public ::testing::Test {
       landmarks_.push_back(
           Vector3d(random_.Uniform(-3, 3), random_.Uniform(-1.8, 1.8), random_.Uniform(3, 5)));
     }
-    TellBias(0, 1e-4);
+    SetBias(0, 1e-4);
   }
 
   RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread,
@@ -68,12 +68,12 @@ class RestDetectorTest : public ::testing::Test {
   }
 
   /// The bias of 0.01 rad/s about y is given as this much larger, with this deviation.
-  void TellBias(double error_radps, double std_radps) {
+  void SetBias(double error_radps, double std_radps) {
     estimate_.bias.gyro.y() = 0.01 + error_radps;
     estimate_.covariance.diagonal().segment<3>(9).setConstant(std_radps * std_radps);
   }
 
-  void TellVelocity(const Vector3d& v_WB, double std_mps) {
+  void SetVelocity(const Vector3d& v_WB, double std_mps) {
     estimate_.nav.v_WB = v_WB;
     estimate_.covariance.diagonal().segment<3>(6).setConstant(std_mps * std_mps);
   }
@@ -137,7 +137,7 @@ TEST_F(RestDetectorTest, ATurningPointIsNotRest) {
 // GIVEN a bias that is off by two of its deviations, which turns the image by 2 px in the window, WHEN the
 // rig stands still, THEN that is rest.
 TEST_F(RestDetectorTest, ABiasThatIsNotKnownYetHidesNoRest) {
-  TellBias(0.01, 0.005);
+  SetBias(0.01, 0.005);
   const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0, 0.1);
   EXPECT_TRUE(verdict.no_translation);
   EXPECT_TRUE(verdict.no_rotation);
@@ -145,12 +145,12 @@ TEST_F(RestDetectorTest, ABiasThatIsNotKnownYetHidesNoRest) {
 
 // GIVEN the same with a bias that is known, WHEN the image stands still, THEN the rig moves with the turn.
 TEST_F(RestDetectorTest, AStillImageWhileTheRigIsKnownToTurnIsNoRest) {
-  TellBias(0.01, 1e-4);
+  SetBias(0.01, 1e-4);
   EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 0.1).no_translation);
 }
 
 TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
-  TellBias(0.01, 0.005);
+  SetBias(0.01, 0.005);
   for (const Vector3d& velocity : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0, 0, 0.2),
                                    // Of one sign, the wrong turn hides it in the image.
                                    Vector3d(0.04, 0, 0), Vector3d(-0.04, 0, 0)}) {
@@ -174,16 +174,16 @@ TEST_F(RestDetectorTest, FarSceneryHidesNoMotionOfTheEstimate) {
   }
   const Vector3d velocity(0.1, 0, 0);
   EXPECT_TRUE(After(4, velocity, 0, 0.01).no_translation);
-  TellVelocity(velocity, 0.01);
+  SetVelocity(velocity, 0.01);
   EXPECT_FALSE(AfterOneSecond(velocity, 0, 0.01).no_translation);
   EXPECT_FALSE(After(4, velocity, 0, 0.01).no_translation);
-  TellVelocity(velocity, 0.1);
+  SetVelocity(velocity, 0.1);
   EXPECT_TRUE(AfterOneSecond(velocity, 0, 0.01).no_translation) << "nor does the estimate tell";
 }
 
 // GIVEN an estimate that moves on while the rig stands still THEN that is rest, later than usual.
 TEST_F(RestDetectorTest, LastingRestOverrulesTheEstimate) {
-  TellVelocity(Vector3d(0.1, 0, 0), 0.01);
+  SetVelocity(Vector3d(0.1, 0, 0), 0.01);
   EXPECT_FALSE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_TRUE(After(2.6, Vector3d::Zero(), 0, 0.1).no_translation);
 }
@@ -192,7 +192,7 @@ TEST_F(RestDetectorTest, LastingRestOverrulesTheEstimate) {
 // one last.
 TEST_F(RestDetectorTest, RestBeforeTheDoubtDoesNotCount) {
   doubt_from_s_ = 2.5;
-  TellVelocity(Vector3d(0.1, 0, 0), 0.01);
+  SetVelocity(Vector3d(0.1, 0, 0), 0.01);
   EXPECT_TRUE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_FALSE(After(3, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_TRUE(After(4.6, Vector3d::Zero(), 0, 0.1).no_translation);
