@@ -245,7 +245,7 @@ TEST_P(AuditedFilter, HasTheRankOfItsErrorOnASimulatedRun) {
   }
 }
 
-// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are told until the state is turned into ENU, and
+// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are unobservable until the state is turned into ENU, and
 // then all fifteen: yaw and position with them, as a system of more than cameras has it.
 TEST(ObservabilityTest, GnssMakesYawAndPositionObservable) {
   SimulatorConfig sim;
