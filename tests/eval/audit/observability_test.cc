@@ -245,8 +245,8 @@ TEST_P(AuditedFilter, HasTheRankOfItsErrorOnASimulatedRun) {
   }
 }
 
-// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are unobservable until the state is turned into ENU, and
-// then all fifteen: yaw and position with them, as a system of more than cameras has it.
+// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are observable until the state is turned into
+// ENU, and then all fifteen: yaw and position with them, as a system of more than cameras has it.
 TEST(ObservabilityTest, GnssMakesYawAndPositionObservable) {
   SimulatorConfig sim;
   sim.start_time_s = 1'700'000'000;
