@@ -21,14 +21,14 @@ struct AbsoluteComparison {
   Eigen::Matrix3d left_covariance = Eigen::Matrix3d::Identity();
 };
 
-/// What vision and IMU say against measured positions.
+/// A contradiction between measured positions and vision with IMU.
 struct Contradiction {
   double distance_m = 0;  ///< between the measured position and where they lead
   double sigmas = 0;
   double window_s = 0;  ///< they were followed for
 };
 
-/// Tells when measured positions are pulled away from where vision and IMU lead, as by a spoofer.
+/// Detects when measured positions are pulled away from where vision and IMU lead, as by a spoofer.
 ///
 /// From any time on, the corrections that the measurements have made and what the last one leaves add up to
 /// the distance between the measured position and the one that vision and IMU alone would have reached:

@@ -27,7 +27,7 @@ struct BodyMotion {
   [[nodiscard]] Eigen::Vector3d TurnAfter(double later_s) const;
 };
 
-/// What the gyroscope says of a body's turn around an instant.
+/// A body's turn around an instant, from the gyroscope.
 struct MeasuredTurn {
   Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero();    ///< at the instant
   Eigen::Vector3d alpha_radps2 = Eigen::Vector3d::Zero();  ///< its change with time

@@ -5,7 +5,7 @@
 namespace alidade {
 
 /// Which parameters of the camera are estimated along with the motion (core/calibration.h). The standard
-/// deviations say how far the given calibration is trusted, one for each axis or coefficient.
+/// deviations are the uncertainty of the given calibration, one for each axis or coefficient.
 struct CalibrationConfig {
   bool extrinsics = false;
   bool time_offset = false;

@@ -149,7 +149,7 @@ Result<CameraModel> CameraModel::Create(DistortionModel model, const Vector4d& f
 }
 
 void CameraModel::BoundDomain() {
-  // A calibration says nothing far outside the image it was made with.
+  // A calibration does not hold far outside the image it was made with.
   constexpr double kMarginBeyondCorner = 1.5;
   double corner = 0;
   for (const double u : {0.0, static_cast<double>(width_px_)}) {

@@ -17,9 +17,8 @@ namespace alidade {
 ///   radial-tangential  x_d = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2), likewise y (Brown)
 ///   equidistant        t = atan(r), x_d = x/r t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8)
 ///   fov                r_d = atan(2 r tan(w/2)) / w, x_d = x/r r_d (Devernay, Faugeras 2001)
-///   mei                m = x / (1 + xi sqrt(1 + r^2)), then radial-tangential of m (Mei, Rives 2007): the
-///   unified
-///                      sphere, its mirror parameter xi; fu, fv are the generalised focal lengths gamma
+///   mei                m = x / (1 + xi sqrt(1 + r^2)), then radial-tangential of m (Mei, Rives 2007);
+///                      xi: mirror parameter of the unified sphere; fu, fv: generalised focal lengths gamma
 ///   double-sphere      d1 = |p|, d2 = sqrt(X^2 + Y^2 + (xi d1 + Z)^2),
 ///                      x_d = X / (alpha d2 + (1 - alpha) (xi d1 + Z)) (Usenko, Demmel, Cremers 2018)
 ///   eucm               d = sqrt(beta (X^2 + Y^2) + Z^2), x_d = X / (alpha d + (1 - alpha) Z) (Khomutenko,

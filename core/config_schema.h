@@ -10,7 +10,7 @@
 
 namespace alidade {
 
-/// What a reader of a configuration file needs to know about one key.
+/// Name, unit and description of one key of a configuration file.
 struct KeyDoc {
   std::string_view name;
   std::string_view unit;    ///< "m", "px", "-", ...

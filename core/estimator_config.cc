@@ -21,8 +21,7 @@ Status EstimatorConfig::Validate() const {
   if (filter.first_estimates && filter.track_memory != TrackMemoryPolicy::kNone) {
     return Status::Config(
         "filter.first_estimates: true, but memories of tracks are linearised at the current estimates; "
-        "expected "
-        "false, or filter.track_memory: none");
+        "expected false, or filter.track_memory: none");
   }
   if (vision.min_depth_m >= vision.max_depth_m) {
     return Status::Config("vision.min_depth_m: must be less than vision.max_depth_m");

@@ -23,7 +23,7 @@ void FixConfig::Describe(ConfigVisitor& visitor) {
                    "down-weighted to the gate"},
                   &max_refused_run, 1, 100000);
   visitor.Enumeration(
-      {"robust_kernel", "-", "down-weights what the gate lets pass"}, &robust_kernel,
+      {"robust_kernel", "-", "robust kernel for measurements that pass the gate"}, &robust_kernel,
       {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
   visitor.Real({"robust_scale_sigma", "sigma", "whitened norm of the innovation at which the kernel sets in"},
                &robust_scale_sigma, 0.1, 1e3);

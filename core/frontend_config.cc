@@ -6,8 +6,8 @@ void FrontendConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer({"max_features", "-", "largest number of tracks in an image"}, &max_features, 10, 2000);
   visitor.Real({"min_distance_px", "px", "smallest distance between two tracks"}, &min_distance_px, 1, 200);
   visitor.Real({"edge_share", "-",
-                "of the image's shorter side: no corner is begun so near to the edge, which it would soon "
-                "cross"},
+                "distance from the edge, as a share of the image's shorter side, within which no track "
+                "begins"},
                &edge_share, 0, 0.3);
   visitor.Integer(
       {"grid_columns", "-", "corners are detected per grid cell, so they are distributed over the image"},
@@ -28,8 +28,7 @@ void FrontendConfig::Describe(ConfigVisitor& visitor) {
       &template_px, 0, 41);
   visitor.Real({"min_correlation", "-",
                 "smallest correlation of the image with that patch; below it the track must be followed "
-                "back, and takes a "
-                "new patch"},
+                "back, and takes a new patch"},
                &min_correlation, 0, 1);
   visitor.Real({"ransac_threshold_px", "px", "largest distance to the epipolar line"}, &ransac_threshold_px,
                0.1, 20);

@@ -17,8 +17,8 @@ void ImuConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real({"max_gap_s", "s", "a longer interval without IMU samples is reported as a gap"}, &max_gap_s,
                0.01, 10);
   visitor.Boolean({"guard", "-",
-                   "replace single samples that their neighbours contradict (spikes) before any estimator "
-                   "sees them; counted and reported"},
+                   "replace single samples that their neighbours contradict (spikes) before they reach an "
+                   "estimator; counted and reported"},
                   &guard);
 }
 

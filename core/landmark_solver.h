@@ -13,7 +13,7 @@ namespace alidade {
 
 /// The pose-only depth of the views, base first (core/pose_only.h). False when they do not determine it: no
 /// parallax, or a relative deviation of max_relative_deviation or more (DepthIsDetermined). The noise is
-/// taken from the last view: that of the base may be inflated. The depth may be negative: the caller judges.
+/// taken from the last view: that of the base may be inflated. The depth may be negative: the caller checks.
 bool TriangulateLandmark(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
                          DepthViews views, double max_relative_deviation, PoseOnlyDepth* depth);
 

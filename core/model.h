@@ -11,7 +11,7 @@
 //
 //     R = R^ Exp(phi),  p = p^ + dp,  v = v^ + dv,  biases additive.
 //
-// A null Jacobian pointer skips that block and changes no other output. A model knows neither Ceres nor a
-// filter: the filter multiplies with the error convention's chart Jacobian (core/error_convention.h), the
+// A null Jacobian pointer skips that block and changes no other output. A model depends on neither Ceres nor
+// a filter: the filter multiplies with the error convention's chart Jacobian (core/error_convention.h), the
 // smoother lifts to its manifold, and noise, gates and kernels are applied by shared code (core/robust.h,
 // core/landmark_reduction.h).

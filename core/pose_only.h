@@ -28,7 +28,7 @@ struct PoseOnlyJacobians {
 };
 
 /// False when the views have no parallax (A^T A is zero to rounding) or a number is not finite. The depth may
-/// be negative: the caller judges. Needs at least two views; base in range. jacobians: null skips them.
+/// be negative: the caller checks. Needs at least two views; base in range. jacobians: null skips them.
 bool ComputePoseOnlyDepth(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
                           int base, DepthViews views, PoseOnlyDepth* depth,
                           PoseOnlyJacobians* jacobians = nullptr);

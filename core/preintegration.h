@@ -17,11 +17,11 @@ class Preintegration {
  public:
   Preintegration(const ImuBias& bias, const ImuNoise& noise) : bias_(bias), noise_(noise) {}
 
-  /// Appends one step between two samples with the given densities and what the second says of faulty axes;
-  /// stamps strictly increasing.
+  /// Appends one step between two samples with the given densities and the noise of faulty axes of the
+  /// second; stamps strictly increasing.
   void Add(const ImuSample& from, const ImuSample& to) { Add(from, to, noise_); }
-  /// Appends all steps of consecutive samples, with their vibration as white noise where the noise says so,
-  /// and what a silence of the IMU hides (core/imu_gap.h); fewer than two add nothing.
+  /// Appends all steps of consecutive samples, with their vibration as white noise where the noise model has
+  /// it, and what a silence of the IMU hides (core/imu_gap.h); fewer than two add nothing.
   void Add(std::span<const ImuSample> samples);
 
   /// The motion corrected to first order for a bias at t0 other than the one integrated with.

@@ -57,7 +57,7 @@ void RestDetector::AddImu(std::span<const ImuSample> samples) {
       imu_.push_back(sample);
     }
   }
-  // Without frames for longer than any verdict looks back, those that are kept tell nothing any more.
+  // Without frames for longer than any verdict looks back, those that are kept are of no use any more.
   const double held_s = imu_.empty() ? 0 : SecondsBetween(imu_.front().stamp_ns, imu_.back().stamp_ns);
   if (held_s > 2 * kWindowsInDoubt * vision_.rest_window_s) {
     const ImuSample newest = imu_.back();

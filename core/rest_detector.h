@@ -75,7 +75,7 @@ class RestDetector {
   void Keep(const TrackFrame& frame);
   /// The newest frame that is at least this much older than the newest one; null when none is.
   [[nodiscard]] const OrientedFrame* FrameBefore(double seconds) const;
-  /// Whether the estimate says that the camera moves.
+  /// Whether the camera moves according to the estimate.
   [[nodiscard]] bool ContradictsRest(const NavEstimate& estimate, const Eigen::Vector3d& p_BC) const;
   /// Whether the estimate has contradicted rest from the frame `since`, if there is one, to the one at hand.
   [[nodiscard]] bool DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since);

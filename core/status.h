@@ -39,7 +39,7 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-/// A value of type T, or the Status that says why there is none.
+/// A value of type T, or the Status with the reason why there is none.
 template <typename T>
 class [[nodiscard]] Result {
  public:

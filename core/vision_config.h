@@ -8,7 +8,7 @@ namespace alidade {
 /// Which noise the image coordinates of a track have.
 enum class PixelNoiseModel {
   kGiven,     ///< pixel_noise_px
-  kAdaptive,  ///< never less, and more where the innovations say so (core/pixel_noise.h)
+  kAdaptive,  ///< never less, and more where the innovations require it (core/pixel_noise.h)
 };
 
 /// Which noise the gate of tracks takes.

@@ -35,7 +35,7 @@ std::array<size_t, kMost> SpreadClones(size_t clones, size_t index, size_t count
   return chosen;
 }
 
-/// Covariance of (x_m, x_2, x_3 ...), less x_1 each: what follows says nothing about where all of them are.
+/// Covariance of (x_m, x_2, x_3 ...), less x_1 each: what follows does not depend on their common position.
 Joint RelativeCovariance(const FilterState& state, size_t leaving,
                          const std::array<size_t, kMost>& neighbours, size_t count) {
   const SquareRootCovariance& covariance = state.covariance();

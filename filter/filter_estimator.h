@@ -80,7 +80,7 @@ class FilterEstimator : public Estimator {
   bool CorrectWithDueTracks(int leaving_serial);
   /// False as above.
   bool UpdateWithDueTracks(int leaving_serial);
-  /// Zero velocity and zero angular rate, as far as the rest detector says so. False as above.
+  /// Zero velocity and zero angular rate, where the rest detector finds them. False as above.
   bool UpdateAtRest(const RestVerdict& rest);
   /// Normalised innovation squared of every appended track, against the state before the update.
   void MeasureBlocks(const PreparedRows& rows);
@@ -135,7 +135,7 @@ class FilterEstimator : public Estimator {
   BaselineDeviation baseline_;                  ///< before the tracks of this frame
   ScaleDirection scale_direction_;
   bool carry_scale_ = false;           ///< whether corrections carry the direction that was taken
-  int told_serial_ = 0;                ///< of the newest frame when tracks last updated the state
+  int updated_serial_ = 0;             ///< of the newest frame when tracks last updated the state
   int serial_ = 0;                     ///< of the newest frame
   int first_serial_ = 1;               ///< of the first frame after the initialisation
   TimeNs frame_stamp_ns_ = INT64_MIN;  ///< IMU time of the last frame

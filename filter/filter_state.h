@@ -49,7 +49,7 @@ struct Landmark {
   Eigen::Vector3d p_W_first = Eigen::Vector3d::Zero();  ///< when it entered the state
 };
 
-/// What the rows of a track say about its landmark after elimination (core/landmark_reduction.h): t = T x~ +
+/// The rows of a track that remain of its landmark after elimination (core/landmark_reduction.h): t = T x~ +
 /// R_f f~ + n, n ~ N(0, I_3) independent of the eliminated rows; x~ the core and all clones, f~ a
 /// LandmarkError.
 struct LandmarkRows {
@@ -79,7 +79,7 @@ class FilterState {
   };
 
   FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits);
-  /// The camera is `calibration`, estimated as far as its layout says.
+  /// The camera is `calibration`, estimated in the parameters of its layout.
   FilterState(ErrorConvention convention, bool first_estimates, CalibrationEstimate calibration,
               Limits limits);
 

@@ -137,7 +137,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   corrected.setZero();
   auto moved = moved_.head(covariance.dimension());
   moved.setZero();
-  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, told_serial_);
+  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
   for (int pass = 1;; ++pass) {
     const int landmark_rows =
         pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
@@ -169,8 +169,8 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   }
   covariance.Commit(Correction());
   Correction() -= corrected;
-  told_serial_ = serial_;
-  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, told_serial_);
+  updated_serial_ = serial_;
+  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
   return true;
 }
 

@@ -37,7 +37,7 @@ class GnssUpdate {
   bool Apply(const GnssEpoch& epoch, const Eigen::Vector3d& gyro_radps, FilterState* state,
              Eigen::Ref<Eigen::VectorXd> correction, FrameStatistics* statistics);
 
-  /// What any update of the filter says of the clock: `correction` of the whole error.
+  /// The correction of the clock by any update of the filter: `correction` of the whole error.
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& correction, const FilterState& state);
 
   /// At the state's stamp.

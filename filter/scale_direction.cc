@@ -28,17 +28,17 @@ ScaleDirection::ScaleDirection(int capacity) : row_(capacity), places_(capacity 
 
 bool ScaleDirection::Take(const FilterState& state, int last_serial) {
   const std::vector<Clone>& clones = state.clones();
-  told_ = 0;
-  while (told_ < clones.size() && clones[told_].serial <= last_serial) {
-    ++told_;
+  determined_ = 0;
+  while (determined_ < clones.size() && clones[determined_].serial <= last_serial) {
+    ++determined_;
   }
-  if (told_ < 2) {
+  if (determined_ < 2) {
     return false;
   }
   auto row = row_.head(state.covariance().dimension());
   row.setZero();
   double extent = 0;
-  for (size_t i = 0; i < told_; ++i) {
+  for (size_t i = 0; i < determined_; ++i) {
     const Vector3d place = FromOldest(state, i);
     places_.row(static_cast<Index>(i)) = place;
     extent += place.squaredNorm();
@@ -60,7 +60,7 @@ void ScaleDirection::Carry(FilterState* state, Eigen::Ref<VectorXd> errors) {
   for (size_t i = 0; i < clones.size(); ++i) {
     const double dt_s = SecondsBetween(last_ns, clones[i].stamp_ns);
     Vector3d moved = last + dt_s * rate;
-    if (i < told_) {
+    if (i < determined_) {
       const Vector3d place = FromOldest(*state, i);
       moved = place - places_.row(static_cast<Index>(i)).transpose();
       if (dt_s > 0) {

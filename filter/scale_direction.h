@@ -26,7 +26,7 @@ class ScaleDirection {
   void Carry(FilterState* state, Eigen::Ref<Eigen::VectorXd> errors);
 
  private:
-  size_t told_ = 0;          ///< number of clones that `last_serial` closes
+  size_t determined_ = 0;    ///< number of clones that `last_serial` closes
   Eigen::VectorXd row_;      ///< l
   Eigen::MatrixX3d places_;  ///< of these cameras, seen from the oldest one
   Eigen::VectorXd change_;

@@ -32,7 +32,7 @@ class SlamFeatures {
   /// Rows to be filled by FeatureUpdate::Append; dropped again by ReturnRows when it did not.
   LandmarkRows* TakeRows();
   void ReturnRows();
-  /// Says that the rows taken last belong to block `block` of the update.
+  /// Assigns the rows taken last to block `block` of the update.
   void AssignBlock(size_t block);
 
   /// Appends the two rows of a landmark's newest observation.

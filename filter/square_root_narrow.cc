@@ -18,8 +18,8 @@ namespace {
 
 /// Divides the columns of S by U from left to right, a block at a time; U^T U = I + A^T A. Of the columns of
 /// A passed so far it keeps T with T T^T = (I + A A^T)^-1, and Y, such that
-///   S'_k = (S_k - Y A_k) U_kk^-1,   U_kk^T U_kk = I + (T^T A_k)^T (T^T A_k),   Y += S'_k U_kk^-T (T^T A_k)^T
-///   T^T:
+///   S'_k = (S_k - Y A_k) U_kk^-1,   U_kk^T U_kk = I + (T^T A_k)^T (T^T A_k),
+///   Y += S'_k U_kk^-T (T^T A_k)^T T^T:
 /// 2 rows n^2 products in all instead of the n^3 of a factorisation of I + A^T A. At the end Y y is the
 /// correction by the innovation y.
 class ColumnSweep {

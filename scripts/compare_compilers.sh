@@ -1,11 +1,62 @@
 #!/usr/bin/env bash
 # Builds the program with GCC -O2, GCC -O3 and Clang -O3, runs the demo's plan (60 s, both back ends, without and with GNSS) with each,
-# and prints the largest difference of the estimated positions to the first one's. Exit code 1: above the bound.
-# Usage: scripts/compare_compilers.sh [output folder] [bound in metres, default 1e-6]
+# and prints the largest difference of the estimated states to the first one's: of the position in metres, of each other quantity
+# relative to its value where that is above 1. Only rooms with TEXT keep their own -O2 (eval/CMakeLists.txt).
+# Exit code 1: a difference is above the bound, a number is missing or not finite, or rows or columns differ.
+# Usage: scripts/compare_compilers.sh [output folder] [bound, default 1e-6]
+#        scripts/compare_compilers.sh --compare STATES STATES [bound]     compares two files states.csv
 # Takes about half an hour on two cores. Needs Debian's clang beside what scripts/install_dependencies.sh installs.
 set -euo pipefail
-cd "$(dirname "$0")/.."
 
+# Prints the largest difference of each quantity, one line a file: "p 0 q 1e-12 ...", and of columns that only GNSS adds "gnss".
+compare_states() {
+  awk -F, -v bound="$3" '
+    function finite(text) { return text ~ /^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)?$/ }
+    function fault(text) { print text; bad = 1; exit }
+    FNR == 1 && NR == 1 {
+      columns = NF
+      for (i = 2; i <= NF; i++) {
+        group[i] = $i ~ /^(p|q|v|bg|ba|c)_/ ? substr($i, 1, index($i, "_") - 1) : "gnss"
+        if (!(group[i] in most)) { names[++groups] = group[i]; most[group[i]] = 0 }
+      }
+      header = $0
+      next
+    }
+    FNR == 1 { if ($0 != header) fault("columns differ"); second = 1; next }
+    !second { first[FNR] = $0; rows = FNR; next }
+    {
+      if (!(FNR in first)) fault("rows differ")
+      split(first[FNR], old, ",")
+      if (old[1] != $1 || NF != columns) fault("rows differ")
+      for (i = 2; i <= columns; i++) {
+        if (old[i] == "" && $i == "") continue
+        if (!finite(old[i]) || !finite($i)) fault("column " i " at " $1 " is " old[i] " and " $i)
+        d = $i - old[i]
+        if (d < 0) d = -d
+        size = old[i] < 0 ? -old[i] : old[i] + 0
+        if (group[i] != "p" && size > 1) d /= size
+        if (d > most[group[i]]) most[group[i]] = d
+      }
+      compared = FNR
+    }
+    END {
+      if (bad) exit 1
+      if (compared != rows || rows < 2) { print "rows differ"; exit 1 }
+      for (g = 1; g <= groups; g++) {
+        printf("%s%s %.1e", (g > 1 ? "  " : ""), names[g], most[names[g]])
+        if (most[names[g]] > bound) bad = 1
+      }
+      print ""
+      exit bad
+    }' "$1" "$2"
+}
+
+if [[ ${1:-} == --compare ]]; then
+  compare_states "$2" "$3" "${4:-1e-6}"
+  exit
+fi
+
+cd "$(dirname "$0")/.."
 output=${1:-out/compilers}
 bound=${2:-1e-6}
 clang=$(command -v clang++-14 || command -v clang++) || { echo "clang++ is not installed (Debian package clang)" >&2; exit 1; }
@@ -13,32 +64,21 @@ variants=("gcc_O2 g++ -O2" "gcc_O3 g++ -O3" "clang_O3 $clang -O3")
 
 for variant in "${variants[@]}"; do
   read -r name compiler level <<<"$variant"
-  cmake -S . -B "$output/$name/build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DALIDADE_BUILD_TESTS=OFF \
-    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="$level -DNDEBUG" >/dev/null
+  cmake -S . -B "$output/$name/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DALIDADE_BUILD_TESTS=OFF \
+    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS_RELEASE="$level -DNDEBUG" >/dev/null
   cmake --build "$output/$name/build" --target alidade --parallel "$(scripts/jobs.sh)" >/dev/null
   "$output/$name/build/alidade" compare --plan=configs/plans/demo.yaml --output="$output/$name/demo" --overwrite --quiet \
     --jobs="$(nproc)" >"$output/$name/table.txt"
 done
 
-# Of two states.csv: the largest difference of p_x, p_y or p_z (columns 2 to 4) at equal stamps; "rows differ" when the stamps do.
-difference() {
-  paste -d, <(cut -d, -f1-4 "$1") <(cut -d, -f1-4 "$2") | awk -F, '
-    NR == 1 { next }
-    $1 != $5 { print "rows differ"; wrong = 1; exit }
-    { for (i = 2; i <= 4; i++) { d = $i - $(i + 4); if (d < 0) d = -d; if (d > most) most = d } }
-    END { if (!wrong) printf "%.1e\n", most }'
-}
-
 reference=${variants[0]%% *}
 failed=0
-printf '%-45s %12s %12s\n' "largest |dp| [m] to $reference" "${variants[1]%% *}" "${variants[2]%% *}"
+echo "largest differences to $reference"
 while read -r cell; do
-  line=()
   for variant in "${variants[@]:1}"; do
-    found=$(difference "$output/$reference/demo/cells/$cell/states.csv" "$output/${variant%% *}/demo/cells/$cell/states.csv")
-    line+=("$found")
-    awk -v found="$found" -v bound="$bound" 'BEGIN { exit !(found + 0 <= bound + 0 && found !~ /rows/) }' || failed=1
+    name=${variant%% *}
+    found=$(compare_states "$output/$reference/demo/cells/$cell/states.csv" "$output/$name/demo/cells/$cell/states.csv" "$bound") || failed=1
+    printf '%-45s %-9s %s\n' "$cell" "$name" "$found"
   done
-  printf '%-45s %12s %12s\n' "$cell" "${line[@]}"
 done < <(cd "$output/$reference/demo/cells" && find . -name states.csv -printf '%h\n' | sed 's|^\./||' | sort)
 exit $failed

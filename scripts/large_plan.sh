@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures what follows the cells of a large comparison: tables and status of CELLS finished cells, whose reports are copies of those of
-# four runs of 20 s with other seeds (so their figures say nothing). Prints time and largest memory of each step, and sizes.
+# four runs of 20 s with other seeds (so their figures have no meaning). Prints time and largest memory of each step, and sizes.
 # Needs perl and /usr/bin/time (Debian package time).
 # Usage: scripts/large_plan.sh [CELLS, a multiple of 4000, default 8000] [PROGRAM, default build/alidade]
 set -euo pipefail

@@ -27,7 +27,7 @@ done
 # The recomputed truth was made with this IMU; the official one is independent, and the rotation of its body is found.
 official=$data/euroc/V1_01_easy/mav0/state_groundtruth_estimate0/data.csv
 refine euroc/V1_01_easy --truth_rate=0.5 --truth="$official"
-# The orientation of the machine hall's truth was computed with this IMU: its fit does not tell its error. The vehicle
+# The orientation of the machine hall's truth was computed with this IMU: its fit does not show its error. The vehicle
 # stands for ten seconds; with fewer poses the refined truth creeps there.
 for sequence in MH_03_medium MH_05_difficult; do
   refine "euroc/$sequence" --truth_rate=2 --truth_std_deg=0.2

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Says what a change of the code did to the estimates: runs tests/replay/plan.yaml (short simulations, presets of both back ends, without
+# Prints what a change of the code did to the estimates: runs tests/replay/plan.yaml (short simulations, presets of both back ends, without
 # and with GNSS) and compares each run with tests/replay/figures.csv. Prints for each preset how many runs are equal to the byte, and
 # otherwise, of each figure, the mean difference over the seeds (same seed, before and after) with its standard error and the largest.
 # Rounding of another compiler or processor shows there and does not fail. Exit code 1: a figure of a run is off by more than TOLERANCE,

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and runs every test. The last line is "N passed, N failed[, N skipped]"; the exit code tells whether all is well.
+# Builds and runs every test. The last line is "N passed, N failed[, N skipped]"; exit code 0: all is well.
 # Usage: scripts/test.sh [release|dev] [ctest options]
 set -uo pipefail
 cd "$(dirname "$0")/.."

@@ -24,8 +24,8 @@ void EraseRows(Index first, Index size, MatrixXd* matrix) {
   matrix->conservativeResize(matrix->rows() - size, Eigen::NoChange);
 }
 
-/// What rows say once the unknowns of columns [first, first + size) are eliminated; these columns are zero
-/// then.
+/// What remains of rows once the unknowns of columns [first, first + size) are eliminated; these columns are
+/// zero then.
 MatrixXd WithoutColumns(Index first, Index size, const MatrixXd& rows) {
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.middleCols(first, size));
   MatrixXd left = (qr.householderQ().adjoint() * rows).bottomRows(rows.rows() - qr.rank());

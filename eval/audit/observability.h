@@ -13,7 +13,7 @@ namespace alidade {
 /// scaling): well above rounding, well below what a wrong linearisation leaks.
 inline constexpr double kObservabilityTolerance = 1e-8;
 
-/// What all updates up to a frame say about the initial error.
+/// The information of all updates up to a frame on the initial error.
 struct ObservabilityRecord {
   TimeNs stamp_ns = 0;
   int rank = 0;               ///< of the stacked O = [H_k Phi_k,0] over the initial core error; at most 15

@@ -18,7 +18,7 @@ namespace alidade {
 
 [[nodiscard]] std::vector<BagTopic> FixTopics();
 
-/// Each sensor as its sheet says; without one, with a lever arm and a time offset of zero. A NavSatFix of a
+/// Each sensor by its sheet; without one, with a lever arm and a time offset of zero. A NavSatFix of a
 /// topic that was not named is passed over, for its clock and its lever arm are not known. kInput: a sheet
 /// that does not parse, a position without a covariance and without fix_std_m. kUsage: fix_std_m is no
 /// length.

@@ -65,7 +65,7 @@ void CheckFrozenImages(const Dataset& dataset, Findings* findings) {
   if (IsAtRest(dataset, span)) {
     findings->Warning(text + ", or images without noise of a recording at rest?");
   } else {
-    TellUseless(dataset, text + "?", findings);
+    ReportUseless(dataset, text + "?", findings);
   }
 }
 

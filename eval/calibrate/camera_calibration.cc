@@ -121,8 +121,7 @@ class Calibration {
     if (result_.fit.model.gyro_sign < 0) {
       return Status::Input(
           "the gyroscope's rates agree with the rotation of the images only once they are negated: wrong "
-          "sign, or an "
-          "axis of a left-handed system; no sheet can express that");
+          "sign, or an axis of a left-handed system; no sheet can express that");
     }
     Say(Format("camera and gyroscope: %d pairs, %.2f px", result_.fit.pairs, result_.fit.residual_px));
     const auto middle = pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2);
@@ -152,7 +151,7 @@ class Calibration {
   }
 
   /// A camera with a rolling shutter adapts its exposure time as a rule, and half of that moves the time
-  /// offset along: what one part of a recording says of another is no better than this.
+  /// offset along: one part of a recording predicts another no better than this.
   static void AllowForExposure(CameraGyroFit* fit) {
     constexpr double kExposureStdS = 2e-3;
     if (HasRollingShutter(*fit) && fit->deviations[Coordinate::kReadout] > 0) {

@@ -16,7 +16,7 @@ namespace alidade {
 /// Position of the camera on the body, as an estimator found it along the motion.
 struct CameraLeverArm {
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();        ///< [m]
-  Eigen::Vector3d deviations = Eigen::Vector3d::Zero();  ///< [m], with what the halves say of them
+  Eigen::Vector3d deviations = Eigen::Vector3d::Zero();  ///< [m], with the difference of the halves
   std::array<Eigen::Vector3d, 2> halves;                 ///< of the first and the second half alone
 };
 

@@ -38,7 +38,7 @@ std::string AxesText(const Matrix3d& R_BC) {
 }
 
 /// Clocks far apart, and rates in another unit: neither leaves anything to compare.
-bool TellClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, Findings* findings) {
+bool ReportClocksOrUnit(const RigCalibration& rig, const GyroCorrelation& rates, Findings* findings) {
   constexpr double kUnitBand = 1.4;  // focal length and translation change the images' rate by less
   if (rates.clocks_differ()) {
     const std::string text = "cam0: " + DescribeClocks(rates, rig.camera_time_offset_s);
@@ -79,7 +79,7 @@ std::string NegatedAxis(const Matrix3d& R_BC_sheet, const Matrix3d& R_BC_found) 
 }
 
 /// Other axes than the sheet's; nothing else is compared then.
-bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
+bool ReportAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
   constexpr double kOtherAxesDeg = 30;
   constexpr double kSameDeg = 15;
   constexpr double kMostStdDeg = 3;
@@ -101,25 +101,25 @@ bool TellAxes(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* 
   }
   if (Angle(sheet.R_BC.transpose(), found.R_BC) < kSameDeg) {
     findings->Error(
-        Format("cam0: T_BS is the inverse of what the images' rotation against the gyroscope says (body to "
-               "camera instead of camera to body; %.0f deg away)",
+        Format("cam0: T_BS is the inverse of the rotation found from images and gyroscope (body to camera "
+               "instead of camera to body; %.0f deg away)",
                angle_deg));
   } else {
     findings->Error(
-        Format("cam0: T_BS has other axes than the images' rotation against the gyroscope says, %.0f deg "
-               "away; found: %s",
+        Format("cam0: T_BS has other axes than the rotation found from images and gyroscope, %.0f deg away; "
+               "found: %s",
                angle_deg, AxesText(found.R_BC).c_str()));
   }
   return true;
 }
 
-void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
+void ReportDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Findings* findings) {
   constexpr double kTimeS = 2e-3, kRotationDeg = 0.5, kFocal = 0.01, kReadoutS = 3e-3;
   const double time_s = fit.model.time_offset_s - sheet.time_offset_s;
   const double time_std_s = fit.deviations[Coordinate::kTimeOffset];
   if (std::abs(time_s) > kTimeS && std::abs(time_s) > kSigmas * time_std_s) {
     findings->Warning(
-        Format("cam0: time_offset_s: images and gyroscope agree at %.4f +- %.4f s, the sheet says %.4f",
+        Format("cam0: time_offset_s: images and gyroscope agree at %.4f +- %.4f s, the sheet has %.4f",
                fit.model.time_offset_s, time_std_s, sheet.time_offset_s));
   }
   const Vector3d turn = so3::Log(sheet.R_BC.transpose() * fit.model.R_BC) * kDegreesPerRadian;
@@ -144,7 +144,7 @@ void TellDifferences(const CameraGyroModel& sheet, const CameraGyroFit& fit, Fin
       std::abs(readout_s - of_sheet_s) > kSigmas * fit.deviations[Coordinate::kReadout]) {
     findings->Warning(
         Format("cam0: rolling shutter: images and gyroscope agree with the rows of an image exposed over "
-               "%.1f +- %.1f ms, line_delay_s of the sheet says %.1f",
+               "%.1f +- %.1f ms, by line_delay_s of the sheet over %.1f",
                1e3 * readout_s, 1e3 * fit.deviations[Coordinate::kReadout], 1e3 * of_sheet_s));
   }
 }
@@ -182,7 +182,7 @@ void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, 
   const CameraGyroModel sheet = ModelOfSheet(rig);
   const GyroCorrelation rates =
       CorrelateGyro(TurnsOfImages(rig.camera, tables.frames), tables.imu, sheet.time_offset_s);
-  if (TellClocksOrUnit(rig, rates, findings)) {
+  if (ReportClocksOrUnit(rig, rates, findings)) {
     return;
   }
   if (rates.best.scale > kMostScale) {
@@ -212,8 +212,8 @@ void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, 
       fit->deviations[Coordinate::kTimeOffset], Angle(sheet.R_BC, fit->model.R_BC),
       100 * (fit->model.camera.intrinsics()[0] / sheet.camera.intrinsics()[0] - 1),
       100 * fit->deviations[Coordinate::kFocal]));
-  if (!TellAxes(sheet, *fit, findings)) {
-    TellDifferences(sheet, *fit, findings);
+  if (!ReportAxes(sheet, *fit, findings)) {
+    ReportDifferences(sheet, *fit, findings);
   }
 }
 

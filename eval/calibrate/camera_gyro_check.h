@@ -20,7 +20,7 @@ namespace alidade {
 /// that differ by more than 0.3 s, or rates in another unit than rad/s, are an error, and nothing else is
 /// compared. Then the epipolar geometry: finds time offset, axes, rotation, focal length and readout time
 /// where they differ from the sheet by more than five standard deviations and by more than matters (2 ms, 0.5
-/// deg, 1 %, 3 ms), as warnings; other axes than the sheet's are an error. A fact tells what was compared, or
+/// deg, 1 %, 3 ms), as warnings; other axes than the sheet's are an error. A fact names what was compared, or
 /// why nothing was. most_pairs: of images, spread evenly over the recording.
 void CheckCameraAgainstGyro(const MeasurementLog& log, std::size_t most_pairs, Findings* findings);
 void CheckCameraAgainstGyro(const RigCalibration& rig, const LogTables& tables, std::size_t most_pairs,

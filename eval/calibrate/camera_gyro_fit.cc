@@ -352,7 +352,7 @@ class Fit {
       }
       squares += (covariance * of_block).cwiseAbs2();
     }
-    // The blocks' gradients sum to about zero at the estimate, and a few blocks know their own scatter badly.
+    // The blocks' gradients sum to about zero at the estimate, and the scatter of a few blocks is uncertain.
     const auto count = static_cast<double>(blocks.size());
     return squares * ((count + 2) / (count - 1));
   }
@@ -376,8 +376,7 @@ Result<CameraGyroFit> FitCameraToGyro(const std::vector<FramePair>& pairs, const
   if (pairs.size() < kLeastPairs) {
     return Status::Input(
         Format("%zu pairs of images in motion share enough tracks, expected at least %zu: the recording is "
-               "too short, at "
-               "rest, or its tracks are",
+               "too short, at rest, or its tracks are",
                pairs.size(), kLeastPairs));
   }
   return Fit(pairs, imu, start, options).Execute();

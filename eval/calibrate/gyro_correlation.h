@@ -69,8 +69,8 @@ struct GyroCorrelation {
 [[nodiscard]] GyroCorrelation CorrelateGyro(const std::vector<ImageTurn>& turns, const Table<ImuSample>& imu,
                                             double time_offset_s);
 
-/// What clocks_differ says, with the time offset to enter instead of the sheet's, or by how much to shift the
-/// stamps where a sheet takes no such offset (kMostCameraOffsetS).
+/// The text for clocks_differ, with the time offset to enter instead of the sheet's, or by how much to shift
+/// the stamps where a sheet takes no such offset (kMostCameraOffsetS).
 [[nodiscard]] std::string DescribeClocks(const GyroCorrelation& rates, double sheet_time_offset_s);
 
 }  // namespace alidade

@@ -66,7 +66,7 @@ class FlagParser {
     }
     for (const std::string& required : command_.required) {
       if (given_.count(required) == 0) {
-        return Usage("--" + WithDashes(required) + " is missing");
+        return Usage("--" + required + " is missing");
       }
     }
     ALIDADE_RETURN_IF_ERROR(CheckSettingsAgree(SplitSettings(FLAGS_set)));
@@ -88,13 +88,12 @@ class FlagParser {
       return Set(name.substr(2), "false");
     }
     if (!Contains(command_.flags, name)) {
-      std::vector<std::string> dashed;
+      std::vector<std::string> known;
       for (const std::string& flag : command_.flags) {
-        dashed.push_back("--" + WithDashes(flag));
+        known.push_back("--" + flag);
       }
-      return Usage("unknown flag '--" + body.substr(0, equals) + "'" +
-                   Suggestion("--" + WithDashes(name), dashed) + " (alidade " + command_.name +
-                   " --help lists them)");
+      return Usage("unknown flag '--" + body.substr(0, equals) + "'" + Suggestion("--" + name, known) +
+                   " (alidade " + command_.name + " --help lists them)");
     }
     if (has_value) {
       return Set(name, body.substr(equals + 1));
@@ -103,7 +102,7 @@ class FlagParser {
       return Set(name, "true");
     }
     if (next_ >= words_.size()) {
-      return Usage("--" + WithDashes(name) + ": found no value, expected --" + WithDashes(name) + "=VALUE");
+      return Usage("--" + name + ": found no value, expected --" + name + "=VALUE");
     }
     return Set(name, words_[next_++]);
   }
@@ -113,15 +112,14 @@ class FlagParser {
     gflags::GetCommandLineFlagInfo(name.c_str(), &info);
     if (!given_.insert(name).second) {
       if (name != "set") {
-        return Usage("--" + WithDashes(name) + ": given twice, expected once");
+        return Usage("--" + name + ": given twice, expected once");
       }
       value = info.current_value + "," + value;
     }
     // gflags reads "-1" as an unsigned number and blanks as part of one.
     const bool negative = info.type == "uint32" && value.starts_with('-');
     if (negative || gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
-      return Usage("--" + WithDashes(name) + ": found '" + value + "', expected a value of type " +
-                   info.type);
+      return Usage("--" + name + ": found '" + value + "', expected a value of type " + info.type);
     }
     return Status::Ok();
   }
@@ -146,7 +144,7 @@ Result<Parsed> ParseCommandLine(const std::vector<std::string>& words) {
   if (words[0] == "help" || words[0] == "--help" || words[0] == "-h" || words[0] == "-help") {
     Parsed parsed;
     parsed.help = true;
-    if (words.size() > 1) {
+    if (words.size() > 1 && words[1] != "help") {
       const Result<const Command*> command = FindCommand(words[1]);
       if (!command.ok()) {
         return command.status();
@@ -171,8 +169,8 @@ std::string GeneralHelp() {
   for (const Command& command : Commands()) {
     text += "  " + Padded(command.name, widest + 2) + command.summary + "\n";
   }
-  text += "  " + Padded("help", widest + 2) +
-          "print this text; `alidade <command> --help` lists the flags of a command\n";
+  text +=
+      "  " + Padded("help", widest + 2) + "print this text; `alidade <command> --help`: flags of a command\n";
   text += "\nExit codes:";
   size_t line_start = text.size();
   for (const ExitCode& exit : ExitCodes()) {

@@ -57,10 +57,10 @@ std::vector<std::string> WorkerWords() {
     words.push_back("--resume");
   }
   if (FLAGS_cell_time_limit_s > 0) {
-    words.push_back(Format("--cell-time-limit-s=%.17g", FLAGS_cell_time_limit_s));
+    words.push_back(Format("--cell_time_limit_s=%.17g", FLAGS_cell_time_limit_s));
   }
   if (FLAGS_cell_memory_limit_mib > 0) {
-    words.push_back(Format("--cell-memory-limit-mib=%.17g", FLAGS_cell_memory_limit_mib));
+    words.push_back(Format("--cell_memory_limit_mib=%.17g", FLAGS_cell_memory_limit_mib));
   }
   return words;
 }

@@ -13,13 +13,13 @@ constexpr const char* kHead =
 )bash";
 
 constexpr const char* kTail = R"bash(
-# One reply a line: the shipped configurations of kind $1 that start with $2, as program $3 knows them, and files.
+# One reply a line: the shipped configurations of kind $1 that start with $2, from program $3, and files.
 _alidade_configs() {
   compgen -W "$("${3/#\~/$HOME}" config --list --kind="$1" 2>/dev/null)" -- "$2"
   compgen -f -- "$2"
 }
 
-# The data sets that start with $1, as program $2 knows them.
+# The data sets that start with $1, from program $2.
 _alidade_sets() {
   "${2/#\~/$HOME}" data list 2>/dev/null | awk 'NR > 1 { print $1 }' | grep "^$1"
 }
@@ -88,7 +88,7 @@ _alidade() {
 complete -F _alidade alidade
 )bash";
 
-/// What the shell knows of a flag's value: words, or "@" and what kind of file it is.
+/// What the shell completes as a flag's value: words, or "@" and what kind of file it is.
 std::string ValuesOf(const FlagDescription& flag) {
   switch (flag.value) {
     case FlagValue::kPath:

@@ -112,7 +112,7 @@ Status OfFlag(const Status& status) {
       !gflags::GetCommandLineFlagInfo(message.substr(0, colon).c_str(), &info)) {
     return status;
   }
-  return Status::Usage("evaluate: --" + WithDashes(message.substr(0, colon)) + message.substr(colon));
+  return Status::Usage("evaluate: --" + message);
 }
 
 }  // namespace

@@ -11,7 +11,9 @@ const std::vector<ExitCode>& ExitCodes() {
       {kExitDiverged, "an estimator diverged or never initialised"},
       {kExitOutput, "output could not be written"},
       {kExitCellsFailed, "some cells of a comparison failed"},
-      {kExitImpaired, "a run was impaired: lost, degraded or without GNSS"},
+      {kExitImpaired,
+       "the run is complete but impaired: lost in between, degraded for long, or without its GNSS or "
+       "position fixes"},
       {kExitInterrupted, "interrupted"}};
   return codes;
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include "eval/cli/flags.h"
+#include "eval/files/output_file.h"
 
 namespace alidade::cli {
 namespace {
@@ -48,10 +50,12 @@ FlagDescription DescribeFlag(const Command& command, const std::string& flag) {
   gflags::CommandLineFlagInfo info;
   gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
   FlagDescription description;
-  description.name = WithDashes(flag);
+  description.name = flag;
   description.text = info.description;
   description.type = info.type;
-  description.fallback = info.default_value;
+  // gflags prints 17 digits.
+  description.fallback =
+      info.type == "double" ? ShortestDouble(std::stod(info.default_value)) : info.default_value;
   description.required =
       std::find(command.required.begin(), command.required.end(), flag) != command.required.end();
   description.words = LeadingWords(info.description);
@@ -60,11 +64,6 @@ FlagDescription DescribeFlag(const Command& command, const std::string& flag) {
                        : flag == "plan" ? ConfigKind::kPlan
                                         : ConfigKind::kEstimator;
   return description;
-}
-
-std::string WithDashes(std::string name) {
-  std::replace(name.begin(), name.end(), '_', '-');
-  return name;
 }
 
 }  // namespace alidade::cli

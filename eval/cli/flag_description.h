@@ -19,7 +19,7 @@ enum class FlagValue {
 
 /// One flag of one command, as the help, the manual page and the shell's completion describe it.
 struct FlagDescription {
-  std::string name;  ///< with dashes, without those in front
+  std::string name;  ///< without the dashes in front
   std::string text;
   std::string type;      ///< bool, int32, uint32, double or string
   std::string fallback;  ///< as the program is built, not as it was called
@@ -31,8 +31,5 @@ struct FlagDescription {
 
 /// `flag` is one of command.flags. Words are read from the flag's text, which starts with "a | b | c: ".
 [[nodiscard]] FlagDescription DescribeFlag(const Command& command, const std::string& flag);
-
-/// Flags are declared with underscores and written with dashes.
-[[nodiscard]] std::string WithDashes(std::string name);
 
 }  // namespace alidade::cli

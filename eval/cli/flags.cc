@@ -23,14 +23,14 @@ DEFINE_string(association, "alidade",
 DEFINE_bool(audit, false, "write observability.csv: the observability audit of the filter");
 DEFINE_string(backend, "", "filter | smoother | batch: overrides the key `backend` of the configuration");
 DEFINE_string(calibration, "", "calibration files of Kalibr, OpenVINS or VINS, separated by commas");
-DEFINE_string(camera, "cam0", "camera to use from calibration files with several");
+DEFINE_string(camera, "cam0", "camera to import if a calibration file holds several");
 DEFINE_string(catalogue, "", "catalogue of data sets, instead of the shipped one");
 DEFINE_double(cell_memory_limit_mib, 0,
-              "memory of a cell, its input and what it starts included, beyond which it is ended and has "
-              "failed [MiB]; 0: no limit");
+              "memory limit of a cell, including its input and what it starts; a cell that exceeds it is "
+              "killed and counts as failed [MiB]; 0: no limit");
 DEFINE_double(cell_time_limit_s, 0,
-              "wall time of a cell, its input included, after which it is ended and has failed [s]; 0: no "
-              "limit");
+              "wall-time limit of a cell, including loading its input; a cell that exceeds it is killed and "
+              "counts as failed [s]; 0: no limit");
 DEFINE_bool(check, false, "report the faults of a configuration file");
 DEFINE_string(clk, "", "precise clocks, RINEX CLK, separated by commas");
 DEFINE_string(compression, "none", "none | bz2 | lz4: compression of the chunks of a bag");
@@ -57,9 +57,8 @@ DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into f
 DEFINE_bool(interpolate, false,
             "interpolate the truth at the stamps of the estimate instead of pairing rows");
 DEFINE_int32(jobs, 1,
-             "number of parallel runs, of images rendered or of likelihoods evaluated in parallel; parallel "
-             "runs share the caches, so "
-             "their times are not comparable");
+             "number of parallel jobs: runs, rendered images or likelihoods; times of parallel runs are not "
+             "comparable");
 DEFINE_bool(json, false, "print the result as JSON");
 DEFINE_string(kind, "estimator", "estimator | simulator | plan: kind of the configuration file");
 DEFINE_double(limit, 5, "duration of the data available to a start [s]");
@@ -90,16 +89,16 @@ DEFINE_bool(rpe_all_pairs, false, "of --rpe_by=evo: overlapping pairs instead of
 DEFINE_string(rpe_by, "alidade", "alidade | evo | rpg: whose definition of the relative pose error");
 DEFINE_bool(rpe_pairs_from_truth, false,
             "of --rpe_by=evo: measure the deltas along the truth instead of along the estimate");
-DEFINE_double(rpe_tolerance, 0.1, "of --rpe_by=evo: share of a delta by which a pair of all may miss it");
+DEFINE_double(rpe_tolerance, 0.1, "with --rpe_all_pairs: relative tolerance of the delta");
 DEFINE_string(rpe_unit, "frames", "frames | m | deg | rad: unit of the deltas of --rpe_by=evo");
 DEFINE_bool(score, false,
-            "judge the tracks: life, loss, coverage, CPU time, consistency with the truth, and errors of "
+            "score the tracks: life, loss, coverage, CPU time, consistency with the truth, and errors of "
             "corners in rendered images; writes score.json and score.csv");
 DEFINE_uint32(seed, 1, "seed of the simulation, and of the start drawn by init.method truth");
 DEFINE_string(set, "",
               "a.b=value,...: override keys of the configuration file; may be repeated for other keys");
 DEFINE_bool(show, false, "print the resolved configuration with the reason of every key");
-DEFINE_string(slurm_options, "", "words for sbatch, such as \"--partition=long --time=60\"");
+DEFINE_string(slurm_options, "", "arguments of sbatch, such as \"--partition=long --time=60\"");
 DEFINE_string(sp3, "", "precise orbits, SP3, separated by commas");
 DEFINE_string(stage, "all",
               "all | worker | tracks | cells | tables: one stage of a comparison, as the processes of an "
@@ -110,7 +109,7 @@ DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows a
 DEFINE_string(
     topics, "",
     "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones (docs/bags.md)");
-DEFINE_string(tracks, "", "tracks.csv to judge with --score, instead of tracks of the front end");
+DEFINE_string(tracks, "", "tracks.csv to score with --score, instead of tracks of the front end");
 DEFINE_string(truth, "", "ground-truth trajectory file");
 DEFINE_double(truth_rate, 0,
               "largest rate of the poses of the truth that are used [Hz]; 0: all. Their errors should be "

@@ -2,7 +2,7 @@
 
 #include <gflags/gflags.h>
 
-// Every flag of the program; eval/cli/commands.cc says which command takes which. The only folder that knows
+// Every flag of the program; eval/cli/commands.cc lists which command takes which. The only folder that knows
 // gflags.
 DECLARE_string(align);
 DECLARE_bool(anchor_at_first);

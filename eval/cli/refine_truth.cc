@@ -56,7 +56,7 @@ Status CheckFolders() {
     return Status::Usage(
         "refine_truth: --dataset: found a bag, expected a folder (alidade convert makes one)");
   }
-  // Whoever reads the dataset says what is wrong with it.
+  // Whoever reads the dataset reports what is wrong with it.
   if (Status shared = CheckRefinedOutput(FLAGS_dataset, FLAGS_output); shared.code() == StatusCode::kUsage) {
     return shared;
   }

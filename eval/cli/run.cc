@@ -63,7 +63,8 @@ Result<LogTables> TablesWithProgress(const Dataset& dataset, const FrontendConfi
   return MakeTables(dataset, frontend, options, SpoolFolder());
 }
 
-/// What `check` says of the sequence: warnings go to standard error, errors end the run before it begins.
+/// The findings of `check` on the sequence: warnings go to standard error, errors end the run before it
+/// begins.
 Status CheckFirst(const Dataset& dataset, const LogTables& tables) {
   constexpr size_t kMostPairs = 60;
   Findings findings;
@@ -108,7 +109,7 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
   return RunEstimator(config, log, tables, options);
 }
 
-/// What there is to say of a run that was written, and its exit code.
+/// Prints the summary of a run that was written; returns its exit code.
 int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTables& tables,
              const MeasurementLog& log, const RunResult& result, const std::atomic<bool>* stop) {
   const RunHealth health = HealthOf(config, result);

@@ -6,7 +6,7 @@
 
 namespace alidade::cli {
 
-/// `track --score`: judges tracks of a sequence against its truth and the hall of its renderer, as far as it
+/// `track --score`: scores tracks of a sequence against its truth and the hall of its renderer, as far as it
 /// has them; writes score.json and score.csv into --output and prints the score. cpu_ms: of the tracker, one
 /// a frame, or none.
 Status ReportTrackScore(const Dataset& dataset, const std::vector<TrackFrame>& tracks,

@@ -26,7 +26,7 @@ Result<std::vector<std::string>> ShippedConfigs(ConfigKind kind);
 
 /// The file that a word of the command line means: a file that exists; or else `configs/...`, or a name with
 /// or without ".yaml", among the shipped ones. A word that looks like a path is returned as it is if nothing
-/// is found: its reader says what is wrong with it. Error (kConfig): a name that is neither, with a
+/// is found: its reader reports what is wrong with it. Error (kConfig): a name that is neither, with a
 /// suggestion; ShippedConfigsFolder's.
 Result<std::string> LocateConfig(ConfigKind kind, const std::string& text);
 

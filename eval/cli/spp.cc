@@ -75,7 +75,7 @@ int Run() {
   if (!config.ok()) {
     return Report(config.status());
   }
-  // Twice through the file, which may be longer than memory: what its event records say of the receiver holds
+  // Twice through the file, which may be longer than memory: the receiver's data in its event records hold
   // for all epochs.
   std::size_t epochs = 0;
   const Result<ObservationFile> observations = ScanRinexObservation(FLAGS_obs, nullptr, &epochs);

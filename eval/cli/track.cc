@@ -55,7 +55,7 @@ Result<std::vector<TrackFrame>> GivenTracks(const Dataset& dataset) {
   return FLAGS_score && dataset.images.empty() ? dataset.frames : std::vector<TrackFrame>();
 }
 
-/// Runs the front end over the images, writes what it leaves, and judges it if asked to.
+/// Runs the front end over the images, writes what it leaves, and scores it if asked to.
 int TrackAndWrite(const FrontendConfig& config, Dataset* dataset) {
   std::vector<TrackerStatistics> statistics;
   std::vector<double> cpu_ms;

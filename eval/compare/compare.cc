@@ -147,7 +147,7 @@ class Comparer {
     NoteInput(cell, *report);
   }
 
-  /// Says once an input what was odd about it and what its front end did, and keeps the latter for the
+  /// Prints once an input the remarks on it and the figures of its front end, and keeps the latter for the
   /// tables.
   void NoteInput(const CompareCell& cell, const CellReport& report) {
     if (!noted_.insert(cell.input).second) {

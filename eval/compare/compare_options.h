@@ -39,7 +39,7 @@ struct CompareOptions {
   std::vector<std::string> worker;
   CellLimits limits;          ///< of cells in worker processes
   bool slurm = false;         ///< cells run as jobs of Slurm, started with the words of `worker`
-  std::string slurm_options;  ///< words for sbatch
+  std::string slurm_options;  ///< arguments of sbatch
   std::function<void(const std::string& line)> progress;
 
   [[nodiscard]] bool Stopped() const { return stop != nullptr && stop->load(); }

@@ -27,7 +27,7 @@ class SlurmRun {
   Status Submit();
   Result<std::string> SubmitJob(const std::string& name, size_t tasks, const std::string& stage,
                                 const std::string& after);
-  /// Tells of the cells whose report has come since the last call.
+  /// Reports the cells whose report has come since the last call.
   void Scan();
   [[nodiscard]] bool Exists() const;
 

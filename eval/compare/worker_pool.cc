@@ -67,7 +67,7 @@ void WorkerPool::Feed() {
       worker->cell = queue_.Next(worker->last);
       if (worker->cell) {
         worker->begin = Clock::now();
-        worker->process.Tell(std::to_string(*worker->cell));
+        worker->process.Send(std::to_string(*worker->cell));
       }
     }
     worker =
@@ -115,11 +115,11 @@ std::string WorkerPool::BeyondLimit(const Worker& worker) const {
   const CellLimits& limits = options_.limits;
   if (limits.time_s > 0 &&
       std::chrono::duration<double>(Clock::now() - worker.begin).count() > limits.time_s) {
-    return Format("took longer than %g s (--cell-time-limit-s)", limits.time_s);
+    return Format("took longer than %g s (--cell_time_limit_s)", limits.time_s);
   }
   constexpr double kMib = 1 << 20;
   if (limits.memory_mib > 0 && static_cast<double>(worker.process.Memory()) > limits.memory_mib * kMib) {
-    return Format("took more than %g MiB of memory (--cell-memory-limit-mib)", limits.memory_mib);
+    return Format("took more than %g MiB of memory (--cell_memory_limit_mib)", limits.memory_mib);
   }
   return {};
 }

@@ -87,7 +87,7 @@ WorkerProcess::~WorkerProcess() {
   Join();
 }
 
-void WorkerProcess::Tell(const std::string& line) const {
+void WorkerProcess::Send(const std::string& line) const {
   const std::string text = line + "\n";
   // Shorter than a pipe's buffer: written at once or not at all. SIGPIPE of an ended worker is ignored.
   const auto before = std::signal(SIGPIPE, SIG_IGN);

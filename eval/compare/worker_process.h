@@ -26,7 +26,7 @@ class WorkerProcess {
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   /// Sends a line. Lines to a process that has ended are lost.
-  void Tell(const std::string& line) const;
+  void Send(const std::string& line) const;
   /// Reads what has come; blocks when nothing has. False: the process closed its output.
   bool Read();
   /// The next whole line that was read.
@@ -40,7 +40,7 @@ class WorkerProcess {
   void Kill() const;
   /// Of the process and all that it started (MemoryOfTree) [bytes].
   [[nodiscard]] int64_t Memory() const;
-  /// Closes its input, waits for its end, and says how it ended: "code 3", "signal 9 (Killed)".
+  /// Closes its input, waits for its end, and returns how it ended: "code 3", "signal 9 (Killed)".
   std::string Join();
 
  private:

@@ -35,7 +35,7 @@ AggregateRow AggregateCells(const std::vector<const CellResult*>& cells, const s
   row.sequence = cells.front()->sequence;
   for (const CellResult* cell : cells) {
     CountStatus(*cell, &row);
-    // A cell that failed early may not know its back end.
+    // A cell that failed early may have no back end yet.
     row.backend = row.backend.empty() ? cell->backend : row.backend;
     row.smoothed = row.smoothed || cell->smoothed;
   }
@@ -59,7 +59,7 @@ AggregateRow AggregateCells(const std::vector<const CellResult*>& cells, const s
   return row;
 }
 
-/// An estimate that knows the future is no rival of those that do not.
+/// An estimate that uses later data is not ranked among those that do not.
 bool IsRival(const AggregateRow& row, int most_ok) {
   return row.ok == most_ok && !row.smoothed;
 }

@@ -18,7 +18,7 @@ struct CellSeries {
   std::vector<bool> regular;   ///< evenly spaced rows, the only ones used in means; empty: all
   std::vector<double> time_s;  ///< since the first pair
   std::vector<Eigen::Vector3d> truth_position;
-  std::vector<Eigen::Vector3d> position;  ///< aligned as the plan says
+  std::vector<Eigen::Vector3d> position;  ///< aligned as in the plan
   std::vector<Vector6d> error;            ///< (phi [rad], dp [m]) unaligned, canonical chart
   std::vector<Vector6d> sigma;            ///< standard deviations of the same
   std::vector<double> nees_pose;
@@ -107,7 +107,7 @@ struct CellResult {
   std::vector<SkyTrack> sky;  ///< empty without GNSS
 };
 
-/// "causal" or "smoothed", as plans say it.
+/// "causal" or "smoothed", as in plans.
 [[nodiscard]] std::string ModeWord(bool smoothed);
 
 /// A published figure to print beside the measured ones.

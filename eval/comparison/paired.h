@@ -67,11 +67,11 @@ inline constexpr const char* kAllSequences = "all sequences";
 /// All pairs of rows of each sequence and each figure that IsPaired, by sequence, figure, first, second. A
 /// pair of runs has the same seed and input digest and both runs ended ok. Pairs of rows of which no run has
 /// the value are left out; of a figure of all runs (Figure::of_all_runs) the end does not matter, nor does a
-/// digest that is missing because the run was killed. With
-/// Comparison::pair_across rows over all sequences follow, one sample a sequence (its mean difference), so
-/// the interval generalises over sequences; their counts of runs are sums, `pairs` and `lower` count
-/// sequences. Intervals and verdicts are not corrected for the number of comparisons: of twenty pairs without
-/// a difference one will look significant. `holm_p_value` is.
+/// digest that is missing because the run was killed. With Comparison::pair_across rows over all sequences
+/// follow, one sample a sequence (its mean difference), so the interval generalises over sequences; their
+/// counts of runs are sums, `pairs` and `lower` count sequences. Intervals and verdicts are not corrected for
+/// the number of comparisons: of twenty pairs without a difference one will look significant. `holm_p_value`
+/// is.
 [[nodiscard]] std::vector<PairedDifference> ComparePairs(const Comparison& comparison,
                                                          const std::vector<Figure>& figures);
 

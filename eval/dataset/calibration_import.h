@@ -17,7 +17,7 @@ struct ImportedCalibration {
   std::optional<CameraSensor> camera;
 };
 
-/// Reads calibration files, each known by its keys; the first one that says something counts. `camera`
+/// Reads calibration files, each recognised by its keys; the first one with a value counts. `camera`
 /// chooses among several: cam0, cam1.
 ///
 ///   Kalibr      camchain (T_cam_imu, timeshift_cam_imu), omni-radtan as the model mei, ds as double-sphere,

@@ -29,14 +29,14 @@ void CheckLives(const Dataset& dataset, size_t frames, int longest, Findings* fi
     return;
   }
   if (longest == 1) {
-    TellUseless(
+    ReportUseless(
         dataset,
         Format("cam0: no track lasts: in %zu frames every track_id occurs once, expected the same id in "
                "following frames: are the ids numbered anew in each?",
                frames),
         findings);
   } else if (longest == 0) {
-    TellUseless(dataset, Format("cam0: no observation in %zu frames, expected tracks", frames), findings);
+    ReportUseless(dataset, Format("cam0: no observation in %zu frames, expected tracks", frames), findings);
   } else {
     findings->Warning(
         Format("cam0: no track of the %zu frames has more than %d observations, expected three or more",
@@ -125,7 +125,7 @@ void CheckTimes(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findi
   constexpr double kJitter = 1.1;
   std::optional<double> rate_hz = 0;
   if (stamps.size() == 1) {
-    TellUseless(
+    ReportUseless(
         dataset,
         "cam0: a single frame, expected at least two: a track begins in one and is seen again in another",
         findings);
@@ -135,7 +135,7 @@ void CheckTimes(const std::vector<TimeNs>& stamps, const Dataset& dataset, Findi
   const TimeNs offset_ns = SecondsToNs(dataset.rig.camera_time_offset_s);
   const TimeNs first_ns = stamps.front() + offset_ns;
   const TimeNs last_ns = stamps.back() + offset_ns;
-  // In this order: a span that tells the unit explains the rate.
+  // In this order: a span that reveals the unit explains the rate.
   if (!rate_hz || !CheckSpan("cam0", first_ns, last_ns, dataset, findings)) {
     return;
   }

@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-/// What the covariances of one sensor's fixes say of its deviation along its least and most certain axis.
+/// The deviation by the covariances of one sensor's fixes, along its least and most certain axis.
 struct Deviations {
   double least_m = INFINITY;
   double largest_m = 0;
@@ -106,8 +106,7 @@ void CheckPlaces(const char* name, bool has_anchor, const std::vector<const Posi
   if (first != nullptr) {
     const std::string text = Format(
         "%s: %zu of %zu positions are absurd, the first of %lld ns: found p_x, p_y, p_z [%.6g, %.6g, %.6g] "
-        "m, "
-        "expected %s",
+        "m, expected %s",
         name, absurd, fixes.size(), static_cast<long long>(first->stamp_ns), first->p_A.x(), first->p_A.y(),
         first->p_A.z(), expected);
     if (2 * impossible > fixes.size()) {
@@ -188,8 +187,7 @@ void CheckFixes(const Dataset& dataset, Findings* findings) {
   if (own_frames > 0 && dataset.rig.fixes.size() > 1) {
     findings->Warning(
         "fix: more than one sensor, and not every sheet has an anchor_llh_deg: frames of their own are not "
-        "related, "
-        "only fixes in the frame of the first sensor are used");
+        "related, only fixes in the frame of the first sensor are used");
   }
 }
 

@@ -18,7 +18,7 @@
 namespace alidade {
 namespace {
 
-void Tell(bool impossible, std::string text, Findings* findings) {
+void AddFinding(bool impossible, std::string text, Findings* findings) {
   if (impossible) {
     findings->Error(std::move(text));
   } else {
@@ -75,13 +75,13 @@ void CheckField(const CameraSheet& sheet, Findings* findings) {
     return;
   }
   const Eigen::Vector4d& intrinsics = sheet.camera.intrinsics();
-  Tell(field_deg < kLeastDeg || field_deg > most_deg,
-       Format("%s: intrinsics: found fu %.6g px, fv %.6g px for %d x %d px, a field of view of %.3g deg, "
-              "expected "
-              "%.0f to %.0f deg: focal lengths in another unit, or of another resolution?",
-              sheet.name.c_str(), intrinsics[0], intrinsics[1], sheet.camera.width_px(),
-              sheet.camera.height_px(), field_deg, kNarrowDeg, wide_deg),
-       findings);
+  AddFinding(
+      field_deg < kLeastDeg || field_deg > most_deg,
+      Format("%s: intrinsics: found fu %.6g px, fv %.6g px for %d x %d px, a field of view of %.3g deg, "
+             "expected %.0f to %.0f deg: focal lengths in another unit, or of another resolution?",
+             sheet.name.c_str(), intrinsics[0], intrinsics[1], sheet.camera.width_px(),
+             sheet.camera.height_px(), field_deg, kNarrowDeg, wide_deg),
+      findings);
 }
 
 void CheckPixels(const CameraSheet& sheet, Findings* findings) {
@@ -91,10 +91,10 @@ void CheckPixels(const CameraSheet& sheet, Findings* findings) {
   const Eigen::Vector4d& intrinsics = sheet.camera.intrinsics();
   const double ratio = std::max(intrinsics[0] / intrinsics[1], intrinsics[1] / intrinsics[0]);
   if (ratio > kUnequal) {
-    Tell(ratio > kMostUnequal,
-         Format("%s: intrinsics: found fu %.6g px and fv %.6g px, expected about equal focal lengths",
-                sheet.name.c_str(), intrinsics[0], intrinsics[1]),
-         findings);
+    AddFinding(ratio > kMostUnequal,
+               Format("%s: intrinsics: found fu %.6g px and fv %.6g px, expected about equal focal lengths",
+                      sheet.name.c_str(), intrinsics[0], intrinsics[1]),
+               findings);
   }
 }
 
@@ -126,10 +126,11 @@ void CheckArm(const std::string& place, const Eigen::Vector3d& arm, const ArmLim
               Findings* findings) {
   const double length = arm.norm();
   if (length > limits.unlikely) {
-    Tell(length > limits.impossible,
-         Format("%s: found [%.6g, %.6g, %.6g], %.4g m from the IMU, expected at most %.0f m: in mm or cm?",
-                place.c_str(), arm.x(), arm.y(), arm.z(), length, limits.unlikely),
-         findings);
+    AddFinding(
+        length > limits.impossible,
+        Format("%s: found [%.6g, %.6g, %.6g], %.4g m from the IMU, expected at most %.0f m: in mm or cm?",
+               place.c_str(), arm.x(), arm.y(), arm.z(), length, limits.unlikely),
+        findings);
   }
 }
 
@@ -138,7 +139,7 @@ void CheckCameraSheet(const CameraSheet& sheet, Findings* findings) {
   CheckPixels(sheet, findings);
   CheckPrincipalPoint(sheet, findings);
   CheckArm(sheet.name + ": T_BS: translation", sheet.T_BC.translation, kCameraArm, findings);
-  // Clocks may be seconds apart; an offset that leaves no common time is CheckSpan's to tell.
+  // Clocks may be seconds apart; an offset that leaves no common time is reported by CheckSpan.
   if (std::abs(sheet.time_offset_s) > kMostCameraOffsetS) {
     findings->Warning(Format("%s: time_offset_s: found %g s, expected within +-%g s: in ms?",
                              sheet.name.c_str(), sheet.time_offset_s, kMostCameraOffsetS));

@@ -62,7 +62,7 @@ void Findings::Error(std::string text) {
   list_.push_back({DatasetFinding::Severity::kError, std::move(text)});
 }
 
-void TellUseless(const Dataset& dataset, std::string text, Findings* findings) {
+void ReportUseless(const Dataset& dataset, std::string text, Findings* findings) {
   bool has_positions = dataset.gnss != nullptr;
   ForEachSensorEntry(
       [&](auto entry, Sensor) { has_positions = has_positions || !entry.Measurements(dataset).empty(); });

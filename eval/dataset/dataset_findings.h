@@ -31,10 +31,10 @@ class Findings {
 
 /// A fault without which nothing can be estimated from the camera: an error, or a warning beside GNSS or
 /// fixes, with which an estimator may do without it.
-void TellUseless(const Dataset& dataset, std::string text, Findings* findings);
+void ReportUseless(const Dataset& dataset, std::string text, Findings* findings);
 
 /// Rate, span and gaps of one sensor. A gap is a step of more than three median steps. stated_rate_hz: 0 when
-/// no sheet says one. Returns the rate of the median step [Hz], which gaps do not lower, or above
+/// no sheet has one. Returns the rate of the median step [Hz], which gaps do not lower, or above
 /// limits.high_hz the mean rate if that is less; 0 of fewer than two stamps. None: the stamps are in another
 /// unit than nanoseconds, an error of which nothing else is to be said.
 std::optional<double> CheckStamps(const char* sensor, const std::vector<TimeNs>& stamps,

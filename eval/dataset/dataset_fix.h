@@ -14,13 +14,13 @@ class LogHasher;
 /// `dataset`. Keys of sensor.yaml:
 ///
 ///   sensor_type     position, may be left out
-///   p_BA            the point that is measured in the body frame [m], three numbers; `unknown` counts as
-///   zero time_offset_s   t_imu = t_fix + offset, default 0 anchor_llh_deg  latitude [deg], longitude [deg],
-///   height above the ellipsoid [m] of the origin of the ENU frame
-///                   that the fixes stand in; without it they stand in a gravity-aligned frame of their own
-///   positions       file in the folder, default data.csv; .pos: RTKLIB's; .nmea, .txt, .log: NMEA 0183. Of
-///   the last
-///                   two stamps are GPST, and the anchor is the first position if the sheet gives none
+///   p_BA            the point that is measured in the body frame [m], three numbers; `unknown` is zero
+///   time_offset_s   t_imu = t_fix + offset, default 0
+///   anchor_llh_deg  latitude [deg], longitude [deg], height above the ellipsoid [m] of the origin of the
+///                   ENU frame of the fixes; without it they are in a gravity-aligned frame of their own
+///   positions       file in the folder, default data.csv; .pos: RTKLIB's; .nmea, .txt, .log: NMEA 0183.
+///                   The stamps of RTKLIB and NMEA are GPST, and without an anchor in the sheet theirs is
+///                   the first position
 ///   date            YYYY-MM-DD, UTC, of NMEA sentences that hold no date
 ///
 /// Other keys are remarks. Errors (kInput): a key's value with file:line:column; of data.csv file and line of
@@ -33,7 +33,7 @@ Status WriteFixFolders(const Dataset& dataset, const std::string& mav);
 
 /// The text of sensor.yaml.
 [[nodiscard]] std::string FixSensorYaml(const FixSensor& sensor);
-/// What a sensor.yaml says about the sensor; the file it names does not matter. `where` stands for the file
+/// The sensor as a sensor.yaml describes it; the file it names does not matter. `where` stands for the file
 /// in messages.
 Result<FixSensor> ParseFixSheet(const std::string& text, const std::string& where);
 

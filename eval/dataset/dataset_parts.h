@@ -20,7 +20,7 @@ struct DatasetPart {
   /// Adds the part to the digest of a log with these long tables; nothing when the log has none of it.
   /// Errors: the tables'.
   Status (*digest)(const MeasurementLog& log, const LogTables& tables, LogHasher* hasher);
-  /// What `check` says about it.
+  /// The findings of `check` about it.
   void (*check)(const Dataset& dataset, Findings* findings);
 };
 

@@ -17,9 +17,9 @@ Result<std::vector<TrackFrame>> ReadTracks(const std::string& path);
 /// The same into a table of files (Table::InFile).
 Status ReadTracks(const std::string& path, Table<TrackFrame>* frames);
 
-/// tracks.csv cannot say that a frame saw nothing; timestamps.csv beside it can. All frames, with those of
-/// `tracks` where they saw something, are handed to `take`. kInput: a frame of `tracks` that is not in
-/// `stamps`.
+/// tracks.csv has no rows of a frame that saw nothing; timestamps.csv beside it has its stamp. All frames,
+/// with those of `tracks` where they saw something, are handed to `take`. kInput: a frame of `tracks` that is
+/// not in `stamps`.
 Status AddEmptyFrames(const std::string& tracks_path, const std::vector<TimeNs>& stamps,
                       const Table<TrackFrame>& tracks, const std::function<Status(const TrackFrame&)>& take);
 

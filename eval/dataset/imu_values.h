@@ -18,7 +18,7 @@ struct SoundColumns {
   bool force = true;
 };
 
-/// What all samples of an IMU together say of its units and axes.
+/// Statistics over all samples of an IMU, for its units and axes.
 class ImuValues {
  public:
   void Add(const ImuSample& sample);
@@ -34,7 +34,7 @@ class ImuValues {
   [[nodiscard]] bool GroupsSeemExchanged() const;
   /// "accelerometer z is 0": of the axes [first, last) that never change; empty without one.
   [[nodiscard]] std::string DeadAxes(int first, int last) const;
-  /// False: an error was told.
+  /// False: an error was reported.
   bool CheckForce(Findings* findings) const;
   bool CheckRate(Findings* findings) const;
   void CheckRepeated(Findings* findings) const;

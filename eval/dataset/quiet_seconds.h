@@ -10,10 +10,10 @@
 
 namespace alidade {
 
-/// What the calm seconds of an IMU say, from one pass that keeps one number a second. A second is calm when
-/// its rates and specific forces spread less than the static start allows (InitConfig) and its mean rate is
-/// below kMostBias. Neglected: steady motion, which spreads as little as rest; medians over seconds bear some
-/// of it.
+/// Statistics of the calm seconds of an IMU, from one pass that keeps one number a second. A second is calm
+/// when its rates and specific forces spread less than the static start allows (InitConfig) and its mean rate
+/// is below kMostBias. Neglected: steady motion, which spreads as little as rest; medians over seconds bear
+/// some of it.
 class QuietSeconds {
  public:
   /// Rising stamps.
@@ -21,7 +21,7 @@ class QuietSeconds {
 
   /// Of calm seconds so far; the one at hand is not among them.
   [[nodiscard]] std::size_t count() const { return forces_.size(); }
-  /// Of seconds so far that were judged: of ten samples or more.
+  /// Of seconds so far that count: of ten samples or more.
   [[nodiscard]] std::size_t judged() const { return judged_; }
   /// Median norm of the mean specific force over calm seconds [m/s^2]; none from fewer than three.
   [[nodiscard]] std::optional<double> SpecificForce() const;

@@ -27,7 +27,7 @@ inline constexpr RateLimits kImuRates{1.2 / imu_gap::kMinGapS, 50, 1e4, 1e5, 33}
 inline constexpr RateLimits kCameraRates{0, 0, 250, 1e4, 8};
 /// Receivers deliver at most 100 raw epochs a second; reference stations one in 30 s.
 inline constexpr RateLimits kGnssRates{0, 0, 110, 1e4, 0};
-/// Of truth and position fixes, whose rates range too widely to tell a unit; UnitByReference does.
+/// Of truth and position fixes, whose rates range too widely to identify a unit; UnitByReference does.
 inline constexpr RateLimits kAnyRates{0, 0, std::numeric_limits<double>::infinity(),
                                       std::numeric_limits<double>::infinity(), 0};
 

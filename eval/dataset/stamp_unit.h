@@ -17,8 +17,8 @@ struct StampUnit {
 /// The unit of `count` stamps that were read as nanoseconds, if their mean rate is above limits.high_hz as
 /// they are, and in that unit is the rate of the sheet or one above limits.unit_hz, up to limits.high_hz;
 /// else null, also for fewer than eleven stamps and for stamps that have the sheet's rate as they are. The
-/// mean rate, as rows that arrive in bursts have tiny median steps. stated_rate_hz: 0 when no sheet says one.
-/// Stamps that begin at 0 are told by their rate like those of a date.
+/// mean rate, as rows that arrive in bursts have tiny median steps. stated_rate_hz: 0 without a sheet.
+/// Stamps that begin at 0 are recognised by their rate like those of a date.
 [[nodiscard]] const StampUnit* OtherStampUnit(TimeNs first, TimeNs last, std::size_t count,
                                               double stated_rate_hz, const RateLimits& limits);
 

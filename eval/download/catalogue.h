@@ -15,7 +15,7 @@ struct CatalogueFile {
   std::string path;  ///< appended to the base of its data set
   ExpectedFile expected;
   std::string size;      ///< as stated by the publisher where that is not exact: "20.5 GB"
-  std::string contents;  ///< empty: the name says it
+  std::string contents;  ///< empty: clear from the name
 };
 
 /// A published data set.
@@ -30,7 +30,7 @@ struct CatalogueDataset {
   std::vector<CatalogueFile> files;
 };
 
-/// Reads a catalogue (configs/data/catalogue.yaml says what the keys are). Errors (kConfig): file:line:column
+/// Reads a catalogue (configs/data/catalogue.yaml describes the keys). Errors (kConfig): file:line:column
 /// and what was expected: an unknown, missing or ill-typed key, a name used twice or with characters that are
 /// none of a folder's, a digest of a wrong length, a base that is neither http nor https.
 Result<std::vector<CatalogueDataset>> ReadCatalogue(const std::string& path);

@@ -18,7 +18,7 @@ struct DownloadRequest {
   double pause_s = 2;         ///< before the next attempt
 };
 
-/// Bytes on disk and in total; total 0: the server does not say.
+/// Bytes on disk and in total; total 0: unknown.
 using DownloadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 }  // namespace alidade

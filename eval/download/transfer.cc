@@ -186,7 +186,7 @@ TransferResult ResultOf(Transfer* transfer) {
     return {TransferOutcome::kInterrupted, Status::Input("the server has no such range"), 0, false};
   }
   if (code != kHttpOk && code != kHttpPartial) {
-    // Codes from 500 on, and 408 and 429, say: later.
+    // Codes from 500 on, and 408 and 429, mean: later.
     const bool later = code >= 500 || code == 408 || code == 429;
     const std::string answer = "the server answers " + std::to_string(code);
     return {later ? TransferOutcome::kInterrupted : TransferOutcome::kRefused,

@@ -9,7 +9,7 @@
 namespace alidade {
 
 enum class TransferOutcome {
-  kComplete,     ///< the file is whole, as far as the server says
+  kComplete,     ///< the file is whole, by the length that the server gave
   kInterrupted,  ///< the connection broke or was never made: worth another attempt
   kRefused,      ///< another attempt would end likewise
 };
@@ -17,7 +17,7 @@ enum class TransferOutcome {
 struct TransferResult {
   TransferOutcome outcome = TransferOutcome::kInterrupted;
   Status status;            ///< not ok unless complete
-  std::uint64_t total = 0;  ///< bytes of the whole file as the server says; 0: unknown
+  std::uint64_t total = 0;  ///< bytes of the whole file, from the server; 0: unknown
   bool continued = false;   ///< what came was appended
 };
 

@@ -42,7 +42,7 @@ std::string HeaderText(const CsvColumn& column) {
 
 bool HeaderMatches(std::string_view field, const CsvColumn& column) {
   std::string found = WithoutBlanks(field.starts_with('#') ? field.substr(1) : field);
-  if (found.ends_with("[]")) {  // EuRoC's way to say that a quaternion has no unit
+  if (found.ends_with("[]")) {  // EuRoC's mark of a quaternion, which has no unit
     found.resize(found.size() - 2);
   }
   return found == WithoutBlanks(HeaderText(column)) || (!column.unit_required && found == column.name);

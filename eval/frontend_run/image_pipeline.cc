@@ -29,7 +29,7 @@ class UnreadableImages {
                                first_);
   }
 
-  void Tell(const std::string& sequence, const std::function<void(const std::string&)>& remark) const {
+  void Report(const std::string& sequence, const std::function<void(const std::string&)>& remark) const {
     if (count_ > 0) {
       remark(sequence + Format(": %zu of %zu images skipped, the first: ", count_, images_) + first_);
     }
@@ -140,7 +140,7 @@ Status TrackImages(const Dataset& dataset, const FrontendConfig& config, const P
     return take(frame);
   });
   if (options.remark) {
-    unreadable.Tell(dataset.path, options.remark);
+    unreadable.Report(dataset.path, options.remark);
   }
   return status;
 }

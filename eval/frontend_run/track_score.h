@@ -78,7 +78,7 @@ struct ExposureTime {
   double row = 0;  ///< y of the pixel
 };
 
-/// What tracks are judged against.
+/// What tracks are scored against.
 struct TrackTruth {
   /// Pose of the camera; empty where the truth has none. No function: no truth.
   std::function<std::optional<Pose>(const ExposureTime& time)> T_WC;

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The rows that say something: a refused track's are zero.
+/// The rows that are not zero; those of a refused track are.
 void KeepRows(const FilterRows& all, MatrixXd* rows, VectorXd* innovation) {
   std::vector<Index> kept;
   for (Index i = 0; i < all.jacobian.rows(); ++i) {

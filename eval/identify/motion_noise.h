@@ -30,7 +30,7 @@ struct HalfFit {
   std::array<int, 4> dof = {};
 };
 
-/// What the innovations of a recording in motion say about the noise of its sensors.
+/// The noise of a recording's sensors from the innovations of a filter in motion.
 struct MotionNoise {
   std::vector<IdentifiedNoise> noises;
   ImuNoise sheet;  ///< to be used with imu.noise_scale and imu.random_walk_scale 1

@@ -16,7 +16,7 @@ struct NoiseCoefficient {
   bool visible = false;
 };
 
-/// What an Allan variance says about the noise of a rate.
+/// The noise of a rate from its Allan variance.
 struct NoiseFit {
   std::array<NoiseCoefficient, NoisePowers::kCount> coefficients;  ///< Q, N, B, K by NoisePowers::Index
   NoisePowers powers;                                              ///< of the visible ones

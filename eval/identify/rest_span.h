@@ -31,10 +31,10 @@ struct RestSpan {
 
 /// The longest span at rest of a recording, from the IMU alone. A window of one second is at rest when
 ///   - the spread of its rates and of its specific forces is below what the static start allows
-///     (InitConfig::static_max_gyro_std_radps, static_max_accel_std_mps2) and below twice the lower quartile
-///     of such windows, and
-///   - its means differ from those of the window before by less than eight times the lower quartile of such
-///     differences.
+///     (InitConfig::static_max_gyro_std_radps, static_max_accel_std_mps2) and below twice the lower
+///     quartile of such windows, and
+///   - its means differ from those of the window before by less than eight times the lower quartile of
+///     such differences.
 /// A span also ends at a silence of more than kLongestFilledGap samples; fewer missing samples are filled by
 /// straight lines. Neglected: a rotation at constant rate, which spreads as little as rest.
 ///

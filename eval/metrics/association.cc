@@ -126,8 +126,8 @@ double RowInterval(const Trajectory& trajectory) {
   return Span(trajectory) / static_cast<double>(trajectory.points.size() - 1);
 }
 
-/// Says when one file's time unit is a power of a thousand off. Spans and row intervals are compared, not
-/// stamps: a clock's origin says nothing about its unit, and a short piece of a log has its intervals. Empty
+/// A hint where one file's time unit is a power of a thousand off. Spans and row intervals are compared, not
+/// stamps: a clock's origin does not reveal its unit, and a short piece of a log has its intervals. Empty
 /// when units seem equal.
 std::string UnitHint(const Trajectory& truth, const Trajectory& estimate) {
   if (Span(truth) <= 0 || Span(estimate) <= 0) {
@@ -153,7 +153,7 @@ std::string UnitHint(const Trajectory& truth, const Trajectory& estimate) {
   return {};
 }
 
-/// Says by how much the clocks differ when the ranges do not meet. Empty when they do.
+/// By how much the clocks differ when the ranges do not meet. Empty when they do.
 std::string OffsetHint(const Trajectory& truth, const Trajectory& estimate) {
   const bool apart = truth.points.front().stamp_ns > estimate.points.back().stamp_ns ||
                      truth.points.back().stamp_ns < estimate.points.front().stamp_ns;
@@ -166,7 +166,7 @@ std::string OffsetHint(const Trajectory& truth, const Trajectory& estimate) {
          " the estimate; a constant offset between the two clocks (start of log, UTC against GPS time)?";
 }
 
-/// Says how far apart the truth rows around the estimate's stamps are. Precondition: the ranges overlap.
+/// How far apart the truth rows around the estimate's stamps are. Precondition: the ranges overlap.
 std::string GapHint(const Trajectory& truth, const Trajectory& estimate) {
   std::vector<TimeNs> gaps;
   for (const TrajectoryPoint& point : estimate.points) {
@@ -184,7 +184,7 @@ std::string GapHint(const Trajectory& truth, const Trajectory& estimate) {
          " s apart (median): a longer max_gap, or nearest rows instead of interpolation";
 }
 
-/// Says which tolerance would have matched. Precondition: the ranges overlap.
+/// Which tolerance would have matched. Precondition: the ranges overlap.
 std::string ToleranceHint(const Trajectory& truth, const Trajectory& estimate,
                           const AssociationOptions& options) {
   if (options.interpolate) {

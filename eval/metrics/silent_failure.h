@@ -10,11 +10,11 @@ namespace alidade {
 /// What a run reported of itself at one instant, and how far it was off.
 struct ReportedError {
   TimeNs stamp_ns = 0;
-  double nees_pose = 0;  ///< NaN: no regular covariance, which says nothing
+  double nees_pose = 0;  ///< NaN: no regular covariance
   bool alarmed = false;  ///< the status was degraded, suspect or lost
 };
 
-/// Does a run say so when its covariance does not hold? The pose error is beyond n sigma when its NEES
+/// Whether a run reports that its covariance does not hold. The pose error is beyond n sigma when its NEES
 /// exceeds the chi-square quantile (6 degrees of freedom) of the share that a Gaussian has within n
 /// sigma: 39.5 for n = 5, 20.1 for n = 3.
 struct SilentFailure {

@@ -67,7 +67,7 @@ Result<std::vector<ToolRpeResult>> ComputeEvoRpe(const std::vector<StatePair>& a
 /// alignment.
 ///
 /// Like the tool, the k-th end that is found belongs to the k-th pair as beginning: where a gap of the path
-/// leaves a beginning without an end, later sub-trajectories are longer than the length says.
+/// leaves a beginning without an end, later sub-trajectories are longer than the length.
 std::vector<ToolRpeResult> ComputeRpgRelativeErrors(const std::vector<StatePair>& unaligned_pairs,
                                                     double scale, const std::vector<double>& lengths_m);
 

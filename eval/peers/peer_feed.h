@@ -23,7 +23,7 @@ Result<PeerSequence> ReadPeerSequence(const std::string& path, const std::string
 /// What receives a sequence.
 struct PeerSink {
   std::function<void(const ImuSample& sample)> imu;
-  /// Camera's clock to IMU time, t_imu = t_camera + offset [s], as the other system knows it at present.
+  /// Camera's clock to IMU time, t_imu = t_camera + offset [s], as the other system estimates it at present.
   std::function<double()> time_offset_s;
   std::function<Status(size_t frame)> frame;
   std::function<void(size_t epoch)> epoch = {};  ///< index into the stamps given beside it

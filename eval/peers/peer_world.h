@@ -18,7 +18,7 @@ class PeerWorld {
   /// Without an anchor rows stay as they are.
   explicit PeerWorld(const std::optional<Eigen::Vector3d>& anchor_E);
 
-  /// `T_EW`: from W to ECEF, as the system knows it at this row; empty before its alignment.
+  /// `T_EW`: from W to ECEF, as the system estimates it at this row; empty before its alignment.
   void Add(const TrajectoryPoint& point, const std::optional<Pose>& T_EW);
   /// The system starts anew in another world: what follows is brought into N by the next alignment.
   void Restart() { begin_ = points_.size(); }

@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-/// Names that Probe knows, in the order of the documentation.
+/// Names that Probe accepts, in the order of the documentation.
 [[nodiscard]] const std::vector<std::string>& ProbeModels();
 
 /// Evaluates one measurement model on given cases, so that others can compare it with theirs number by

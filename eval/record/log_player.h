@@ -9,8 +9,8 @@
 
 namespace alidade {
 
-/// One pass of one estimator over one log, as RunEstimator says: hands the log to a session. All arguments
-/// must outlive it.
+/// One pass of one estimator over one log, as described at RunEstimator: hands the log to a session. All
+/// arguments must outlive it.
 class LogPlayer {
  public:
   /// `tables` are those of the log; its own vectors of them are not read.

@@ -12,7 +12,7 @@ namespace alidade {
 void Encode(const RunRecord& record, ByteWriter* bytes);
 void Decode(ByteReader* bytes, RunRecord* record);
 
-/// What a long run has to say and does not hold in memory: its records, and the rows of the tables that
+/// The output of a long run that is not held in memory: its records, and the rows of the tables that
 /// nothing later changes, as text.
 class RecordSpool {
  public:

@@ -86,12 +86,9 @@ void AppendTiming(const RunRecord& record, std::string* text) {
 }
 
 std::string StatusHeader(const EstimatorConfig& config) {
-  return "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,nis,"
-         "nis_"
-         "dof,"
-         "observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,gnss_nis,gnss_"
-         "nis_"
-         "dof" +
+  return "timestamp_ns,status,tracks_in,features_used,features_gated,satellites_used,satellites_gated,"
+         "nis,nis_dof,observations_invalid,features_waiting,features_degenerate,iterations,at_rest,reason,"
+         "gnss_nis,gnss_nis_dof" +
          SensorColumns(config) + "\n";
 }
 

@@ -38,7 +38,7 @@ class RunBuilder {
   void Spool();
   /// The run ends when its records cannot be kept.
   void Keep(Status status);
-  /// Of the newest record, where it says nothing else.
+  /// Of the newest record, unless stated otherwise.
   void Mark(const char* status, const std::string& reason);
 
   bool camera_;

@@ -44,7 +44,7 @@ void CountStates(const RunResult& result, RunHealth* health) {
     health->states[status] = 0;
   }
   std::optional<TimeNs> before_ns;
-  // Whoever writes the records tells that they cannot be read.
+  // Whoever writes the records reports that they cannot be read.
   static_cast<void>(ForEachRecord(result, [&](const RunRecord& record) {
     ++health->states[record.status];
     const bool doubted = record.status == "degraded" && record.degradation == DegradationKind::kModel;

@@ -17,8 +17,8 @@ namespace alidade {
 /// a short fault, which the IMU bridges, does not fail a run. A clean sequence has none (docs/faults.md).
 inline constexpr double kMaxImpairedShare = kMaxUnreadableShare;
 /// The same of frames that are degraded because the model is in doubt. Nothing is missing: the covariance is
-/// too small. Sheets of real sensors are off by a few per cent, which shows in some motions; what is told in
-/// most of a run is not its model.
+/// too small. Sheets of real sensors are off by a few per cent, which shows in some motions; what is reported
+/// in most of a run is not its model.
 inline constexpr double kMaxDoubtedShare = 0.5;
 
 /// How far a run that ended had what its estimator needs.

@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// What tracks of a sequence are judged against: of a rendered one the poses and surfaces that were drawn
+/// What tracks of a sequence are scored against: of a rendered one the poses and surfaces that were drawn
 /// (eval/render/hall_file.h), with the time of each row by the sheet's line delay; else the truth, if it has
 /// orientations. Errors: those of the files.
 Result<TrackTruth> TruthOfTracks(const Dataset& dataset, const std::vector<TrackFrame>& tracks);

@@ -24,7 +24,7 @@ struct HeatRow {
 };
 
 /// A figure of all estimators (columns) on all sequences (rows) whose ideal is 1. Its colours are a
-/// logarithmic scale: white at 1 and below, or, of a map with two sides, violet below; the number says what
+/// logarithmic scale: white at 1 and below, or, of a map with two sides, violet below; the number gives what
 /// the colour does, for prints without colours.
 struct HeatMap {
   std::string key;      ///< name of its file

@@ -88,7 +88,7 @@ Json CellData(const std::string& label, const std::vector<Figure>& figures, cons
 
 /// Of each pair: [sequence, figure, first, second (indices), pairs, lost, difference, half of its interval,
 /// verdict on the first: -1 better or lower, 1 worse or higher, 0 no difference; p-value; that by Holm];
-/// sequence -1 is all of them. Pairs that are too few to judge are left out.
+/// sequence -1 is all of them. Pairs that are too few for a verdict are left out.
 Json PairData(const Comparison& comparison, const std::vector<Figure>& figures,
               const std::vector<AggregateRow>& rows) {
   const std::vector<std::string> sequences = ListSequences(rows);
@@ -122,7 +122,7 @@ Json NeesData(const Comparison& comparison, int most) {
   for (const NeesCurve& curve : AverageNees(comparison)) {
     const NeesOverTime& average = curve.average;
     if (average.runs.empty() || *std::max_element(average.runs.begin(), average.runs.end()) < 2) {
-      continue;  // the run's own series says it
+      continue;  // the run's own series has it
     }
     std::vector<double> times;
     Json mean = Json::array();

@@ -74,7 +74,7 @@ std::string Percent(double share) {
   return std::isnan(share) ? kDash : Format("%.1f %%", 100 * share);
 }
 
-/// What the columns after the figures say, in the order of SummaryHeadings.
+/// The columns after the figures, in the order of SummaryHeadings.
 std::vector<TextCell> SummaryCells(const AggregateRow& row, const std::vector<Figure>& figures,
                                    const Comparison& comparison) {
   const std::optional<size_t> nees = FindFigure(figures, "nees_pose");

@@ -91,7 +91,7 @@ TextTable KeepColumns(const TextTable& table) {
 std::string FormatTable(const Comparison& comparison) {
   std::string text = comparison.title.empty() ? "" : comparison.title + "\n\n";
   for (const TextTable& table : LayOutTables(comparison, "\u00b1")) {
-    // The overviews repeat what the tables of the sequences say; the matrices of pairs are too wide.
+    // The overviews repeat the tables of the sequences; the matrices of pairs are too wide.
     if (!table.title.starts_with("Overview") && !table.title.starts_with(kPairTitle)) {
       text += TerminalTable(KeepColumns(table)) + "\n";
     }

@@ -37,7 +37,7 @@ constexpr std::uint8_t kPhaseValid = 2;
 constexpr std::uint32_t kMaxSatellites = 256;
 constexpr double kGlonassL1Hz = 1602.0e6;
 constexpr double kGlonassL1StepHz = 0.5625e6;
-// Bounds of what a receiver may say; the models refuse more (core/gnss_config.h).
+// Bounds of what a receiver may report; the models refuse more (core/gnss_config.h).
 constexpr double kMinPseudorangeM = 1e6;
 constexpr double kMaxPseudorangeM = 1e9;
 constexpr double kMaxDopplerHz = 1e6;
@@ -67,9 +67,9 @@ double OrZero(const std::optional<double>& value) {
   return value.value_or(0);
 }
 
-/// What a receiver says of its own measurement; 0 where there is none. Without a report: the deviation that
-/// the estimators assume by default, by C/N0. The elevation is left to the reader of the message, as
-/// receivers do.
+/// The deviation that a receiver reports of its measurement; 0 where there is none. Without a report: the
+/// deviation that the estimators assume by default, by C/N0. The elevation is left to the reader of the
+/// message, as receivers do.
 double DeviationOf(const std::optional<double>& measured, const std::optional<double>& reported,
                    double zenith_std, const std::optional<double>& cn0_dbhz) {
   constexpr double kZenith = std::numbers::pi / 2;
@@ -88,7 +88,7 @@ double DopplerDeviationHz(const SignalObservation& signal, double frequency_hz) 
   return DeviationOf(signal.doppler_hz, signal.doppler_std_hz, zenith_hz, signal.cn0_dbhz);
 }
 
-/// A value that says something: finite, not zero, within the bounds.
+/// A usable value: finite, not zero, within the bounds.
 std::optional<double> Meaningful(double value, double low, double high) {
   return value != 0 && value >= low && value <= high ? std::optional(value) : std::nullopt;
 }

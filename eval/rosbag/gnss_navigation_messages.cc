@@ -90,7 +90,7 @@ Result<KeplerEphemeris> DecodeKeplerEphemeris(std::string_view bytes) {
   if (!satellite || satellite->system == GnssSystem::kGlonass) {
     return Status::Input("a satellite number outside GPS, Galileo and BeiDou");
   }
-  // The numbers in the order of a RINEX message, whose reader holds them against what a satellite may say.
+  // The numbers in the order of a RINEX message, whose reader checks them against the bounds of the messages.
   const TimeScale scale = ScaleOf(satellite->system);
   RawNavMessage raw{*satellite, CalendarFromGpsTime(scale, *toc), {}};
   raw.numbers = {v[16],

@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-/// Fields by type; another message in them is named in full, so that this table is all there is to know.
+/// Fields by type; another message in them is named in full, so that this table is complete.
 const std::map<std::string, std::string>& Fields() {
   static const std::map<std::string, std::string> fields = {
       {"std_msgs/Header", "uint32 seq\ntime stamp\nstring frame_id\n"},

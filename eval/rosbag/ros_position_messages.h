@@ -16,9 +16,9 @@ struct NavSatFix {
   Eigen::Matrix3d covariance_N = Eigen::Matrix3d::Identity();  ///< east, north, up at the position [m^2]
 };
 [[nodiscard]] std::string EncodeNavSatFix(const NavSatFix& fix);
-/// What a NavSatFix says: torn or out of range, no solution, or one. A covariance of unknown type is that of
-/// deviations of 3 m, with SBAS 1 m, with GBAS 0.5 m, upwards twice that; of an approximated or diagonal one
-/// the diagonal counts.
+/// The state of a NavSatFix: torn or out of range, no solution, or one. A covariance of unknown type is that
+/// of deviations of 3 m, with SBAS 1 m, with GBAS 0.5 m, upwards twice that; of an approximated or diagonal
+/// one the diagonal counts.
 struct DecodedNavSatFix {
   bool sound = false;
   std::optional<NavSatFix> fix;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxSidePx = 100000;
 constexpr double kMaxRotationError = 1e-9;
 
-/// A covariance of 3 x 3 of which nothing is known; -1 at its head says that the quantity itself is missing.
+/// A covariance of 3 x 3 of which nothing is known; -1 at its head means that the quantity itself is missing.
 void PutUnknownCovariance(double head, ByteWriter* out) {
   out->Write(head);
   for (int i = 1; i < 9; ++i) {

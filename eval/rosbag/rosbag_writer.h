@@ -24,7 +24,7 @@ class RosbagWriter {
   /// Removes the temporary file of a bag that was not closed.
   ~RosbagWriter();
 
-  /// Number of a new topic; `type` is one that ros_message.h knows. `latched`: late subscribers get the last
+  /// Number of a new topic; `type` is one of ros_message.h. `latched`: late subscribers get the last
   /// one.
   std::uint32_t AddTopic(const std::string& topic, const std::string& type, bool latched = false);
   /// kOutput: the file cannot be written. kInput: a stamp before 1970 or after 2106, which ROS cannot

@@ -13,7 +13,7 @@ namespace alidade {
 /// Finds jumps of the camera's clock, after which all stamps are off by the same time.
 ///
 /// A step of the stamps that is much longer than those before is either a silence of the camera or a jump.
-/// Both say how far the rig has turned between the frame before the step and a frame after it: the gyroscope
+/// Both give how far the rig has turned between the frame before the step and a frame after it: the gyroscope
 /// over the stamps as they are, or over the usual step. The tracks of both frames
 /// decide, by their distance to the epipolar plane of the best direction of translation (Kneip and Lynen
 /// 2013; frontend/initialization/epipolar_ray.h). Without enough common tracks, or a turn that decides, the

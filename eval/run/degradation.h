@@ -16,7 +16,7 @@ namespace alidade {
 /// Who measures positions: the kind of the sensor, and which of those the rig has.
 using AbsoluteSource = std::pair<Sensor, int>;
 
-/// Tells when an estimate goes on without what it needs, though nothing contradicts it: frames without
+/// Detects when an estimate goes on without what it needs, though nothing contradicts it: frames without
 /// tracks, images that do not change, an IMU that was silent or has an axis that does not measure; or with a
 /// model that does not hold: a camera that is not as given, innovations larger than predicted for long.
 class Degradation {
@@ -59,7 +59,7 @@ class Degradation {
              std::optional<TimeNs> unit_changed_ns = std::nullopt);
   /// Whether the frame shows what the one before showed: every track of both, at least kMinFrozen, on the
   /// very same pixel. A sensor's noise moves each of them even at rest: it is the old image under a new
-  /// stamp, and says nothing. Every frame, in order.
+  /// stamp, and carries no information. Every frame, in order.
   bool IsFrozen(const TrackFrame& frame);
   /// Whether the estimate after a frame at `imu_ns` is degraded; by data rather than by the model when both
   /// hold. Every frame, in order, after IsFrozen of it.

@@ -188,7 +188,7 @@ Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_n
   if (gnss_) {
     Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
     if (alignment.ok() && *alignment) {
-      TellAligned(gnss_->enu(), nullptr);
+      PassAlignment(gnss_->enu(), nullptr);
     }
     return alignment;
   }
@@ -198,14 +198,14 @@ Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_n
       return alignment;
     }
     if (*alignment) {
-      TellAligned((*alignment)->enu, run.get());
+      PassAlignment((*alignment)->enu, run.get());
       return alignment;
     }
   }
   return std::optional<GnssAlignment>();
 }
 
-void EstimatorLoop::TellAligned(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
+void EstimatorLoop::PassAlignment(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
   for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
     if (run.get() != by) {
       run->AlignedByAnother(enu);
@@ -245,7 +245,7 @@ void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double fronten
   event.backend_ms = stopwatch.ElapsedMs();
   const bool suspect = event.statistics.suspect;
   if (gnss_ && is_frame) {
-    gnss_->CollectResiduals();  // the smoother judges an epoch with the frame after it
+    gnss_->CollectResiduals();  // the smoother gates an epoch with the frame after it
     gnss_->Remember(state_ns_, event.clock);
   }
   events_.emplace_back(std::move(event));

@@ -16,7 +16,7 @@
 namespace alidade {
 
 /// Drives one estimator over messages that come in the order of their IMU time: finds the first state, hands
-/// over IMU, frames, epochs and other measurements, judges the state, and after a loss finds a new start.
+/// over IMU, frames, epochs and other measurements, checks the state, and after a loss finds a new start.
 /// Reports all of it as events.
 class EstimatorLoop {
  public:
@@ -42,7 +42,7 @@ class EstimatorLoop {
   [[nodiscard]] TimeNs FrameLead() const { return running() ? read_out_span_ns_ : 0; }
 
   /// The stamps of the camera had jumped, and were taken back.
-  void TellCameraJump(double jump_s) { degradation_.OnCameraJump(jump_s); }
+  void OnCameraJump(double jump_s) { degradation_.OnCameraJump(jump_s); }
   /// The IMU that there is reaches the message; what it lacks is the estimator's to refuse.
   void ProcessFrame(const TrackFrame& frame);
   /// The next one of gnss().
@@ -83,8 +83,9 @@ class EstimatorLoop {
   void ReportDegraded(TimeNs imu_ns);
   void AlignAfterFrame(TimeNs stamp_ns);
   Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
-  /// Tells the measurements of sensors other than `by`, which aligned the run; null: GNSS did.
-  void TellAligned(const std::optional<EnuFrame>& enu, const MeasurementRun* by);
+  /// Passes the alignment to the measurements of sensors other than `by`, which aligned the run; null: GNSS
+  /// did.
+  void PassAlignment(const std::optional<EnuFrame>& enu, const MeasurementRun* by);
   void ReportState(Sensor source, TimeNs message_ns, double frontend_ms, const Stopwatch& stopwatch);
   void GiveUp(TimeNs stamp_ns, const Status& status);
   void Fail(TimeNs stamp_ns, Status status);

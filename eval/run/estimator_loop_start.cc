@@ -72,7 +72,7 @@ void EstimatorLoop::StartWithEpoch() {
   if (Status status = gnss_->AlignAtStart(*start); !status.ok()) {
     Fail(start->estimate.stamp_ns, std::move(status));
   } else {
-    TellAligned(gnss_->enu(), nullptr);
+    PassAlignment(gnss_->enu(), nullptr);
   }
 }
 

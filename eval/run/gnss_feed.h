@@ -20,7 +20,7 @@ struct GnssSetup {
 };
 [[nodiscard]] GnssSetup SetupOf(const GnssLog& log);
 
-/// GNSS epochs one by one in the order of their tags, prepared as the configuration says and stamped in IMU
+/// GNSS epochs one by one in the order of their tags, prepared as configured and stamped in IMU
 /// time: tag - receiver clock + offset. The clock is that of the epoch's single-point solution or, where
 /// there is none, the last one's, carried on by its drift.
 class GnssFeed {

@@ -49,7 +49,7 @@ std::string HealthMonitor::Check(const NavEstimate& estimate, const FrameStatist
     return {};
   }
   if (!s.suspect && failed == 0) {
-    return {};  // it says nothing
+    return {};  // no information
   }
   doubted_since_ns_ = in_doubt_ ? doubted_since_ns_ : estimate.stamp_ns;
   in_doubt_ = true;

@@ -85,7 +85,7 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
   }
 }
 
-ImuAxisWatch::Fault ImuAxisWatch::Judge(double value, double floor, const Axis& axis) {
+ImuAxisWatch::Fault ImuAxisWatch::Classify(double value, double floor, const Axis& axis) {
   if (axis.limit != 0 && value == axis.limit) {
     return Fault::kSaturated;
   }
@@ -119,7 +119,7 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
   Axis& axis = signal->axes[static_cast<std::size_t>(index)];
   Count(*signal, index, last, measured, &axis);
   const double value = (measured.*signal->value)[index];
-  const Fault fault = Judge(value, signal->floor, axis);
+  const Fault fault = Classify(value, signal->floor, axis);
   if (fault == Fault::kNone) {
     return {};
   }
@@ -137,26 +137,26 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
   reason_ = Format(fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
                                               : "the %s's %c axis repeats %.4g %s while the others change",
                    signal->name, "xyz"[index], value, signal -> unit);
-  const bool told = sample->stamp_ns <= axis.told_until_ns;
-  axis.told_until_ns = sample->stamp_ns + SecondsToNs(kSameFaultS);
-  return told ? std::string() : reason_ + " from " + FormatSeconds(axis.since_ns) + " s on";
+  const bool reported = sample->stamp_ns <= axis.reported_until_ns;
+  axis.reported_until_ns = sample->stamp_ns + SecondsToNs(kSameFaultS);
+  return reported ? std::string() : reason_ + " from " + FormatSeconds(axis.since_ns) + " s on";
 }
 
 std::string ImuAxisWatch::Add(ImuSample* sample) {
-  std::string told;
+  std::string reported;
   const ImuSample measured = *sample;
   reason_.clear();
   if (any_) {
     for (Signal& signal : signals_) {
       for (int index = 0; index < 3; ++index) {
         const std::string one = AddAxis(last_, measured, index, &signal, sample);
-        told += one.empty() || told.empty() ? one : "; " + one;
+        reported += one.empty() || reported.empty() ? one : "; " + one;
       }
     }
   }
   any_ = true;
   last_ = measured;
-  return told;
+  return reported;
 }
 
 }  // namespace alidade

@@ -12,18 +12,18 @@ namespace alidade {
 
 /// Finds axes of an inertial sensor that do not measure: saturated at the end of their range, or stuck.
 ///
-/// Noise moves every axis, so a value that repeats itself exactly tells. What counts are measurements in
-/// which both other axes of the sensor changed: a row that a driver hands out twice is none. An axis is
-/// saturated when kSaturated measurements in a row have the value that is the largest or smallest of all so
-/// far, its magnitude is above the floor, and the axis came from kSteps of its resolution (smallest step so
-/// far) away within as many measurements before: the top of a smooth motion is flat over few steps only.
-/// Afterwards this value alone tells, until it is exceeded, or until the axis has been within kSteps of it
-/// for kConstantS: a coarse accelerometer that is put down quickly comes to rest at such a value. A
+/// Noise moves every axis, so a value that repeats itself exactly reveals a fault. What counts are
+/// measurements in which both other axes of the sensor changed: a row that a driver hands out twice is none.
+/// An axis is saturated when kSaturated measurements in a row have the value that is the largest or smallest
+/// of all so far, its magnitude is above the floor, and the axis came from kSteps of its resolution (smallest
+/// step so far) away within as many measurements before: the top of a smooth motion is flat over few steps
+/// only. Afterwards this value alone suffices, until it is exceeded, or until the axis has been within kSteps
+/// of it for kConstantS: a coarse accelerometer that is put down quickly comes to rest at such a value. A
 /// saturation that lasts longer is found as stuck while the others move, and not while they rest. An axis is
 /// stuck when kStuck measurements in a row are equal while both others span kSpan of its resolution: at rest
 /// a coarse sensor may repeat itself, and a constant value is no error there. An axis that has repeated
-/// itself more often than not in the last thousand measurements before is not judged to be. In recordings of
-/// five kinds of sensors, faultless ones, no more than 7 in a row are equal.
+/// itself more often than not in the last thousand measurements before does not count as stuck. In recordings
+/// of five kinds of sensors, faultless ones, no more than 7 in a row are equal.
 ///
 /// A stuck axis reads its mean of the last thousand measurements before; a saturated one stays as it is. The
 /// error of the axis is taken as constant with the deviation sigma for kConstantS, and as white noise of that
@@ -48,8 +48,8 @@ class ImuAxisWatch {
 
   ImuAxisWatch();
 
-  /// The next sample in order; sets the noise of its fault and replaces a stuck axis. Returns what is wrong
-  /// where it was not told yet, else nothing.
+  /// The next sample in order; sets the noise of its fault and replaces a stuck axis. Returns what is wrong,
+  /// unless it was reported before; else nothing.
   std::string Add(ImuSample* sample);
   /// What is wrong with the last sample; empty: nothing.
   [[nodiscard]] const std::string& reason() const { return reason_; }
@@ -74,7 +74,7 @@ class ImuAxisWatch {
     double counted = 0;
     double changed = 0;  ///< of those
     double mean = 0, mean_square = 0;
-    TimeNs told_until_ns = INT64_MIN;
+    TimeNs reported_until_ns = INT64_MIN;
   };
   struct Signal {
     Eigen::Vector3d ImuSample::*value;
@@ -90,10 +90,10 @@ class ImuAxisWatch {
   static void CountShare(bool changed, Axis* axis);
   static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                     Axis* axis);
-  [[nodiscard]] static Fault Judge(double value, double floor, const Axis& axis);
+  [[nodiscard]] static Fault Classify(double value, double floor, const Axis& axis);
   [[nodiscard]] static double Sigma(Fault fault, double value, double floor, double seconds,
                                     const Axis& axis);
-  /// What is wrong with one axis, and whether it is to be told.
+  /// What is wrong with one axis, if it is to be reported.
   std::string AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,
                       ImuSample* sample);
 

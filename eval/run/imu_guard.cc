@@ -16,7 +16,7 @@ constexpr double kUnconfirmedRatio = 25;
 constexpr double kUnconfirmedFloor = 10;  // of the floor
 constexpr int kMemorySamples = 100;
 constexpr double kMaxStepS = 0.05;
-constexpr double kKnownRatio = 10;     // of a rate that tells a unit to the root mean square of the steps
+constexpr double kKnownRatio = 10;     // of a rate that reveals a unit to the root mean square of the steps
 constexpr double kContinuesRatio = 4;  // of a step to that
 
 bool AreNeighbours(const ImuSample& a, const ImuSample& b) {
@@ -32,7 +32,7 @@ bool ImuGuard::IsSpike(const Signal& signal, const Vector3d& before, const Vecto
   if (after == nullptr) {
     return !signal.held && step > std::max(kUnconfirmedFloor * signal.floor, kUnconfirmedRatio * rms);
   }
-  // The root mean square of few samples says little.
+  // The root mean square of few samples is uncertain.
   const double floor = (judged_ < kMemorySamples ? kUnconfirmedFloor : 1) * signal.floor;
   const double least = std::min(step, (here - *after).norm());
   return least > std::max(floor, kRatio * rms) && (*after - before).norm() < 0.5 * least;

@@ -16,16 +16,16 @@ namespace alidade {
 /// times the root mean square of the recent steps from sample to sample (time constant 100 samples), at least
 /// 0.5 rad/s and 5 m/s^2. A sample whose successor is not to be waited for is one when its step is 25 times
 /// that, at least 5 rad/s and 50 m/s^2; it is replaced by the sample before it, unless that was replaced
-/// likewise: a step that lasts is motion. Samples more than 50 ms from a neighbour are not judged.
+/// likewise: a step that lasts is motion. Samples more than 50 ms from a neighbour are not checked.
 ///
 /// The gyroscope has changed to deg/s when a rate that is known well, at least ten times that root mean
 /// square, is followed by one that jumps by at least 5 rad/s and lies, divided by 180 / pi, within four times
 /// the root mean square of it, as does the next sample where there is one. No motion multiplies all three
 /// rates by the same 57 within a sample. It has changed back when the opposite holds. A change at rest is
-/// not found: nothing tells its unit.
+/// not found: nothing reveals its unit.
 class ImuGuard {
  public:
-  /// Judges the next sample in order and mends it. `next`: the one after it, null when it is not to be waited
+  /// Checks the next sample in order and mends it. `next`: the one after it, null when it is not to be waited
   /// for. Returns what was wrong, or nothing.
   std::string Mend(const ImuSample* next, ImuSample* sample);
   /// What is wrong with the last sample and was not mended; empty: nothing.

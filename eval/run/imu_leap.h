@@ -6,7 +6,7 @@
 
 namespace alidade {
 
-/// Holds back an inertial sample whose stamp leaps ahead of those before it, until the next one tells whether
+/// Holds back an inertial sample whose stamp leaps ahead of those before it, until the next one shows whether
 /// time did: taken in, a single wrong stamp would make all that follows late.
 ///
 /// A sample leaps when it lies more than kMaxLeapS after the newest one taken. One that comes after the held

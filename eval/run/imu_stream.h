@@ -16,8 +16,8 @@ class ImuStream {
  public:
   enum class Arrival { kTaken, kTwice, kTooLate };
 
-  /// guard: samples are mended as they are delivered (ImuGuard). The last one of a delivery is judged without
-  /// its successor, whether that has arrived or not.
+  /// guard: samples are mended as they are delivered (ImuGuard). The last one of a delivery is checked
+  /// without its successor, whether that has arrived or not.
   explicit ImuStream(bool guard) : guarded_(guard) {}
 
   /// Sorts the sample in. kTooLate: it is not after the last delivered one.
@@ -27,7 +27,7 @@ class ImuStream {
   /// at or after it, one a call; null when they are delivered or there is none left. Valid until the next
   /// call.
   const ImuSample* Deliver(TimeNs stamp_ns);
-  /// What was found at the last delivered sample, told once; empty: nothing.
+  /// What was found at the last delivered sample, reported once; empty: nothing.
   [[nodiscard]] const std::string& fault() const { return fault_; }
   /// Of the samples delivered so far.
   [[nodiscard]] const ImuGuard& guard() const { return guard_; }

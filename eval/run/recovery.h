@@ -13,7 +13,7 @@
 
 namespace alidade {
 
-/// Loss of the estimate and the way back: judges every state, and once one is given up looks for a new start
+/// Loss of the estimate and the way back: checks every state, and once one is given up looks for a new start
 /// in the data that follow, placed where dead reckoning from the last sound state leads.
 class Recovery {
  public:

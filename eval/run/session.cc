@@ -129,7 +129,7 @@ void Session::TakeBackJump(TimeNs jump_ns, TrackFrame* frame) {
   }
   frames_ = std::move(waiting);
   processed_ns_ = running() ? loop_.state_ns() : processed_ns_ - jump_ns;
-  loop_.TellCameraJump(SecondsBetween(0, jump_ns));
+  loop_.OnCameraJump(SecondsBetween(0, jump_ns));
 }
 
 void Session::ProcessNextEpoch() {

@@ -31,7 +31,7 @@ struct NewestState {
 /// same estimates, bit by bit. A later one is used while nothing newer was processed, else refused with a
 /// TooLateEvent. Stamps of a sensor are unique: a second message of one stamp is skipped.
 ///
-/// The session starts by itself (init.method), judges its estimate, seeks a new start when it is lost, and
+/// The session starts by itself (init.method), checks its estimate, seeks a new start when it is lost, and
 /// aligns with GNSS or position fixes. A bad message is reported as skipped; nothing of it aborts. Memory is
 /// bounded by the estimator's window, the lateness and SessionOptions::max_silence_s and max_waiting. Not
 /// thread-safe.

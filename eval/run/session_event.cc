@@ -33,7 +33,7 @@ struct Describer {
     return At("aligned", e.global.stamp_ns) + ": " + e.alignment.report;
   }
   std::string operator()(const SatellitesEvent& e) const {
-    return At("satellites", e.residuals.stamp_ns) + Format(": %zu judged", e.residuals.satellites.size());
+    return At("satellites", e.residuals.stamp_ns) + Format(": %zu gated", e.residuals.satellites.size());
   }
   std::string operator()(const WaitingEvent& e) const {
     const char* sought = e.sought == Sought::kAlignment ? "not aligned"

@@ -35,7 +35,7 @@ struct StateEvent {
   double backend_ms = 0;  ///< wall time for this message and the IMU samples before it
 };
 
-/// What a message between frames says of itself: what a smoother's solve says of vision is not its own.
+/// The statistics of a message between frames, without those of vision, which a smoother's solve adds.
 [[nodiscard]] FrameStatistics BetweenFrames(const FrameStatistics& all);
 
 /// Most of the newest frame's tracks contradict the state (FrameStatistics::suspect); follows its StateEvent.
@@ -86,7 +86,7 @@ struct AlignedEvent {
   std::optional<ClockState> clock;
 };
 
-/// What became of the satellites of an epoch. A smoother judges them with the frame after the epoch.
+/// What became of the satellites of an epoch. A smoother gates them with the frame after the epoch.
 struct SatellitesEvent {
   GnssResiduals residuals;
 };

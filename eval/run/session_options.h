@@ -32,7 +32,7 @@ struct SessionOptions {
   /// Frames, epochs or measurements of one sensor that may wait for the IMU; the oldest is skipped when one
   /// more comes.
   size_t max_waiting = 1000;
-  /// False: lateness does not count, and nothing is processed before Session::AdvanceTo or Flush says so.
+  /// False: lateness does not count, and nothing is processed before Session::AdvanceTo or Flush.
   bool live = true;
 
   /// kConfig: they contradict the configuration, which is valid by itself.

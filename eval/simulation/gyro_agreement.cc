@@ -64,7 +64,8 @@ class GyroFit {
       information += jacobian.transpose() * jacobian;
       gradient += jacobian.transpose() * residual;
     }
-    // A body at rest says nothing of the offset: the faint prior (1 s for a rate of 1 rad/s) keeps it at 0.
+    // A body at rest does not determine the offset: the faint prior (1 s for a rate of 1 rad/s) keeps it at
+    // 0.
     information(3, 3) += 1;
     gradient(3) -= agreement_.time_offset_s;
     const Eigen::Vector4d step = SymmetricSolver(information).Solve(gradient);

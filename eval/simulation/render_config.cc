@@ -61,7 +61,7 @@ void RenderConfig::DescribeExposureControl(ConfigVisitor& visitor) {
                &exposure_max_s, 1e-5, 0.2);
   visitor.Real({"gain_max", "-", "largest gain of the control; bounds noise"}, &gain_max, 1, 64);
   visitor.Integer({"exposure_delay_frames", "-",
-                   "frames from the metered image to the first one exposed by what it says; sensors: 2 to 4"},
+                   "frames from the metered image to the first one exposed by it; sensors: 2 to 4"},
                   &exposure_delay_frames, 1, 20);
   visitor.Real({"exposure_rate", "-",
                 "share of the logarithmic error that is corrected in a frame; too large a share oscillates "

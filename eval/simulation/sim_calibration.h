@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// A calibration that is wrong by as much as the configuration's calibration_*_error keys say: axis,
+/// A calibration that is wrong by as much as the configuration's calibration_*_error keys: axis,
 /// direction and signs are drawn with the seed, each from its own fixed place. Intrinsics that no camera has:
 /// kConfig.
 Result<RigCalibration> MiscalibratedRig(const SimulatorConfig& config, const RigCalibration& rig,

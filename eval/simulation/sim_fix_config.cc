@@ -8,7 +8,7 @@ void SimFixConfig::Describe(ConfigVisitor& visitor) {
                1000);
   visitor.Real({"up_factor", "-", "times that deviation upwards"}, &up_factor, 0.1, 10);
   visitor.Vector3({"lever_arm_m", "m", "measured point in the body frame"}, &lever_arm_m, -100, 100);
-  visitor.Real({"time_offset_s", "s", "t_imu = t_fix + offset; the written calibration knows it"},
+  visitor.Real({"time_offset_s", "s", "t_imu = t_fix + offset; it is in the written calibration"},
                &time_offset_s, -1, 1);
   visitor.Boolean(
       {"own_frame", "-",
@@ -19,8 +19,8 @@ void SimFixConfig::Describe(ConfigVisitor& visitor) {
   visitor.Vector3({"frame_shift_m", "m", "then its shift"}, &frame_shift_m, -1e6, 1e6);
   visitor.Real({"wrong_rate", "-", "share of the fixes that are displaced horizontally, one by one"},
                &wrong_rate, 0, 1);
-  visitor.Real({"wrong_min_m", "m", "by at least this; the written covariance does not know it"},
-               &wrong_min_m, 0, 1e5);
+  visitor.Real({"wrong_min_m", "m", "by at least this; it is not in the written covariance"}, &wrong_min_m, 0,
+               1e5);
   visitor.Real({"wrong_max_m", "m", "and at most this"}, &wrong_max_m, 0, 1e5);
   visitor.Real({"outage_start_s", "s", "when fixes stop; negative: never"}, &outage_start_s, -1, 1e6);
   visitor.Real({"outage_s", "s", "for how long"}, &outage_s, 0, 1e6);

@@ -11,7 +11,7 @@ namespace alidade {
 /// or a frame of its own.
 struct SimFixConfig {
   double rate_hz = 0;  ///< 0: no sensor
-  double std_m = 1;    ///< east and north; the written covariance knows it
+  double std_m = 1;    ///< east and north; also in the written covariance
   double up_factor = 1.5;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d(-0.1, 0.05, 0.12);  ///< p_BA
   double time_offset_s = 0;                                         ///< t_imu = t_fix + offset

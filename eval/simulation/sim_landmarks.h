@@ -21,11 +21,10 @@ namespace alidade {
 ///         or down (like the walls of a hall), to a distance uniform in [min, max]. So its distance to the
 ///         nearest point of the path lies within [min, max] (to the sampling).
 /// room    Thrown evenly over floor, ceiling and walls of an upright box, the path's bounding box extended by
-///         room_margin_m on either side; it stands out from its wall by a length uniform in [0,
-///         room_depth_m].
-/// volume  landmark_density_per_m3 of them in the space whose distance to the nearest point of the path lies
-/// within
-///         [landmark_min_distance_m, landmark_max_distance_m], evenly.
+///         room_margin_m on either side; it stands out from its wall by a length uniform in
+///         [0, room_depth_m].
+/// volume  landmark_density_per_m3 of them, evenly, in the space whose distance to the nearest point of the
+///         path lies within [landmark_min_distance_m, landmark_max_distance_m].
 ///
 /// Errors (kConfig): the path leaves no room for landmarks.
 Result<std::vector<Eigen::Vector3d>> MakeLandmarks(const SimulatorConfig& config,

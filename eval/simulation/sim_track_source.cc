@@ -66,8 +66,8 @@ std::optional<Eigen::Vector2d> TrackSource::See(const Eigen::Vector3d& p_W) cons
   Eigen::Vector2d pixel;
   bool visible =
       p_C.squaredNorm() <= config_.max_range_m * config_.max_range_m && camera_.Project(p_C, &pixel);
-  // The row says when, and when says the row: each pass divides the error by the rows that pass while the
-  // image moves by one, 10 or more.
+  // Row and time of the exposure depend on each other: each pass divides the error by the rows that pass
+  // while the image moves by one, 10 or more.
   for (int pass = 0; visible && !exposure_->at_once() && pass < kRowPasses; ++pass) {
     visible = camera_.Project(exposure_->CameraAt(pixel.y()).Inverse() * p_W, &pixel);
   }

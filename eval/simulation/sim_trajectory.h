@@ -14,12 +14,11 @@ namespace alidade {
 ///   figure8   p = (L/2 sin u, W/2 sin 2u, h sin 3u)       Gerono's lemniscate, starts at the origin
 ///   ellipse   p = (L/2 cos u, W/2 sin u,  h sin 3u)
 ///   wander    p = (L/2 s_x(u), W/2 s_y(u), h s_z(u)),  s(u) as in eval/simulation/path_drift.h
-///   hover     the same walk, level and in one direction: with a box of decimetres a vehicle that holds its
-///             place
+///   hover     the same walk, level and in one direction: with a box of decimetres a hovering vehicle
 ///   rotation  p = 0
 ///   line      p = (D u / 2 pi, 0, 0)
-///   spiral    p = (r cos u, r sin u, c u / 2 pi),  r = L/2 + w u / 2 pi; w, c = spiral_widening_m,
-///             spiral_climb_m
+///   spiral    p = (r cos u, r sin u, c u / 2 pi),  r = L/2 + w u / 2 pi;
+///             w, c = spiral_widening_m, spiral_climb_m
 /// wander, hover and rotation are drawn from the seed: paths of any length that never repeat. The others do
 /// not depend on the seed.
 ///

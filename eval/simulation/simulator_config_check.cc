@@ -67,8 +67,7 @@ Status ValidateFault(const SimulatorConfig& config) {
       (config.gnss.rate_hz == 0 || config.gnss.navigation_file != kNoPath)) {
     return Status::Config(
         "fault: stale_ephemerides replaces the simulated ephemerides; expected gnss.rate_hz greater than 0 "
-        "and "
-        "gnss.navigation_file: none");
+        "and gnss.navigation_file: none");
   }
   ALIDADE_RETURN_IF_ERROR(Expect(fault != SimFaultKind::kImuClock || config.fault_clock_jump_s > 0,
                                  "fault_clock_jump_s", config.fault_clock_jump_s,
@@ -94,7 +93,7 @@ Status SimulatorConfig::Validate() const {
   ALIDADE_RETURN_IF_ERROR(ValidateMotion(*this));
   ALIDADE_RETURN_IF_ERROR(ValidateRecording(*this));
   ALIDADE_RETURN_IF_ERROR(ValidateSensors());
-  // GPST began in 1980; readers know the years to 2099.
+  // GPST began in 1980; readers accept the years to 2099.
   ALIDADE_RETURN_IF_ERROR(Expect(
       gnss.rate_hz == 0 || trajectory == SimTrajectory::kFile || IsHybrid() || start_time_s >= 400000000,
       "start_time_s", start_time_s, "at least 4e8 with gnss.rate_hz: stamps are then GPST"));

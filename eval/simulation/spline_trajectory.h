@@ -19,10 +19,10 @@ struct SplineFit {
   double max_gap_s = 0;  ///< longest silence of the samples; the spline invents the motion there
 };
 
-/// A recorded trajectory (ground truth of a real flight, say) as a smooth motion: uniform B-splines of degree
-/// 5 in R^3 for the position and, cumulative, in SO(3) for the rotation, so that acceleration and angular
-/// rate are exact derivatives and themselves three times continuously differentiable. With x = (t - t_i) / dt
-/// in [0, 1) and the cumulative basis l_j(x),
+/// A recorded trajectory (for instance the ground truth of a flight) as a smooth motion: uniform B-splines of
+/// degree 5 in R^3 for the position and, cumulative, in SO(3) for the rotation, so that acceleration and
+/// angular rate are exact derivatives and themselves three times continuously differentiable. With x = (t -
+/// t_i) / dt in [0, 1) and the cumulative basis l_j(x),
 ///
 ///   p(t) = sum_j b_j(x) p_{i+j},    R(t) = R_i prod_{j=1..5} Exp(l_j(x) d_j),    d_j = Log(R_{i+j-1}^T
 ///   R_{i+j}), w_j = Exp(-l_j d_j) w_{j-1} + l_j'(x) / dt d_j,    w_0 = 0, w = w_5 (body frame)

@@ -24,7 +24,7 @@ struct RowLayout {
   size_t columns = 8;  ///< at least
 };
 
-/// The first line that says something, and whether it is a comment.
+/// The first line that is not blank, and whether it is a comment.
 struct FirstLine {
   std::string text;
   bool comment = false;

@@ -13,7 +13,7 @@
 namespace alidade {
 namespace {
 
-/// What the header says about the rows.
+/// What the header states about the rows.
 struct PositionLayout {
   bool ecef = false;
   bool utc = false;

@@ -15,8 +15,8 @@ struct MotionCovariance {
   Eigen::Matrix3d accel_bias = Eigen::Matrix3d::Zero();
 };
 
-/// One row of a trajectory file. Fields that the file does not contain stay zero; the flags of Trajectory
-/// tell which it contains.
+/// One row of a trajectory file. Fields that the file does not contain stay zero; Trajectory has flags
+/// for those that it contains.
 struct TrajectoryPoint {
   TimeNs stamp_ns = 0;
   NavState nav;

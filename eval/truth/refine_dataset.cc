@@ -45,7 +45,7 @@ Result<std::vector<fs::path>> EntriesOf(const fs::path& folder) {
 /// `entry` under the name `target`, a folder (images) as a link. The copy is complete before it takes the
 /// name, so that what stood there is lost to nothing but its replacement.
 Status CopyEntry(const fs::path& entry, const fs::path& target) {
-  // A name that RemoveTemporaryFiles knows.
+  // A name that RemoveTemporaryFiles recognises.
   const fs::path temporary = target.string() + ".tmp" + std::to_string(::getpid()) + "_0";
   std::error_code error;
   std::error_code ignored;

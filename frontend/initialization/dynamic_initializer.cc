@@ -22,8 +22,8 @@ constexpr double kMaxBiasPriorSigma = 4.0;
 constexpr double kMaxGyroBiasRadps = 0.3;
 constexpr double kMaxRejectedFraction = 0.6;
 
-// Vibration is not white: averaged over an interval it counts for less than its spread says. With this
-// bound the errors of starts on recorded IMU data are about what their covariance says
+// Vibration is not white: averaged over an interval it counts for less than its spread. With this
+// bound the errors of starts on recorded IMU data are about those of their covariance
 // (docs/initialization.md).
 constexpr double kMaxVibrationFactor = 4.0;
 

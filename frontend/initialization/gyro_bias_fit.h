@@ -5,7 +5,7 @@
 
 namespace alidade {
 
-/// What the epipolar geometry says about the gyroscope.
+/// The gyroscope's bias from the epipolar geometry.
 struct GyroBiasFit {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   std::vector<bool> inlier;  ///< one a track of the window

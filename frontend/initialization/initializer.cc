@@ -62,7 +62,7 @@ struct Initializer::Implementation {
         rig(OnPlane(rig_in, config_in.vision.observation_plane)),
         demand(demand_in),
         imu(config_in.imu.max_gap_s) {
-    // The sheet's noise, trusted as far as the configuration says: the same numbers as in the back ends.
+    // The sheet's noise, scaled as the configuration requires: the same numbers as in the back ends.
     rig.imu_noise = config.imu.Scaled(rig.imu_noise);
   }
 

@@ -4,7 +4,7 @@
 
 namespace alidade {
 
-/// What the refinement needs to know about the noise and the world.
+/// What the refinement needs of the noise and the world.
 struct RefinementSettings {
   Pose T_BC;
   double gravity_mps2 = 9.81;

@@ -1,4 +1,4 @@
-// What the least-squares problem of the start says about its solution: covariance, scale, fit.
+// Statistics of the solution of the start's least-squares problem: covariance, scale, fit.
 
 #include <cmath>
 

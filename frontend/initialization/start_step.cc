@@ -34,7 +34,7 @@ void StartProblem::InitializeLandmarks() {
     const double start = found && depth.depth > 0 ? std::min(depth.depth, kMaxStartDepthM) : kStartDepthM;
     Vector3d& landmark = current_.landmarks[t];
     landmark = cameras.front() * (start * track.observations.front().Ray());
-    // When it cannot be refined it keeps its start and the kernel judges it.
+    // When it cannot be refined it keeps its start and the kernel weights it.
     static_cast<void>(RefineLandmark(cameras, track.observations, 2 * kLandmarkIterations, &landmark));
   }
 }

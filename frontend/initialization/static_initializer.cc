@@ -129,8 +129,7 @@ NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const Imu
   estimate.bias.accel = (magnitude - gravity_mps2) * up;
 
   // Information over (phi, b_a): the mean specific force, the prior of b_a across u (along u, too, but there
-  // the measured
-  // (|f| - g) is its mean), and yaw.
+  // the measured (|f| - g) is its mean), and yaw.
   const double accel_variance =
       VarianceOfMean(noise.accel_noise_density_mps2_sqrthz, spread.accel_mean_std_mps2, spread.duration_s);
   const Matrix3d along = up * up.transpose();

@@ -43,9 +43,8 @@ struct RestAssessment {
 ///
 /// Covariance (canonical chart) from the linear relation f = g u + g [u]x phi + b_a + n with priors on b_a
 /// and on the rotation about u: the bias across u and the tilt it feigns, phi = u x b_a / g, come out fully
-/// correlated. The noise n is
-/// the larger of the sensor sheet's and that seen in the block means; gravity and the accelerometer's scale
-/// are trusted to 0.02 m/s^2 along u.
+/// correlated. The noise n is the larger of the sensor sheet's and that seen in the block means; gravity and
+/// the accelerometer's scale are trusted to 0.02 m/s^2 along u.
 [[nodiscard]] NavEstimate StateAtRest(const InitConfig& config, double gravity_mps2, const ImuNoise& noise,
                                       const ImuSpread& spread, TimeNs stamp_ns);
 

@@ -57,8 +57,8 @@ Consensus Count(std::vector<bool> inliers) {
   return consensus;
 }
 
-/// What one pair says about a motion: the signed distance of x_2 to the epipolar line of x_1 is `error *
-/// scale` [px].
+/// The information of one pair on a motion: the signed distance of x_2 to the epipolar line of x_1 is `error
+/// * scale` [px].
 struct EpipolarTerm {
   Vector3d g;  // R_21 x_1
   Vector3d x_2;
@@ -176,7 +176,7 @@ void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inli
     const double prior_weight = 1.0 / (rotation_std * rotation_std);
     hessian.topLeftCorner<3, 3>().diagonal().array() += prior_weight;
     gradient.head<3>() += prior_weight * correction;
-    // Without parallax the data says nothing about t: a step of a radian costs one sigma.
+    // Without parallax the data do not determine t: a step of a radian costs one sigma.
     hessian.bottomRightCorner<2, 2>().diagonal().array() += 1.0;
     const Vector5d update = -hessian.ldlt().solve(gradient);
     if (!update.allFinite()) {

@@ -76,7 +76,7 @@ void GnssAligner::AddEpoch(const GnssEpoch& epoch, const std::optional<Vector3d>
     matcher_.AddMessage(std::move(taken));
     any_epoch_ = true;
   }
-  matcher_.DropOld(epoch.stamp_ns);  // one with too few satellites tells the time too
+  matcher_.DropOld(epoch.stamp_ns);  // one with too few satellites still has the time
   MatchEpochs();
 }
 

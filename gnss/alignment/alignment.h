@@ -61,7 +61,7 @@ class GnssAligner {
   /// The estimate was lost, and the next one stands elsewhere.
   void ForgetEstimate();
 
-  /// The alignment once it is good enough; report() says what is missing.
+  /// The alignment once it is good enough; report() names what is missing.
   std::optional<GnssAlignment> TryAlign();
   [[nodiscard]] const std::string& report() const { return report_; }
 

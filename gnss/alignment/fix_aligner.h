@@ -36,7 +36,7 @@ class FixAligner {
   /// The estimate was lost, and the next one stands elsewhere.
   void ForgetEstimate();
 
-  /// The alignment, without a clock, once its yaw is known well enough; report() says what is missing.
+  /// The alignment, without a clock, once its yaw is known well enough; report() names what is missing.
   std::optional<GnssAlignment> TryAlign();
   [[nodiscard]] const std::string& report() const { return report_; }
 

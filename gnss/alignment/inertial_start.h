@@ -31,7 +31,7 @@ class GnssInertialStart {
     NavEstimate estimate;     ///< in the ENU frame, at the last epoch
     GnssAlignment alignment;  ///< without turn or shift: anchor and clock
   };
-  /// The start once the heading is known to gnss.align_max_yaw_std_rad; report() says what is missing.
+  /// The start once the heading is known to gnss.align_max_yaw_std_rad; report() names what is missing.
   std::optional<Start> TryStart();
   [[nodiscard]] const std::string& report() const { return report_; }
 

@@ -23,7 +23,7 @@ constexpr int kGpstLessBdtS = 14;
 ///   kQzss     QZSST = GPST
 ///   kBeidou   BDT = GPST - 14 s, week 0 begins 2006-01-01
 ///   kUtc      with leap seconds
-///   kGlonass  GLONASST = UTC + 3 h; RINEX files that say "GLO" mean UTC
+///   kGlonass  GLONASST = UTC + 3 h; "GLO" in RINEX files means UTC
 ///   kTai      TAI = GPST + 19 s (SP3)
 enum class TimeScale { kGps, kGalileo, kQzss, kBeidou, kUtc, kGlonass, kTai };
 

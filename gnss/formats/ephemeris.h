@@ -26,7 +26,7 @@ struct KeplerEphemeris {
   TimeNs toc_ns = 0;           ///< reference of the clock, GPST
   TimeNs toe_ns = 0;           ///< reference of the orbit, GPST
   double toe_of_week_s = 0;    ///< the same as broadcast, in the system's own week: the node refers to it
-  TimeNs transmission_ns = 0;  ///< when it was sent, GPST; toc_ns where the file does not say
+  TimeNs transmission_ns = 0;  ///< when it was sent, GPST; toc_ns where the file has none
   double af0 = 0, af1 = 0, af2 = 0;
   int issue = 0;  ///< IODE, IODnav, AODE
   double sqrt_a = 0, eccentricity = 0;
@@ -61,7 +61,7 @@ struct KlobucharParameters {
   std::array<double, 4> beta{};
 };
 
-/// Everything that navigation files of one campaign say; several files may be merged.
+/// The contents of the navigation files of one campaign; several files may be merged.
 struct NavigationData {
   std::map<SatelliteId, std::vector<KeplerEphemeris>> kepler;  ///< sorted by toe_ns, then transmission
   std::map<int, std::vector<GlonassEphemeris>> glonass;        ///< number -> sorted by toe_ns

@@ -116,7 +116,7 @@ Result<KeplerEphemeris> MakeKeplerEphemeris(const RawNavMessage& raw, std::optio
   // Files disagree about the week near its end; the clock's calendar date settles it.
   e.toe_ns = NearestTimeOfWeek(scale, SecondsToNs(e.toe_of_week_s), e.toc_ns);
   e.accuracy_m = n.Optional(23, 2);
-  // Galileo says "no accuracy" as a negative number.
+  // Galileo codes "no accuracy" as a negative number.
   e.accuracy_m = e.accuracy_m < 0 || e.accuracy_m > 8192 ? 8192 : std::max(e.accuracy_m, 0.1);
   e.health = ToHealth(n.Optional(24));
   e.group_delay_s[0] = n.Optional(25);

@@ -15,7 +15,7 @@ struct RawNavMessage {
   std::vector<std::optional<double>> numbers;
 };
 
-/// Turns numbers into an ephemeris. `message` is set where the file says it (RINEX 4), else it is derived
+/// Turns numbers into an ephemeris. `message` is set where the file has it (RINEX 4), else it is derived
 /// from system, number (BeiDou GEO) and data source (Galileo). Errors: the number that is missing or out of
 /// range.
 Result<KeplerEphemeris> MakeKeplerEphemeris(const RawNavMessage& raw, std::optional<NavMessage> message);

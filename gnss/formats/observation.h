@@ -45,7 +45,7 @@ struct ObservationFile {
   Eigen::Vector3d antenna_delta_hen =
       Eigen::Vector3d::Zero();           ///< antenna over marker: height, east, north [m]
   std::map<int, int> glonass_channels;   ///< number -> frequency channel
-  std::optional<int> leap_seconds;       ///< as the header says
+  std::optional<int> leap_seconds;       ///< of the header
   std::vector<ObservationEpoch> epochs;  ///< strictly rising stamps
   int events = 0;                        ///< event records passed over
   ReaderWarnings warnings;

@@ -18,7 +18,7 @@ struct ObservationType {
   double factor = 1;  ///< the file holds the value times this
 };
 
-/// What the header of an observation file says about its records.
+/// What the header of an observation file states about its records.
 struct ObservationLayout {
   TimeScale scale = TimeScale::kGps;
   bool scale_given = false;

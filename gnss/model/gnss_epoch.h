@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-/// Raw GNSS of a measurement log, as files say it; what is made of it is up to an estimator's settings.
+/// Raw GNSS of a measurement log, as in the files; an estimator's settings decide how it is used.
 struct GnssLog {
   std::vector<ObservationEpoch> epochs;  ///< strictly rising tags
   std::map<int, int> glonass_channels;

@@ -93,11 +93,10 @@ class MeasurementBuilder {
 };
 
 /// Variance of a code or Doppler measurement whose deviation at the zenith and 45 dB-Hz is `zenith_std`:
-///   std^2 = zenith_std^2 (1 + 1/sin^2(el)) / 2 * 10^((45 - C/N0) / 10), the last factor kept within 1/2 and
-///   1000
-/// and left out where C/N0 is not reported. A reported deviation takes the place of zenith_std and C/N0.
-/// Sources: elevation as in RTKLIB's manual, E.6.1; C/N0 as in Hartinger and Brunner, "Variances of GPS phase
-/// observations: the SIGMA-epsilon model", 1999.
+///   std^2 = zenith_std^2 (1 + 1/sin^2(el)) / 2 * 10^((45 - C/N0) / 10),
+/// the last factor kept within 1/2 and 1000 and left out where C/N0 is not reported. A reported deviation
+/// takes the place of zenith_std and C/N0. Sources: elevation as in RTKLIB's manual, E.6.1; C/N0 as in
+/// Hartinger and Brunner, "Variances of GPS phase observations: the SIGMA-epsilon model", 1999.
 [[nodiscard]] double ObservationVariance(double zenith_std, double elevation_rad, double cn0_dbhz,
                                          std::optional<double> reported_std);
 

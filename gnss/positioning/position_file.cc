@@ -35,10 +35,9 @@ std::string PositionFileHeader(const std::vector<std::string>& remarks) {
       "satellites)\n";
   text +=
       "%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  "
-      "sdne(m)"
-      "  sdeu(m)  sdun(m) age(s)  ratio    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    "
-      "sdvne    sdveu"
-      "    sdvun\n";
+      "sdne(m)  sdeu(m)  sdun(m) age(s)  ratio    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu  "
+      "  "
+      "sdvne    sdveu    sdvun\n";
   return text;
 }
 

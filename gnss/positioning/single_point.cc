@@ -177,7 +177,7 @@ Status SinglePointSolver::Iterate(const EpochMeasurements& epoch, SinglePointSta
   constexpr double kConvergedM = 1e-4;
   for (int i = 0; i < options_.max_iterations; ++i) {
     const WhitenedRows rows = PositionRows(epoch, state);
-    // The first step has no residuals to judge by.
+    // The first step has no residuals to weight by.
     const bool weighted = state->located && i > 0;
     const std::optional<RobustFit> fit =
         RobustStep(rows, options_.kernel, options_.kernel_scale_sigma, weighted);

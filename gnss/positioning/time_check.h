@@ -19,9 +19,8 @@ struct GnssCoverage {
 ///
 ///   - no ephemeris covers an epoch, but whole multiples of 1024 weeks later (or earlier) they do: the
 ///     receiver's week number rolled over;
-///   - single points fit by far better when the tags are shifted by whole seconds, as where UTC (GPST less
-///   the
-///     leap seconds), TAI or BDT stands in the place of GPST.
+///   - single points fit by far better when the tags are shifted by whole seconds, as where UTC (GPST
+///     less the leap seconds), TAI or BDT stands in the place of GPST.
 [[nodiscard]] Status CheckTags(const GnssLog& log);
 
 }  // namespace alidade

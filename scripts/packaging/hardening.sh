@@ -11,8 +11,8 @@ for tool in readelf nm; do
 done
 
 code=0
-# tell NAME PATTERN TEXT
-tell() {
+# report NAME PATTERN TEXT
+report() {
   if grep -qE "$2" <<<"$3"; then
     echo "$1: yes"
   else
@@ -21,13 +21,13 @@ tell() {
   fi
 }
 segments=$(readelf -lW "$program")
-tell "position-independent" 'DYN \(Position-Independent Executable' "$(readelf -hW "$program")"
-tell "stack not executable" 'GNU_STACK.* RW ' "$segments"
-tell "relocations read-only" 'GNU_RELRO' "$segments"
-tell "bound at start" 'BIND_NOW' "$(readelf -dW "$program")"
+report "position-independent" 'DYN \(Position-Independent Executable' "$(readelf -hW "$program")"
+report "stack not executable" 'GNU_STACK.* RW ' "$segments"
+report "relocations read-only" 'GNU_RELRO' "$segments"
+report "bound at start" 'BIND_NOW' "$(readelf -dW "$program")"
 if [[ $# -gt 0 ]]; then
   symbols=$(nm --undefined-only "$@")
-  tell "stack protector" '__stack_chk_fail' "$symbols"
-  tell "fortified functions" '__v?s?n?printf_chk|__mem[a-z]+_chk|__read_chk' "$symbols"
+  report "stack protector" '__stack_chk_fail' "$symbols"
+  report "fortified functions" '__v?s?n?printf_chk|__mem[a-z]+_chk|__read_chk' "$symbols"
 fi
 exit "$code"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Writes what a built program is made of as an SPDX 2.3 document (JSON) on stdout: the Debian packages whose libraries the loader
-# finds for it, and the header-only packages that are compiled into it, each with version, source and licence as its package says.
+# finds for it, and the header-only packages that are compiled into it, each with version, source and licence of its package.
 # DEPENDS_ON: linked by the program itself; the others are linked by these (DEPENDENCY_OF is left to their own packages).
 # Nothing in it depends on the time or the place: the date is SOURCE_DATE_EPOCH (default: that of the last commit, else 1970).
 # Usage: scripts/packaging/sbom.sh [PROGRAM, default build/alidade] > alidade.spdx.json

@@ -6,9 +6,9 @@
 
 namespace alidade {
 
-/// The GNSS epochs of a whole sequence and the clocks of its frames, for the batch estimate. Epochs hang on
-/// frames as in the sliding window (GnssWindow); the clocks are linear, so that their initial values need to
-/// be good enough to find jumps only.
+/// The GNSS epochs of a whole sequence and the clocks of its frames, for the batch estimate. Epochs are
+/// attached to frames as in the sliding window (GnssWindow); the clocks are linear, so that their initial
+/// values need to be good enough to find jumps only.
 class BatchGnss {
  public:
   BatchGnss(const GnssConfig& config, const GnssReceiver& receiver, const Eigen::Vector3d& gravity_W)
@@ -27,7 +27,7 @@ class BatchGnss {
   void AddEpoch(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise,
                 WindowFrame* frame);
 
-  /// Puts the epochs on their frames, linked at the present biases; with `gate` their rows are judged at the
+  /// Puts the epochs on their frames, linked at the present biases; with `gate` their rows are gated at the
   /// present states. True when the verdict on a row has changed.
   bool Select(bool gate, const ImuNoise& noise, const WindowFrames& frames);
   /// The satellites that the last Select with a gate used and refused at a frame.
@@ -36,7 +36,7 @@ class BatchGnss {
  private:
   struct Epoch {
     FrameEpoch attached;     ///< with its own noise
-    int frame = 0;           ///< index of the frame that it hangs on
+    int frame = 0;           ///< index of the frame that it is attached to
     std::vector<bool> used;  ///< by row, of the last gate
   };
 

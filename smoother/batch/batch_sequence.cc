@@ -20,7 +20,7 @@ constexpr double kMaxDepthDeviation = 1.0;
 constexpr int kMaxLandmarkIterations = 50;
 constexpr size_t kMinViews = 2;
 // Deviations of the alignment in the prior [rad, m]. The alignment holds at its own time, and the odometry
-// has drifted since the first state, so that its covariance says too much there; the fixes determine yaw and
+// has drifted since the first state, so that its covariance is too small there; the fixes determine yaw and
 // position anyway. Much more would be lost beside the information between frames.
 constexpr double kFreeYawStd = 1;
 constexpr double kFreeShiftStd = 10;

@@ -27,7 +27,7 @@ struct BatchTrack {
 /// A measurement between frames of a whole sequence, in W as it was aligned.
 struct BatchMeasurement {
   FrameMeasurement attached;  ///< with its own noise, before its weight
-  int frame = 0;              ///< index of the frame that it hangs on
+  int frame = 0;              ///< index of the frame that it is attached to
   double weight = 0;          ///< of its information; 0: refused
 };
 
@@ -62,10 +62,10 @@ class BatchSequence {
   /// `accepted`: the verdict of the initial estimator. kInput: see Whiten.
   Status AddMeasurement(const Measurement& measurement, bool accepted, std::vector<ImuSample> imu);
 
-  /// The same for a GNSS epoch, whose rows are judged at the present states alone.
+  /// The same for a GNSS epoch, whose rows are gated at the present states alone.
   void AddGnss(const GnssEpoch& epoch, std::vector<ImuSample> imu);
 
-  /// Which tracks and observations enter, judged at the present states. With `gate` off only the parallax
+  /// Which tracks and observations enter, gated at the present states. With `gate` off only the parallax
   /// counts: a depth known to kMaxDepthDeviation, in front of every view. With it on, an observation must lie
   /// in the chi-square gate (2 degrees of freedom) around a robustly estimated landmark, then its track
   /// (2N-3). The verdicts on one track do not depend on earlier ones. Measurements between frames: the

@@ -16,7 +16,7 @@ using Indices = std::vector<Index>;
 constexpr Index kState = kStateColumns;
 constexpr Index kPoint = kLandmarkColumns;
 /// A landmark seen once has no depth, which leaves its front singular. Information [m^2] on its inverse
-/// depth: a standard deviation of 1000 per metre says nothing.
+/// depth: a standard deviation of 1000 per metre is no information.
 constexpr double kNoDepthInformation = 1e-6;
 
 /// Joint information of the landmarks in sight, then what is the frame's own: clock and state.

@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// What the normal equations of a whole sequence say at its present states.
+/// Covariances from the normal equations of a whole sequence at its present states.
 struct SequenceCovariance {
   /// Covariance of every frame's state given all data; canonical chart (phi, dp, dv, dbg, dba).
   std::vector<Matrix15d> smoothed;

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 constexpr int kMaxPriorIterations = 15;
 constexpr double kDecrementTolerance = 1e-9;  // of the cost
 constexpr double kMaxDamping = 1e8;
-// A landmark that only the prior knows may have no depth there: its block is made regular.
+// A landmark with rows of the prior alone may have no depth there: its block is made regular.
 constexpr double kRegularization = 1e-10;
 
 }  // namespace

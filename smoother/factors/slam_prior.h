@@ -58,7 +58,7 @@ class SlamPrior {
   bool Reduce(const WindowPoint& point, Eigen::VectorXd* landmarks, Reduced* reduced) const;
 
  private:
-  struct Views;  // what the views say at a point
+  struct Views;  // information of the views at a point
   struct Scene;  // where the cameras are at a point, and the rays they see
   [[nodiscard]] Scene MakeScene(const WindowPoint& point) const;
   bool See(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;

@@ -13,7 +13,7 @@
 namespace alidade {
 
 /// The smoother's part of GNSS. Every frame has a clock block, tied to the next one by the clock's process;
-/// an epoch hangs on the frame before it. Prior and marginalisation take the first frame's clock along.
+/// an epoch is attached to the frame before it. Prior and marginalisation take the first frame's clock along.
 class GnssWindow {
  public:
   GnssWindow(const GnssConfig& config, const GnssReceiver& receiver, const Eigen::Vector3d& gravity_W);
@@ -31,7 +31,7 @@ class GnssWindow {
   /// Links the epoch to the frame; `imu` spans from the frame to the epoch, empty at the frame itself. False
   /// when the epoch was skipped because the clock was lost; it is re-initialised at the next frame.
   bool Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame);
-  /// After a solve: the gate of each row of each epoch of a frame; statistics of those that are judged for
+  /// After a solve: the gate of each row of each epoch of a frame; statistics of those that are gated for
   /// the first time.
   void Gate(WindowFrame* frame, FrameStatistics* statistics);
 

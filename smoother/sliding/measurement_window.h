@@ -7,9 +7,9 @@
 
 namespace alidade {
 
-/// The smoother's part of measurements between frames. One hangs on the frame before it. It is judged once,
-/// against the state that is predicted for its time, as the filter judges it: a refused one never enters the
-/// window.
+/// The smoother's part of measurements between frames. One is attached to the frame before it. It is gated
+/// once, against the state that is predicted for its time, as in the filter: a refused one never
+/// enters the window.
 class MeasurementWindow {
  public:
   explicit MeasurementWindow(const EstimatorConfig& config) : gates_(config) {}

@@ -11,7 +11,7 @@
 namespace alidade {
 
 /// The newest frame's state and clock as the last solve left them, and after it as a Kalman filter would have
-/// them by the measurements that hang on the frame since: what the next solve will do, as far as one
+/// them by the measurements that are attached to the frame since: what the next solve will do, as far as one
 /// measurement is concerned. Nothing of it enters the estimate.
 class NewestUpdate {
  public:

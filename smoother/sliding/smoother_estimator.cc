@@ -248,11 +248,11 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
       gnss_.Gate(&window_.frame(i), &statistics_);
     }
   }
-  AddJudgedVision(*tracks, &terms);
+  AddGatedVision(*tracks, &terms);
   return UpdateLatest(terms);
 }
 
-void SmootherEstimator::AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) {
+void SmootherEstimator::AddGatedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) {
   std::vector<const WindowTrack*> used;
   std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
                [](const WindowTrack* track) { return track->views.size() >= kMinViews; });

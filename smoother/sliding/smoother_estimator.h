@@ -25,11 +25,10 @@ namespace alidade {
 ///
 /// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval.
 ///           2. When the window is full the oldest frame is marginalised together with every track based
-///           there: all
-///              observations of such a track, in newer frames too, go into the prior, each exactly once. A
-///              track still seen starts anew with its next observation. (Re-anchoring it and using its
-///              observations again, as VINS-Mono does, would count them twice.) A track without parallax only
-///              loses its oldest view.
+///              there: all observations of such a track, in newer frames too, go into the prior, each exactly
+///              once. A track still seen starts anew with its next observation. (Re-anchoring it and using
+///              its observations again, as VINS-Mono does, would count them twice.) A track without parallax
+///              only loses its oldest view.
 ///           3. IMU prediction of the new frame, rest measurement when it stands still, landmarks of new
 ///              tracks, solve.
 ///           4. Chi-square gate on each track at the solution: a refused track forgets its observations. When
@@ -70,16 +69,16 @@ class SmootherEstimator final : public Estimator {
   /// The camera as it is known now.
   [[nodiscard]] const CameraCalibration& camera() const { return calibration_.mean; }
   [[nodiscard]] std::vector<FrameGeometry> Geometry() const { return MakeGeometry(window_, camera()); }
-  /// How a measurement between frames hangs on the newest one.
-  struct Hook {
+  /// How a measurement between frames is attached to the newest one.
+  struct Attachment {
     bool own_state = false;      ///< the newest frame was made for it
     std::vector<ImuSample> imu;  ///< from the newest frame to it; the sample there where they coincide
   };
   /// Makes a frame at the stamp where the newest one lies more than `max_interpolation_s` before it. `what`
   /// names the measurement in messages. kDiverged: not aligned. kInput: older than the newest frame.
-  Result<Hook> ReachMeasurement(const char* what, TimeNs stamp_ns, double max_interpolation_s);
+  Result<Attachment> ReachMeasurement(const char* what, TimeNs stamp_ns, double max_interpolation_s);
   /// Solves where the measurement has a state of its own.
-  Status SolveWithMeasurement(const Hook& hook);
+  Status SolveWithMeasurement(const Attachment& attachment);
   [[nodiscard]] bool NewestIsKeyframe() const;
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
@@ -98,8 +97,8 @@ class SmootherEstimator final : public Estimator {
   Status TakeLandmarks(const SlamPriorTerm& slam);
   /// SLAM features that have views in the window.
   [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
-  /// What the tracks say once the gates have judged their views: appended, and counted.
-  void AddJudgedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
+  /// Appends the terms of the tracks whose views passed the gates, and counts them.
+  void AddGatedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   enum class Landmark { kReady, kWaiting, kDegenerate };

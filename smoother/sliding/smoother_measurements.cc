@@ -14,7 +14,8 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   if (!initialized_) {
     return Status::Diverged("smoother: not initialised");
   }
-  // The window begins anew at the newest state in the ENU frame: what it knew is in that state's covariance.
+  // The window begins anew at the newest state in the ENU frame: its information is in that state's
+  // covariance.
   ALIDADE_RETURN_IF_ERROR(Begin(TurnIntoEnu(alignment, latest_)));
   aligned_ = true;
   if (alignment.clock) {
@@ -24,15 +25,15 @@ Status SmootherEstimator::Align(const GnssAlignment& alignment) {
   }
   if (given_.watched) {
     AddCalibrationPrior(given_,
-                        &prior_);  // what the window knew of its error together with the state is lost
+                        &prior_);  // its correlation with the state is lost
   } else {
     AddCalibrationPrior({calibration_.layout, calibration_.mean, calibration_deviations_}, &prior_);
   }
   return Status::Ok();
 }
 
-Result<SmootherEstimator::Hook> SmootherEstimator::ReachMeasurement(const char* what, TimeNs stamp_ns,
-                                                                    double max_interpolation_s) {
+Result<SmootherEstimator::Attachment> SmootherEstimator::ReachMeasurement(const char* what, TimeNs stamp_ns,
+                                                                          double max_interpolation_s) {
   if (!initialized_ || !aligned_) {
     return Status::Diverged("smoother: not aligned");
   }
@@ -43,21 +44,21 @@ Result<SmootherEstimator::Hook> SmootherEstimator::ReachMeasurement(const char* 
   }
   statistics_ = {};
   const double after_s = SecondsBetween(newest_ns, stamp_ns);
-  Hook hook;
-  hook.own_state = after_s > max_interpolation_s || (!has_frames_ && stamp_ns > newest_ns);
-  if (hook.own_state) {
+  Attachment attachment;
+  attachment.own_state = after_s > max_interpolation_s || (!has_frames_ && stamp_ns > newest_ns);
+  if (attachment.own_state) {
     ALIDADE_RETURN_IF_ERROR(BeginFrame(stamp_ns));
-    hook.imu = {interval_.back()};
+    attachment.imu = {interval_.back()};
   } else if (after_s > 0) {
-    ALIDADE_RETURN_IF_ERROR(imu_.Interval(newest_ns, stamp_ns, &hook.imu));
+    ALIDADE_RETURN_IF_ERROR(imu_.Interval(newest_ns, stamp_ns, &attachment.imu));
   } else if (!window_.newest().imu.empty()) {
-    hook.imu = {window_.newest().imu.back()};
+    attachment.imu = {window_.newest().imu.back()};
   }
-  return hook;
+  return attachment;
 }
 
-Status SmootherEstimator::SolveWithMeasurement(const Hook& hook) {
-  if (!hook.own_state) {
+Status SmootherEstimator::SolveWithMeasurement(const Attachment& attachment) {
+  if (!attachment.own_state) {
     return Status::Ok();
   }
   std::vector<WindowTrack*> tracks = SelectTracks();
@@ -69,20 +70,21 @@ Status SmootherEstimator::AddGnss(const GnssEpoch& epoch) {
     return Status::Diverged("smoother: not aligned");
   }
   const Stopwatch stopwatch;
-  Result<Hook> hook = ReachMeasurement("GNSS epoch", epoch.stamp_ns, config_.gnss.max_interpolation_s);
-  ALIDADE_RETURN_IF_ERROR(hook.status());
-  const bool attached = gnss_.Attach(epoch, std::move(hook->imu), noise_, &window_.newest());
+  Result<Attachment> attachment =
+      ReachMeasurement("GNSS epoch", epoch.stamp_ns, config_.gnss.max_interpolation_s);
+  ALIDADE_RETURN_IF_ERROR(attachment.status());
+  const bool attached = gnss_.Attach(epoch, std::move(attachment->imu), noise_, &window_.newest());
   statistics_.clock_jump = gnss_.jumped();
   absolute_.reset();
   if (config_.calibration.watch && attached) {
-    if (hook->own_state) {
+    if (attachment->own_state) {
       ALIDADE_RETURN_IF_ERROR(CarryNewestUpdate());
     }
     const WindowFrame& newest = window_.newest();
     absolute_ = newest_update_.Add(*gnss_.context(), gnss_.gate_threshold(), newest.epochs.back(),
                                    newest.epochs.back().SecondsAfter(newest.stamp_ns));
   }
-  ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
+  ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*attachment));
   statistics_.update_ms = stopwatch.ElapsedMs();
   return Status::Ok();
 }
@@ -92,28 +94,28 @@ Status SmootherEstimator::AddMeasurement(const Measurement& measurement) {
   ALIDADE_RETURN_IF_ERROR(whitened.status());
   const Stopwatch stopwatch;
   const Sensor sensor = SensorOf(measurement);
-  Result<Hook> hook =
+  Result<Attachment> attachment =
       ReachMeasurement(NameOf(sensor), StampOf(measurement), MaxInterpolation(config_, sensor));
-  ALIDADE_RETURN_IF_ERROR(hook.status());
+  ALIDADE_RETURN_IF_ERROR(attachment.status());
   NavEstimate predicted = latest_;
-  const std::vector<ImuSample>& since = hook->own_state ? interval_ : hook->imu;
+  const std::vector<ImuSample>& since = attachment->own_state ? interval_ : attachment->imu;
   if (since.size() > 1) {
     if (const Status status = PropagateEstimate(since, noise_, gravity_W_, &predicted); !status.ok()) {
       return Lost("smoother: " + status.message());
     }
   }
-  const bool attached = measurements_.Attach(*whitened, predicted, std::move(hook->imu), noise_,
+  const bool attached = measurements_.Attach(*whitened, predicted, std::move(attachment->imu), noise_,
                                              &window_.newest(), &statistics_);
   if (config_.calibration.watch) {
     absolute_ = AbsoluteCorrection{predicted.nav};  // what a refused one does
-    if (hook->own_state) {
+    if (attachment->own_state) {
       ALIDADE_RETURN_IF_ERROR(CarryNewestUpdate());
     }
     if (attached) {
       absolute_ = newest_update_.Add(window_.newest().measurements.back(), gravity_W_);
     }
   }
-  ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*hook));
+  ALIDADE_RETURN_IF_ERROR(SolveWithMeasurement(*attachment));
   statistics_.update_ms = stopwatch.ElapsedMs();
   return Status::Ok();
 }

@@ -11,7 +11,7 @@ std::unique_ptr<WindowTerm> MakePriorTerm(const LinearPrior& prior, const Window
     if (blocks.size() == 1) {
       blocks.push_back(BiasBlock(*anchor.frame));
     } else {
-      blocks.back().width = kPoseColumns;  // of these frames it knows no velocity
+      blocks.back().width = kPoseColumns;  // it has no velocity of these frames
     }
   }
   if (prior.clock_origin) {

@@ -13,7 +13,7 @@ struct SensorContext {
   const WindowCalibration* calibration = &NotCalibrated();
 };
 
-/// Appends what every sensor but the camera says about the first `count` frames: IMU between them, rest,
+/// Appends the terms of all sensors but the camera over the first `count` frames: IMU between them, rest,
 /// measurements between frames, GNSS epochs and clocks, in this order. Frames and context must outlive the
 /// terms. kDiverged: the covariance of an IMU interval is not positive definite.
 Status AddSensorTerms(const SensorContext& context, const WindowFrames& frames, int count,

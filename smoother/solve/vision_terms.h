@@ -50,7 +50,7 @@ struct ViewContext {
 
 /// One view of a track with an explicit landmark. In Ceres the landmark's coordinates move with the base
 /// frame (InverseDepthFactor, BaseBearingFactor); linearised it is a point of the world (LinearizeView), so
-/// that a view concerns one frame alone. Once the landmark is eliminated both say the same.
+/// that a view concerns one frame alone. Once the landmark is eliminated both are equal.
 class ViewTerm final : public WindowTerm {
  public:
   /// `landmark`: the track's index among the landmarks of the problem. The track must outlive the term.

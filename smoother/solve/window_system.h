@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// What a window knows of all of its frames together, canonical chart.
+/// Information of a window on all of its frames together, canonical chart.
 struct WindowInformation {
   ColumnMap columns;
   Eigen::MatrixXd root;  ///< R, upper triangular: R^T R is the information
@@ -16,7 +16,7 @@ struct WindowInformation {
   [[nodiscard]] double Deviation(const Eigen::RowVectorXd& row) const;
 };
 
-/// What a window knows of its newest frame.
+/// Information of a window on its newest frame.
 struct NewestEstimate {
   Matrix15d covariance = Matrix15d::Zero();      ///< of the state; canonical chart, phi dp dv dbg dba
   Matrix6d clock_covariance = Matrix6d::Zero();  ///< of the clock, in an aligned window

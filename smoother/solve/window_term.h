@@ -41,8 +41,8 @@ struct LinearTerm {
                       const Eigen::VectorXd& gradient);
   /// Replaces normal equations by rows of a square root (SquareRootRows).
   void MakeRows();
-  /// Adds its information to normal equations over `columns`, of which lower triangles count. What a term
-  /// says of coordinates that have no columns must be nothing: zero.
+  /// Adds its information to normal equations over `columns`, of which lower triangles count. Its entries
+  /// of coordinates that have no columns must be zero.
   void AddTo(const ColumnMap& columns, Eigen::MatrixXd* hessian, Eigen::VectorXd* gradient) const;
 };
 

@@ -38,7 +38,7 @@ bool LinearizeAnchoredView(const WindowTrack& track, const WindowView& view,
 [[nodiscard]] double TrackChiSquare(const WindowTrack& track, std::span<const FrameGeometry> geometry);
 
 /// A landmark of the anchor's camera in coordinates of another: l_from as a function of l_to, both bodies and
-/// the calibration of the camera, whose extrinsics and time offset say where the two cameras are.
+/// the calibration of the camera, whose extrinsics and time offset give the poses of the two cameras.
 struct AnchorChange {
   Eigen::Vector3d to;                      ///< the landmark in its new anchor
   Eigen::Matrix3d landmark;                ///< d l_from / d l_to

@@ -164,7 +164,7 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
     AddDepthPrior(prior, AtRow(geometry, views.front(), &row), views.front().observation.plane, landmark,
                   system->calibration->layout, workspace);
   }
-  // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are judged.
+  // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are tested.
   const Vector3d scale = workspace->landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<Matrix3d> factor(scale.asDiagonal() * workspace->landmark_hessian * scale.asDiagonal());
   if (!scale.allFinite() || factor.info() != Eigen::Success ||

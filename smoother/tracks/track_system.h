@@ -78,9 +78,9 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
               const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior = {});
 
-/// What poses of the window say of a track's inverse depth in its base view: d rho / d (phi, dp) of each
-/// frame's body, 1 x 6 geometry.size(), the landmark being the one that its views determine from those poses;
-/// and the deviation of rho with the poses held fixed.
+/// The error of a track's inverse depth in its base view by the poses of the window: d rho / d (phi, dp) of
+/// each frame's body, 1 x 6 geometry.size(), the landmark being the one that its views determine from those
+/// poses; and the deviation of rho with the poses held fixed.
 struct InverseDepthError {
   Eigen::RowVectorXd row;
   double own_deviation = 0;

@@ -68,7 +68,7 @@ class Refinement {
     }
     std::vector<TruthPose> poses;
     if (imu_.size() >= 2) {
-      for (const JudgedPose& pose : poses_.poses()) {
+      for (const GatedPose& pose : poses_.poses()) {
         if (pose.pose.stamp_ns >= imu_.front().stamp_ns && pose.pose.stamp_ns < imu_.back().stamp_ns) {
           poses.push_back(pose.pose);
         }
@@ -118,7 +118,7 @@ class Refinement {
         steps.begin(), steps.end(), [&](TimeNs step) { return static_cast<double>(step) > limit; }));
   }
 
-  [[nodiscard]] TruthPoseTerm Term(const JudgedPose& pose) const {
+  [[nodiscard]] TruthPoseTerm Term(const GatedPose& pose) const {
     const size_t i = *pose.state;
     return LinearizePose(pose.pose.T_TM, pose.pose.stamp_ns + SecondsToNs(constants_.time_offset_s),
                          scaled_[i], scaled_[i + 1], states_[i], constants_, imu_model_);
@@ -146,7 +146,7 @@ class Refinement {
       }
       system->AddLink(k, link->residual, link->of_first, link->of_second, link->of_constants);
     }
-    for (const JudgedPose& pose : poses_.poses()) {
+    for (const GatedPose& pose : poses_.poses()) {
       if (pose.used()) {
         TruthPoseTerm term = Term(pose);
         Whiten(robust ? poses_.RobustWeightOf(term.residual) : 1, &term);
@@ -211,7 +211,7 @@ class Refinement {
 
   /// Diagonal of J P J^T of a pose's rows, over orientation and position.
   void AddToHat(const ArrowSystem::Solution& solution, const ArrowSystem::BorderMatrix& border,
-                const JudgedPose& pose) {
+                const GatedPose& pose) {
     const TruthPoseTerm term = Term(pose);
     const Matrix6d mixed = term.of_state * solution.with_border * term.of_constants.transpose();
     const Matrix6d covariance = term.of_state * solution.covariance * term.of_state.transpose() + mixed +
@@ -223,7 +223,7 @@ class Refinement {
 
   /// Residuals, refused poses and noise at the present states.
   void UpdateWeights(bool robust) {
-    for (JudgedPose& pose : poses_.poses()) {
+    for (GatedPose& pose : poses_.poses()) {
       if (pose.state) {
         pose.residual = Term(pose).residual;
       }
@@ -301,7 +301,7 @@ class Refinement {
   }
 
   void DescribePoses() {
-    for (const JudgedPose& pose : poses_.poses()) {
+    for (const GatedPose& pose : poses_.poses()) {
       result_.poses += pose.state ? 1 : 0;
       result_.refused += pose.state && !pose.passes ? 1 : 0;
     }

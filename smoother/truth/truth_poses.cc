@@ -53,7 +53,7 @@ void TruthPoses::TakeGivenNoise() {
 
 void TruthPoses::Attach(std::span<const ImuSample> imu, double time_offset_s) {
   size_t i = 0;
-  for (JudgedPose& pose : poses_) {
+  for (GatedPose& pose : poses_) {
     const TimeNs stamp_ns = pose.pose.stamp_ns + SecondsToNs(time_offset_s);
     while (i + 2 < imu.size() && imu[i + 1].stamp_ns <= stamp_ns) {
       ++i;
@@ -71,7 +71,7 @@ double TruthPoses::RobustWeightOf(const Vector6d& residual) const {
 
 void TruthPoses::EstimateRobustNoise() {
   std::vector<double> orientation, position;
-  for (const JudgedPose& pose : poses_) {
+  for (const GatedPose& pose : poses_) {
     if (pose.state) {
       orientation.push_back(OrientationSquare(pose.residual));
       position.push_back(PositionSquare(pose.residual));
@@ -86,7 +86,7 @@ void TruthPoses::EstimateRobustNoise() {
 
 size_t TruthPoses::Gate() {
   size_t changed = 0;
-  for (JudgedPose& pose : poses_) {
+  for (GatedPose& pose : poses_) {
     if (pose.state) {
       const bool passes =
           gate_.Accepts(OrientationSquare(pose.residual) / Square(noise_.orientation_rad), 3) &&
@@ -101,7 +101,7 @@ size_t TruthPoses::Gate() {
 void TruthPoses::EstimateNoise(const TruthNoise& hat) {
   double rows = 0;
   TruthNoise squares;
-  for (const JudgedPose& pose : poses_) {
+  for (const GatedPose& pose : poses_) {
     if (pose.used()) {
       rows += 3;
       squares.orientation_rad += OrientationSquare(pose.residual);
@@ -120,7 +120,7 @@ void TruthPoses::EstimateNoise(const TruthNoise& hat) {
 double TruthPoses::Correlation(int row) const {
   std::vector<Eigen::Vector3d> series;
   double variance = 0;
-  for (const JudgedPose& pose : poses_) {
+  for (const GatedPose& pose : poses_) {
     if (pose.used()) {
       series.emplace_back(pose.residual.segment<3>(row));
       variance += series.back().squaredNorm();
@@ -143,8 +143,8 @@ double TruthPoses::Correlation(int row) const {
 std::vector<TruthSpan> TruthPoses::Gaps(double longer_than_s, double time_offset_s) const {
   const TimeNs offset_ns = SecondsToNs(time_offset_s);
   std::vector<TruthSpan> gaps;
-  const JudgedPose* last = nullptr;
-  for (const JudgedPose& pose : poses_) {
+  const GatedPose* last = nullptr;
+  for (const GatedPose& pose : poses_) {
     if (pose.used()) {
       if (last != nullptr && SecondsBetween(last->pose.stamp_ns, pose.pose.stamp_ns) > longer_than_s) {
         gaps.push_back({last->pose.stamp_ns + offset_ns, pose.pose.stamp_ns + offset_ns});
@@ -157,7 +157,7 @@ std::vector<TruthSpan> TruthPoses::Gaps(double longer_than_s, double time_offset
 
 TruthSpan TruthPoses::Extent(double time_offset_s) const {
   const TimeNs offset_ns = SecondsToNs(time_offset_s);
-  const auto used = [](const JudgedPose& pose) { return pose.used(); };
+  const auto used = [](const GatedPose& pose) { return pose.used(); };
   const auto first = std::find_if(poses_.begin(), poses_.end(), used);
   const auto last = std::find_if(poses_.rbegin(), poses_.rend(), used);
   if (first == poses_.end()) {

@@ -31,7 +31,7 @@ struct TruthSpan {
 };
 
 /// A recorded pose in a refinement.
-struct JudgedPose {
+struct GatedPose {
   TruthPose pose;
   std::optional<size_t> state;           ///< IMU sample before it; empty outside the samples
   bool passes = true;                    ///< the gate
@@ -46,8 +46,8 @@ class TruthPoses {
   /// A positive deviation of `given` is taken as it is, else it is estimated.
   TruthPoses(std::span<const TruthPose> poses, double gate_probability, const TruthNoise& given);
 
-  [[nodiscard]] std::vector<JudgedPose>& poses() { return poses_; }
-  [[nodiscard]] const std::vector<JudgedPose>& poses() const { return poses_; }
+  [[nodiscard]] std::vector<GatedPose>& poses() { return poses_; }
+  [[nodiscard]] const std::vector<GatedPose>& poses() const { return poses_; }
   [[nodiscard]] const TruthNoise& noise() const { return noise_; }
   /// What is not given.
   void SetNoise(const TruthNoise& noise) {
@@ -87,7 +87,7 @@ class TruthPoses {
   [[nodiscard]] double Correlation(int row) const;
   void TakeGivenNoise();
 
-  std::vector<JudgedPose> poses_;
+  std::vector<GatedPose> poses_;
   ChiSquareGate gate_;
   TruthNoise given_;
   TruthNoise noise_;

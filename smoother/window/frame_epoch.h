@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-/// A GNSS epoch that hangs on a frame of the window. The clock's noise between them is left out too.
+/// A GNSS epoch that is attached to a frame of the window. The clock's noise between them is left out too.
 struct FrameEpoch : ImuLink {
   TimeNs stamp_ns = 0;
   EpochMeasurements measurements;  ///< located

@@ -5,8 +5,8 @@
 
 namespace alidade {
 
-/// A measurement between frames that hangs on a frame of the window. Its noise contains the weight that the
-/// gate gave it.
+/// A measurement between frames that is attached to a frame of the window. Its noise contains the weight that
+/// the gate gave it.
 struct FrameMeasurement : ImuLink {
   WhitenedMeasurement measurement;
 

@@ -41,9 +41,9 @@ struct WindowFrame {
   std::optional<FirstEstimate> first;
   // Once aligned with GNSS (smoother/sliding/gnss_window.h).
   std::optional<std::array<double, ClockState::kSize>> clock;  ///< a parameter block
-  bool clock_anew = false;                     ///< the clock before says nothing about this one
-  std::vector<FrameEpoch> epochs;              ///< from this frame to the next
-  std::vector<FrameMeasurement> measurements;  ///< likewise, of the other sensors
+  bool clock_anew = false;                                     ///< the clock before does not predict this one
+  std::vector<FrameEpoch> epochs;                              ///< from this frame to the next
+  std::vector<FrameMeasurement> measurements;                  ///< likewise, of the other sensors
 
   [[nodiscard]] NavState nav_state() const;
   [[nodiscard]] ImuBias imu_bias() const;

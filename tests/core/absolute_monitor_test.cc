@@ -42,7 +42,7 @@ class Follower {
   double variance_ = 1;
 };
 
-// GIVEN noise as stated, white or of first order with 30 s, THEN nothing is told in an hour of 10 Hz.
+// GIVEN noise as stated, white or of first order with 30 s, THEN nothing is reported in an hour of 10 Hz.
 TEST(AbsoluteMonitorTest, IsSilentWhereNoiseIsAsStatedEvenIfItLasts) {
   for (const double time_s : {0.0, 30.0}) {
     RandomStream random(3, "noise");
@@ -59,9 +59,9 @@ TEST(AbsoluteMonitorTest, IsSilentWhereNoiseIsAsStatedEvenIfItLasts) {
   }
 }
 
-// GIVEN positions that are pulled off at 0.5 m/s, THEN it is told before 10 m, with the distance as far as
-// the window reaches.
-TEST(AbsoluteMonitorTest, TellsAPull) {
+// GIVEN positions that are pulled off at 0.5 m/s, THEN it is reported before 10 m, with the distance as far
+// as the window reaches.
+TEST(AbsoluteMonitorTest, DetectsAPull) {
   RandomStream random(4, "noise");
   Follower follower;
   AbsoluteMonitor monitor;
@@ -81,8 +81,8 @@ TEST(AbsoluteMonitorTest, TellsAPull) {
   EXPECT_NEAR(monitor.contradiction()->distance_m, pull_m, 3);
 }
 
-// GIVEN wrong measurements that are refused, so that nothing changes, THEN three in a row are not told, ten
-// seconds of them are.
+// GIVEN wrong measurements that are refused, so that nothing changes, THEN three in a row are not reported,
+// ten seconds of them are.
 TEST(AbsoluteMonitorTest, SingleWrongOnesAreNoPull) {
   AbsoluteMonitor monitor;
   const auto add = [&](int second, double left_m) {

@@ -219,9 +219,10 @@ TEST(BearingPlaneTest, LandmarksAroundTheCamerasAreSolvedFor) {
   }
 }
 
-// What a landmark eliminated says of the poses does not depend on the plane that carries the observations: in
-// front of the cameras the tangent planes give the rows of z = 1, to first order in the noise.
-TEST(BearingPlaneTest, BothPlanesSayTheSameOfThePosesInFrontOfTheCameras) {
+// The information of an eliminated landmark on the poses does not depend on the plane that carries the
+// observations: in front of the cameras the tangent planes give the rows of z = 1, to first order in the
+// noise.
+TEST(BearingPlaneTest, BothPlanesGiveTheSameInformationOnThePosesInFrontOfTheCameras) {
   RandomStates random(98);
   const CameraModel camera = *CameraModel::Create(DistortionModel::kNone, {400, 410, 320, 240}, {}, 640, 480);
   const CameraModel tangent = camera.WithPlane(ObservationPlane::kTangent);

@@ -36,7 +36,7 @@ TEST(BodyMotionTest, ARampIsFoundWhereverTheInstantLies) {
   }
 }
 
-TEST(BodyMotionTest, SamplesThatEndAtTheInstantTellTheRampToo) {
+TEST(BodyMotionTest, SamplesThatEndAtTheInstantGiveTheRampToo) {
   const std::vector<ImuSample> samples = Ramp(200, 9);
   const MeasuredTurn turn = TurnAround(samples, SecondsToNs(0.04), 0.01);
   EXPECT_LT((turn.gyro_radps - Vector3d(0.18, -0.02, 0.3)).norm(), 1e-7);

@@ -24,8 +24,8 @@ CalibrationConfig Watching() {
   return config;
 }
 
-/// What the rows tell of a parameter, in its watched deviations: as little as of a minute of motion.
-constexpr double kToldShare = 1e-4;
+/// The information of the rows on a parameter, in its watched deviations: as little as of a minute of motion.
+constexpr double kInformationShare = 1e-4;
 
 /// Rows z = H_x x + H_t theta + n, n ~ N(0, 1), about a state with the prior N(0, I) and a calibration that
 /// is wrong by `wrong`, in units in which a row has an entry of about one.
@@ -45,7 +45,7 @@ struct LinearWorld {
     fill(x);
     z += H_x * x + H_t * wrong;
     const CalibrationEstimate prior = InitialCalibration(Watching(), CameraCalibration());
-    H_t = (H_t * (kToldShare * prior.deviations.cwiseInverse()).asDiagonal()).eval();
+    H_t = (H_t * (kInformationShare * prior.deviations.cwiseInverse()).asDiagonal()).eval();
   }
 
   /// What an estimator that watches the calibration has, by its normal equations.

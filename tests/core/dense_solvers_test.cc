@@ -59,7 +59,7 @@ TEST(DenseSolversTest, AnIndefiniteMatrixIsNotPositive) {
   EXPECT_EQ(solver.min_pivot(), -1);
 }
 
-TEST(DenseSolversTest, TheTriangleKeepsWhatTheRowsSay) {
+TEST(DenseSolversTest, TheTriangleKeepsTheInformationOfTheRows) {
   const MatrixXd a = Drawn(9, 4);
   const VectorXd b = Drawn(9, 1);
   VectorXd right = b;

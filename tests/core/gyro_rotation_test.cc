@@ -83,7 +83,7 @@ TEST(GyroRotation, ComposesInTheBodyFrame) {
   EXPECT_TRUE(R->isApprox(so3::Exp({0, 0, 0.8}) * so3::Exp({1.2, 0, 0}), 1e-6));
 }
 
-TEST(GyroRotation, SaysNothingAcrossAGap) {
+TEST(GyroRotation, IsEmptyAcrossAGap) {
   GyroRotation gyro;
   EXPECT_FALSE(gyro.Between(0, 50 * kMs).has_value());
   gyro.Add(Sample(0, Vector3d::Zero()));
@@ -125,7 +125,7 @@ TEST(GyroRotation, IgnoresDisorderAndNotANumber) {
 }
 
 // A silence around the times asked for is one too, however near they are to each other.
-TEST(GyroRotation, SaysNothingWithinASilence) {
+TEST(GyroRotation, IsEmptyWithinASilence) {
   GyroRotation gyro;
   gyro.Add(Sample(0, Vector3d::Zero()));
   gyro.Add(Sample(1000 * kMs, Vector3d::Ones()));

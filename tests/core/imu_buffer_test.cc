@@ -39,7 +39,7 @@ TEST(ImuBufferTest, InterpolatesToTheMeasurement) {
   EXPECT_EQ(samples.size(), 3u) << "ends that are measured are not doubled";
 }
 
-// GIVEN readings on a parabola THEN the ends lie on it, and measured samples know its curvature where there
+// GIVEN readings on a parabola THEN the ends lie on it, and measured samples show its curvature where there
 // are two before them.
 TEST(ImuBufferTest, AnIntervalFollowsAParabola) {
   const auto value = [](double t_s) { return 3 + 2 * t_s - 50 * t_s * t_s; };
@@ -81,7 +81,7 @@ TEST(ImuBufferTest, AStartAfterALossBeginsAnew) {
   EXPECT_EQ(buffer.samples().size(), 2u) << "a start directly behind needs the last samples";
 }
 
-TEST(ImuBufferTest, SaysWhatIsMissing) {
+TEST(ImuBufferTest, ReportsWhatIsMissing) {
   ImuBuffer buffer(0.05);
   std::vector<ImuSample> samples;
   EXPECT_FALSE(buffer.Interval(0, 10, &samples).ok());
@@ -120,7 +120,7 @@ TEST(ImuBufferTest, RefusesMagnitudesBeyondAnySensor) {
 }
 
 TEST(ImuBufferTest, AnEmptyBufferThatDropsStillTakesTheSampleBeforeTheStamp) {
-  // An estimator that starts between two samples is told its stamp first and gets the samples afterwards.
+  // An estimator that starts between two samples gets its stamp first and gets the samples afterwards.
   ImuBuffer buffer(0.5);
   buffer.DropBefore(SecondsToNs(1.15));
   EXPECT_TRUE(buffer.Add(At(1.1, 1)).ok());

@@ -67,7 +67,7 @@ TEST(ImuIncrementTest, IncrementsCompose) {
   }
 }
 
-/// What the IMU that measured `samples` did not tell: fine steps with white noise and walking biases.
+/// The motion between the samples of the IMU: fine steps with white noise and walking biases.
 Vector15d DrawError(std::span<const ImuSample> samples, const ImuNoise& noise, const ImuMotion& nominal,
                     RandomStream* draws) {
   constexpr int kPieces = 12;

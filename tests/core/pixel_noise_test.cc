@@ -57,7 +57,7 @@ TEST(PixelNoiseTest, GivenFiveSecondsOfAFaultThenTheNoiseHardlyMoves) {
   EXPECT_NEAR(frames.After(200, 1), 1, 0.01);
 }
 
-TEST(PixelNoiseTest, SuspectFramesAndFewTracksTellNothing) {
+TEST(PixelNoiseTest, SuspectFramesAndFewTracksDoNotCount) {
   Frames frames(Adaptive());
   EXPECT_EQ(frames.After(50, 3, true), 1);
   for (int k = 1; k < 1000; ++k) {

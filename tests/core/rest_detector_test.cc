@@ -21,7 +21,7 @@ class RestDetectorTest : public ::testing::Test {
       landmarks_.push_back(
           Vector3d(random_.Uniform(-3, 3), random_.Uniform(-1.8, 1.8), random_.Uniform(3, 5)));
     }
-    TellBias(0, 1e-4);
+    SetBias(0, 1e-4);
   }
 
   RestVerdict AfterOneSecond(const Vector3d& velocity, double turn_rate, double accel_spread,
@@ -57,23 +57,23 @@ class RestDetectorTest : public ::testing::Test {
               {static_cast<std::int64_t>(i), pixel + Vector2d(random_.Normal(), random_.Normal())});
         }
       }
-      NavEstimate told = estimate_;
+      NavEstimate given = estimate_;
       if (t < doubt_from_s_) {
-        told.nav.v_WB.setZero();
+        given.nav.v_WB.setZero();
       }
-      verdict = detector.AddFrame(frame, told_noise_px_, told, Pose());
+      verdict = detector.AddFrame(frame, given_noise_px_, given, Pose());
       mean_gyro_ = detector.Rates().mean_radps;
     }
     return verdict;
   }
 
-  /// The bias of 0.01 rad/s about y is told as this much larger, with this deviation.
-  void TellBias(double error_radps, double std_radps) {
+  /// The bias of 0.01 rad/s about y is given as this much larger, with this deviation.
+  void SetBias(double error_radps, double std_radps) {
     estimate_.bias.gyro.y() = 0.01 + error_radps;
     estimate_.covariance.diagonal().segment<3>(9).setConstant(std_radps * std_radps);
   }
 
-  void TellVelocity(const Vector3d& v_WB, double std_mps) {
+  void SetVelocity(const Vector3d& v_WB, double std_mps) {
     estimate_.nav.v_WB = v_WB;
     estimate_.covariance.diagonal().segment<3>(6).setConstant(std_mps * std_mps);
   }
@@ -84,7 +84,7 @@ class RestDetectorTest : public ::testing::Test {
   NavEstimate estimate_;
   double doubt_from_s_ = 0;    ///< before, the estimate's velocity is zero
   double camera_ahead_s_ = 0;  ///< the frames' stamps less the IMU's
-  double told_noise_px_ = 1;
+  double given_noise_px_ = 1;
   Vector3d mean_gyro_;
 };
 
@@ -95,20 +95,20 @@ TEST_F(RestDetectorTest, StandingStillIsRest) {
   EXPECT_NEAR(mean_gyro_.y(), 0.01, 0.001) << "the gyroscope's bias";
 }
 
-// GIVEN a motion that moves tracks by less than the limit THEN the verdict says that their flow is more than
+// GIVEN a motion that moves tracks by less than the limit THEN the verdict is that their flow is more than
 // noise.
-TEST_F(RestDetectorTest, SlowMotionIsTold) {
+TEST_F(RestDetectorTest, SlowMotionIsDetected) {
   EXPECT_LT(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 3.5);
   const RestVerdict verdict = AfterOneSecond(Vector3d(0.013, 0, 0), 0, 0.1);
   EXPECT_TRUE(verdict.no_translation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
 }
 
-TEST_F(RestDetectorTest, FlowIsJudgedByTheNoiseThatIsTold) {
+TEST_F(RestDetectorTest, FlowIsTestedAgainstTheGivenNoise) {
   const RandomStream start = random_;
   const double usual = AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations;
   random_ = start;
-  told_noise_px_ = 2;
+  given_noise_px_ = 2;
   EXPECT_NEAR(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 0.5 * usual, 1e-12);
 }
 
@@ -137,7 +137,7 @@ TEST_F(RestDetectorTest, ATurningPointIsNotRest) {
 // GIVEN a bias that is off by two of its deviations, which turns the image by 2 px in the window, WHEN the
 // rig stands still, THEN that is rest.
 TEST_F(RestDetectorTest, ABiasThatIsNotKnownYetHidesNoRest) {
-  TellBias(0.01, 0.005);
+  SetBias(0.01, 0.005);
   const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0, 0.1);
   EXPECT_TRUE(verdict.no_translation);
   EXPECT_TRUE(verdict.no_rotation);
@@ -145,12 +145,12 @@ TEST_F(RestDetectorTest, ABiasThatIsNotKnownYetHidesNoRest) {
 
 // GIVEN the same with a bias that is known, WHEN the image stands still, THEN the rig moves with the turn.
 TEST_F(RestDetectorTest, AStillImageWhileTheRigIsKnownToTurnIsNoRest) {
-  TellBias(0.01, 1e-4);
+  SetBias(0.01, 1e-4);
   EXPECT_FALSE(AfterOneSecond(Vector3d::Zero(), 0, 0.1).no_translation);
 }
 
 TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
-  TellBias(0.01, 0.005);
+  SetBias(0.01, 0.005);
   for (const Vector3d& velocity : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0, 0, 0.2),
                                    // Of one sign, the wrong turn hides it in the image.
                                    Vector3d(0.04, 0, 0), Vector3d(-0.04, 0, 0)}) {
@@ -158,32 +158,32 @@ TEST_F(RestDetectorTest, AMotionWhileTheBiasIsNotKnownIsNoRest) {
   }
 }
 
-// GIVEN a turn that the gyroscope knows but that moves the image by less than the limit, WHEN it is taken for
-// rest, THEN the verdict says that the flow is more than noise.
-TEST_F(RestDetectorTest, ASlowTurnIsTold) {
+// GIVEN a turn that the gyroscope measures but that moves the image by less than the limit, WHEN it is taken
+// for rest, THEN the verdict is that the flow is more than noise.
+TEST_F(RestDetectorTest, ASlowTurnIsDetected) {
   const RestVerdict verdict = AfterOneSecond(Vector3d::Zero(), 0.003, 0.1);
   EXPECT_TRUE(verdict.no_rotation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
 }
 
-// GIVEN scenery so far that a slow motion stays below the limit of the flow, WHEN the estimate knows of the
-// motion, THEN that is no rest; the images alone cannot tell.
-TEST_F(RestDetectorTest, FarSceneryHidesNoMotionThatTheEstimateKnows) {
+// GIVEN scenery so far that a slow motion stays below the limit of the flow, WHEN the estimate contains the
+// motion, THEN that is no rest; the images alone do not show it.
+TEST_F(RestDetectorTest, FarSceneryHidesNoMotionOfTheEstimate) {
   for (Vector3d& landmark : landmarks_) {
     landmark *= 20;
   }
   const Vector3d velocity(0.1, 0, 0);
   EXPECT_TRUE(After(4, velocity, 0, 0.01).no_translation);
-  TellVelocity(velocity, 0.01);
+  SetVelocity(velocity, 0.01);
   EXPECT_FALSE(AfterOneSecond(velocity, 0, 0.01).no_translation);
   EXPECT_FALSE(After(4, velocity, 0, 0.01).no_translation);
-  TellVelocity(velocity, 0.1);
+  SetVelocity(velocity, 0.1);
   EXPECT_TRUE(AfterOneSecond(velocity, 0, 0.01).no_translation) << "nor does the estimate tell";
 }
 
 // GIVEN an estimate that moves on while the rig stands still THEN that is rest, later than usual.
 TEST_F(RestDetectorTest, LastingRestOverrulesTheEstimate) {
-  TellVelocity(Vector3d(0.1, 0, 0), 0.01);
+  SetVelocity(Vector3d(0.1, 0, 0), 0.01);
   EXPECT_FALSE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_TRUE(After(2.6, Vector3d::Zero(), 0, 0.1).no_translation);
 }
@@ -192,14 +192,15 @@ TEST_F(RestDetectorTest, LastingRestOverrulesTheEstimate) {
 // one last.
 TEST_F(RestDetectorTest, RestBeforeTheDoubtDoesNotCount) {
   doubt_from_s_ = 2.5;
-  TellVelocity(Vector3d(0.1, 0, 0), 0.01);
+  SetVelocity(Vector3d(0.1, 0, 0), 0.01);
   EXPECT_TRUE(After(2.4, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_FALSE(After(3, Vector3d::Zero(), 0, 0.1).no_translation);
   EXPECT_TRUE(After(4.6, Vector3d::Zero(), 0, 0.1).no_translation);
 }
 
-// GIVEN an IMU whose rate tells the time, WHEN no frame comes for ten minutes, THEN the mean over the samples
-// that are kept shows that they reach back no farther than twice the four windows of a verdict in doubt.
+// GIVEN an IMU whose rate is proportional to time, WHEN no frame comes for ten minutes, THEN the mean over
+// the samples that are kept shows that they reach back no farther than twice the four windows of a verdict in
+// doubt.
 TEST_F(RestDetectorTest, ASilenceOfTheCameraKeepsABoundedNumberOfSamples) {
   const double bound_s = 2 * 4 * VisionConfig().rest_window_s;
   RestDetector detector(VisionConfig(), InitConfig(), camera_);

@@ -20,7 +20,7 @@ export ALIDADE_DATA_DIR=$source
 export SOURCE_DATE_EPOCH=0  # the day in reports
 ulimit -c 0
 
-# What a command writes into the folder OUT. Its second word tells how an interrupted one is repeated; -: as it was begun.
+# What a command writes into the folder OUT. Its second word gives how an interrupted one is repeated; -: as it was begun.
 commands=(
   "simulate --overwrite --config=figure8_short --set=duration_s=6,path_m=7.8 --output=OUT"
   "simulate --overwrite --config=drawn.yaml --output=OUT"

@@ -43,7 +43,8 @@ TEST_P(CloneConditionalTest, GivenARemovedCloneThenItIsPredictedByItsNeighbours)
     EXPECT_LT((residual - conditional.covariance).norm(), 1e-6 * residual.norm() + 1e-14) << leaving;
     // Where all of them are is no concern of it, and no further one makes its noise larger.
     EXPECT_LT((sum - Matrix6d::Identity()).norm(), 1e-9);
-    // Rows of past updates couple clones that are far apart: w must not know of the one at the window's end.
+    // Rows of past updates couple clones that are far apart: w must not depend on the one at the window's
+    // end.
     const size_t farthest = leaving < kFrames / 2 ? kFrames - 1 : 0;
     MatrixXd end = MatrixXd::Zero(6, p.rows());
     end.middleCols<6>(state.CloneOffset(farthest)).setIdentity();

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Repeats with plain covariance algebra what it is told, and compares at the end of every frame.
+/// Repeats with plain covariance algebra what it is given, and compares at the end of every frame.
 class CovarianceReplay : public FilterObserver {
  public:
   void OnReset(const FilterState& state) override {

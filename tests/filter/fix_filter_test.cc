@@ -133,7 +133,7 @@ TEST(FixFilter, AnAbsurdFixIsRefusedHoweverOftenItComes) {
   }
 }
 
-/// Keeps what an update of position fixes has to say, as dense algebra has it.
+/// Keeps the update of position fixes by dense algebra.
 class DenseUpdate : public FilterObserver {
  public:
   void OnUpdate(const FilterState& state, const FilterRows& rows) override {

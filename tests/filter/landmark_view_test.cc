@@ -87,7 +87,7 @@ TEST(LandmarkViewTest, RowsAreNumericInEveryConvention) {
 }
 
 // Through a rolling shutter: the camera has moved on by the row's time, and the rows over extrinsics and line
-// delay say what they change of that.
+// delay are its derivatives.
 TEST(LandmarkViewTest, RowsOfARollingShutterAreNumeric) {
   RandomStates random(83);
   for (const ErrorConvention convention : test::kAllConventions) {

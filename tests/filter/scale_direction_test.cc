@@ -46,20 +46,20 @@ class ScaleDirectionTest : public test::ClonedWindow {
 INSTANTIATE_TEST_SUITE_P(Conventions, ScaleDirectionTest, ::testing::ValuesIn(test::kAllConventions));
 
 // GIVEN corrections that change the window's shape THEN an error of scale before is one of scale after them,
-// also where the tracks have told the first clones alone.
+// also where the tracks have determined the first clones alone.
 TEST_P(ScaleDirectionTest, AnErrorOfScaleStaysOne) {
-  for (const size_t told : {state_.clones().size(), size_t{6}}) {
+  for (const size_t determined : {state_.clones().size(), size_t{6}}) {
     ScaleDirection direction(state_.covariance().capacity());
-    ASSERT_TRUE(direction.Take(state_, state_.clones()[told - 1].serial));
+    ASSERT_TRUE(direction.Take(state_, state_.clones()[determined - 1].serial));
     VectorXd errors = ErrorOfScale();
     for (int correction = 1; correction <= 2; ++correction) {
       ChangeShape(&state_);
       direction.Carry(&state_, errors);
       const VectorXd expected = ErrorOfScale();
-      EXPECT_LT((OfClones(errors) - OfClones(expected)).norm(), 1e-5 * expected.norm()) << told;
+      EXPECT_LT((OfClones(errors) - OfClones(expected)).norm(), 1e-5 * expected.norm()) << determined;
       const VectorXd core =
           ImuChartJacobian(GetParam(), state_.nav()) * errors.segment<15>(state_.CoreOffset());
-      EXPECT_LT((core.segment<3>(6) - correction * change_mps_).norm(), 1e-5) << told;
+      EXPECT_LT((core.segment<3>(6) - correction * change_mps_).norm(), 1e-5) << determined;
     }
   }
 }
@@ -85,7 +85,7 @@ TEST_P(ScaleDirectionTest, TheCovarianceIsCarriedAsErrorsAre) {
   EXPECT_GT((map - Eigen::MatrixXd::Identity(size, size)).norm(), 0.1);
 }
 
-TEST_P(ScaleDirectionTest, AShapeThatNoTrackHasToldIsNotCarried) {
+TEST_P(ScaleDirectionTest, AShapeThatNoTrackHasDeterminedIsNotCarried) {
   ScaleDirection direction(state_.covariance().capacity());
   EXPECT_FALSE(direction.Take(state_, state_.clones().front().serial));
   EXPECT_TRUE(direction.Take(state_, state_.clones()[1].serial));

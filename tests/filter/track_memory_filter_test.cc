@@ -97,7 +97,7 @@ TEST(TrackMemoryFilterTest, AnUncertainStartDoesNotWaitForTheWindowToFill) {
 // GIVEN a walk at 0.15 m/s and a start whose velocity is known to 0.05 m/s THEN the first corrections are as
 // large as the motion itself: tracks that wait for a depth leave it too late, single ones are those whose
 // noise looks like parallax, and one linearisation is not enough.
-TEST(TrackMemoryFilterTest, AStartThatKnowsLessThanTheMotionIsLinearisedAgainAndWithMostTracks) {
+TEST(TrackMemoryFilterTest, AStartLessCertainThanTheMotionIsLinearisedAgainAndWithMostTracks) {
   const Result<SimulatorConfig> sim = LoadSimulatorConfig(
       ALIDADE_SOURCE_DIR "/configs/datasets/figure8.yaml",
       {"trajectory=hover", "duration_s=10", "length_m=0.6", "width_m=0.4", "height_m=0.2", "path_m=1.5"});

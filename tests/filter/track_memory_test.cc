@@ -201,7 +201,7 @@ MatrixXd WorldDirections(const FilterState& state) {
   return directions;
 }
 
-TEST(TrackMemoryTest, RightInvariantRowsSayNothingOfWhereTheWorldIsWhateverHappensToThem) {
+TEST(TrackMemoryTest, RightInvariantRowsHoldNoInformationOnTheFrameWhateverHappensToThem) {
   const Dataset dataset = test::SimulateOrDie(SimulatorConfig(), 1);
   FilterState state = CloneEveryFrame(dataset, ErrorConvention::kRightInvariant);
   const FilterConfig config = Remembering(ErrorConvention::kRightInvariant);

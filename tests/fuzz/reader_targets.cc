@@ -36,7 +36,7 @@ namespace {
 
 constexpr char kName[] = "input";
 
-/// A refusal says what is wrong, and of texts and files with a name also where.
+/// A refusal states what is wrong, and of texts and files with a name also where.
 template <typename T>
 void RequireMessage(const Result<T>& result, const std::string& where = kName) {
   Require(result.ok() || result.message().find(where) != std::string::npos,

@@ -115,7 +115,7 @@ constexpr std::array<TimeNs, 12> kShifts = {1,
                                             INT64_MIN / 2,
                                             0};
 
-/// Changes the calls as the bytes say: five bytes a change.
+/// Changes the calls by the bytes: five bytes a change.
 void Distort(ByteSource* source, std::vector<Call>* calls) {
   for (int changes = 0; changes < 100 && !source->empty() && !calls->empty(); ++changes) {
     const unsigned action = source->Byte();
@@ -227,7 +227,7 @@ void TakeMessages(std::string_view bytes) {
   Distort(&source, &calls);
   const auto take = [&] {
     for (const SessionEvent& event : session.TakeEvents()) {
-      Require(!Describe(event).empty(), "an event can be told");
+      Require(!Describe(event).empty(), "an event has a description");
       if (const auto* state = std::get_if<StateEvent>(&event)) {
         RequireSound(state->estimate);
       }

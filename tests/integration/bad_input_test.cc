@@ -47,7 +47,7 @@ class BadInput : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are told and
+// GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are reported and
 // counted, and its states are those of a clean file.
 TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
   std::filesystem::copy(folder_.File("seq"), folder_.File("faulty"),
@@ -140,8 +140,8 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"track --dataset=" + seq + " --output=" + folder_.File("tracks"), 4, "no images"},
       {"evaluate --truth=" + folder_.File("torn.tum") + " --estimate=" + folder_.File("torn.tum"), 4,
        "torn.tum:1"},
-      {"evaluate --max-dt=-1 --truth=" + truth + " --estimate=" + truth, 2,
-       "evaluate: --max-dt: found -1, expected 0 to "},
+      {"evaluate --max_dt=-1 --truth=" + truth + " --estimate=" + truth, 2,
+       "evaluate: --max_dt: found -1, expected 0 to "},
       {"evaluate --truth=a --estimate=b --align=yaw", 2, "--align: found 'yaw'"},
       {"evaluate --truth=a --estimate=b --rpe=8,x", 2, "--rpe: found 'x'"},
       {"evaluate --truth=a --estimate=b --association=tum", 2, "--association: found 'tum'"},

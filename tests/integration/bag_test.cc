@@ -61,7 +61,7 @@ TEST_F(BagConversion, GvioOnTheBagWritesWhatItWritesOnTheFolder) {
   EXPECT_EQ(RunFiles("on_bag"), expected);
 }
 
-TEST_F(BagConversion, SaysWhatItWillNotDo) {
+TEST_F(BagConversion, NamesWhatItRefuses) {
   EXPECT_EQ(Alidade("convert --dataset=" + sequence_ + " --output=" + folder_.File("x")).code, 2);
   EXPECT_EQ(
       Alidade("convert --compression=zip --dataset=" + sequence_ + " --output=" + folder_.File("x.bag")).code,

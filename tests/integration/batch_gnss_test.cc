@@ -39,7 +39,7 @@ CellResult Score(const std::string& preset, const Dataset& dataset, unsigned see
 }
 
 // GIVEN GNSS with reflections and a jump of the receiver's clock THEN the batch estimate is consistent, and
-// better than the filter that knows no later data.
+// better than the filter that has no later data.
 TEST(BatchGnss, BoundsTheFilter) {
   constexpr unsigned kRuns = 4;
   double nees = 0;

@@ -60,7 +60,7 @@ void ChangeCamera(const std::string& sequence, const Change& change) {
 
 // GIVEN a sheet that is wrong by 2 deg, 20 ms and 2 % WHEN it is checked THEN each is named; WHEN the camera
 // is calibrated THEN the written sheet passes, and a run with it is right.
-TEST(Calibrate, AWrongSheetIsToldAndReplaced) {
+TEST(Calibrate, AWrongSheetIsReportedAndReplaced) {
   TemporaryFolder folder;
   const std::string sequence = SimulateFigureEight(
       folder,
@@ -126,7 +126,7 @@ TEST(Calibrate, ARunWithWrongAxesDoesNotBegin) {
   EXPECT_THAT(sign.output, HasSubstr("once they are negated"));
 }
 
-TEST(Calibrate, ARecordingAtRestSaysWhy) {
+TEST(Calibrate, ARecordingAtRestIsRefusedWithAReason) {
   TemporaryFolder folder;
   const std::string sequence = folder.File("seq");
   ASSERT_EQ(Alidade("simulate --config=" + Source("configs/datasets/figure8_short.yaml") +
@@ -155,7 +155,7 @@ TEST(Calibrate, AFaultOfTheSequenceLeavesNoProvisionalSheets) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.File("out")));
 }
 
-TEST(Calibrate, ThePhonesTimeOffsetIsTold) {
+TEST(Calibrate, ThePhonesTimeOffsetIsReported) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   TemporaryFolder folder;
   const std::string sequence = LinkedPhone(folder);

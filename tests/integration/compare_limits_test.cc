@@ -41,7 +41,7 @@ TEST_F(CompareLimits, ACellThatHangsIsEnded) {
       kShort + ", seeds: 1..2}, {config: " + Source("configs/datasets/figure8_short.yaml") +
           ", name: stopped, set: {duration_s: 60, path_m: 78}}");
   const CommandResult result =
-      Shell("exec 2>&1; OUT=" + folder_.File("out") + "; " + Words("--jobs=3 --cell-time-limit-s=8") +
+      Shell("exec 2>&1; OUT=" + folder_.File("out") + "; " + Words("--jobs=3 --cell_time_limit_s=8") +
             " & main=$!; mark=$OUT/scores/po_invio_multi/stopped/1.cbor.running"
             "; until test -s $mark; do sleep 0.01; done; kill -STOP $(cut -d' ' -f2 $mark); wait $main; echo "
             "code $?"
@@ -59,7 +59,7 @@ TEST_F(CompareLimits, ACellThatHangsIsEnded) {
   EXPECT_THAT(Out("tables.md"), HasSubstr("took longer than 8 s"));
   const std::string status = Shell(Words("--status=" + folder_.File("out"))).output;
   EXPECT_THAT(status, HasSubstr("5 of 5 cells are complete, 3 of them failed, 0 run"));
-  EXPECT_THAT(status, HasSubstr("theirs/short/2: failed, took longer than 8 s (--cell-time-limit-s)"));
+  EXPECT_THAT(status, HasSubstr("theirs/short/2: failed, took longer than 8 s (--cell_time_limit_s)"));
 }
 
 // GIVEN a limit of memory WHEN a command and a cell of ours take more, in one process or as a task of a
@@ -68,31 +68,31 @@ TEST_F(CompareLimits, ACellThatTakesAllMemoryIsEnded) {
   WritePlan(", {name: theirs, command: 'tail /dev/zero', sequences: [short]}",
             kShort + "}, {config: " + Source("configs/datasets/figure8_short.yaml") +
                 ", name: long, set: {duration_s: 2000, path_m: 2600}}");
-  const std::string limit = "--cell-memory-limit-mib=250 ";
-  const auto expect_told = [](const std::string& text) {
+  const std::string limit = "--cell_memory_limit_mib=250 ";
+  const auto expect_reported = [](const std::string& text) {
     for (const char* cell : {"theirs/short/1", "po_invio_multi/long/1"}) {
       EXPECT_THAT(text, HasSubstr(std::string(cell) +
-                                  ": failed, took more than 250 MiB of memory (--cell-memory-limit-mib)"));
+                                  ": failed, took more than 250 MiB of memory (--cell_memory_limit_mib)"));
     }
     EXPECT_THAT(text, HasSubstr("3 of 3 cells are complete, 2 of them failed, 0 run"));
   };
   const CommandResult whole = Shell(Words(limit));
   EXPECT_EQ(whole.code, 7) << whole.output;
   EXPECT_THAT(Out("summary.csv"), HasSubstr("po_invio_multi,filter,short,1,ok,"));
-  expect_told(Shell(Words("--status=" + folder_.File("out"))).output);
+  expect_reported(Shell(Words("--status=" + folder_.File("out"))).output);
 
   std::filesystem::remove_all(folder_.File("out/scores"));  // cells.csv stays, as where tasks begin
   EXPECT_EQ(Shell(Words(limit + "--stage=cells")).code, 0);
-  expect_told(Shell(Words("--status=" + folder_.File("out"))).output);
+  expect_reported(Shell(Words("--status=" + folder_.File("out"))).output);
   EXPECT_EQ(Shell(Words(limit + "--stage=tables")).code, 7);
   EXPECT_THAT(Out("summary.csv"), HasSubstr("po_invio_multi,filter,short,1,ok,"));
 }
 
 TEST_F(CompareLimits, ALimitBelowZeroIsRefused) {
   WritePlan("", kShort + "}");
-  const CommandResult result = Shell(Words("--cell-time-limit-s=-1"));
+  const CommandResult result = Shell(Words("--cell_time_limit_s=-1"));
   EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.output, HasSubstr("--cell-time-limit-s: found -1, expected 0 (none) or more"));
+  EXPECT_THAT(result.output, HasSubstr("--cell_time_limit_s: found -1, expected 0 (none) or more"));
 }
 
 // GIVEN a worker that hangs WHEN the comparison is interrupted THEN it still ends.

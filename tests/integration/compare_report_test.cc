@@ -1,4 +1,4 @@
-// What the tables of a comparison tell of each run, and that they are the same bytes again.
+// The tables of a comparison on each run, and that they are the same bytes again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -102,8 +102,8 @@ TEST_F(CompareReport, ADateThatIsNoneIsRefusedBeforeAnythingRuns) {
 }
 
 // GIVEN runs of ours and of a program that ended well, never began, failed, and stopped halfway WHEN compared
-// THEN each tells how much it completed, how fast it was and whether it uses later data.
-TEST_F(CompareReport, EveryRunTellsCompletionSpeedAndMode) {
+// THEN each shows how much it completed, how fast it was and whether it uses later data.
+TEST_F(CompareReport, EveryRunHasCompletionSpeedAndMode) {
   const std::string half =
       "awk -F, '!/#/ && n++ < 251 {printf \"%.9f %s %s %s %s %s %s %s\\n\", $1/1e9, $2, $3, $4, $6, $7, $8, "
       "$5}' "

@@ -33,7 +33,7 @@ TEST_F(CompareCommand, ResumeRunsOnlyWhatIsMissing) {
 }
 
 // GIVEN a comparison that runs WHEN one of its workers is killed THEN that costs the cell it was at, --status
-// tells how far it is, a second comparison into the folder is refused, and a resumed one ends as if nothing
+// prints its progress, a second comparison into the folder is refused, and a resumed one ends as if nothing
 // had been.
 TEST_F(CompareCommand, AWorkerThatDiesCostsItsCellAlone) {
   folder_.Write("plan.yaml",

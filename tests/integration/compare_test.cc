@@ -80,7 +80,7 @@ TEST_F(CompareCommand, FailedCellDoesNotStopTheOthers) {
               HasSubstr("figure8_short,rmse_pos_m,moving,good,0,0,1,0,"));
 }
 
-// An external program that knows the truth, as a command: it finds its input, is timed and scored like all
+// An external program that is given the truth, as a command: it finds its input, is timed and scored like all
 // others.
 TEST_F(CompareCommand, ACommandIsRunTimedScoredAndKept) {
   const std::string script = folder_.Write(

@@ -118,7 +118,7 @@ TEST(Images, ARenderedSequenceIsTracked) {
 }
 
 // GIVEN a plan with a rendered simulation WHEN it runs, and again with --resume after its cells are gone THEN
-// the front end ran once and the tables tell what it did.
+// the front end ran once and the tables show what it did.
 TEST(Images, AComparisonFromPixelsKeepsItsLog) {
   TemporaryFolder folder;
   folder.Write("tiny.yaml", kTiny);

@@ -60,7 +60,7 @@ TrackFrame EmptyFrame(TimeNs stamp_ns) {
   return frame;
 }
 
-// GIVEN equal starts and IMU samples WHEN no camera or GNSS says anything, over more frames than the smoother
+// GIVEN equal starts and IMU samples WHEN no camera or GNSS adds anything, over more frames than the smoother
 // keeps, THEN mean and covariance of both back ends are the same in every error convention, and those of the
 // samples carried at once.
 TEST(ImuIntervalTest, FilterAndSmootherCarryTheSameState) {

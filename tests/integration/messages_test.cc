@@ -7,7 +7,7 @@
 
 #include "tests/support/read_file.h"
 
-// The page of messages against the sources that say them.
+// The page of messages against the sources that print them.
 
 namespace alidade::test {
 namespace {

@@ -126,7 +126,7 @@ inline std::vector<PositionFix> MakeFixes(const std::vector<NavState>& states, c
 }
 
 /// One window whose errors, of the start, the IMU and the pixels, are `scale` times draws from what the back
-/// ends are told of them.
+/// ends assume of them.
 inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
   RandomStream random(21, "one window");
   OneWindow window;

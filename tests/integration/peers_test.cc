@@ -13,7 +13,7 @@ CommandResult Peers(const std::string& words) {
   return Shell(Source("scripts/peers.sh") + " " + words);
 }
 
-TEST(PeersScript, GivenACheckoutOfAnotherCommitThenItSaysWhichIsExpected) {
+TEST(PeersScript, GivenACheckoutOfAnotherCommitThenItNamesTheExpectedOne) {
   const TemporaryFolder folder;
   const std::string git = "git -C " + folder.path() + " -c user.name=a -c user.email=a ";
   ASSERT_EQ(Shell(git + "init -q && " + git + "commit -q --allow-empty -m a").code, 0);

@@ -7,7 +7,7 @@
 namespace alidade {
 namespace {
 
-// GIVEN a rig at rest whose state is known as well as its prior says, the gyroscope's bias to 5e-3 rad/s,
+// GIVEN a rig at rest whose state has the uncertainty of its prior, the gyroscope's bias to 5e-3 rad/s,
 // WHEN it moves off after some seconds THEN both back ends have not drifted meanwhile.
 TEST(RestStart, AnUncertainBiasDoesNotHideRest) {
   SimulatorConfig sim;

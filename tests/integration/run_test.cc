@@ -78,7 +78,7 @@ TEST(Run, BackendSwitchLeavesTheInputDigestUnchanged) {
   EXPECT_NE(ReadFile(folder.File("filter/states.csv")), ReadFile(folder.File("smoother/states.csv")));
 }
 
-TEST(Run, AuditTellsTheInvariantErrorFromTheOrdinaryOneAndRefusesTheSmoother) {
+TEST(Run, AuditSeparatesTheInvariantErrorFromTheOrdinaryOneAndRefusesTheSmoother) {
   TemporaryFolder folder;
   const Sequence& sequence = Sequence::Get();
   const auto last_rank = [&](const std::string& error) {
@@ -152,8 +152,8 @@ TEST(Run, QuietPrintsTheResultAlone) {
 }
 
 // GIVEN an IMU that ends halfway WHEN an estimator has run THEN the warning names the spans, and the result
-// is not "ok" and says why.
-TEST(Run, OnHalfAnImuIsImpairedAndSaysWhy) {
+// is not "ok" and has a reason.
+TEST(Run, OnHalfAnImuIsImpairedWithAReason) {
   TemporaryFolder folder;
   std::filesystem::copy(Sequence::Get().path(), folder.File("half"),
                         std::filesystem::copy_options::recursive);
@@ -170,8 +170,8 @@ TEST(Run, OnHalfAnImuIsImpairedAndSaysWhy) {
   EXPECT_EQ(json["impaired"].size(), 1u);
 }
 
-// GIVEN a camera whose rotation is wrong by 1 deg, which is told in more than half of the run WHEN it ends
-// THEN its last line, exit code and run.json tell it from a clean one.
+// GIVEN a camera whose rotation is wrong by 1 deg, which is reported in more than half of the run WHEN it
+// ends THEN its last line, exit code and run.json distinguish it from a clean one.
 TEST(Run, ThatIsMostlyDegradedIsImpaired) {
   TemporaryFolder folder;
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +
@@ -200,8 +200,8 @@ TEST(Run, WithoutTheSensorsItIsToUseIsImpaired) {
   EXPECT_EQ(json["impaired"].size(), 2u);
 }
 
-// GIVEN an output that cannot be used and an input with a fault THEN the output is told, which costs no time;
-// GIVEN the fault alone THEN nothing is made.
+// GIVEN an output that cannot be used and an input with a fault THEN the output is reported, which costs no
+// time; GIVEN the fault alone THEN nothing is made.
 TEST(Run, ChecksTheOutputBeforeItReadsTheInput) {
   TemporaryFolder folder;
   folder.Write("full/file", "");
@@ -224,7 +224,7 @@ TEST(Run, ChecksTheOutputBeforeItReadsTheInput) {
 }
 
 // GIVEN a run that is lost and starts again, and one whose GNSS never aligns WHEN they end THEN their exit
-// code and their last lines tell them from a clean one.
+// code and their last lines distinguish them from a clean one.
 TEST(Run, ThatWasLostOrNeverUsedItsGnssEndsWithItsOwnCode) {
   TemporaryFolder folder;
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +

@@ -34,7 +34,7 @@ TEST(SppCommand, WritesRtklibsFormatAndEqualBytesEachTime) {
   EXPECT_NE(text, test::ReadFile(folder.File("a.pos")));
 }
 
-TEST(SppCommand, SaysWhyNoEpochIsSolved) {
+TEST(SppCommand, ReportsWhyNoEpochIsSolved) {
   ALIDADE_SKIP_WITHOUT_SHARED_DATA();
   const std::string data = test::SharedDir() + "/data/gnss/";
   const test::TemporaryFolder folder;

@@ -8,7 +8,7 @@ namespace {
 // GIVEN a walk of 0.1 m/s whose velocity is known to 0.05 m/s at its start, so that the scale is uncertain by
 // half, WHEN the window changes its shape with every correction THEN the filter does not take that for
 // knowledge of the scale.
-TEST(UncertainScale, CorrectionsDoNotTellIt) {
+TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   SimulatorConfig sim;
   sim.duration_s = 25;
   sim.length_m = 3;

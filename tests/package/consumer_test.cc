@@ -135,7 +135,7 @@ TEST(Consumer, InstalledHeadersIncludeNothingThatIsNotInstalled) {
   const CommandResult compiled = Shell(std::string(ALIDADE_COMPILER) + " -std=c++20 -fsyntax-only -I" +
                                        root.string() + " -isystem /usr/include/eigen3 " + source);
   EXPECT_EQ(compiled.code, 0) << compiled.output;
-  // What stays behind the implementation: a consumer's compiler need not know these.
+  // What stays behind the implementation: a consumer's compiler does not need these.
   const CommandResult used =
       Shell("grep -rlE '#include <(opencv2|yaml-cpp|nlohmann|gflags)/' " + root.string());
   EXPECT_EQ(used.code, 1) << used.output;

@@ -10,7 +10,7 @@ using testing::HasSubstr;
 
 const std::string kPage = Installed("share/man/man1/alidade.1");
 
-TEST(Manual, TheInstalledPageIsWhatTheProgramSays) {
+TEST(Manual, TheInstalledPageIsThatOfTheProgram) {
   EXPECT_EQ(ReadFile(kPage), Alidade("manual").output);
   EXPECT_THAT(ReadFile(kPage), HasSubstr("alidade " ALIDADE_VERSION));
 }
@@ -25,7 +25,7 @@ TEST(Manual, ShowsEveryCommandFlagAndExitCodeWithoutWarnings) {
   EXPECT_EQ(warnings.output, "");
 
   const CommandResult page = Shell("LC_ALL=C.UTF-8 MANWIDTH=500 man -l -Tascii " + kPage + " | col -bx");
-  for (const char* text : {"alidade simulate", "alidade gnss_study", "--anchor-at-first", "--backend=WORD",
+  for (const char* text : {"alidade simulate", "alidade gnss_study", "--anchor_at_first", "--backend=WORD",
                            "posyaw | se3", "Default: 0.01.", "some cells of a comparison failed",
                            "ALIDADE_DATA_DIR", "alidade compare --plan=demo"}) {
     EXPECT_THAT(page.output, HasSubstr(text));

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# GIVEN stored figures of runs WHEN others are compared with them THEN a change of digits is told and passes, and a larger one, another
-# status, a missing and a new run are told and fail.
+# GIVEN stored figures of runs WHEN others are compared with them THEN a change of digits is printed and passes, and a larger one, another
+# status, a missing and a new run are printed and fail.
 # Usage: replay_test.sh SCRIPT
 set -euo pipefail
 script=$1

@@ -27,7 +27,7 @@ metrics: {rpe: [1]}
 EOF
 "$program" compare --plan=plan.yaml --output=local --jobs=2 --quiet >/dev/null
 
-"$program" compare --plan=plan.yaml --output=cluster_run --engine=slurm --slurm-options="--partition=all --time=5" >slurm.txt 2>&1 &
+"$program" compare --plan=plan.yaml --output=cluster_run --engine=slurm --slurm_options="--partition=all --time=5" >slurm.txt 2>&1 &
 waiting=$!
 for i in $(seq 600); do
   done_cells=$(find cluster_run/scores -name '*.cbor' 2>/dev/null | wc -l || true)

@@ -13,7 +13,7 @@
 namespace alidade::test {
 
 /// What a shipped preset makes of `dataset`, started at a draw with `scale` times the deviations of
-/// DrawInitialState, and told so.
+/// DrawInitialState, with its covariance.
 inline ScenarioResult RunPreset(const std::string& preset, const std::vector<std::string>& overrides,
                                 const Dataset& dataset, unsigned seed, double scale = 1) {
   const Result<EstimatorConfig> config =

@@ -25,7 +25,7 @@ struct GnssSettings {
 /// before its constructor runs.
 class Solver {
  public:
-  /// Also delivers ephemerides and ionosphere of `gnss`, which is used if its settings say so.
+  /// Also delivers ephemerides and ionosphere of `gnss`, which is used if its settings enable it.
   Solver(const RigCalibration& rig, const VinsSettings& settings, const GnssSettings& gnss_settings,
          const PeerGnss& gnss);
 

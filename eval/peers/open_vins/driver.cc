@@ -11,7 +11,7 @@ namespace alidade::open_vins {
 namespace {
 
 const std::map<std::string, std::string>& Defaults() {
-  // "own": what the system's file says.
+  // "own": that of the system's file.
   static const std::map<std::string, std::string> kDefaults = {
       {"dataset", "required"},     // a folder or a bag
       {"output", "required"},      // a folder

@@ -2,7 +2,7 @@
 (function () {
   const data = report.data;
   const state = report.state;
-  const MOST_PLOTTED = 8;  // more colours are not told apart
+  const MOST_PLOTTED = 8;  // more colours cannot be distinguished
   const element = function (id) { return document.getElementById(id); };
 
   // One entry an estimator that is on and has something to draw: {name, style, series, cells}.
@@ -76,7 +76,7 @@
     select.property('value', value);
   }
 
-  // Buttons that switch `names` on and off; `off` says which are off. At least one stays on.
+  // Buttons that switch `names` on and off; `off` holds those that are off. At least one stays on.
   function fillChips(id, names, off, label) {
     const box = d3.select('#' + id);
     const focused = document.activeElement && document.activeElement.getAttribute('data-name');

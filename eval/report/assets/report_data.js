@@ -1,6 +1,6 @@
 'use strict';
 
-// What the page knows, decoded from its JSON; see eval/report_data.cc for the packing.
+// The data of the page, decoded from its JSON; see eval/report_data.cc for the packing.
 const report = {};
 
 // A fault must not leave a page that looks finished: it is shown, and it marks the page for tests.
@@ -13,7 +13,7 @@ window.addEventListener('error', function (event) {
 });
 
 (function () {
-  // Okabe-Ito without its yellow and black, and two dark tones: told apart with any colour vision, dark enough on white.
+  // Okabe-Ito without its yellow and black, and two dark tones: distinguishable with any colour vision, dark enough on white.
   const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#b5558c', '#c98500', '#3aa0d8', '#6b2346', '#6b6b14'];
   const DASHES = [null, '6 3', '2 2'];
 

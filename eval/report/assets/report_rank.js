@@ -48,7 +48,7 @@
       .map(function (entry) { return entry.name; });
   };
 
-  // What a test against `other` says, as a line below a value; empty without a test.
+  // The result of a test against `other`, as a line below a value; empty without a test.
   report.testLine = function (name, other, sequence, i) {
     const figure = data.figures[i];
     const pair = other && other !== name ? report.pair(name, other, sequence, i) : null;

@@ -44,7 +44,7 @@
       { zero: true, lines: lines(entries, function (series) { return series.features; }) }));
   };
 
-  // Told apart by lightness, too.
+  // Distinguished by lightness, too.
   const STAGES = [{ name: 'front end', colour: '#c3ccd4' }, { name: 'propagation', colour: '#3aa0d8' },
     { name: 'update', colour: '#c98500' }, { name: 'rest', colour: '#4a3b52' }];
 

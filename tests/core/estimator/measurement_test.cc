@@ -7,7 +7,7 @@ namespace {
 
 constexpr Sensor kFix = SensorOf<PositionFixEntry>();
 
-TEST(MeasurementTest, AnEntryKnowsItsSensor) {
+TEST(MeasurementTest, AnEntryNamesItsSensor) {
   EXPECT_EQ(ToString(kFix), PositionFixEntry::kKey);
   EXPECT_EQ(SensorOf(Measurement(PositionFix())), kFix);
   EXPECT_EQ(MeasurementKeys(), "fix");

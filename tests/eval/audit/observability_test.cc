@@ -147,7 +147,7 @@ TEST(ObservabilityTest, MovingLinearisationPointsLoseYawInSo3xRnAndMoreInLeftInv
   }
 }
 
-TEST(ObservabilityTest, ALandmarkOfTheStateSaysWhatItsEliminatedRowsSay) {
+TEST(ObservabilityTest, ALandmarkOfTheStateAddsTheInformationOfItsEliminatedRows) {
   RandomStates random(5);
   FilterState state(ErrorConvention::kRightInvariant, false, random.RandomPose(0.2), {4, 0});
   ObservabilityAudit in_state;
@@ -183,7 +183,7 @@ TEST(ObservabilityTest, ALandmarkOfTheStateSaysWhatItsEliminatedRowsSay) {
   EXPECT_LT((a - b).norm(), 1e-12 * b.norm());
 }
 
-TEST(ObservabilityTest, WhatATrackMemoryRetainsSaysNothingAboutYawOrPosition) {
+TEST(ObservabilityTest, WhatATrackMemoryRetainsHoldsNoInformationOnYawOrPosition) {
   SimulatorConfig sim;
   sim.duration_s = 10;
   sim.path_m = 13;
@@ -245,9 +245,9 @@ TEST_P(AuditedFilter, HasTheRankOfItsErrorOnASimulatedRun) {
   }
 }
 
-// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are told until the state is turned into ENU, and
-// then all fifteen: yaw and position with them, as a system of more than cameras has it.
-TEST(ObservabilityTest, GnssTellsYawAndPosition) {
+// GIVEN raw GNSS, WHEN it is audited, THEN eleven directions are observable until the state is turned into
+// ENU, and then all fifteen: yaw and position with them, as a system of more than cameras has it.
+TEST(ObservabilityTest, GnssMakesYawAndPositionObservable) {
   SimulatorConfig sim;
   sim.start_time_s = 1'700'000'000;
   sim.duration_s = 8;

@@ -44,7 +44,7 @@ class BagRoundTrip : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-/// Everything an estimator sees and everything it is judged by.
+/// Everything an estimator sees and everything it is scored by.
 void ExpectEqual(const Dataset& before, const Dataset& after) {
   EXPECT_EQ(DigestOf(MeasurementsOf(before)), DigestOf(MeasurementsOf(after)));
   ASSERT_TRUE(after.truth);
@@ -61,7 +61,7 @@ void ExpectEqual(const Dataset& before, const Dataset& after) {
 }
 
 // GIVEN a simulated sequence with tracks, truth and GNSS of every constellation WHEN it goes through a bag
-// THEN an estimator sees the same numbers and is judged by the same truth.
+// THEN an estimator sees the same numbers and is scored by the same truth.
 TEST_F(BagRoundTrip, KeepsTracksTruthAndGnss) {
   const Dataset before =
       Simulated("gnss_figure8_short", {"duration_s=3", "path_m=12", "gnss.rate_hz=2", "gnss.outage_s=0",
@@ -166,7 +166,7 @@ size_t SizeByDefinition(const std::string& type) {
   return size;
 }
 
-// GIVEN the definition in a bag, by which other programs read it, THEN the messages are as long as it says.
+// GIVEN the definition in a bag, by which other programs read it, THEN the messages are as long as in it.
 TEST(BagMessages, AreAsLongAsTheirDefinitions) {
   EXPECT_EQ(EncodeState(TrajectoryPoint(), true).size(), SizeByDefinition("alidade/State"));
   EXPECT_EQ(EncodeImu(ImuSample()).size(), SizeByDefinition("sensor_msgs/Imu"));

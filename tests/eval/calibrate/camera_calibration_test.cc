@@ -99,7 +99,7 @@ TEST_F(CalibratedFigureEight, SheetAndReportAreWritten) {
   EXPECT_THAT(table, HasSubstr("T_BS"));
 }
 
-TEST(CameraCalibrationTest, AShortRecordingSaysWhatItLacks) {
+TEST(CameraCalibrationTest, AShortRecordingIsRefusedWithWhatIsMissing) {
   ShakenCamera recording{PhoneModel()};
   recording.duration_s = 4;
   CameraCalibrationOptions options;
@@ -127,7 +127,7 @@ TEST(CameraCalibrationTest, AGuessedFocalLengthIsEnough) {
 }
 
 // GIVEN clocks seconds apart THEN a long recording is refused for it, and with a short one it is said.
-TEST(CalibrateCamera, ClocksSecondsApartAreRefusedOrTold) {
+TEST(CalibrateCamera, ClocksSecondsApartAreRefusedOrReported) {
   for (const double duration_s : {40.0, 20.0}) {
     MeasurementLog log = ShakenCamera{.model = PhoneModel(), .duration_s = duration_s}.Record();
     for (TrackFrame& frame : log.frames) {

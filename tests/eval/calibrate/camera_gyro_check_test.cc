@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using Severity = DatasetFinding::Severity;
 
-/// What the check says of a recording whose sheet is changed by `spoil`; facts are left out.
+/// The findings of the check on a recording whose sheet is changed by `spoil`; facts are left out.
 template <typename Spoil>
 std::vector<DatasetFinding> Check(const CameraGyroModel& truth, const Spoil& spoil, double duration_s = 20) {
   MeasurementLog log = ShakenCamera{.model = truth, .duration_s = duration_s}.Record();
@@ -37,14 +37,14 @@ TEST(CameraGyroCheckTest, ARightSheetIsNotQuestioned) {
   }
 }
 
-TEST(CameraGyroCheckTest, ATimeOffsetIsTold) {
+TEST(CameraGyroCheckTest, ATimeOffsetIsReported) {
   const auto found = Check(PhoneModel(), [](MeasurementLog* log) { log->rig.camera_time_offset_s = 0.04; });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].severity, Severity::kWarning);
-  EXPECT_THAT(found[0].text, AllOf(HasSubstr("time_offset_s"), HasSubstr("the sheet says 0.0400")));
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("time_offset_s"), HasSubstr("the sheet has 0.0400")));
 }
 
-TEST(CameraGyroCheckTest, AnInvertedTransformIsTold) {
+TEST(CameraGyroCheckTest, AnInvertedTransformIsReported) {
   CameraGyroModel model = PhoneModel();
   model.R_BC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const auto found = Check(model, [](MeasurementLog* log) {
@@ -56,7 +56,7 @@ TEST(CameraGyroCheckTest, AnInvertedTransformIsTold) {
   EXPECT_THAT(found[0].text, HasSubstr("T_BS is the inverse"));
 }
 
-TEST(CameraGyroCheckTest, OtherAxesAreTold) {
+TEST(CameraGyroCheckTest, OtherAxesAreReported) {
   const auto found =
       Check(PhoneModel(), [](MeasurementLog* log) { log->rig.T_BC.rotation = Eigen::Matrix3d::Identity(); });
   ASSERT_EQ(found.size(), 1U);
@@ -64,7 +64,7 @@ TEST(CameraGyroCheckTest, OtherAxesAreTold) {
   EXPECT_THAT(found[0].text, HasSubstr("camera x = body -y, camera y = body -x, camera z = body -z"));
 }
 
-TEST(CameraGyroCheckTest, ANegatedGyroscopeIsTold) {
+TEST(CameraGyroCheckTest, ANegatedGyroscopeIsReported) {
   const auto found = Check(PhoneModel(), [](MeasurementLog* log) {
     for (ImuSample& sample : log->imu) {
       sample.gyro *= -1;
@@ -92,7 +92,7 @@ TEST(CameraGyroCheckTest, ANegatedAxisOfTheGyroscopeIsNamed) {
 
 // GIVEN camera stamps that are seconds off THEN the offset is named, and nothing of T_BS or focal length. A
 // short recording is not enough for an error.
-TEST(CameraGyroCheckTest, ClocksSecondsApartAreToldAlone) {
+TEST(CameraGyroCheckTest, ClocksSecondsApartAreReportedAlone) {
   for (const auto& [late_s, duration_s, severity] :
        {std::tuple(4.0, 40.0, Severity::kError), std::tuple(-2.0, 40.0, Severity::kError),
         std::tuple(4.0, 20.0, Severity::kWarning)}) {
@@ -112,7 +112,7 @@ TEST(CameraGyroCheckTest, ClocksSecondsApartAreToldAlone) {
   }
 }
 
-TEST(CameraGyroCheckTest, TheGyroscopesUnitIsToldByTheImages) {
+TEST(CameraGyroCheckTest, TheGyroscopesUnitIsFoundFromTheImages) {
   constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
       {{180 / M_PI, "in deg/s"}, {1e3, "in mrad/s"}, {1e3 * 180 / M_PI, "in mdeg/s"}}};
   for (const auto& [factor, said] : kUnits) {
@@ -127,7 +127,8 @@ TEST(CameraGyroCheckTest, TheGyroscopesUnitIsToldByTheImages) {
   }
 }
 
-// GIVEN rates that are too large by a factor of no unit THEN the fact says whether they vary as the images'.
+// GIVEN rates that are too large by a factor of no unit THEN the fact states whether they vary as the
+// images'.
 TEST(CameraGyroCheckTest, RatesThatAreNotComparedAreSaidToVaryAlikeOrOtherwise) {
   const auto fact = [](const auto& spoil) {
     MeasurementLog log = ShakenCamera{PhoneModel()}.Record();
@@ -155,7 +156,7 @@ TEST(CameraGyroCheckTest, AnAccelerometerInPlaceOfTheGyroscopeIsNotCompared) {
   }
 }
 
-TEST(CameraGyroCheckTest, ATurnedCameraIsTold) {
+TEST(CameraGyroCheckTest, ATurnedCameraIsReported) {
   const auto found = Check(PhoneModel(), [](MeasurementLog* log) {
     log->rig.T_BC.rotation = log->rig.T_BC.rotation * so3::Exp(Eigen::Vector3d(0, 0.035, 0));
   });
@@ -164,7 +165,7 @@ TEST(CameraGyroCheckTest, ATurnedCameraIsTold) {
   EXPECT_THAT(found[0].text, AllOf(HasSubstr("T_BS"), HasSubstr("-2.0")));
 }
 
-TEST(CameraGyroCheckTest, AFocalLengthIsTold) {
+TEST(CameraGyroCheckTest, AWrongFocalLengthIsReported) {
   const auto found = Check(PhoneModel(), [](MeasurementLog* log) {
     const CameraModel& camera = log->rig.camera;
     Eigen::Vector4d intrinsics = camera.intrinsics();
@@ -177,7 +178,7 @@ TEST(CameraGyroCheckTest, AFocalLengthIsTold) {
   EXPECT_THAT(found[0].text, AllOf(HasSubstr("focal length -1.9 +-"), HasSubstr("instead of 489.6")));
 }
 
-TEST(CameraGyroCheckTest, ARollingShutterIsTold) {
+TEST(CameraGyroCheckTest, ARollingShutterIsReported) {
   CameraGyroModel model = PhoneModel();
   model.readout_s = 0.022;
   const auto found = Check(model, [](MeasurementLog*) {});

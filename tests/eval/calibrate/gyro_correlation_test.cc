@@ -27,7 +27,7 @@ TEST(GyroCorrelationTest, TurnsOfImagesAreAboutThoseOfTheGyroscope) {
   EXPECT_NEAR(rates.best.scale, 1, 0.3);
 }
 
-// The lag is what is missing from the sheet's time offset, whatever T_BS says.
+// The lag is what is missing from the sheet's time offset, whatever T_BS is.
 TEST(GyroCorrelationTest, ALagOfSecondsIsFoundWithWrongAxesToo) {
   MeasurementLog log = ShakenCamera{PhoneModel()}.Record();
   log.rig.T_BC.rotation.setIdentity();

@@ -76,7 +76,7 @@ struct ShakenCamera {
     return landmarks;
   }
 
-  /// The row of a pixel says when it is exposed, and when says where it is.
+  /// Row and time of the exposure of a pixel depend on each other.
   [[nodiscard]] bool SeenAt(const Eigen::Vector3d& landmark, double stamp_s, Eigen::Vector2d* pixel) const {
     double row = 0;
     for (int round = 0; round < 8; ++round) {

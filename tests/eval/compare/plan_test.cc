@@ -289,7 +289,7 @@ TEST_F(PlanTest, AFolderMayHaveItsLinksFollowed) {
   }
 }
 
-TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanSaysSo) {
+TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanAllowsIt) {
   const std::string rest =
       "estimators: [estimators/a.yaml]\nsequences:\n  - path: ${data}/seq\n  - {path: '${data}/gone', name: "
       "far}\n";

@@ -19,8 +19,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// The shipped plans of published data read without any of it, and say what they would need.
-TEST(PublishedPlans, SayWhatDataTheyNeed) {
+// The shipped plans of published data read without any of it, and name what they would need.
+TEST(PublishedPlans, NameTheDataTheyNeed) {
   const test::TemporaryFolder folder;
   for (const char* name : {"euroc", "tumvi", "gvins", "arena_gnss"}) {
     const std::string path = std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/" + name + ".yaml";
@@ -39,8 +39,8 @@ TEST(PublishedPlans, SayWhatDataTheyNeed) {
 }
 
 // GIVEN the shipped plan of regimes THEN every regime is valid, belongs to one of two halves of about equal
-// size, and tells its estimators its pixel noise.
-TEST(RegimePlan, IsValidAndToldToTheEstimators) {
+// size, and gives its estimators its pixel noise.
+TEST(RegimePlan, IsValidAndGivenToTheEstimators) {
   const Result<Plan> plan = ReadPlan(std::string(ALIDADE_SOURCE_DIR) + "/configs/plans/regimes.yaml", "");
   ASSERT_TRUE(plan.ok()) << plan.message();
   EXPECT_GE(plan->sequences.size(), 24u);

@@ -94,7 +94,7 @@ TEST(CellFile, TheEndAloneIsTheSame) {
   EXPECT_EQ(end->message, "why");
 }
 
-TEST(CellFile, GivenATornOrForeignFileThenItSaysSo) {
+TEST(CellFile, GivenATornOrForeignFileThenTheErrorNamesIt) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(WriteCellFile(Report(), folder.File("a.cbor")).ok());
   const std::string bytes = test::ReadFile(folder.File("a.cbor"));

@@ -74,7 +74,7 @@ TEST(CellScore, GivenInnovationsThenTheirMeanAndShareInsideAreThoseOfAHandCalcul
   EXPECT_FALSE(CellResult().innovations.ratio);
 }
 
-// GIVEN GNSS at half the camera's rate and an outage THEN every frame tells the newest epoch's, but in the
+// GIVEN GNSS at half the camera's rate and an outage THEN every frame has the newest epoch's, but in the
 // outage.
 TEST(CellScore, GivenGnssSlowerThanTheCameraThenItsInnovationsAreHeldButNotThroughAnOutage) {
   const auto score = [](bool with_gnss) {

@@ -12,7 +12,7 @@ namespace {
 
 // GIVEN runs of a consistent filter WHEN averaged THEN the average is in its band 95 % of the time, and one
 // of a filter whose errors are 1.5 times what it claims hardly ever is.
-TEST(NeesOverTime, TellsAConsistentFilterFromAnOverconfidentOne) {
+TEST(NeesOverTime, SeparatesAConsistentFilterFromAnOverconfidentOne) {
   std::vector<CellResult> honest, bold;
   std::vector<const CellResult*> honest_cells, bold_cells;
   for (unsigned seed = 1; seed <= 30; ++seed) {

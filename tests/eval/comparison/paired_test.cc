@@ -169,7 +169,7 @@ TEST(ComparePairs, FindsASteadyDifferenceAmongUnlikeRuns) {
   EXPECT_NEAR(pair.first_mean, 3.5, 1e-12);
 }
 
-TEST(ComparePairs, GivenALostRunThenItIsLeftOutOfThePairsAndTold) {
+TEST(ComparePairs, GivenALostRunThenItIsLeftOutOfThePairsAndReported) {
   Comparison comparison;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     comparison.cells.push_back(Cell("a", seed, 1));

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Path, NotAFile,
                                          "cam0/tracks.csv", "cam0/data.csv", "cam0/timestamps.csv",
                                          "state_groundtruth_estimate0/data_pose.csv"));
 
-TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsTold) {
+TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsReported) {
   const test::TemporaryFolder folder;
   const Result<Dataset> longer = ReadDataset(folder.File(std::string(300, 'x')));
   EXPECT_EQ(longer.code(), StatusCode::kInput);
@@ -68,7 +68,7 @@ TEST(BadSequenceFolder, GivenALongNameOrALoopOfLinksThenTheReasonIsTold) {
   EXPECT_THAT(loop.message(), HasSubstr("Too many levels of symbolic links"));
 }
 
-TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageSaysWhatToGive) {
+TEST(BadSequenceFolder, GivenNoFolderOrMav0ItselfThenTheMessageNamesWhatToGive) {
   const test::TemporaryFolder folder;
   WriteGoodSequence(folder);
   const Result<Dataset> inside = ReadDataset(folder.File("mav0"));
@@ -108,7 +108,7 @@ TEST(BadSequenceLink, GivenAnImageThatIsALinkOutOfTheSequenceThenItIsRefused) {
 }
 
 // GIVEN a folder beside the sequence whose name begins with the sequence's WHEN an image leads there THEN it
-// is refused: names are compared whole; WHEN images of several subfolders are links THEN each is judged by
+// is refused: names are compared whole; WHEN images of several subfolders are links THEN each is checked by
 // its own folder.
 TEST(BadSequenceLink, GivenALinkToANeighbourThenItIsRefused) {
   namespace fs = std::filesystem;

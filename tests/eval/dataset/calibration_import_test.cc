@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A quarter turn and an offset: p_C = [-y, x, z] + t for T_cam_imu, told apart from its inverse.
+// A quarter turn and an offset: p_C = [-y, x, z] + t for T_cam_imu, different from its inverse.
 constexpr char kRows[] =
     "- [0.0, -1.0, 0.0, 0.1]\n    - [1.0, 0.0, 0.0, 0.2]\n    - [0.0, 0.0, 1.0, 0.3]\n"
     "    - [0.0, 0.0, 0.0, 1.0]\n";

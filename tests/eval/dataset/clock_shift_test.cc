@@ -79,7 +79,7 @@ TEST(ClockShift, CheckNamesItOfSensorsWithoutCommonTime) {
               testing::AllOf(HasSubstr("another clock?"), Not(HasSubstr("added to its stamps"))));
 }
 
-TEST(ClockShift, WithoutCommonTimeNoSecondsWithoutTheOtherAreTold) {
+TEST(ClockShift, WithoutCommonTimeNoSecondsWithoutTheOtherAreReported) {
   Dataset dataset = Healthy();
   for (TrackFrame& frame : dataset.frames) {
     frame.stamp_ns += 18 * kSecondNs;

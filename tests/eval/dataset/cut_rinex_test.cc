@@ -57,7 +57,7 @@ TEST_F(CutRinex, WithinANumberOrBehindOneItIsNamed) {
               HasSubstr("obs.rnx: the last line has no line end, expected one"));
 }
 
-TEST_F(CutRinex, AnOffsetWithWhichNoTimeCanBeToldIsRefused) {
+TEST_F(CutRinex, AnOffsetThatLeavesNoValidTimeIsRefused) {
   const auto message = [this](const char* offset) {
     folder_.Write("mav0/gnss0/sensor.yaml", std::string("p_BA: [0, 0, 0]\ntime_offset_s: ") + offset + "\n");
     return ReadDataset(folder_.path()).message();

@@ -64,7 +64,7 @@ TEST(CheckRates, GivenAnImuOfAFewHertzOrOfStampsInAnotherUnitThenItIsNamed) {
 }
 
 // GIVEN ten rows at a time, stamped on receipt, THEN the tiny steps within a packet are no rate.
-TEST(CheckRates, GivenAnImuInPacketsThenItsMeanRateIsJudged) {
+TEST(CheckRates, GivenAnImuInPacketsThenItsMeanRateIsChecked) {
   Dataset dataset = AtRest();
   for (std::size_t i = 0; i < dataset.imu.size(); ++i) {
     const auto row = static_cast<TimeNs>(i);
@@ -162,8 +162,8 @@ TEST(CheckNoise, GivenADensityBeyondAnySensorThenThatLimitIsPrinted) {
   EXPECT_THAT(Complaints(dataset, Severity::kWarning), Not(HasSubstr("noise_density")));
 }
 
-// A good gyroscope in degrees is within the bounds of a bad one; its own samples tell.
-TEST(CheckNoise, GivenAGoodSensorInDegreesThenTheSamplesTell) {
+// A good gyroscope in degrees is within the bounds of a bad one; its own samples reveal it.
+TEST(CheckNoise, GivenAGoodSensorInDegreesThenTheSamplesRevealIt) {
   Dataset dataset = AtRest();
   for (ImuSample& sample : dataset.imu) {
     sample.gyro *= 0.25;

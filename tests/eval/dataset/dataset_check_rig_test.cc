@@ -7,7 +7,7 @@
 #include "tests/eval/dataset/healthy_dataset.h"
 #include "tests/support/temporary_folder.h"
 
-// Calibrations that `check` knows no rig to have.
+// Calibrations that no rig known to `check` has.
 
 namespace alidade {
 namespace {

@@ -85,7 +85,7 @@ TEST(DatasetCheck, GivenExchangedGroupsOfColumnsThenTheyAreNamedAndNoUnit) {
 TEST(DatasetCheck, GivenADeadAxisOfTheAccelerometerThenItIsNamedInsteadOfTheUnit) {
   Dataset dataset = Healthy();
   for (ImuSample& sample : dataset.imu) {
-    sample.accel.x() += 1;  // as an accelerometer in g would say
+    sample.accel.x() += 1;  // as of an accelerometer in g
     sample.accel.z() = 0;
   }
   const std::string errors = Complaints(dataset, Severity::kError);
@@ -168,7 +168,7 @@ TEST(DatasetCheck, GivenTheRealTumViRoomThenItsTruthGapsAreFound) {
   EXPECT_THAT(Complaints(*dataset, Severity::kWarning), HasSubstr("the longest is 1.99"));
 }
 
-TEST(DatasetCheck, GivenAnImuThatEndsHalfwayThenBothSpansAndTheSecondsWithoutAreTold) {
+TEST(DatasetCheck, GivenAnImuThatEndsHalfwayThenBothSpansAndTheSecondsWithoutAreReported) {
   Dataset dataset = Healthy();
   dataset.imu.resize(501);
   EXPECT_THAT(Complaints(dataset, Severity::kWarning),
@@ -183,7 +183,7 @@ TEST(DatasetCheck, GivenAnImuThatEndsHalfwayThenBothSpansAndTheSecondsWithoutAre
   EXPECT_EQ(Complaints(dataset, Severity::kWarning), "");
 }
 
-TEST(DatasetCheck, GivenFixesOfHalfTheFlightThenTheSecondsWithoutThemAreTold) {
+TEST(DatasetCheck, GivenFixesOfHalfTheFlightThenTheSecondsWithoutThemAreReported) {
   Dataset dataset = Healthy();
   dataset.rig.fixes.emplace_back();
   for (int i = 0; i <= 5; ++i) {
@@ -202,7 +202,7 @@ TEST(DatasetCheck, GivenGnssThenItsSpanAndEphemeridesAreNoComplaint) {
   EXPECT_THAT(Complaints(WithGnss(0, 0), Severity::kFact), HasSubstr("gnss0: starts +0.000 s"));
 }
 
-TEST(DatasetCheck, GivenGnssOfPartOfTheFlightThenTheSecondsWithoutItAreTold) {
+TEST(DatasetCheck, GivenGnssOfPartOfTheFlightThenTheSecondsWithoutItAreReported) {
   Dataset half = WithGnss(0, 0);
   auto log = std::make_shared<GnssLog>(*half.gnss);
   log->epochs.resize(5);

@@ -69,11 +69,11 @@ TEST(FaultyImuRows, GivenFewOfThemThenTheSamplesAreThoseOfACleanFileAndTheyAreCo
       testing::AllOf(HasSubstr("data.csv: of 103 rows 3 dropped (1 duplicate, 1 late, 1 not finite), 5 "
                                "put in order"),
                      HasSubstr("data.csv:13: ")));
-  bool told = false;
+  bool reported = false;
   for (const DatasetFinding& finding : CheckDataset(*faulty)) {
-    told = told || finding.text.find("rows 3 dropped") != std::string::npos;
+    reported = reported || finding.text.find("rows 3 dropped") != std::string::npos;
   }
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(reported);
 }
 
 TEST(FaultyImuRows, GivenMoreThanFivePerCentThenTheSequenceIsRefused) {

@@ -95,7 +95,7 @@ TEST(LogTables, KeepOfTheTruthWhatAStartNeeds) {
   EXPECT_NEAR(read->truth_extent->path_m, 5.99, 1e-9);
 }
 
-TEST(LogTables, GivenAFaultThenItIsToldAsOfMemory) {
+TEST(LogTables, GivenAFaultThenItIsReportedAsOfMemory) {
   const test::TemporaryFolder folder;
   WriteSequence(folder);
   for (const auto& [name, text] :

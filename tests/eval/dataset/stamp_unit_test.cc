@@ -39,7 +39,7 @@ TEST(StampUnit, RatesAtTheEdgesAreTakenAsTheyAre) {
   }
 }
 
-TEST(StampUnit, MicrosecondsAndMillisecondsAreToldByTheRateWhereverTheStampsBegin) {
+TEST(StampUnit, MicrosecondsAndMillisecondsAreRecognisedByTheRateWhereverTheStampsBegin) {
   for (const TimeNs first_ns : {TimeNs{0}, 1000 * kSecondNs, kDateNs}) {
     for (const double rate_hz : {40.0, 200.0, 1000.0}) {
       EXPECT_EQ(UnitOf(rate_hz, first_ns, 1000, 0, kImuRates), "us") << rate_hz;
@@ -52,7 +52,7 @@ TEST(StampUnit, MicrosecondsAndMillisecondsAreToldByTheRateWhereverTheStampsBegi
   }
 }
 
-// A camera of less than 1 Hz: in range of no unit, but the sheet knows.
+// A camera of less than 1 Hz: in range of no unit, but the sheet has the rate.
 TEST(StampUnit, TheRateOfTheSheetDecidesWhereTheRangeCannot) {
   EXPECT_EQ(UnitOf(0.9, kDateNs, 1000, 0, kCameraRates), "ns");
   EXPECT_EQ(UnitOf(0.9, kDateNs, 1000, 0.91, kCameraRates), "us");
@@ -67,7 +67,7 @@ TEST(StampUnit, AFewStampsAreNoRate) {
   EXPECT_EQ(OtherStampUnit(1000, 3000, 3, 200, kImuRates), nullptr);
 }
 
-TEST(StampUnit, ADateIsToldOnlyWhereItIsOne) {
+TEST(StampUnit, ADateIsPrintedOnlyWhereItIsOne) {
   EXPECT_EQ(DateText(kDateNs / 1000, {"us", 1000}), " (the first, 1403715273262142, is then a date of 2014)");
   EXPECT_EQ(DateText(0, {"us", 1000}), "");
   EXPECT_EQ(DateText(kDateNs / 1000, {"ms", 1'000'000}), "");
@@ -129,8 +129,8 @@ TEST(StampUnit, GivenTheCameraAloneInMicrosecondsThenItAloneIsNamed) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
-// 2 Hz are too few to tell the unit by the rate.
-TEST(StampUnit, GivenASlowCameraInMicrosecondsThenTheClocksTellTheUnitAndItsRateIsNotDoubted) {
+// 2 Hz are too few to find the unit by the rate.
+TEST(StampUnit, GivenASlowCameraInMicrosecondsThenTheClocksRevealTheUnitAndItsRateIsNotDoubted) {
   Dataset dataset = InUnits(1, 1000, 1);
   std::vector<TrackFrame> frames;
   for (std::size_t i = 0; i < dataset.frames.size(); i += 5) {
@@ -142,7 +142,7 @@ TEST(StampUnit, GivenASlowCameraInMicrosecondsThenTheClocksTellTheUnitAndItsRate
             "1000\n");
 }
 
-TEST(StampUnit, GivenTheTruthAloneInMillisecondsThenTheClocksTellTheUnit) {
+TEST(StampUnit, GivenTheTruthAloneInMillisecondsThenTheClocksRevealTheUnit) {
   const Dataset dataset = InUnits(1, 1, 1'000'000);
   EXPECT_EQ(test::Complaints(dataset, Severity::kError),
             "truth: shares no time with imu0: its stamps seem to be in ms, expected ns, multiply them by "

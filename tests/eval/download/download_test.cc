@@ -158,13 +158,13 @@ TEST_F(DownloadTest, GivenABodyShorterThanItsLengthThenItIsNotTakenForWhole) {
     return asked.range_first < 0 ? Whole(content_).substr(0, 100'000) : std::string();
   });
   request = Request(server);
-  request.expected = {};  // only the server says how long it is
+  request.expected = {};  // only the server gives its length
   const Status status = Download(request);
   EXPECT_FALSE(status.ok());
   ExpectNone();
 }
 
-TEST_F(DownloadTest, GivenABodyWithoutLengthThatEndsEarlyThenTheExpectedSizeTells) {
+TEST_F(DownloadTest, GivenABodyWithoutLengthThatEndsEarlyThenTheExpectedSizeRevealsIt) {
   const FaultServer server([&](int, const HttpRequest& asked) {
     return asked.range_first < 0 ? "HTTP/1.0 200 OK\r\n\r\n" + content_.substr(0, 50'000)
                                  : Honest(content_, asked);

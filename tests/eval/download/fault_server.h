@@ -19,7 +19,7 @@ struct HttpRequest {
   long range_first = -1;  ///< of "Range: bytes=N-"; -1: none
 };
 
-/// An HTTP server on a port of this machine that answers each request as it is told, byte for byte, and
+/// An HTTP server on a port of this machine that answers each request as prescribed, byte for byte, and
 /// closes the connection.
 class FaultServer {
  public:

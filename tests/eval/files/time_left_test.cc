@@ -5,13 +5,13 @@
 namespace alidade {
 namespace {
 
-TEST(TimeLeft, IsToldByTheMeanTimeInTheUnitThatFits) {
+TEST(TimeLeft, IsPrintedByTheMeanTimeInTheUnitThatFits) {
   EXPECT_EQ(TimeLeft(20, 10, 30), ", about 40 s left");
   EXPECT_EQ(TimeLeft(100, 10, 30), ", about 3 min left");
   EXPECT_EQ(TimeLeft(3600, 1, 3), ", about 2.0 h left");
 }
 
-TEST(TimeLeft, IsNotToldBeforeItIsKnownNorAtTheEnd) {
+TEST(TimeLeft, IsNotPrintedBeforeItIsKnownNorAtTheEnd) {
   EXPECT_EQ(TimeLeft(5, 10, 30), "");
   EXPECT_EQ(TimeLeft(20, 0, 30), "");
   EXPECT_EQ(TimeLeft(20, 30, 30), "");

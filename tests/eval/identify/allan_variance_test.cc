@@ -126,7 +126,7 @@ TEST(NoiseFit, GivenFlickerAndWhiteNoiseThenTheBiasInstabilityIsFound) {
   EXPECT_GT(fit[NoisePowers::kFlicker].high, 0.1);
 }
 
-TEST(NoiseFit, GivenQuantisationThenItIsToldFromWhiteNoise) {
+TEST(NoiseFit, GivenQuantisationThenItIsSeparatedFromWhiteNoise) {
   const NoisePowers powers = Powers(0.05, 0.1, 0, 0);
   const std::vector<double> rates = Draw(powers, 20000, 5);
   const NoiseFit fit = Fit(rates);
@@ -136,7 +136,7 @@ TEST(NoiseFit, GivenQuantisationThenItIsToldFromWhiteNoise) {
   EXPECT_GT(fit[NoisePowers::kWalk].high, 0);
 }
 
-TEST(NoiseFit, GivenManyRecordsThenTheIntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(NoiseFit, GivenManyRecordsThenTheIntervalsHoldTheTruthAtTheirStatedRate) {
   const NoisePowers powers = Powers(0, 0.3, 0, 0.05);
   int white = 0, walk = 0;
   constexpr int kRecords = 60;

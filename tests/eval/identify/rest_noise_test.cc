@@ -95,7 +95,7 @@ TEST(RestNoise, GivenALongSilenceThenTheSpanEndsThere) {
   EXPECT_EQ(noise->span.samples(), 6000u);
 }
 
-TEST(RestNoise, GivenMotionOnlyThenTheErrorSaysSo) {
+TEST(RestNoise, GivenMotionOnlyThenTheErrorNamesIt) {
   std::vector<ImuSample> imu = AtRest(60, 51);
   for (std::size_t k = 0; k < imu.size(); ++k) {
     imu[k].gyro += Eigen::Vector3d(0.5 * std::sin(0.1 * static_cast<double>(k)), 0, 0);

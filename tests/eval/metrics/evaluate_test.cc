@@ -60,7 +60,7 @@ TEST(Evaluate, LeavesAScaleErrorInARigidAlignment) {
 
 // GIVEN an estimate with covariances of velocity and biases WHEN the truth holds none of them THEN there is
 // no NEES of them, and with a truth that does the anchor turns the velocity and its covariance.
-TEST(Evaluate, JudgesVelocityAndBiasesOnlyWhereTheTruthHoldsThem) {
+TEST(Evaluate, EvaluatesVelocityAndBiasesOnlyWhereTheTruthHoldsThem) {
   Trajectory truth = MakeTrajectory(300);
   const Eigen::Matrix3d yaw = so3::Exp({0, 0, -M_PI / 2});
   for (TrajectoryPoint& point : truth.points) {
@@ -92,7 +92,7 @@ TEST(Evaluate, JudgesVelocityAndBiasesOnlyWhereTheTruthHoldsThem) {
   EXPECT_NEAR(with.nees->mean_accel_bias, 4, 1e-9);
 }
 
-TEST(Evaluate, JudgesConsistencyUnaligned) {
+TEST(Evaluate, EvaluatesConsistencyUnaligned) {
   const Evaluation evaluation = EvaluateScaled(TrajectoryAlignment::kSim3, true);
   ASSERT_TRUE(evaluation.nees.has_value());
   EXPECT_NEAR(evaluation.nees->mean_orientation, M_PI * M_PI / 4, 1e-6);
@@ -189,7 +189,7 @@ TEST(FormatEvaluation, JsonReadsBackWithFixedKeysAndRoundedNumbers) {
           .is_null());
 }
 
-TEST(FormatEvaluation, TextSaysWhatAPersonNeeds) {
+TEST(FormatEvaluation, TextHoldsTheFiguresAndTheirUnits) {
   const std::string text = FormatEvaluationText(EvaluateScaled(TrajectoryAlignment::kSim3, true));
   EXPECT_THAT(text, HasSubstr("pairs      300 of 300 estimate and 400 truth rows (nearest within 0.01 s)"));
   EXPECT_THAT(text, HasSubstr("scale      0.990099"));

@@ -152,7 +152,7 @@ TEST(Nees, OfVelocityAndBiasesIsThatOfOneHandComputedPair) {
 }
 
 TEST(Nees, ReadsTheErrorInTheBodyFrame) {
-  // A covariance tight about the body's x alone tells a body-frame error from a world-frame one.
+  // A covariance tight about the body's x alone separates a body-frame error from a world-frame one.
   std::vector<StatePair> pairs = PerfectPairs(1);
   pairs[0].estimate.nav.R_WB = so3::Exp({0, 0, M_PI / 2});
   pairs[0].truth.nav.R_WB = pairs[0].estimate.nav.R_WB * so3::Exp({0.01, 0, 0});

@@ -40,7 +40,7 @@ TEST(SilentFailure, GivenSpansOfFiveSecondsAndLessThenOnlyTheLongerOnesCount) {
 TEST(SilentFailure, GivenAnAlarmThenTheFailureIsNotSilent) {
   const auto large = [](int) { return 1000.0; };
   EXPECT_EQ(ComputeSilentFailure(Instants(100, large, [](int) { return true; })).silent_s, 0);
-  // Told after 6 s: these are silent.
+  // Reported after 6 s: these are silent.
   EXPECT_NEAR(ComputeSilentFailure(Instants(200, large, [](int i) { return i > 60; })).silent_s, 6.0, 1e-9);
   // An alarm every 4 s: never silent for longer than 5.
   EXPECT_EQ(ComputeSilentFailure(Instants(200, large, [](int i) { return i % 40 == 0; })).silent_s, 0);

@@ -87,7 +87,7 @@ TEST(FeedPeer, AFaultEndsIt) {
   EXPECT_EQ(frames, 1);
 }
 
-TEST(ReadPeerSequence, TakesTracksOrSaysWhatIsMissing) {
+TEST(ReadPeerSequence, TakesTracksOrReportsWhatIsMissing) {
   const test::TemporaryFolder folder;
   Dataset dataset = MakeSequence({25, 40}).dataset;
   dataset.rig.camera =

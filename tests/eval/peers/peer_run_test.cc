@@ -75,7 +75,7 @@ Status Accept(const std::vector<std::string>& arguments) {
                                                                  : Status::Usage("other arguments");
 }
 
-TEST(RunDriver, HandsTheArgumentsOnAndTellsTheError) {
+TEST(RunDriver, HandsTheArgumentsOnAndReportsTheError) {
   std::string name = "program", first = "--a=1", second = "--b=2";
   char* arguments[] = {name.data(), first.data(), second.data()};
   EXPECT_EQ(RunDriver("driver", 3, arguments, Accept), 0);

@@ -5,7 +5,7 @@
 namespace alidade {
 namespace {
 
-TEST(SummaryText, TellsStartAlignmentAndHowMuchIsCovered) {
+TEST(SummaryText, HoldsStartAlignmentAndCoverage) {
   PeerSequence sequence;
   sequence.frames_ns = {kSecondNs, 11 * kSecondNs};
   PeerRun run;

@@ -45,7 +45,7 @@ double WorstSigma(const CalibrationEstimate& estimate, const RigCalibration& tru
 class CalibrationRunTest : public testing::TestWithParam<Backend> {};
 
 // GIVEN a camera 2 degrees, 2 cm and 10 ms off, WHEN it is calibrated online for twenty seconds, THEN
-// rotation and time offset are right, position is on its way, and the deviations say how far each is.
+// rotation and time offset are right, position is on its way, and the deviations state how far each is.
 TEST_P(CalibrationRunTest, FindsAWrongCamera) {
   const Result<Dataset> dataset = Simulate(Miscalibrated(20), 101);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
@@ -60,7 +60,7 @@ TEST_P(CalibrationRunTest, FindsAWrongCamera) {
 }
 
 // GIVEN focal lengths and principal point 8 px off, WHEN they are calibrated, THEN they come closer and
-// within what the deviations say.
+// within the deviations.
 TEST_P(CalibrationRunTest, FindsWrongIntrinsics) {
   SimulatorConfig simulation = Miscalibrated(20);
   simulation.calibration_rotation_error_rad = simulation.calibration_translation_error_m = 0;

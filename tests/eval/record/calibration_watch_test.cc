@@ -8,7 +8,7 @@
 #include "eval/simulation/simulator_config.h"
 #include "tests/eval/record/estimator_runs.h"
 
-// What calibration.watch tells and what it leaves alone, with both back ends.
+// What calibration.watch reports and what it leaves alone, with both back ends.
 
 namespace alidade {
 namespace {
@@ -38,7 +38,7 @@ RunResult RunOn(const SimulatorConfig& simulation, const EstimatorConfig& config
 
 class CalibrationWatchRunTest : public testing::TestWithParam<Backend> {};
 
-// GIVEN a camera as its sheet says, WHEN it is watched, THEN nothing is degraded, nothing of the calibration
+// GIVEN a camera as in its sheet, WHEN it is watched, THEN nothing is degraded, nothing of the calibration
 // is written, and the estimate is what it is without.
 TEST_P(CalibrationWatchRunTest, LeavesARunAloneWhoseCameraIsAsGiven) {
   const RunResult plain = RunOn(Walk(), Estimating(GetParam(), false));
@@ -56,7 +56,7 @@ TEST_P(CalibrationWatchRunTest, LeavesARunAloneWhoseCameraIsAsGiven) {
   }
 }
 
-// GIVEN a focal length 1 % off, a time offset of 10 ms, THEN the run says which it is, and by how much.
+// GIVEN a focal length 1 % off, a time offset of 10 ms, THEN the run reports which it is, and by how much.
 TEST_P(CalibrationWatchRunTest, NamesWhatIsWrong) {
   SimulatorConfig focal = Walk();
   focal.calibration_focal_error_px = 4.6;

@@ -84,31 +84,31 @@ TEST(FailureDiagnosisTest, SoundDataEndTheSearchAtTheFirstCombination) {
   RunResult failed;
   failed.status = Status::Diverged("never started");
   RunOptions options;
-  std::vector<size_t> told;
-  options.progress = [&told](size_t choice, size_t /*choices*/) { told.push_back(choice); };
+  std::vector<size_t> reported;
+  options.progress = [&reported](size_t choice, size_t /*choices*/) { reported.push_back(choice); };
   EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, options).has_value());
-  EXPECT_EQ(told, std::vector<size_t>{1});
+  EXPECT_EQ(reported, std::vector<size_t>{1});
 }
 
-TEST(FailureDiagnosisTest, WhatIsUnderWayIsToldAndAStopEndsIt) {
+TEST(FailureDiagnosisTest, WhatIsUnderWayIsShownAndAStopEndsIt) {
   const MeasurementLog log = LogWithSigns({1, 1, -1});
   RunResult failed;
   failed.status = Status::Diverged("never started");
   std::atomic<bool> stop = false;
   RunOptions options;
   options.stop = &stop;
-  std::vector<std::pair<size_t, size_t>> told;
+  std::vector<std::pair<size_t, size_t>> reported;
   options.progress = [&](size_t choice, size_t choices) {
-    told.emplace_back(choice, choices);
+    reported.emplace_back(choice, choices);
     stop = choice == 2;
   };
   EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, options).has_value());
   const std::vector<std::pair<size_t, size_t>> expected = {{1, 8}, {2, 8}};
-  EXPECT_EQ(told, expected);
+  EXPECT_EQ(reported, expected);
 }
 
-// GIVEN an IMU that tells nonsense in the middle of a log WHEN the run is lost there THEN its signs are not
-// blamed: it was sound before.
+// GIVEN an IMU that measures nonsense in the middle of a log WHEN the run is lost there THEN its signs are
+// not blamed: it was sound before.
 TEST(FailureDiagnosisTest, ALossAfterSoundMotionIsNotBlamedOnSigns) {
   MeasurementLog log = LogWithSigns({1, 1, 1});
   const TimeNs begin_ns = log.imu.front().stamp_ns + SecondsToNs(14), end_ns = begin_ns + SecondsToNs(1);

@@ -63,7 +63,7 @@ class FaultRunTest : public testing::TestWithParam<Backend> {
   }
 };
 
-TEST_P(FaultRunTest, OneWildSampleIsMendedToldAndWithoutEffect) {
+TEST_P(FaultRunTest, OneWildSampleIsMendedReportedAndWithoutEffect) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   EXPECT_EQ(clean.result.imu_rejected, 0);
   EXPECT_EQ(clean.SecondsAfterTheFault("ok").size(), clean.result.records.size());
@@ -77,7 +77,7 @@ TEST_P(FaultRunTest, OneWildSampleIsMendedToldAndWithoutEffect) {
 
 /// The run went on, was degraded from 0.3 s after the fault began at the latest (frames come at 10 Hz), and
 /// no longer than until `last_s`.
-void ExpectToldAtOnce(const Faulty& run, double last_s) {
+void ExpectReportedAtOnce(const Faulty& run, double last_s) {
   EXPECT_TRUE(run.result.restarts.empty());
   const std::vector<double> degraded = run.SecondsAfterTheFault("degraded");
   ASSERT_FALSE(degraded.empty());
@@ -85,47 +85,47 @@ void ExpectToldAtOnce(const Faulty& run, double last_s) {
   EXPECT_LT(degraded.back(), last_s);
 }
 
-TEST_P(FaultRunTest, ASilentImuIsToldAndCovered) {
+TEST_P(FaultRunTest, ASilentImuIsReportedAndCovered) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kImuGap, 0.2);
-  ExpectToldAtOnce(run, 1.5);
+  ExpectReportedAtOnce(run, 1.5);
   EXPECT_LT(run.rmse_m, 1.5 * clean.rmse_m + 0.01);
 }
 
-// GIVEN an axis that repeats its last value, THEN it is told while it lasts, and the estimate goes on.
-TEST_P(FaultRunTest, AStuckAxisIsToldWhileItLasts) {
+// GIVEN an axis that repeats its last value, THEN it is reported while it lasts, and the estimate goes on.
+TEST_P(FaultRunTest, AStuckAxisIsReportedWhileItLasts) {
   for (const SimFaultKind fault : {SimFaultKind::kGyroStuck, SimFaultKind::kAccelStuck}) {
     const Faulty run = Run(fault, 3);
-    ExpectToldAtOnce(run, 3.6);
+    ExpectReportedAtOnce(run, 3.6);
     EXPECT_EQ(run.result.imu_rejected, 1);
     EXPECT_GT(run.SecondsAfterTheFault("degraded").back(), 2.9);
   }
 }
 
-TEST_P(FaultRunTest, AGyroscopeThatChangesToDegreesIsConvertedAndTold) {
+TEST_P(FaultRunTest, AGyroscopeThatChangesToDegreesIsConvertedAndReported) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kImuUnit, 3);
-  ExpectToldAtOnce(run, 1);
+  ExpectReportedAtOnce(run, 1);
   EXPECT_EQ(run.result.imu_rejected, 1);
   EXPECT_LT(run.rmse_m, 1.1 * clean.rmse_m + 0.003);
 }
 
-TEST_P(FaultRunTest, ImagesThatRepeatThemselvesAreNotUsedAndToldAtOnce) {
+TEST_P(FaultRunTest, ImagesThatRepeatThemselvesAreNotUsedAndReportedAtOnce) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kFrozen, 2);
-  ExpectToldAtOnce(run, 2.2);
+  ExpectReportedAtOnce(run, 2.2);
   EXPECT_LT(run.rmse_m, 1.5 * clean.rmse_m + 0.02);
 }
 
-TEST_P(FaultRunTest, ABlackoutIsToldAtOnce) {
-  ExpectToldAtOnce(Run(SimFaultKind::kBlackout, 2), 2.2);
+TEST_P(FaultRunTest, ABlackoutIsReportedAtOnce) {
+  ExpectReportedAtOnce(Run(SimFaultKind::kBlackout, 2), 2.2);
 }
 
-// GIVEN a camera whose clock jumps, THEN the jump is told and taken off its stamps, and no frame is lost.
+// GIVEN a camera whose clock jumps, THEN the jump is reported and taken off its stamps, and no frame is lost.
 TEST_P(FaultRunTest, AJumpOfTheCamerasClockIsTakenOffItsStamps) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kCameraClock, 1);
-  ExpectToldAtOnce(run, 1);
+  ExpectReportedAtOnce(run, 1);
   EXPECT_EQ(run.result.records.size(), clean.result.records.size());
   EXPECT_LT(run.rmse_m, 1.2 * clean.rmse_m + 0.003);
 }

@@ -57,7 +57,7 @@ RunResult RunWithGnss(const Dataset& dataset) {
   return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss}, options);
 }
 
-// GIVEN a receiver whose tags are 18 s ahead of the IMU's time, as the sheet says, THEN its epochs come
+// GIVEN a receiver whose tags are 18 s ahead of the IMU's time, as in the sheet, THEN its epochs come
 // before their frames all the same, and the run is that of equal clocks.
 TEST(GnssOffsetRun, EpochsOfAClockThatIsFarAheadAreUsed) {
   const Dataset together = Flight();

@@ -7,7 +7,7 @@
 #include "eval/simulation/simulator_config.h"
 #include "tests/eval/record/estimator_runs.h"
 
-// What calibration.watch tells of GNSS and position fixes, with both back ends.
+// What calibration.watch reports of GNSS and position fixes, with both back ends.
 
 namespace alidade {
 namespace {
@@ -64,7 +64,7 @@ class GnssWatchRunTest : public testing::TestWithParam<Backend> {
   }
 
   /// Seconds after the start of the run at which the first record has this in its reason; -1: none has.
-  static double FirstTold(const RunResult& result, const char* what) {
+  static double FirstReported(const RunResult& result, const char* what) {
     for (const RunRecord& record : result.records) {
       if (record.reason.find(what) != std::string::npos) {
         return SecondsBetween(result.records.front().estimate.stamp_ns, record.estimate.stamp_ns);
@@ -74,7 +74,7 @@ class GnssWatchRunTest : public testing::TestWithParam<Backend> {
   }
 };
 
-TEST_P(GnssWatchRunTest, SaysNothingOfGnssThatIsAsGiven) {
+TEST_P(GnssWatchRunTest, ReportsNothingOfGnssThatIsAsGiven) {
   for (const Absolute sensor : {Absolute::kGnss, Absolute::kFixes}) {
     const RunResult result = Run(Scene(sensor));
     for (const RunRecord& record : result.records) {
@@ -96,8 +96,8 @@ TEST_P(GnssWatchRunTest, NamesALeverArmThatIsOffByHalfAMetre) {
   }
 }
 
-// GIVEN positions pulled off at 0.5 m/s, THEN it is told before 10 m that they contradict vision and IMU.
-TEST_P(GnssWatchRunTest, TellsAPull) {
+// GIVEN positions pulled off at 0.5 m/s, THEN it is reported before 10 m that they contradict vision and IMU.
+TEST_P(GnssWatchRunTest, DetectsAPull) {
   SimulatorConfig with_rates = Scene(Absolute::kGnss);
   with_rates.fault = SimFaultKind::kGnssRamp;
   SimulatorConfig without = Scene(Absolute::kGnss);
@@ -105,9 +105,9 @@ TEST_P(GnssWatchRunTest, TellsAPull) {
   SimulatorConfig fixes = Scene(Absolute::kFixes);
   fixes.fault = SimFaultKind::kGnssRamp;
   for (const SimulatorConfig& scene : {with_rates, without, fixes}) {
-    const double told_s = FirstTold(Run(scene), "contradict");
-    EXPECT_GT(told_s, kFaultS);
-    EXPECT_LT(told_s, kFaultS + 20);
+    const double reported_s = FirstReported(Run(scene), "contradict");
+    EXPECT_GT(reported_s, kFaultS);
+    EXPECT_LT(reported_s, kFaultS + 20);
   }
 }
 

@@ -41,7 +41,7 @@ RunResult RunOn(const EstimatorConfig& config, const Dataset& dataset) {
   return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames}, &*dataset.truth, 101);
 }
 
-/// Speed error of a record; unlike position, a new start knows it.
+/// Speed error of a record; unlike position, a new start determines it.
 double SpeedError(const RunRecord& record, const Dataset& dataset) {
   const Result<TrajectoryPoint> truth = InterpolateTruth(*dataset.truth, record.estimate.stamp_ns);
   EXPECT_TRUE(truth.ok());
@@ -63,8 +63,8 @@ double MeanNees(const RunResult& result, TimeNs from_ns, const Dataset& dataset)
 
 class RecoveryRunTest : public testing::TestWithParam<Backend> {};
 
-// GIVEN a camera that sees nothing and an IMU that tells noise for two seconds, WHEN both come back, THEN the
-// run says when and why it was lost, starts again and is right about its speed to the end.
+// GIVEN a camera that sees nothing and an IMU that measures noise for two seconds, WHEN both come back, THEN
+// the run reports when and why it was lost, starts again and is right about its speed to the end.
 TEST_P(RecoveryRunTest, StartsAgainAfterCameraAndImuFailed) {
   const Result<Dataset> dataset = Simulate(Failing(SimFaultKind::kBlackoutAndImu, 2), 101);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
@@ -79,7 +79,8 @@ TEST_P(RecoveryRunTest, StartsAgainAfterCameraAndImuFailed) {
   EXPECT_FALSE(restart.reason.empty());
   EXPECT_GT(result.records.back().estimate.stamp_ns, dataset->frames.back().stamp_ns - SecondsToNs(0.2));
   EXPECT_LT(SpeedError(result.records.back(), *dataset), 0.2);
-  // Tens of metres off, and its covariance says so: chi-square with 6 degrees of freedom, 1e-4 beyond 27.9.
+  // Tens of metres off, and its covariance covers that: chi-square with 6 degrees of freedom, 1e-4
+  // beyond 27.9.
   EXPECT_LT(MeanNees(result, restart.restarted_ns, *dataset), 27.9);
   int lost = 0;
   int restarted = 0;
@@ -114,7 +115,7 @@ TEST_P(RecoveryRunTest, EndsTheRunWhenItIsOff) {
   }
 }
 
-TEST_P(RecoveryRunTest, StatusTellsWhenAndWhy) {
+TEST_P(RecoveryRunTest, StatusHoldsWhenAndWhy) {
   const Result<Dataset> dataset = Simulate(Failing(SimFaultKind::kBlackoutAndImu, 2), 103);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
   const EstimatorConfig config = Config(GetParam());

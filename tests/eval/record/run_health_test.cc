@@ -51,7 +51,7 @@ class RunHealthTest : public testing::Test {
   EstimatorConfig config_;
 };
 
-TEST_F(RunHealthTest, GivenASoundRunThenNothingIsToldOfIt) {
+TEST_F(RunHealthTest, GivenASoundRunThenNothingIsReported) {
   const RunResult result = Run();
   const RunHealth health = HealthOf(config_, result);
   EXPECT_THAT(health.impairments, IsEmpty());
@@ -62,7 +62,7 @@ TEST_F(RunHealthTest, GivenASoundRunThenNothingIsToldOfIt) {
   EXPECT_THAT(DescribeRun(health, result), Not(HasSubstr("degraded")));
 }
 
-TEST_F(RunHealthTest, GivenAShortFaultThenItsStatesAndSecondsAreToldAndTheRunIsOk) {
+TEST_F(RunHealthTest, GivenAShortFaultThenItsStatesAndSecondsAreReportedAndTheRunIsOk) {
   const size_t few = Tolerated(Run().records.size());
   ASSERT_GE(few, 1u);
   const RunResult result = RunWith(few, "degraded");
@@ -87,7 +87,7 @@ TEST_F(RunHealthTest, GivenMoreThanTheToleratedShareThenTheRunIsImpaired) {
   EXPECT_THAT(HealthOf(config_, RunWith(many, "local")).impairments, IsEmpty());
 }
 
-// GIVEN a model that is doubted in up to half of the run THEN it is told and the run is ok; in more it is
+// GIVEN a model that is doubted in up to half of the run THEN it is reported and the run is ok; in more it is
 // not.
 TEST_F(RunHealthTest, GivenADoubtedModelThenHalfOfTheRunIsTolerated) {
   const size_t half = Run().records.size() / 2;
@@ -121,8 +121,9 @@ TEST_F(RunHealthTest, GivenStatesThatAreLostOrSuspectThenTheirModelDoesNotExcuse
   }
 }
 
-// GIVEN an IMU that ends before the images THEN the frames without it are counted, and the reason is told.
-TEST_F(RunHealthTest, GivenFramesBeyondTheImuThenTheRunIsImpairedAndSaysWhy) {
+// GIVEN an IMU that ends before the images THEN the frames without it are counted, and the reason is
+// reported.
+TEST_F(RunHealthTest, GivenFramesBeyondTheImuThenTheRunIsImpairedWithAReason) {
   test::RestingScene scene;
   scene.log.imu.resize(scene.log.imu.size() / 2);
   test::FakeEstimator estimator;
@@ -154,7 +155,7 @@ TEST_F(RunHealthTest, GivenSensorsThatTheSequenceLacksThenEachIsNamed) {
   EXPECT_THAT(HealthOf(config_, result).impairments, IsEmpty());
 }
 
-TEST_F(RunHealthTest, GivenAnImpairedRunThenRunJsonSaysSo) {
+TEST_F(RunHealthTest, GivenAnImpairedRunThenRunJsonHoldsIt) {
   const RunResult result = RunWith(Tolerated(Run().records.size()) + 1, "degraded");
   const test::TemporaryFolder folder;
   ASSERT_TRUE(WriteRun({config_, "name", "dd", "ii", 1, 2, 3, false}, result, folder.path()).ok());

@@ -100,7 +100,7 @@ TEST(Runner, KeepsWhatThereWasWhenTheEstimatorDiverges) {
   }
 }
 
-TEST(Runner, SaysWhyTruthCannotStartTheRun) {
+TEST(Runner, ReportsWhyTruthCannotStartTheRun) {
   RestingScene scene;
   FakeEstimator estimator;
   const RunResult without = RunEstimator(TruthConfig(), scene.log, RunOptions(), &estimator);

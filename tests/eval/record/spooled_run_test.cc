@@ -87,7 +87,7 @@ TEST_P(SpooledRun, WritesWhatARunInMemoryWrites) {
   ExpectTheSameFiles(config, dataset, {"states.csv", "calibration.csv", "covariance.csv", "status.csv"});
 }
 
-// The same with an alignment, which turns what was told before it, after more records than memory holds.
+// The same with an alignment, which turns what was reported before it, after more records than memory holds.
 TEST_P(SpooledRun, TurnsWhatItHasPutAway) {
   const Dataset dataset =
       SimulateOf("gnss_figure8_short.yaml", {"duration_s=20", "path_m=83", "gnss.rate_hz=2"});
@@ -173,7 +173,7 @@ TEST_P(SpooledRun, HoldsItsMemory) {
 
 INSTANTIATE_TEST_SUITE_P(BackEnds, SpooledRun, testing::Values("filter", "smoother"));
 
-TEST(SpooledRun, GivenNoRoomThenTheRunEndsAndSaysSo) {
+TEST(SpooledRun, GivenNoRoomThenTheRunEndsWithAnError) {
   const Dataset dataset = SimulateOf("figure8_short.yaml", {"duration_s=60", "path_m=79"});
   RunOptions options;
   options.truth = &*dataset.truth;

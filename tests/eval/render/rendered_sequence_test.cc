@@ -48,7 +48,7 @@ TEST(RenderedSequence, TrackedCornersFitTheTruthWithinATenthOfAPixel) {
   EXPECT_LT(Quantile(errors, 0.9), 1.0);
 }
 
-TEST(RenderedSequence, RaysMeetWhatTheHallSays) {
+TEST(RenderedSequence, RaysMeetTheSurfacesOfTheHall) {
   // The renderer's short cuts (single precision, cones, sorted boxes) against the plain intersection.
   const Scene scene = Scene::Make(SmallConfig());
   const Hall& hall = scene.sequence.hall();
@@ -105,7 +105,7 @@ TEST(RenderedSequence, ALongExposureBlursAFastTurn) {
   EXPECT_NEAR(MeanGrey(blurred), MeanGrey(sharp), 3);
 }
 
-TEST(RenderedSequence, BrightnessAndNoiseAreAsTheirKeysSay) {
+TEST(RenderedSequence, BrightnessAndNoiseAreThoseOfTheirKeys) {
   const GreyImage plain = FrameWith([](RenderConfig*) {});
   const GreyImage dark = FrameWith([](RenderConfig* render) { render->brightness = 0.5; });
   EXPECT_NEAR(MeanGrey(dark), 0.5 * MeanGrey(plain), 1);

@@ -9,7 +9,7 @@ namespace alidade::test {
 /// A page after its scripts have run, and what the browser's console said.
 struct PageVisit {
   std::string dom;
-  std::string console;  ///< one line a message; empty when the page had nothing to say
+  std::string console;  ///< one line a message; empty without messages of the page
 
   /// Attribute data-`name` of the root element; empty without it.
   [[nodiscard]] std::string Mark(const std::string& name) const;

@@ -81,7 +81,7 @@ TEST(HeatMaps, GivenOneSequenceThenThereIsNoMap) {
   EXPECT_TRUE(MapsOf(comparison).empty());
 }
 
-TEST(HeatMaps, GivenAnEstimatorThatLostEveryRunThenTheCellSaysHow) {
+TEST(HeatMaps, GivenAnEstimatorThatLostEveryRunThenTheCellShowsHow) {
   Comparison comparison = TwoRegimes();
   comparison.cells[8].status = comparison.cells[9].status = "not_initialized";
   EXPECT_EQ(MapsOf(comparison)[0].rows[1].cells[1].number, "no start");

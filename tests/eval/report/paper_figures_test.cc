@@ -89,7 +89,7 @@ TEST(PaperFigures, GivenAComparisonThenEverySequenceHasItsSix) {
   EXPECT_EQ(CountOf("fill-opacity=\"0.18\"", FigureNamed("figure8_rpe", comparison)), 9);
 }
 
-TEST(PaperFigures, GivenAnEstimatorThatLostEveryRunThenTheLegendSaysSo) {
+TEST(PaperFigures, GivenAnEstimatorThatLostEveryRunThenTheLegendShowsIt) {
   Comparison comparison = test::SyntheticComparison(50);
   for (CellResult& cell : comparison.cells) {
     cell.status = cell.estimator == "invio_l5" ? "diverged" : cell.status;

@@ -40,7 +40,7 @@ class ProvenanceOfTables : public ::testing::Test {
   Comparison comparison_;
 };
 
-TEST_F(ProvenanceOfTables, GivenItThenEveryReportTellsVersionDateAndMachine) {
+TEST_F(ProvenanceOfTables, GivenItThenEveryReportHoldsVersionDateAndMachine) {
   EXPECT_THAT(
       Written("tables.md"),
       HasSubstr("\nMade with Alidade 1.2.3, 2026-11-25 (UTC), on Fast & \\<Small\\> (4 logical cores).\n"));

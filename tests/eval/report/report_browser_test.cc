@@ -49,7 +49,7 @@ TEST_F(ReportInBrowser, GivenAComparisonThenEveryPlotIsDrawnWithoutAComplaint) {
   EXPECT_THAT(visit.dom, HasSubstr("<td class=\"digest\">5f1c1"));
 }
 
-TEST_F(ReportInBrowser, GivenAFailedRunThenItsReasonIsToldAndTheOthersAreDrawn) {
+TEST_F(ReportInBrowser, GivenAFailedRunThenItsReasonIsShownAndTheOthersAreDrawn) {
   const PageVisit visit = Open(page_, "#sequence=V1_01_easy&seed=2");
   ExpectWhole(visit);
   EXPECT_EQ(visit.Mark("lines"), "28");
@@ -85,7 +85,7 @@ TEST_F(ReportInBrowser, GivenAllSeedsTogetherThenEveryEstimateIsDrawn) {
   EXPECT_THAT(visit.dom, HasSubstr("the mean of 2 independent runs"));
 }
 
-TEST_F(ReportInBrowser, GivenSeveralSeedsThenPairsAndTheBandOverTimeAreTold) {
+TEST_F(ReportInBrowser, GivenSeveralSeedsThenPairsAndTheBandOverTimeAreShown) {
   const PageVisit visit = Open(page_, "#sequence=figure8&seed=all");
   EXPECT_THAT(visit.dom, HasSubstr("row \u2212 column"));
   EXPECT_THAT(visit.dom, HasSubstr(", 2 pairs)"));
@@ -124,7 +124,7 @@ TEST_F(ReportInBrowser, GivenAnExternalTrajectoryThenWhatItLacksIsLeftOut) {
   EXPECT_THAT(visit.dom, HasSubstr("no data for this selection"));
 }
 
-TEST_F(ReportInBrowser, GivenNothingToCompareThenThePageSaysSoInsteadOfFailing) {
+TEST_F(ReportInBrowser, GivenNothingToCompareThenThePageShowsThatInsteadOfFailing) {
   ASSERT_TRUE(WriteReport(Comparison{}, folder_.File("empty.html")).ok());
   const PageVisit visit = Open(ReadFile(folder_.File("empty.html")));
   EXPECT_THAT(visit.console, IsEmpty());

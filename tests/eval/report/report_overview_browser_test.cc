@@ -1,4 +1,4 @@
-// What the report tells in words and tables, as a browser shows it.
+// The report's words and tables, as a browser shows it.
 #include <regex>
 
 #include "tests/eval/report/report_in_browser.h"
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-TEST_F(ReportInBrowser, GivenPairsThenTheOverviewTellsWhichDifferencesAreSignificant) {
+TEST_F(ReportInBrowser, GivenPairsThenTheOverviewMarksTheSignificantDifferences) {
   const PageVisit best = Open(page_, "#figure=rmse_pos_m");
   EXPECT_THAT(best.dom, HasSubstr("the test of its difference to the best of the column"));
   EXPECT_TRUE(std::regex_search(
@@ -160,7 +160,7 @@ TEST_F(ReportInBrowser, GivenAnEstimatorThatLostEveryRunThenItsCompletionIsShown
   EXPECT_THAT(visit.Mark("sequence-note"), HasSubstr("seconds of camera data that a second of front end"));
 }
 
-TEST_F(ReportInBrowser, GivenDifferentAlignmentsThenItSaysWhose) {
+TEST_F(ReportInBrowser, GivenDifferentAlignmentsThenItNamesThem) {
   Comparison comparison;
   comparison.title = "mixed";
   for (const char* name : {"gvio", "gvins_class", "pockf"}) {

@@ -162,7 +162,7 @@ TEST(GnssMeasurements, HoldDeviationsByStrengthOrAsReported) {
 }
 
 // u-blox' driver names B1I by its old code 47; other drivers leave the code out.
-TEST(GnssMeasurements, SignalsAreToldByCodeOrFrequency) {
+TEST(GnssMeasurements, SignalsAreRecognisedByCodeOrFrequency) {
   for (const auto& [code, frequency] : {std::pair<int, double>(47, 1561.098e6), {40, 0}, {0, 1561.098e6}}) {
     ByteWriter out;
     out.Write(std::uint32_t{1});

@@ -10,7 +10,7 @@
 namespace alidade {
 namespace {
 
-/// Feeds frames to the clock as a session does: a jump that is told is taken off the stamps.
+/// Feeds frames to the clock as a session does: a jump that is reported is taken off the stamps.
 class CameraClockTest : public testing::Test {
  protected:
   CameraClockTest() {
@@ -21,40 +21,40 @@ class CameraClockTest : public testing::Test {
     dataset_ = *Simulate(config, 733);
   }
 
-  /// Jumps told, of a camera whose stamps are late by late_s(frame index, jumps told so far).
+  /// Jumps reported, of a camera whose stamps are late by late_s(frame index, jumps reported so far).
   template <typename Late>
   std::vector<double> Jumps(const Late& late_s) {
     CameraClock clock(dataset_.rig, 1);
     for (const ImuSample& sample : dataset_.imu) {
       clock.AddImu(sample);
     }
-    std::vector<double> told;
+    std::vector<double> reported;
     TimeNs taken_off_ns = 0;
     for (size_t i = 0; i + 40 < dataset_.frames.size(); ++i) {
       TrackFrame frame = dataset_.frames[i];
-      frame.stamp_ns += SecondsToNs(late_s(i, told.size()));
+      frame.stamp_ns += SecondsToNs(late_s(i, reported.size()));
       if (const auto jump = clock.FindJump(frame, frame.stamp_ns - taken_off_ns, Eigen::Vector3d::Zero())) {
         taken_off_ns += *jump;
-        told.push_back(SecondsBetween(0, *jump));
+        reported.push_back(SecondsBetween(0, *jump));
       }
     }
-    return told;
+    return reported;
   }
 
   Dataset dataset_;
 };
 
-TEST_F(CameraClockTest, TellsTwoJumpsOfFollowingFrames) {
+TEST_F(CameraClockTest, FindsTwoJumpsOfFollowingFrames) {
   size_t second = 1000;
-  const std::vector<double> told = Jumps([&](size_t i, size_t jumps) {
+  const std::vector<double> reported = Jumps([&](size_t i, size_t jumps) {
     if (jumps == 1 && second == 1000) {
       second = i;
     }
     return (i >= 30 ? 0.8 : 0) + (i >= second ? 0.6 : 0);
   });
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_NEAR(told[0], 0.8, 1e-6);
-  EXPECT_NEAR(told[1], 0.6, 1e-6);
+  ASSERT_EQ(reported.size(), 2U);
+  EXPECT_NEAR(reported[0], 0.8, 1e-6);
+  EXPECT_NEAR(reported[1], 0.6, 1e-6);
 }
 
 TEST_F(CameraClockTest, StampsThatHoldAreLeftAlone) {

@@ -67,7 +67,7 @@ TEST(DeadReckoningTest, HoweverLongItEqualsOnePropagation) {
   EXPECT_GT(reckoning.Here().stamp_ns, 5000 * kStepNs);
 }
 
-TEST(DeadReckoningTest, SaysNothingBeyondTheSamples) {
+TEST(DeadReckoningTest, IsEmptyBeyondTheSamples) {
   DeadReckoning reckoning(ImuNoise(), 9.81, 1);
   for (const ImuSample& sample : Samples(10)) {
     reckoning.AddImu(sample);

@@ -43,22 +43,22 @@ TEST(DegradationTest, FewEqualPixelsMayBeChance) {
   EXPECT_FALSE(degradation.IsFrozen(Frame(0.05, 7, 0)));
 }
 
-TEST(DegradationTest, WithoutTracksItIsToldWithinAFifthOfASecondAndTakenBackWithTheNextTracks) {
+TEST(DegradationTest, WithoutTracksItIsReportedWithinAFifthOfASecondAndTakenBackWithTheNextTracks) {
   Degradation degradation;
-  double told_s = 0;
+  double reported_s = 0;
   for (int k = 0; k < 20; ++k) {
     const double t = 0.05 * k;
     const bool blind = k >= 5 && k < 15;
     static_cast<void>(degradation.IsFrozen(Frame(t, blind ? 0 : 20, t)));
     const bool degraded = !degradation.Check(SecondsToNs(t), Saw(blind ? 0 : 20)).reason.empty();
-    told_s = degraded && told_s == 0 ? t : told_s;
+    reported_s = degraded && reported_s == 0 ? t : reported_s;
     EXPECT_TRUE(blind || !degraded) << t;
   }
-  EXPECT_GT(told_s, 0.25);
-  EXPECT_LE(told_s, 0.4);
+  EXPECT_GT(reported_s, 0.25);
+  EXPECT_LE(reported_s, 0.4);
 }
 
-TEST(DegradationTest, ASilentImuIsToldUntilTheEstimateHasSettled) {
+TEST(DegradationTest, ASilentImuIsReportedUntilTheEstimateHasSettled) {
   Degradation degradation;
   for (int k = 0; k < 200; ++k) {
     if (k < 100 || k >= 140) {  // 0.2 s
@@ -71,17 +71,18 @@ TEST(DegradationTest, ASilentImuIsToldUntilTheEstimateHasSettled) {
   EXPECT_EQ(degradation.Check(SecondsToNs(1.3), Saw(20)).reason, "");
 }
 
-TEST(DegradationTest, AnAxisThatDoesNotMeasureIsToldUntilTheEstimateHasSettled) {
+TEST(DegradationTest, AnAxisThatDoesNotMeasureIsReportedUntilTheEstimateHasSettled) {
   Degradation degradation;
   for (int k = 0; k < 150; ++k) {
     const TimeNs stamp_ns = k * (kSecondNs / 100);
     degradation.OnImu(stamp_ns, k >= 40 && k < 60 ? "the gyroscope's x axis repeats" : "");
-    const bool told = k >= 40 && k < 109;
-    EXPECT_EQ(degradation.Check(stamp_ns, Saw(20)).reason, told ? "the gyroscope's x axis repeats" : "") << k;
+    const bool reported = k >= 40 && k < 109;
+    EXPECT_EQ(degradation.Check(stamp_ns, Saw(20)).reason, reported ? "the gyroscope's x axis repeats" : "")
+        << k;
   }
 }
 
-TEST(DegradationTest, AChangeOfUnitIsToldUntilTheEstimateHasSettled) {
+TEST(DegradationTest, AChangeOfUnitIsReportedUntilTheEstimateHasSettled) {
   Degradation degradation;
   degradation.OnImu(SecondsToNs(1), "", SecondsToNs(1));
   EXPECT_THAT(degradation.Check(SecondsToNs(1.4), Saw(20)).reason, HasSubstr("changed its unit"));
@@ -95,30 +96,30 @@ FrameStatistics Weighed(double nis, int dof) {
   return statistics;
 }
 
-/// Seconds of 60, at 10 Hz, in which innovations drawn with `variance`, `dof` a frame, are told.
-double SecondsTold(double variance, int dof) {
+/// Seconds of 60, at 10 Hz, in which innovations drawn with `variance`, `dof` a frame, are reported.
+double SecondsReported(double variance, int dof) {
   Degradation degradation;
   RandomStream random(5, "innovations");
-  int told = 0;
+  int reported = 0;
   for (int k = 0; k < 600; ++k) {
     double nis = 0;
     for (int i = 0; i < dof; ++i) {
       nis += variance * std::pow(random.Normal(), 2);
     }
-    told += degradation.Check(SecondsToNs(0.1 * k), Weighed(nis, dof)).reason.empty() ? 0 : 1;
+    reported += degradation.Check(SecondsToNs(0.1 * k), Weighed(nis, dof)).reason.empty() ? 0 : 1;
   }
-  return 0.1 * told;
+  return 0.1 * reported;
 }
 
-TEST(DegradationTest, InnovationsThatAreLargerThanPredictedForLongAreTold) {
-  EXPECT_EQ(SecondsTold(1.0, 200), 0);
-  EXPECT_EQ(SecondsTold(1.0, 4), 0);
-  EXPECT_EQ(SecondsTold(0.1, 200), 0);  // a cautious noise is no fault
-  EXPECT_GT(SecondsTold(1.3, 200), 55);
-  EXPECT_GT(SecondsTold(2.0, 4), 45);
+TEST(DegradationTest, InnovationsThatAreLargerThanPredictedForLongAreReported) {
+  EXPECT_EQ(SecondsReported(1.0, 200), 0);
+  EXPECT_EQ(SecondsReported(1.0, 4), 0);
+  EXPECT_EQ(SecondsReported(0.1, 200), 0);  // a cautious noise is no fault
+  EXPECT_GT(SecondsReported(1.3, 200), 55);
+  EXPECT_GT(SecondsReported(2.0, 4), 45);
 }
 
-TEST(DegradationTest, ACameraThatIsNotAsGivenIsToldOnceItMovesThePose) {
+TEST(DegradationTest, ACameraThatIsNotAsGivenIsReportedOnceItMovesThePose) {
   const auto check = [](double sigmas, double pose_sigmas) {
     const CalibrationDoubt doubt{"the focal length of the camera", "px", sigmas, -2.3, pose_sigmas};
     return Degradation().Check(SecondsToNs(1), Saw(20), &doubt).reason;
@@ -145,7 +146,7 @@ TEST(DegradationTest, LargeInnovationsNameTheLikelyCause) {
 }
 
 // GIVEN innovations that are too large WHEN the tracks end THEN the kind follows: the model, then the data.
-TEST(DegradationTest, MissingDataAndADoubtedModelAreToldApart) {
+TEST(DegradationTest, MissingDataAndADoubtedModelAreDistinguished) {
   Degradation degradation;
   for (int k = 0; k < 100; ++k) {
     static_cast<void>(degradation.Check(SecondsToNs(0.1 * k), Weighed(400, 200)));
@@ -162,12 +163,12 @@ TEST(DegradationTest, MissingDataAndADoubtedModelAreToldApart) {
 
 TEST(DegradationTest, OneFrameOfLargeInnovationsIsForgotten) {
   Degradation degradation;
-  int told = 0;
+  int reported = 0;
   for (int k = 0; k < 600; ++k) {
-    told +=
+    reported +=
         degradation.Check(SecondsToNs(0.1 * k), Weighed(k == 100 ? 2000 : 190, 200)).reason.empty() ? 0 : 1;
   }
-  EXPECT_LT(told, 20);
+  EXPECT_LT(reported, 20);
 }
 
 /// A measured position that is `off_m` away, known to 0.1 m, beside an estimate that it does not move.
@@ -180,7 +181,7 @@ AbsoluteComparison Beside(double second, double off_m) {
   return comparison;
 }
 
-// GIVEN a sensor that is pulled away and a faster one that is not, THEN the first is told, by its name.
+// GIVEN a sensor that is pulled away and a faster one that is not, THEN the first is reported, by its name.
 TEST(DegradationTest, AGoodSensorDoesNotHideABadOne) {
   Degradation degradation;
   for (int i = 0; i < 100; ++i) {

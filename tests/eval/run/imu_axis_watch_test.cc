@@ -32,7 +32,7 @@ std::vector<ImuSample> Motion(int count, double step, double amplitude = 1) {
 }
 
 struct Watched {
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   std::vector<bool> faulty;
   std::vector<ImuSample> samples;
 };
@@ -41,8 +41,8 @@ Watched Watch(std::vector<ImuSample> samples) {
   ImuAxisWatch watch;
   Watched watched;
   for (ImuSample& sample : samples) {
-    if (const std::string told = watch.Add(&sample); !told.empty()) {
-      watched.told.push_back(told);
+    if (const std::string reported = watch.Add(&sample); !reported.empty()) {
+      watched.reported.push_back(reported);
     }
     watched.faulty.push_back(!watch.reason().empty());
   }
@@ -53,7 +53,7 @@ Watched Watch(std::vector<ImuSample> samples) {
 TEST(ImuAxisWatchTest, MotionPassesUntouchedHoweverCoarseTheSensor) {
   for (const double step : {1e-9, 1e-3, 4e-3}) {
     const Watched watched = Watch(Motion(20000, step));
-    EXPECT_TRUE(watched.told.empty()) << step << ": " << watched.told.front();
+    EXPECT_TRUE(watched.reported.empty()) << step << ": " << watched.reported.front();
     for (const ImuSample& sample : watched.samples) {
       ASSERT_TRUE(sample.gyro_fault_density_radps_sqrthz.isZero(0));
       ASSERT_TRUE(sample.accel_fault_density_mps2_sqrthz.isZero(0));
@@ -63,7 +63,7 @@ TEST(ImuAxisWatchTest, MotionPassesUntouchedHoweverCoarseTheSensor) {
 
 // At rest a coarse sensor repeats itself: noise of a quarter of its resolution.
 TEST(ImuAxisWatchTest, ACoarseSensorAtRestIsNoFault) {
-  EXPECT_TRUE(Watch(Motion(20000, 4e-3, 0)).told.empty());
+  EXPECT_TRUE(Watch(Motion(20000, 4e-3, 0)).reported.empty());
 }
 
 // Without noise a level motion has the same vertical force throughout, but for rounding.
@@ -72,11 +72,11 @@ TEST(ImuAxisWatchTest, AnAxisThatSeldomChangedBeforeIsNoFault) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     samples[k].accel.z() = k % 50 == 0 ? 9.81 + 1e-14 : 9.81;
   }
-  EXPECT_TRUE(Watch(std::move(samples)).told.empty());
+  EXPECT_TRUE(Watch(std::move(samples)).reported.empty());
 }
 
 // GIVEN noise-free data WHEN a level motion follows a longer one in three dimensions THEN what the axis does
-// now tells that it is not stuck, not what it did then.
+// now shows that it is not stuck, not what it did then.
 TEST(ImuAxisWatchTest, ALevelMotionAfterOneInThreeDimensionsIsNoFaultForLong) {
   std::vector<ImuSample> samples = Motion(20000, 1e-9);
   for (std::size_t k = 10000; k < samples.size(); ++k) {
@@ -118,15 +118,15 @@ TEST(ImuAxisWatchTest, ACoarseSensorThatIsPutDownQuicklyIsNotSaturatedForTheWhol
 }
 
 // GIVEN an axis that is saturated for long WHEN the others go on moving THEN it is faulty throughout, and
-// told once.
+// reported once.
 TEST(ImuAxisWatchTest, ALongSaturationIsFoundThroughoutWhileTheOthersMove) {
   std::vector<ImuSample> samples = Motion(4000, 1e-3);
   for (std::size_t k = 2000; k < 3000; ++k) {
     samples[k].gyro.x() = 1.2;
   }
   const Watched watched = Watch(std::move(samples));
-  ASSERT_EQ(watched.told.size(), 1u);
-  EXPECT_THAT(watched.told[0], HasSubstr("the gyroscope's x axis is saturated at 1.2 rad/s"));
+  ASSERT_EQ(watched.reported.size(), 1u);
+  EXPECT_THAT(watched.reported[0], HasSubstr("the gyroscope's x axis is saturated at 1.2 rad/s"));
   for (std::size_t k = 0; k < watched.faulty.size(); ++k) {
     EXPECT_EQ(watched.faulty[k], k >= 2004 && k < 3000) << k;
   }
@@ -139,18 +139,18 @@ TEST(ImuAxisWatchTest, RowsThatAreHandedOutTwiceAreNoFault) {
     samples[k].gyro = first.gyro;
     samples[k].accel = first.accel;
   }
-  EXPECT_TRUE(Watch(std::move(samples)).told.empty());
+  EXPECT_TRUE(Watch(std::move(samples)).reported.empty());
 }
 
-TEST(ImuAxisWatchTest, AStuckAxisIsToldOnceWithAxisValueAndStampAndGetsItsNoise) {
+TEST(ImuAxisWatchTest, AStuckAxisIsReportedOnceWithAxisValueAndStampAndGetsItsNoise) {
   std::vector<ImuSample> samples = Motion(4000, 1e-9);
   for (std::size_t k = 2000; k < 3000; ++k) {
     samples[k].gyro.y() = samples[1999].gyro.y();
   }
   const Watched watched = Watch(samples);
-  ASSERT_EQ(watched.told.size(), 1u);
-  EXPECT_THAT(watched.told[0], HasSubstr("the gyroscope's y axis repeats "));
-  EXPECT_THAT(watched.told[0], HasSubstr("from 9.995"));
+  ASSERT_EQ(watched.reported.size(), 1u);
+  EXPECT_THAT(watched.reported[0], HasSubstr("the gyroscope's y axis repeats "));
+  EXPECT_THAT(watched.reported[0], HasSubstr("from 9.995"));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     EXPECT_EQ(watched.faulty[k], k >= 2018 && k < 3000) << k;
     EXPECT_EQ(watched.samples[k].gyro.x(), samples[k].gyro.x());
@@ -171,7 +171,7 @@ TEST(ImuAxisWatchTest, AStuckAxisIsToldOnceWithAxisValueAndStampAndGetsItsNoise)
   EXPECT_NEAR(variance, 0.5, 0.2 * variance);
 }
 
-TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsToldOnceAndFoundAtOnceAfterwards) {
+TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsReportedOnceAndFoundAtOnceAfterwards) {
   std::vector<ImuSample> samples = Motion(4000, 1e-3);
   std::size_t clipped = 0;
   std::vector<bool> saturated(samples.size(), false);
@@ -182,15 +182,15 @@ TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsToldOnceAndFoundAtOnceAfterward
   }
   ASSERT_GT(clipped, 800u);
   const Watched watched = Watch(samples);
-  ASSERT_EQ(watched.told.size(), 1u);
-  EXPECT_THAT(watched.told[0], HasSubstr("the gyroscope's x axis is saturated at 0.7 rad/s"));
+  ASSERT_EQ(watched.reported.size(), 1u);
+  EXPECT_THAT(watched.reported[0], HasSubstr("the gyroscope's x axis is saturated at 0.7 rad/s"));
   for (std::size_t k = 800; k < samples.size(); ++k) {
     EXPECT_TRUE(watched.faulty[k] || !saturated[k]) << k;
     EXPECT_TRUE(!watched.faulty[k] || samples[k].gyro.x() == 0.7) << k;
   }
 }
 
-TEST(ImuAxisWatchTest, AFaultThatReturnsLaterIsToldAgain) {
+TEST(ImuAxisWatchTest, AFaultThatReturnsLaterIsReportedAgain) {
   std::vector<ImuSample> samples = Motion(8000, 1e-9);
   for (const std::size_t from : {2000u, 2200u, 6000u}) {
     for (std::size_t k = from; k < from + 100; ++k) {
@@ -198,9 +198,9 @@ TEST(ImuAxisWatchTest, AFaultThatReturnsLaterIsToldAgain) {
     }
   }
   const Watched watched = Watch(std::move(samples));
-  ASSERT_EQ(watched.told.size(), 2u);
-  EXPECT_THAT(watched.told[1], HasSubstr("the accelerometer's z axis"));
-  EXPECT_THAT(watched.told[1], HasSubstr("from 30.0"));
+  ASSERT_EQ(watched.reported.size(), 2u);
+  EXPECT_THAT(watched.reported[1], HasSubstr("the accelerometer's z axis"));
+  EXPECT_THAT(watched.reported[1], HasSubstr("from 30.0"));
 }
 
 }  // namespace

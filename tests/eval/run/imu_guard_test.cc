@@ -73,7 +73,7 @@ TEST(ImuGuardTest, MotionAndVibrationPassUntouched) {
 }
 
 // GIVEN a spike at any place of the interval between two frames, its end included, WHEN the samples are
-// delivered, THEN it is told once and what is used is near what was measured around it.
+// delivered, THEN it is reported once and what is used is near what was measured around it.
 TEST(ImuGuardTest, ASpikeIsReplacedWhereverItLies) {
   const std::vector<ImuSample> clean = Flight(1000, 2);
   for (size_t at = 500; at < 512; ++at) {
@@ -101,7 +101,7 @@ TEST(ImuGuardTest, AStepThatLastsIsMotionAfterOneSample) {
   }
 }
 
-TEST(ImuGuardTest, TellsWhichSensorJumpedAndByHowMuch) {
+TEST(ImuGuardTest, NamesTheSensorThatJumpedAndByHowMuch) {
   ImuGuard guard;
   for (int k = 0; k < 200; ++k) {
     ImuSample sample{SecondsToNs(k / kRateHz), Vector3d::Zero(), Vector3d(0, 0, 9.81)};
@@ -126,7 +126,7 @@ std::vector<ImuSample> InDegreesFrom(size_t at, std::vector<ImuSample> samples) 
 }
 
 // GIVEN a gyroscope that changes to deg/s at any place of the interval between two frames, and back, WHEN the
-// samples are delivered, THEN each change is told once, and all of them are in rad/s.
+// samples are delivered, THEN each change is reported once, and all of them are in rad/s.
 TEST(ImuGuardTest, AGyroscopeThatChangesItsUnitIsConverted) {
   const std::vector<ImuSample> clean = Flight(1000, 4, 0.1);
   for (size_t at = 500; at < 512; ++at) {

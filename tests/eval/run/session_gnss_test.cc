@@ -135,7 +135,7 @@ TEST(SessionCatalogTest, EphemeridesMayComeLater) {
 
 // GIVEN one epoch that comes a second late, when those after it were processed, THEN the session names it,
 // and its states are those of the log without it.
-TEST(SessionGnssLatenessTest, SaysWhichEpochCameTooLate) {
+TEST(SessionGnssLatenessTest, ReportsAnEpochThatCameTooLate) {
   const Dataset& dataset = Walk();
   const EstimatorConfig config = Preset("gvio");
   const SessionOptions options = Options(config, dataset);

@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(BothBackEnds, SessionOrderTest,
 
 // GIVEN a frame that comes when the next one was processed, THEN the session names the sensor, the stamp and
 // the time by which it is late.
-TEST(SessionLatenessTest, SaysWhenAFrameCameTooLate) {
+TEST(SessionLatenessTest, ReportsAFrameThatCameTooLate) {
   const Dataset dataset = SimulateWalk();
   Result<std::unique_ptr<Session>> session = Session::Make(EstimatorConfig(), dataset.rig);
   ASSERT_TRUE(session.ok()) << session.message();

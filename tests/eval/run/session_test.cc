@@ -75,7 +75,7 @@ std::unique_ptr<Session> Started(const Dataset& dataset, double seconds) {
   return session;
 }
 
-// GIVEN a rig in motion of which nothing is known, WHEN its messages come, THEN the session says what it
+// GIVEN a rig in motion of which nothing is known, WHEN its messages come, THEN the session reports what it
 // waits for, starts by itself and reports a state for each frame from then on.
 TEST(SessionTest, StartsByItself) {
   const Dataset dataset = SimulateWalk(Walk(10), 1);

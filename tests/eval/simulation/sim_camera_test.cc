@@ -169,7 +169,7 @@ TEST(SimCameraTest, OutliersComeAtTheirRate) {
   EXPECT_GT(WrongFraction(scene), 0.02);
 }
 
-TEST(SimCameraTest, CameraLooksWhereItsViewSays) {
+TEST(SimCameraTest, CameraLooksAlongItsView) {
   SimulatorConfig config;
   const Pose forward = MakeSimRig(config)->T_BC;
   config.camera_view = SimCameraView::kSideways;

@@ -82,7 +82,7 @@ TEST(SplineTrajectoryTest, SmoothsNoiseOfItsSamples) {
   EXPECT_NEAR(std::sqrt(square / count), 1e-3 * std::sqrt(3 * 0.05), 1e-4);
 }
 
-TEST(SplineTrajectoryTest, BridgesAGapAndSaysSo) {
+TEST(SplineTrajectoryTest, BridgesAGapAndReportsIt) {
   Trajectory samples = SampleFigureEight(20, 100);
   samples.points.erase(samples.points.begin() + 1000, samples.points.begin() + 1080);
   const Result<SplineTrajectory> spline = SplineTrajectory::Fit(samples, 0.1);

@@ -108,7 +108,7 @@ TEST(GnssStudyTest, AnErrorWithinThreeDeviationsIsCovered) {
 
 // GIVEN an estimate in a world of its own, turned, shifted and drifting, THEN only the drift since the
 // outage's start counts.
-TEST(GnssStudyTest, OdometryIsJudgedFromTheStartOfTheOutage) {
+TEST(GnssStudyTest, OdometryIsEvaluatedFromTheStartOfTheOutage) {
   const Trajectory truth = Truth();
   RunResult run = RunOff(truth, [](double t) { return 0.01 * t; });
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1, Vector3d::UnitZ()).toRotationMatrix();
@@ -156,7 +156,7 @@ GnssStudyRow OutageRow(const std::string& sequence,
   return row;
 }
 
-TEST(GnssStudyTest, TablesSayHowManyRunsMadeIt) {
+TEST(GnssStudyTest, TablesHoldHowManyRunsCompleted) {
   GnssStudyRow row = OutageRow("outage", {{1, 0.25}, {2, GnssRunFigures::kNone}});
   GnssRunFigures& good = row.runs[0].figures;
   good.aligned_after_s = 1.5;

@@ -14,9 +14,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// GIVEN a simulated sequence, WHEN starts are drawn, THEN they are judged against its truth, equal seeds give
+// GIVEN a simulated sequence, WHEN starts are drawn, THEN they are scored against its truth, equal seeds give
 // equal starts, and the table counts them.
-TEST(StartStudyTest, StartsAreJudgedAgainstTruthAndRepeat) {
+TEST(StartStudyTest, StartsAreEvaluatedAgainstTruthAndRepeat) {
   SimulatorConfig simulator;
   simulator.duration_s = 15;
   simulator.path_m = 20;

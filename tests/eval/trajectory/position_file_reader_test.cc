@@ -41,7 +41,7 @@ TEST_F(PositionRows, StampsAreDatesOrWeeksAndRepeatedOnesArePassedOver) {
   EXPECT_EQ((*utc)[0].stamp_ns - (*rows)[0].stamp_ns, 18 * kSecondNs);
 }
 
-// GIVEN rows without deviations WHEN read THEN the quality says how good they are.
+// GIVEN rows without deviations WHEN read THEN the deviation follows from the quality.
 TEST_F(PositionRows, QualityStandsForMissingDeviations) {
   for (const auto& [quality, deviation_m] :
        {std::pair(1, 0.02), {2, 0.3}, {3, 1.0}, {4, 1.0}, {5, 3.0}, {6, 0.1}}) {

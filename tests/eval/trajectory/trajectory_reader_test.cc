@@ -59,7 +59,7 @@ TEST(TrajectoryReader, GivenTumThenStampsKeepEveryNanosecond) {
   EXPECT_FALSE(read->has_velocity || read->has_bias || read->has_covariance);
 }
 
-TEST(TrajectoryReader, GivenNanosecondsWhereTumWantsSecondsThenTheMessageSaysSo) {
+TEST(TrajectoryReader, GivenNanosecondsWhereTumWantsSecondsThenTheMessageNamesTheUnit) {
   const test::TemporaryFolder folder;
   const Result<Trajectory> read =
       ReadTrajectory(folder.Write("a.tum", "1403715273262142976 1 2 3 0 0 0 1\n"));
@@ -117,7 +117,7 @@ TEST(TrajectoryReader, GivenANegativeVarianceOrAMissingEntryThenItIsAnError) {
 
 TEST(TrajectoryReader, GivenEurocsOwnHeaderThenItsVariantsAreTheSame) {
   const test::TemporaryFolder folder;
-  // The published files say "#timestamp" without a unit and put blanks after the commas.
+  // The published files have "#timestamp" without a unit and put blanks after the commas.
   const Result<Trajectory> read = ReadTrajectory(folder.Write(
       "data.csv",
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "

@@ -72,7 +72,7 @@ Tally StartOften(int sequences, int starts_each, double outlier_rate, const Scal
   return tally;
 }
 
-TEST(DynamicInitializer, GIVEN_random_moving_starts_THEN_two_seconds_give_a_scale_as_good_as_told) {
+TEST(DynamicInitializer, GIVEN_random_moving_starts_THEN_two_seconds_give_a_scale_as_good_as_reported) {
   const Tally tally = StartOften(5, 4, 0);
   EXPECT_GE(tally.found, 19);
   EXPECT_LT(tally.mean_wait_s, 2.2);
@@ -106,7 +106,7 @@ TEST(DynamicInitializer, GIVEN_ten_percent_outliers_THEN_it_still_finds_the_stat
 }
 
 // 2.5 m/s on a figure of 180 m: over the usual window the scale is known to no better than a quarter.
-TEST(DynamicInitializer, GIVEN_motion_slow_for_its_size_THEN_more_data_give_a_scale_as_good_as_told) {
+TEST(DynamicInitializer, GIVEN_motion_slow_for_its_size_THEN_more_data_give_a_scale_as_good_as_reported) {
   SimulatorConfig simulator;
   simulator.duration_s = 80;
   simulator.path_m = 200;

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 constexpr double kGravity = 9.81;
 constexpr TimeNs kStart = 1'403'715'273'262'142'976;
 
-/// A body whose motion is told by functions of time [s]; IMU 200 Hz, frames 20 Hz.
+/// A body whose motion is given by functions of time [s]; IMU 200 Hz, frames 20 Hz.
 struct Bench {
   EstimatorConfig config;
   RigCalibration rig;
@@ -178,7 +178,7 @@ TEST(StaticInitializer, WHEN_it_rotates_at_a_constant_rate_THEN_it_refuses) {
   slow_about_horizontal.tracks = 0;
   EXPECT_THAT(slow_about_horizontal.Run().message(), HasSubstr("specific force drifts"));
 
-  Bench slow_about_vertical;  // the IMU alone cannot tell this from a bias: the tracks do
+  Bench slow_about_vertical;  // the IMU alone cannot separate this from a bias: the tracks do
   slow_about_vertical.rate_B = Vector3d(0, 0, 0.05);
   slow_about_vertical.flow_pxps = Vector2d(0.05 * 460, 0);
   EXPECT_THAT(slow_about_vertical.Run().message(), HasSubstr("tracks move"));

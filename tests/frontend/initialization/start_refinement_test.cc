@@ -1,4 +1,4 @@
-// The chi-squares by which the refinement judges a solution.
+// The chi-squares by which the refinement accepts a solution.
 
 #include "frontend/initialization/start_refinement.h"
 

@@ -81,7 +81,7 @@ struct Verdict {
   int bad = 0;
 };
 
-Verdict Judge(const Scene& scene, const std::vector<bool>& inliers) {
+Verdict Classify(const Scene& scene, const std::vector<bool>& inliers) {
   Verdict verdict;
   for (size_t i = 0; i < inliers.size(); ++i) {
     ++(scene.outlier[i] ? verdict.bad : verdict.good);
@@ -102,9 +102,9 @@ TEST(EpipolarRejection, FindsOutliersWithABiasedGyroscope) {
     const Vector3d t = seed % 2 == 0 ? Vector3d(0.15, 0.02, 0.05) : Vector3d(0.02, 0.01, -0.2);
     const Scene scene = MakeScene(R_21, t, seed);
     const Matrix3d R_measured = so3::Exp({0.002, -0.003, 0.002}) * R_21;
-    const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, R_measured, kOptions));
+    const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, R_measured, kOptions));
     EXPECT_GE(verdict.good_kept, verdict.good * 95 / 100) << "seed " << seed;
-    // An outlier along its own epipolar line, the right way, cannot be told from a near point.
+    // An outlier along its own epipolar line, the right way, is indistinguishable from a near point.
     EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
   }
 }
@@ -117,20 +117,20 @@ TEST(EpipolarRejection, OnTheSphereItFindsOutliersBesideAndBehindTheCamera) {
     const Vector3d t = seed % 2 == 0 ? Vector3d(0.15, 0.02, 0.05) : Vector3d(0.02, 0.01, -0.2);
     const Scene scene = MakeWideScene(R_21, t, seed);
     const Matrix3d R_measured = so3::Exp({0.002, -0.003, 0.002}) * R_21;
-    const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, R_measured, options));
+    const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, R_measured, options));
     EXPECT_GE(verdict.good_kept, verdict.good * 95 / 100) << "seed " << seed;
     EXPECT_LE(verdict.bad_kept, verdict.bad / 4) << "seed " << seed;
   }
-  // Without a rotation the fundamental matrix tells what lies ahead alone.
+  // Without a rotation the fundamental matrix classifies only what lies ahead.
   const Scene scene = MakeWideScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 3);
-  const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, std::nullopt, options));
+  const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, std::nullopt, options));
   EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
   EXPECT_LT(verdict.bad_kept, verdict.bad);
 }
 
 /// The same scene with `noise_px` more noise on the second image, and `outlier_px` on every tenth across the
 /// direction of motion, x.
-Verdict JudgeWithScatter(double noise_px, double outlier_px) {
+Verdict ClassifyWithScatter(double noise_px, double outlier_px) {
   Scene scene = MakeScene(Matrix3d::Identity(), {0.15, 0, 0}, 8, false);
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, noise_px / kFocalPx);
@@ -138,21 +138,21 @@ Verdict JudgeWithScatter(double noise_px, double outlier_px) {
     scene.outlier[i] = i % 10 == 0;
     scene.pairs[i].second.y() += scene.outlier[i] ? outlier_px / kFocalPx : noise(random);
   }
-  return Judge(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
+  return Classify(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
 }
 
 TEST(EpipolarRejection, GIVEN_a_scatter_that_the_threshold_does_not_expect_THEN_it_grows) {
-  const Verdict scattered = JudgeWithScatter(0.8, 8);
+  const Verdict scattered = ClassifyWithScatter(0.8, 8);
   EXPECT_GE(scattered.good_kept, scattered.good * 93 / 100) << "a threshold of 1 px would reject a fifth";
   EXPECT_EQ(scattered.bad_kept, 0);
-  const Verdict sharp = JudgeWithScatter(0.1, 2);
+  const Verdict sharp = ClassifyWithScatter(0.1, 2);
   EXPECT_GE(sharp.good_kept, sharp.good * 97 / 100);
   EXPECT_EQ(sharp.bad_kept, 0) << "it did not grow without need";
 }
 
 TEST(EpipolarRejection, FindsOutliersWithoutGyroscope) {
   const Scene scene = MakeScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 3);
-  const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, std::nullopt, kOptions));
+  const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, std::nullopt, kOptions));
   EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
   EXPECT_LE(verdict.bad_kept, verdict.bad / 3);
 }
@@ -160,7 +160,7 @@ TEST(EpipolarRejection, FindsOutliersWithoutGyroscope) {
 TEST(EpipolarRejection, AWrongGyroscopeDoesNotCostTheTracks) {
   const Scene scene = MakeScene(so3::Exp({0.03, -0.05, 0.02}), {0.15, 0.02, 0.05}, 4);
   const Verdict verdict =
-      Judge(scene, FindEpipolarInliers(scene.pairs, so3::Exp({-0.1, 0.2, 0.3}), kOptions));
+      Classify(scene, FindEpipolarInliers(scene.pairs, so3::Exp({-0.1, 0.2, 0.3}), kOptions));
   EXPECT_GE(verdict.good_kept, verdict.good * 85 / 100);
 }
 
@@ -168,7 +168,7 @@ TEST(EpipolarRejection, WithoutParallaxRotationAloneDecides) {
   const Matrix3d R_21 = so3::Exp({0.03, -0.05, 0.02});
   const Scene scene = MakeScene(R_21, Vector3d::Zero(), 5);
   const Verdict verdict =
-      Judge(scene, FindEpipolarInliers(scene.pairs, so3::Exp({0.003, 0, -0.003}) * R_21, kOptions));
+      Classify(scene, FindEpipolarInliers(scene.pairs, so3::Exp({0.003, 0, -0.003}) * R_21, kOptions));
   EXPECT_GE(verdict.good_kept, verdict.good * 97 / 100);
   EXPECT_LE(verdict.bad_kept, verdict.bad / 4);
 }
@@ -180,12 +180,12 @@ TEST(EpipolarRejection, RejectsMotionAgainstTheOthersAlongTheEpipolarLine) {
     scene.pairs[i].second = scene.pairs[i].first - Vector3d(12 / kFocalPx, 0, 0);  // depth -3.8 m
     scene.outlier[i] = true;
   }
-  const Verdict verdict = Judge(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
+  const Verdict verdict = Classify(scene, FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions));
   EXPECT_EQ(verdict.bad_kept, 0);
   EXPECT_GE(verdict.good_kept, verdict.good * 97 / 100);
 }
 
-TEST(EpipolarRejection, JudgesNothingOnTooFewPairs) {
+TEST(EpipolarRejection, KeepsAllOnTooFewPairs) {
   Scene scene = MakeScene(Matrix3d::Identity(), {0.1, 0, 0}, 7);
   scene.pairs.resize(kMinPairs - 1);
   for (const bool inlier : FindEpipolarInliers(scene.pairs, Matrix3d::Identity(), kOptions)) {

@@ -17,11 +17,11 @@ constexpr TimeNs kStart = 1'700'000'100 * kSecondNs;
 struct Walk {
   double radius_m = 5;
   double speed_mps = 1;
-  double wobble_rad = 0;             ///< of an uneven pace; an even circle cannot tell time from yaw
+  double wobble_rad = 0;             ///< of an uneven pace; an even circle cannot separate time from yaw
   double yaw_rad = 0.7;              ///< R_NW
   Vector3d dv_W = Vector3d::Zero();  ///< by which the estimate's velocity is off
   double sway_mps = 0;               ///< and by how much that turns, once in 3 s
-  double velocity_std_mps = 0;       ///< as it says itself
+  double velocity_std_mps = 0;       ///< in its own covariance
   Vector3d p_NW = Vector3d(3, -2, 1);
   double time_offset_s = 0;  ///< t_imu = t_GPST + offset
   EnuFrame enu = EnuFrame::At(Vector3d(3582105, 532590, 5232755));
@@ -176,8 +176,8 @@ TEST(GnssAlignerTest, GIVEN_an_estimate_that_sways_at_rest_THEN_it_waits_for_mot
   EXPECT_FALSE(Follow(walk, 30, 40, &aligner)) << aligner.report();
 }
 
-// GIVEN an estimate that is off by more than the speed it moves at, WHEN it says so, THEN yaw waits until the
-// path has turned enough to tell the two apart, and is within its deviation.
+// GIVEN an estimate that is off by more than the speed it moves at, WHEN its covariance states it, THEN yaw
+// waits until the path has turned enough to separate the two, and is within its deviation.
 TEST(GnssAlignerTest, GIVEN_a_velocity_that_is_off_THEN_yaw_is_within_its_deviation) {
   Walk walk;
   walk.speed_mps = 0.5;
@@ -219,7 +219,7 @@ TEST(GnssAlignerTest, GIVEN_stamps_50_ms_late_WHEN_asked_THEN_the_offset_is_foun
   EXPECT_NEAR(alignment->time_offset_s, 0.05, 0.02);
 }
 
-// GIVEN a receiver whose time is not the IMU's, as its sheet says, THEN an epoch meets the state at its
+// GIVEN a receiver whose time is not the IMU's, as in its sheet, THEN an epoch meets the state at its
 // stamp, which contains the offset, and neither that at its tag nor one that the offset is added to once
 // more.
 TEST(GnssAlignerTest, GIVEN_a_time_offset_THEN_the_state_is_that_at_the_epochs_IMU_time) {

@@ -18,7 +18,7 @@ struct FixWalk {
   double yaw_rad = 0.7;  ///< R_NW
   Vector3d p_NW = Vector3d(30, -20, 5);
   Vector3d dv_W = Vector3d::Zero();  ///< by which the estimate's velocity is off
-  double velocity_std_mps = 0;       ///< as it says itself
+  double velocity_std_mps = 0;       ///< in its own covariance
   double std_m = 1;                  ///< of the fixes
   double wrong_rate = 0;
   unsigned seed = 1;

@@ -16,14 +16,14 @@ using Eigen::Vector3d;
 constexpr TimeNs kStart = 1'700'000'100 * kSecondNs;
 constexpr double kImuHz = 200;
 
-/// A body that moves as functions of time [s] say, with an IMU that has biases and an antenna on a lever arm.
+/// A body that moves by functions of time [s], with an IMU that has biases and an antenna on a lever arm.
 struct Body {
   std::function<Vector3d(double)> position_N;
   std::function<Matrix3d(double)> R_NB;
   ImuBias bias;
   Vector3d p_BA = Vector3d::Zero();
   EnuFrame enu = EnuFrame::At(Vector3d(3582105, 532590, 5232755));
-  double position_std_m = 0.5;  ///< as the single points say
+  double position_std_m = 0.5;  ///< in the single points
   double velocity_std_mps = 0.05;
 
   [[nodiscard]] Vector3d Velocity(double t) const { return Derivative(position_N, t); }
@@ -162,7 +162,7 @@ TEST(GnssInertialStartTest, GIVEN_a_long_lever_arm_THEN_the_antennas_velocity_ob
   ASSERT_TRUE(found) << start.report();
   EXPECT_NEAR(found->estimate.bias.gyro.z(), body.bias.gyro.z(), 5e-3);
   // Eight velocities to 0.16 m/s over 6 m: 0.009 rad/s, doubled by align_inflation. Turning and path alone
-  // tell it to 0.046 rad/s.
+  // determine it to 0.046 rad/s.
   EXPECT_LT(std::sqrt(found->estimate.covariance(11, 11)), 0.03);
 }
 

@@ -13,7 +13,7 @@ TimeNs At(TimeScale scale, CalendarTime label) {
   return stamp.ok() ? *stamp : 0;
 }
 
-TEST(GnssTimeTest, WeeksBeginWhereTheSystemsSay) {
+TEST(GnssTimeTest, WeeksBeginAtTheEpochsOfTheSystems) {
   EXPECT_EQ(At(TimeScale::kGps, {1980, 1, 6}), GpsTimeFromWeek(TimeScale::kGps, 0, 0));
   EXPECT_EQ(At(TimeScale::kBeidou, {2006, 1, 1}), GpsTimeFromWeek(TimeScale::kBeidou, 0, 0));
   // Header of an SP3 file of the IGS: 2020-06-24 is week 2111, 259200 s, MJD 59024.

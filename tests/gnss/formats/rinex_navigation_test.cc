@@ -133,7 +133,7 @@ TEST(RinexNavigationTest, BeidouTimeAndBlankFields) {
             NavMessage::kD1);
 }
 
-TEST(RinexNavigationTest, GalileoMessagesAreToldByTheDataSource) {
+TEST(RinexNavigationTest, GalileoMessagesAreDistinguishedByTheDataSource) {
   std::vector<double> numbers = GpsNumbers();
   numbers[10] = 5440.6;
   for (const auto& [source, message] : {std::pair{258, NavMessage::kFnav}, std::pair{517, NavMessage::kInav},
@@ -169,7 +169,7 @@ TEST(RinexNavigationTest, GlonassIsInUtcAndKilometres) {
               -2.79e-9, 1e-18);
 }
 
-TEST(RinexNavigationTest, Version2FilesAreToldByTheirType) {
+TEST(RinexNavigationTest, Version2FilesAreDistinguishedByTheirType) {
   const std::string gps = VersionLine("2.11", "N: GPS NAV DATA", "") +
                           HeaderLine("     .1118D-07   .2235D-07  -.4172D-06   .6557D-06", "ION ALPHA") +
                           HeaderLine("     .1372D+06   .2105D+06  -.2228D+06  -.4653D+06", "ION BETA") +
@@ -203,7 +203,7 @@ TEST(RinexNavigationTest, Version4FramesNameTheirMessages) {
   EXPECT_EQ(data.warnings.count, 0);
 }
 
-TEST(RinexNavigationTest, BadMessagesArePassedOverAndTold) {
+TEST(RinexNavigationTest, BadMessagesAreSkippedAndReported) {
   const std::string good = Message("G02 2020 06 03 01 59 44", 4, GpsNumbers());
   const auto with = [](std::size_t i, double value) {
     std::vector<double> numbers = GpsNumbers();

@@ -104,7 +104,7 @@ TEST(RinexObservationTest, TimeSystemOfTheHeaderIsObeyed) {
   EXPECT_EQ(file.epochs.at(0).stamp_ns, GpsTimeFromWeek(TimeScale::kGps, 2111, 345'630 * kSecondNs));
 }
 
-TEST(RinexObservationTest, DamageCostsOneRecordAndIsTold) {
+TEST(RinexObservationTest, DamageCostsOneRecordAndIsReported) {
   const std::string good = "> 2020 06 25 00 00 30.0000000  0  1\n" + Satellite("G07", 2.1e7);
   const std::string later = "> 2020 06 25 00 01 00.0000000  0  1\n" + Satellite("G07", 2.2e7);
   struct Case {

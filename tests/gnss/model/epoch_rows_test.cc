@@ -18,12 +18,12 @@ std::vector<GnssRow> Rows(const std::vector<double>& residuals) {
   return rows;
 }
 
-TEST(EpochRowsTest, CommonStepIsWhatMostSatellitesSay) {
+TEST(EpochRowsTest, CommonStepIsThatOfMostSatellites) {
   EXPECT_DOUBLE_EQ(CommonStep(Rows({-5, -5.5, -4.5, 80, -5})), 5);
   EXPECT_DOUBLE_EQ(CommonStep({}), 0);
 }
 
-TEST(EpochRowsTest, AJumpIsCommonLargeAndToldByThree) {
+TEST(EpochRowsTest, AJumpIsCommonLargeAndSharedByThree) {
   const GnssConfig config;
   const double jump = 299792.458;
   EXPECT_TRUE(IsClockJump(config, Rows({-jump, -jump, -jump}), jump, 1));

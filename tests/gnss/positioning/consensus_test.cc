@@ -30,7 +30,7 @@ struct Problem {
   std::vector<int> group;
 };
 
-TEST(ConsensusTest, AThirdOfLateMeasurementsHasNoSay) {
+TEST(ConsensusTest, AThirdOfLateMeasurementsHasNoEffect) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Problem problem(24, 8, seed);
     const std::optional<Consensus> consensus = SeekConsensus(problem.rows, problem.group);

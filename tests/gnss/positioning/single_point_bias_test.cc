@@ -33,7 +33,7 @@ TEST(SinglePointTest, CarriedInterSystemBiasSavesThinEpochs) {
   EXPECT_NEAR(galileo->clock_m, receiver.clock_m, 0.5);
 }
 
-// GIVEN a solver that knows no place yet and whose datum, GPS, is all below the mask, THEN that is found out
+// GIVEN a solver without a place yet and whose datum, GPS, is all below the mask, THEN that is found out
 // only after GPS has been the datum of a first fit, of which nothing may be left: the solution, and the one
 // after it, are those of a solver that has not seen GPS.
 TEST(SinglePointTest, ADatumThatIsMaskedLeavesNothingInTheClock) {

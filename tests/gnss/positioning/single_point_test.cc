@@ -114,7 +114,7 @@ TEST(SinglePointTest, AMillisecondClockJumpLeavesThePosition) {
   ExpectTruth(*solution, receiver);
 }
 
-TEST(SinglePointTest, EpochsThatCannotBeSolvedSayWhy) {
+TEST(SinglePointTest, EpochsThatCannotBeSolvedHaveAReason) {
   const test::SyntheticReceiver receiver = Receiver();
   NavigationData sky = test::SyntheticSky(kStamp);
   SinglePointSolver solver = MakeSolver(sky, receiver.position_E);

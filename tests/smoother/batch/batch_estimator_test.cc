@@ -144,7 +144,7 @@ TEST(BatchEstimatorTest, OutliersAreGatedAndDoNotBias) {
   }
 }
 
-TEST(BatchEstimatorTest, SaysHowFarFromTheMinimumItWasLeft) {
+TEST(BatchEstimatorTest, ReportsHowFarFromTheMinimumItWasLeft) {
   const Dataset dataset = MakeBatchDataset({.duration_s = 2});
   EstimatorConfig config = BatchTestConfig();
   config.batch.max_iterations = 1;

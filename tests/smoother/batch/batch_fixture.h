@@ -41,7 +41,7 @@ inline Dataset MakeBatchDataset(const BatchSequenceOptions& options) {
   return dataset;
 }
 
-/// A sliding window that never slides (up to 100 frames) and judges tracks as the batch does.
+/// A sliding window that never slides (up to 100 frames) and gates tracks as the batch does.
 inline EstimatorConfig WholeWindowConfig() {
   EstimatorConfig config;
   config.backend = Backend::kSmoother;

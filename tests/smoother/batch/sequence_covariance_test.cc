@@ -136,7 +136,7 @@ TEST_F(SequenceCovarianceTest, FilteredIsSmoothedWithoutTheFuture) {
     std::vector<WindowTrack*> tracks;
     for (WindowTrack& track : cut) {
       std::erase_if(track.views, [&](const WindowView& v) { return v.frame->index > static_cast<int>(k); });
-      if (track.views.size() >= 2) {  // a single view says nothing of the poses
+      if (track.views.size() >= 2) {  // a single view adds nothing on the poses
         tracks.push_back(&track);
       }
     }

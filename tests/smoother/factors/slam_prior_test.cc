@@ -26,7 +26,7 @@ void ExpectPrior(const LinearPrior& prior, const DenseWindow& dense) {
   EXPECT_LT((information - dense.hessian).norm(), 1e-6 * dense.hessian.norm());
   const VectorXd gradient = prior.jacobian.transpose() * prior.residual;
   EXPECT_LT((gradient - dense.gradient).norm(), 1e-6 * dense.gradient.norm());
-  // The calibration's columns are judged by themselves: those of the poses are far larger.
+  // The calibration's columns are compared by themselves: those of the poses are far larger.
   const auto [at, size] = prior.columns().Calibration();
   const VectorXd scale = dense.hessian.diagonal().segment(at, size).cwiseSqrt().cwiseInverse();
   const MatrixXd own = scale.asDiagonal() * information.block(at, at, size, size) * scale.asDiagonal();

@@ -78,7 +78,7 @@ struct Sliding : WindowFixture {
   Sliding(unsigned seed, bool first_estimates) : WindowFixture(seed, 7, 16, 1.0), keeps(first_estimates) {
     EXPECT_TRUE(
         MakeInitialPrior(ErrorConvention::kSo3xRn, window.frame(0), 1e-4 * Matrix15d::Identity(), &prior));
-    prior.jacobian.setZero();  // nobody knows yaw and position
+    prior.jacobian.setZero();  // yaw and position are unknown
     const std::vector<FrameGeometry> geometry = MakeGeometry(window, T_BC);
     for (auto& [id, track] : window.tracks()) {  // bases in all but the last frames
       const WindowFrame& from = *track.views.front().frame;

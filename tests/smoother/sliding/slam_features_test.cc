@@ -87,7 +87,7 @@ TEST(SmootherEstimatorTest, SlamFeaturesLeaveExactDataExact) {
 }
 
 // Three runs: the information that outlives the window of one second makes the estimate better, and its
-// covariance knows by how much.
+// covariance states by how much.
 TEST(SmootherEstimatorTest, SlamFeaturesLowerTheErrorAndKeepTheCovarianceTrue) {
   double with = 0;
   double without = 0;

@@ -215,7 +215,7 @@ TEST(VisionTermTest, ViewsInCeresAreUnderTheSharedKernel) {
 }
 
 // The landmark's coordinates move with the base frame in Ceres and stand still in the rows: once it is
-// eliminated both say the same of poses and calibration. In Ceres every row is numeric.
+// eliminated both give the same information on poses and calibration. In Ceres every row is numeric.
 TEST(VisionTermTest, ViewsAndDepthPriorsAreThoseOfCeresAndNumeric) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     WindowFixture fixture(seed, 4, 8, 1.0, seed <= 6 ? FixtureView::kAhead : FixtureView::kBehind);

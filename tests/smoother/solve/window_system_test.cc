@@ -189,7 +189,7 @@ TEST_P(MarginalizationTest, DeviationsOverAllPosesAreThoseOfTheFullHessian) {
 
 // The gauge: turning the whole window about gravity and shifting it must change nothing but the first prior's
 // own term.
-TEST(MarginalizationGaugeTest, VisionAndImuSayNothingAboutYawAndPositionInRightInvariantCoordinates) {
+TEST(MarginalizationGaugeTest, VisionAndImuHoldNoInformationOnYawAndPositionInRightInvariantCoordinates) {
   WindowFixture fixture(8, 4, 12, 1.0);
   LinearPrior none;
   ASSERT_TRUE(

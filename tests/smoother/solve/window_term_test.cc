@@ -93,7 +93,8 @@ TEST(WindowTermTest, RowsOfAPriorWithClockAndCalibrationAreThoseOfCeresAndNumeri
   }
 }
 
-// GIVEN frames with clocks and epochs, THEN the batch's fronts know of the last of them what the window does.
+// GIVEN frames with clocks and epochs, THEN the batch's fronts and the window have the same information on
+// the last of them.
 TEST(WindowTermTest, TheBatchTakesGnssTermsAsTheWindowDoes) {
   GnssFixture fixture(6);
   LinearPrior prior;

@@ -91,7 +91,7 @@ TEST(TrackSystemTest, ExactObservationsGiveTheExactLandmarkFromThePoseOnlyDepth)
 }
 
 // GIVEN exact views, WHEN a pose of the window changes, THEN the inverse depth that the views determine
-// changes as its row says.
+// changes by its row.
 TEST(TrackSystemTest, TheInverseDepthFollowsThePosesOfTheWindow) {
   WindowFixture fixture(11, 5, 6);
   const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, fixture.T_BC);
@@ -120,7 +120,7 @@ TEST(TrackSystemTest, TheInverseDepthFollowsThePosesOfTheWindow) {
 }
 
 // GIVEN views whose noise is drawn many times and poses that are known, THEN the inverse depth scatters as
-// its own deviation says.
+// its own deviation.
 TEST(TrackSystemTest, TheInverseDepthScattersByItsOwnDeviation) {
   WindowFixture fixture(12, 5, 1);
   const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, fixture.T_BC);

@@ -23,7 +23,7 @@ Pose Recorded(const TruthConstants& constants, const NavState& state) {
   return Pose{constants.R_TW, Vector3d::Zero()} * state.T_WB() * constants.T_BM;
 }
 
-TEST(TruthPoseModelTest, ResidualIsZeroAtTheTruthAndTellsWhatIsOff) {
+TEST(TruthPoseModelTest, ResidualIsZeroAtTheTruthAndEqualsTheErrorElsewhere) {
   test::RandomStates states(1);
   const TruthConstants constants = RandomConstants(&states);
   const NavState state = states.Nav(3);

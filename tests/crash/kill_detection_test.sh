@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# GIVEN a program that writes a file under its own name WHEN it is killed in a write THEN kill_test.sh tells the torn file. GIVEN outputs
+# GIVEN a program that writes a file under its own name WHEN it is killed in a write THEN kill_test.sh finds the torn file. GIVEN outputs
 # of two runs THEN the listing differs when a figure does, and not when a measured time does.
-# Usage: kill_tells_test.sh PROGRAM SOURCE_DIR
+# Usage: kill_detection_test.sh PROGRAM SOURCE_DIR
 set -euo pipefail
 program=$(realpath "$1")
 source=$(realpath "$2")
