@@ -31,7 +31,8 @@ namespace alidade {
 /// that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the mean, in
 /// the step that detects about the stuck value. Saturated: the motion goes on as it came, at most half beyond
 /// the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2 rad/s and 1 m/s^2
-/// (core/imu_gap.h). The noise is that of the axis alone.
+/// (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a saturated one is in all
+/// three: in a motion beyond the range the other axes may be clipped in samples that do not reveal it yet.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
 /// kLeastMeasurements.

@@ -166,7 +166,9 @@ TEST(ImuAxisWatchTest, AStuckAxisIsReportedOnceWithAxisValueAndStampAndGetsItsNo
   // Over t the noise has the variance sigma^2 t^2 of a constant error; the axis is a cosine of one rad/s.
   double variance = 0;
   for (std::size_t k = 2000; k < 2200; ++k) {
-    variance += std::pow(watched.samples[k].gyro_fault_density_radps_sqrthz.y(), 2) / kRateHz;
+    const Eigen::Vector3d& densities = watched.samples[k].gyro_fault_density_radps_sqrthz;
+    EXPECT_EQ(densities.x() + densities.z(), 0) << k;
+    variance += std::pow(densities.y(), 2) / kRateHz;
   }
   EXPECT_NEAR(variance, 0.5, 0.2 * variance);
 }
@@ -187,6 +189,9 @@ TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsReportedOnceAndFoundAtOnceAfter
   for (std::size_t k = 800; k < samples.size(); ++k) {
     EXPECT_TRUE(watched.faulty[k] || !saturated[k]) << k;
     EXPECT_TRUE(!watched.faulty[k] || samples[k].gyro.x() == 0.7) << k;
+    const Eigen::Vector3d& densities = watched.samples[k].gyro_fault_density_radps_sqrthz;
+    EXPECT_EQ(densities.minCoeff(), densities.maxCoeff()) << k;
+    EXPECT_EQ(densities.x() > 0, watched.faulty[k]) << k;
   }
 }
 
