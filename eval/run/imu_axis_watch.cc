@@ -133,8 +133,10 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
     (sample->*signal->value)[index] = axis.mean;
   }
   axis.limit = fault == Fault::kSaturated ? value : axis.limit;
-  const Eigen::Vector3d axes =
-      fault == Fault::kSaturated ? Eigen::Vector3d::Ones() : Eigen::Vector3d::Unit(index);
+  Eigen::Vector3d axes = Eigen::Vector3d::Unit(index);
+  if (fault == Fault::kSaturated) {
+    axes.setOnes();
+  }
   Eigen::Vector3d& densities = sample->*signal->fault_density;
   densities = (densities.cwiseAbs2() + density * density * axes).cwiseSqrt();
   reason_ = Format(fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
