@@ -145,6 +145,9 @@ std::vector<RunInstant> InstantsOf(const RunResult& run, const Trajectory& truth
     row.ok = record.status == "ok" || record.status == "local";
     row.known_ns = record.status == "lost" ? GivenUpAt(run, stamp_ns) : stamp_ns;
   }
+  if (rows.empty() || truth.points.empty()) {
+    return rows;
+  }
   const Result<Evaluation> evaluation = Evaluate(truth, TrajectoryOf(run), options);
   for (std::size_t i = 0; evaluation.ok() && i < evaluation->pairs.size(); ++i) {
     const StatePair& pair = evaluation->pairs[i];

@@ -207,6 +207,7 @@ TEST(FaultRecoveryTest, RowsHoldStatusAndErrorsOfARun) {
   EXPECT_NEAR(ScoreFault(rows, {At(3.5), At(4)}, nullptr).reported_after_s, 1, 1e-9);
   EXPECT_NEAR(ScoreFault(rows, {At(3.5), At(4)}, nullptr).ok_after_s, 1.1, 1e-9);
   EXPECT_TRUE(std::isnan(InstantsOf(run, Trajectory(), options)[10].error_m)) << "no truth";
+  EXPECT_TRUE(InstantsOf(RunResult(), truth, options).empty());
 }
 
 FaultFigures Recovered(double after_s) {
