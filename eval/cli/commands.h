@@ -17,6 +17,7 @@ int RunProbe(const std::vector<std::string>& arguments);
 int RunSpp(const std::vector<std::string>& arguments);
 int RunStarts(const std::vector<std::string>& arguments);
 int RunGnssStudy(const std::vector<std::string>& arguments);
+int RunFaultStudy(const std::vector<std::string>& arguments);
 int RunAnalyze(const std::vector<std::string>& arguments);
 int RunCheck(const std::vector<std::string>& arguments);
 int RunConvert(const std::vector<std::string>& arguments);

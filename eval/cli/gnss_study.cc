@@ -6,20 +6,15 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
+#include "eval/cli/stored_run.h"
 #include "eval/cli/support.h"
 #include "eval/compare/compare_input.h"
 #include "eval/compare/plan_parser.h"
 #include "eval/config/config_yaml.h"
-#include "eval/files/input_file.h"
-#include "eval/record/recorder_reader.h"
 #include "eval/study/gnss_study_tables.h"
 
 namespace alidade::cli {
 namespace {
-
-std::string RunFolder(const std::string& estimator, const std::string& sequence, unsigned seed) {
-  return FLAGS_input + "/cells/" + estimator + "/" + sequence + "/" + std::to_string(seed);
-}
 
 /// Whether an estimator uses raw GNSS or position fixes.
 bool IsGlobal(const EstimatorConfig& config) {
@@ -80,13 +75,11 @@ class Study {
   Status AddSeed(const PlanSequence& sequence, const SimulatorConfig& simulation, unsigned seed) {
     std::vector<std::pair<GnssStudyRow*, RunResult>> runs;
     for (std::size_t i = first_row_; i < rows_.size(); ++i) {
-      const std::string folder = RunFolder(rows_[i].estimator, sequence.name, seed);
-      if (!MayExist(folder + "/run.json")) {
-        continue;
-      }
-      Result<RunResult> run = ReadRun(folder);
+      Result<std::optional<RunResult>> run = StoredRun(rows_[i].estimator, sequence.name, seed);
       ALIDADE_RETURN_IF_ERROR(run.status());
-      runs.emplace_back(&rows_[i], *std::move(run));
+      if (run->has_value()) {
+        runs.emplace_back(&rows_[i], *std::move(*run));
+      }
     }
     return runs.empty() ? Status::Ok() : ScoreSeed(sequence, simulation, seed, runs);
   }
@@ -127,13 +120,11 @@ class Study {
         if (IsGlobal(*config)) {
           continue;
         }
-        const std::string folder = RunFolder(estimator.name, other.name, seed);
-        if (!MayExist(folder + "/run.json")) {
-          continue;
-        }
-        const Result<RunResult> run = ReadRun(folder);
+        const Result<std::optional<RunResult>> run = StoredRun(estimator.name, other.name, seed);
         ALIDADE_RETURN_IF_ERROR(run.status());
-        return ScoreOdometry(*run, truth, start_ns, scenario);
+        if (run->has_value()) {
+          return ScoreOdometry(**run, truth, start_ns, scenario);
+        }
       }
     }
     return GnssRunFigures{};

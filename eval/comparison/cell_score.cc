@@ -77,11 +77,6 @@ CellSeries MakeSeries(const Evaluation& evaluation) {
   return series;
 }
 
-/// Stamp of a pair in the run itself.
-TimeNs RunStamp(const Evaluation& evaluation, const StatePair& pair) {
-  return pair.estimate.stamp_ns - SecondsToNs(evaluation.options.association.time_offset_s);
-}
-
 /// What the frames of the pairs did to the estimator, and what an audit recorded.
 void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSeries* series) {
   const bool audited = std::any_of(run.records.begin(), run.records.end(),
@@ -91,7 +86,7 @@ void FillRunSeries(const Evaluation& evaluation, const RunResult& run, CellSerie
     by_stamp[record.estimate.stamp_ns] = &record;
   }
   for (const StatePair& pair : evaluation.pairs) {
-    const auto record = by_stamp.find(RunStamp(evaluation, pair));
+    const auto record = by_stamp.find(evaluation.EstimateStamp(pair));
     const bool found = record != by_stamp.end();
     series->backend_ms.push_back(found ? record->second->backend_ms : kNan);
     series->features_used.push_back(found ? record->second->statistics.features_used : kNan);
@@ -118,7 +113,7 @@ void FillSilentFailure(const Evaluation& evaluation, const RunResult& run, CellR
   }
   std::vector<ReportedError> instants;
   for (size_t i = 0; i < evaluation.pairs.size(); ++i) {
-    const TimeNs stamp_ns = RunStamp(evaluation, evaluation.pairs[i]);
+    const TimeNs stamp_ns = evaluation.EstimateStamp(evaluation.pairs[i]);
     instants.push_back({stamp_ns, evaluation.nees->pose[i], alarmed[stamp_ns]});
   }
   const SilentFailure failure = ComputeSilentFailure(instants);
@@ -134,7 +129,7 @@ void FillInnovations(Sensor sensor, const Evaluation& evaluation, const RunResul
   TimeNs newest_ns = 0;
   auto record = run.records.begin();
   for (const StatePair& pair : evaluation.pairs) {
-    const TimeNs stamp_ns = RunStamp(evaluation, pair);
+    const TimeNs stamp_ns = evaluation.EstimateStamp(pair);
     for (; record != run.records.end() && record->estimate.stamp_ns <= stamp_ns; ++record) {
       const Innovations innovations = InnovationsOf(sensor, record->statistics);
       if (innovations.dof > 0) {

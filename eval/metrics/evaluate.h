@@ -44,6 +44,11 @@ struct Evaluation {
   std::vector<ToolRpeResult> tool_rpe;  ///< instead of `rpe`, by the method of options.tool_rpe
   std::optional<NeesResult> nees;       ///< unaligned; absent when the estimate has no covariance
   bool truth_has_covariance = false;    ///< which `nees` then includes (ErrorCovariance)
+
+  /// Stamp of a pair in the clock of the estimate.
+  [[nodiscard]] TimeNs EstimateStamp(const StatePair& pair) const {
+    return pair.estimate.stamp_ns - SecondsToNs(options.association.time_offset_s);
+  }
 };
 
 /// Associates, aligns and scores. When one of the two has no orientation, figures of it are NaN and there is

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/numbers.h"
 
@@ -104,6 +105,11 @@ std::pair<double, double> NeesBand(int dof, double samples, double probability) 
   const double tail = (1 - probability) / 2;
   return {boost::math::quantile(sum, tail) / samples,
           boost::math::quantile(boost::math::complement(sum, tail)) / samples};
+}
+
+double NeesOfSigmas(double sigmas, int dof) {
+  const boost::math::chi_squared squares(dof);
+  return boost::math::quantile(boost::math::complement(squares, std::erfc(sigmas / std::numbers::sqrt2)));
 }
 
 }  // namespace alidade

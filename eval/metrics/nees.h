@@ -33,4 +33,8 @@ struct NeesResult {
 /// Successive frames are correlated: count runs, not frames. NaN for invalid arguments.
 [[nodiscard]] std::pair<double, double> NeesBand(int dof, double samples, double probability = 0.95);
 
+/// NEES that an error of `dof` components exceeds with the probability of a Gaussian beyond +-`sigmas`; of a
+/// pose (6) 20.1 for 3 sigma, 39.5 for 5.
+[[nodiscard]] double NeesOfSigmas(double sigmas, int dof);
+
 }  // namespace alidade

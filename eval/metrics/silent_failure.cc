@@ -1,21 +1,15 @@
 #include "eval/metrics/silent_failure.h"
 
-#include <boost/math/distributions/chi_squared.hpp>
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/numbers.h"
+#include "eval/metrics/nees.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kMaxStepS = 1;
-
-/// NEES of a pose that a Gaussian of `sigmas` is as unlikely as.
-double NeesOf(double sigmas) {
-  const boost::math::chi_squared pose(6);
-  return boost::math::quantile(boost::math::complement(pose, std::erfc(sigmas / std::numbers::sqrt2)));
-}
+constexpr int kPoseDof = 6;
 
 }  // namespace
 
@@ -24,15 +18,18 @@ bool IsAlarm(const std::string& status) {
 }
 
 SilentFailure ComputeSilentFailure(const std::vector<ReportedError>& instants) {
-  const double failure = NeesOf(kFailureSigmas);
-  const double sound = NeesOf(kSoundSigmas);
+  const double failure = NeesOfSigmas(kFailureSigmas, kPoseDof);
+  const double sound = NeesOfSigmas(kSoundSigmas, kPoseDof);
   SilentFailure result;
   double span_s = 0;
   int known = 0;
   int alarmed_inside = 0;
   const ReportedError* before = nullptr;  // of the span
   const auto end_span = [&] {
-    result.silent_s += span_s > kLongestSilenceS ? span_s : 0;
+    if (span_s > kLongestSilenceS) {
+      result.silent_s += span_s;
+      result.longest_s = std::max(result.longest_s, span_s);
+    }
     span_s = 0;
     before = nullptr;
   };
@@ -41,7 +38,7 @@ SilentFailure ComputeSilentFailure(const std::vector<ReportedError>& instants) {
     alarmed_inside += instant.alarmed && instant.nees_pose <= sound ? 1 : 0;
     const bool silent = !instant.alarmed && instant.nees_pose > failure;
     const double step_s = before == nullptr ? 0 : SecondsBetween(before->stamp_ns, instant.stamp_ns);
-    if (!silent || step_s > kMaxStepS) {
+    if (!silent || step_s > kLongestSpanStepS) {
       end_span();
     }
     if (silent) {

@@ -21,6 +21,7 @@ struct SilentFailure {
   /// Instants beyond kFailureSigmas without an alarm, where they last longer than kLongestSilenceS: first to
   /// last of each such span, in all [s].
   double silent_s = 0;
+  double longest_s = 0;  ///< of these spans
   /// Share of the instants that have an alarm although the error is within kSoundSigmas. NaN without
   /// instants. On clean data these are false alarms. Where data are missing an alarm is right whatever the
   /// error.
@@ -30,8 +31,9 @@ struct SilentFailure {
 inline constexpr double kFailureSigmas = 5;
 inline constexpr double kSoundSigmas = 3;
 inline constexpr double kLongestSilenceS = 5;
+inline constexpr double kLongestSpanStepS = 1;  ///< between instants of one span
 
-/// `instants` ascend in time. Spans do not reach over gaps of more than a second.
+/// `instants` ascend in time. Spans do not reach over gaps of more than kLongestSpanStepS.
 [[nodiscard]] SilentFailure ComputeSilentFailure(const std::vector<ReportedError>& instants);
 
 /// Whether a status of status.csv is an alarm.

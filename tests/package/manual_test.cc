@@ -25,9 +25,10 @@ TEST(Manual, ShowsEveryCommandFlagAndExitCodeWithoutWarnings) {
   EXPECT_EQ(warnings.output, "");
 
   const CommandResult page = Shell("LC_ALL=C.UTF-8 MANWIDTH=500 man -l -Tascii " + kPage + " | col -bx");
-  for (const char* text : {"alidade simulate", "alidade gnss_study", "--anchor_at_first", "--backend=WORD",
-                           "posyaw | se3", "Default: 0.01.", "some cells of a comparison failed",
-                           "ALIDADE_DATA_DIR", "alidade compare --plan=demo"}) {
+  for (const char* text :
+       {"alidade simulate", "alidade gnss_study", "alidade fault_study", "--anchor_at_first",
+        "--backend=WORD", "posyaw | se3", "Default: 0.01.", "some cells of a comparison failed",
+        "ALIDADE_DATA_DIR", "alidade compare --plan=demo"}) {
     EXPECT_THAT(page.output, HasSubstr(text));
   }
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace alidade {
@@ -35,6 +36,14 @@ TEST(SilentFailure, BeginsWhereAGaussianIsBeyondFiveSigma) {
 TEST(SilentFailure, GivenSpansOfFiveSecondsAndLessThenOnlyTheLongerOnesCount) {
   const auto large = [](int i) { return i < 51 || (i >= 60 && i < 112) ? 1000.0 : 6.0; };  // 5.0 s and 5.1 s
   EXPECT_NEAR(ComputeSilentFailure(Instants(200, large, Never)).silent_s, 5.1, 1e-9);
+}
+
+TEST(SilentFailure, TheLongestSpanIsOneOfThoseThatCount) {
+  const auto large = [](int i) { return i < 71 || (i >= 80 && i < 136) ? 1000.0 : 6.0; };  // 7.0 s and 5.5 s
+  EXPECT_NEAR(ComputeSilentFailure(Instants(200, large, Never)).silent_s, 12.5, 1e-9);
+  EXPECT_NEAR(ComputeSilentFailure(Instants(200, large, Never)).longest_s, 7.0, 1e-9);
+  const auto brief = [](int i) { return i < 51 ? 1000.0 : 6.0; };
+  EXPECT_EQ(ComputeSilentFailure(Instants(200, brief, Never)).longest_s, 0);
 }
 
 TEST(SilentFailure, GivenAnAlarmThenTheFailureIsNotSilent) {
