@@ -85,7 +85,16 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond);
 }
 
-BENCHMARK_CAPTURE(FilterFrame, alidade_filter, AlidadeFilter)->Apply(Sizes);
+/// What scripts/growth.sh needs besides Sizes.
+void GrowthSizes(benchmark::internal::Benchmark* benchmark) {
+  Sizes(benchmark);
+  for (const int window : {10, 20, 35}) {
+    benchmark->Args({window, 150});
+  }
+  benchmark->Args({25, 800});
+}
+
+BENCHMARK_CAPTURE(FilterFrame, alidade_filter, AlidadeFilter)->Apply(GrowthSizes);
 BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, Immediate)->Apply(Sizes);
 BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, DelayedMsckf)->Args({25, 150})->Unit(benchmark::kMillisecond);
 

@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include <memory>
+#include <string>
 
 #include "filter/gnss_update.h"
 #include "gnss/positioning/single_point.h"
@@ -78,7 +79,7 @@ void GnssPrepareEpoch(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(epoch.builder.Prepare(epoch.observed));
   }
-  state.counters["satellites"] = static_cast<double>(epoch.observed.satellites.size());
+  state.SetLabel(std::to_string(epoch.observed.satellites.size()) + " satellites");
 }
 BENCHMARK(GnssPrepareEpoch)->Unit(benchmark::kMicrosecond);
 

@@ -31,6 +31,7 @@ void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKer
   std::unique_ptr<Estimator> smoother;
   size_t frame = dataset.frames.size();
   size_t imu = 0;
+  double tracks = 0;
   double used = 0;
   double rows = 0;
   double solver_iterations = 0;
@@ -54,11 +55,13 @@ void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKer
     state.ResumeTiming();
     const Status status = smoother->AddFrame(dataset.frames[frame]);
     benchmark::DoNotOptimize(status.ok());
+    tracks += smoother->last_statistics().tracks_in;
     used += smoother->last_statistics().features_used;
     rows += smoother->last_statistics().nis_dof;
     solver_iterations += smoother->last_statistics().iterations;
     ++frame;
   }
+  state.counters["tracks"] = benchmark::Counter(tracks, benchmark::Counter::kAvgIterations);
   state.counters["used"] = benchmark::Counter(used, benchmark::Counter::kAvgIterations);
   state.counters["rows"] = benchmark::Counter(rows, benchmark::Counter::kAvgIterations);
   state.counters["solver"] = benchmark::Counter(solver_iterations, benchmark::Counter::kAvgIterations);
@@ -74,6 +77,15 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond);
 }
 
+/// What scripts/growth.sh needs besides Sizes.
+void GrowthSizes(benchmark::internal::Benchmark* benchmark) {
+  Sizes(benchmark);
+  for (const int window : {35, 50}) {
+    benchmark->Args({window, 150});
+  }
+  benchmark->Args({10, 800});
+}
+
 BENCHMARK_CAPTURE(SmootherFrame, pose_only, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
                   ErrorConvention::kRightInvariant, 0)
     ->Apply(Sizes);
@@ -82,7 +94,7 @@ BENCHMARK_CAPTURE(SmootherFrame, inverse_depth, SmootherLandmark::kInverseDepth,
     ->Apply(Sizes);
 BENCHMARK_CAPTURE(SmootherFrame, alidade_smoother, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
                   ErrorConvention::kRightInvariant, 30)
-    ->Apply(Sizes);
+    ->Apply(GrowthSizes);
 BENCHMARK_CAPTURE(SmootherFrame, vins_mono_class, SmootherLandmark::kInverseDepth, RobustKernel::kCauchy,
                   ErrorConvention::kSo3xRn, 0)
     ->Args({10, 150})
