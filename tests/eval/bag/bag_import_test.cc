@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "eval/bag/bag_folder.h"
-#include "eval/bag/bag_parts.h"
 #include "eval/bag/dataset_images.h"
 #include "eval/bag/dataset_source.h"
 #include "eval/dataset/dataset_reader.h"
