@@ -21,6 +21,8 @@ struct TrackFrame {
   std::vector<TrackObservation> observations;
   /// Wall time the front end spent on this frame; 0 when the tracks were read from a file.
   double frontend_ms = 0;
+  /// The image is the one before under a new stamp: without observations, but no track has ended.
+  bool repeated = false;
 };
 
 }  // namespace alidade

@@ -101,14 +101,17 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   }
   statistics_ = {};
   statistics_.tracks_in = static_cast<int>(frame.observations.size());
+  statistics_.pixel_noise_px = pixel_noise_.px();
   Stopwatch stopwatch;
   ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(state_.calibration().time_offset_s)));
   frame_stamp_ns_ = state_.stamp_ns();
+  if (frame.repeated) {
+    return EndFrame(frame.stamp_ns, true);
+  }
   ++serial_;
   state_.AddClone(serial_, TurnAround(imu_.samples(), state_.stamp_ns(), read_out_span_s_));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   stopwatch.Restart();
-  statistics_.pixel_noise_px = pixel_noise_.px();
   statistics_.observations_invalid =
       tracks_.AddFrame(state_.calibration().camera, pixel_noise_.px(), serial_, frame.observations);
   bool finite = true;
@@ -137,10 +140,14 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     state_.RemoveClone(static_cast<size_t>(leaving));
   }
   statistics_.update_ms = stopwatch.ElapsedMs();
+  return EndFrame(frame.stamp_ns, finite);
+}
+
+Status FilterEstimator::EndFrame(TimeNs stamp_ns, bool finite) {
   if (!finite || !state_.AllFinite()) {
     initialized_ = false;
-    return Status::Diverged("filter: state is not finite after the frame at " +
-                            FormatSeconds(frame.stamp_ns) + " s");
+    return Status::Diverged("filter: state is not finite after the frame at " + FormatSeconds(stamp_ns) +
+                            " s");
   }
   if (observer_ != nullptr) {
     observer_->OnFrame(state_);

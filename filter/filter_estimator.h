@@ -56,6 +56,8 @@ class FilterEstimator : public Estimator {
   };
 
   Status PropagateTo(TimeNs stamp_ns);
+  /// kDiverged: the state after the frame, or a row on the way, was not finite.
+  Status EndFrame(TimeNs stamp_ns, bool finite);
   /// The same for a measurement between frames; `what` names it in messages. kDiverged: not aligned.
   Status BeginMeasurement(const char* what, TimeNs stamp_ns);
   /// The estimate, where what measurements do to it is of interest.

@@ -74,9 +74,9 @@ class Estimator {
   virtual Status Initialize(const NavEstimate& initial) = 0;
   /// Buffers a sample. Samples may arrive out of order or twice; a non-finite one is kInput and is dropped.
   virtual Status AddImu(const ImuSample& sample) = 0;
-  /// Propagates to the frame and updates with its tracks. kInput: the frame was skipped (not after the last
-  /// one, or no IMU reaches it) and the state is as before. kDiverged: the state is lost; Initialize
-  /// restarts.
+  /// Propagates to the frame and updates with its tracks; a track that a frame lacks has ended, unless the
+  /// frame is `repeated`. kInput: the frame was skipped (not after the last one, or no IMU reaches it) and
+  /// the state is as before. kDiverged: the state is lost; Initialize restarts.
   virtual Status AddFrame(const TrackFrame& frame) = 0;
 
   /// Turns the local world into the ENU frame of `alignment`: states, covariance (with the alignment's own)

@@ -6,6 +6,7 @@
 #include "eval/config/config_writer.h"
 #include "eval/files/hash.h"
 #include "eval/files/input_file.h"
+#include "eval/files/output_file.h"
 #include "eval/record/recorder.h"
 #include "eval/run/make_estimator.h"
 
@@ -79,6 +80,17 @@ Status CellList::Make(const Plan& plan, const CompareOptions& options) {
                                                           : AddDataset(plan, sequence, options.output));
   }
   return Status::Ok();
+}
+
+Status CellList::WriteTable(const std::string& output) const {
+  std::string table = "estimator,sequence,seed\n";
+  for (const CompareCell& cell : cells_) {
+    table += cell.result.estimator + "," + cell.result.sequence + "," + std::to_string(cell.seed) + "\n";
+  }
+  const std::string file = output + "/cells.csv";
+  const Result<std::string> earlier =
+      MayExist(file) ? ReadWholeFile(file) : Result<std::string>(Status::Input("none"));
+  return earlier.ok() && *earlier == table ? Status::Ok() : WriteFileAtomically(file, table);
 }
 
 Status CellList::AddDataset(const Plan& plan, const PlanSequence& sequence, const std::string& output) {

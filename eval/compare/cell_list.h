@@ -19,6 +19,10 @@ class CellList {
   /// Resolves every configuration. Keeps pointers into `plan`. Errors: kConfig.
   Status Make(const Plan& plan, const CompareOptions& options);
 
+  /// cells.csv of the output folder: every cell of the comparison. A file that is as it should be stays:
+  /// several machines may take part.
+  Status WriteTable(const std::string& output) const;
+
   [[nodiscard]] size_t size() const { return cells_.size(); }
   [[nodiscard]] CompareCell& at(size_t cell) { return cells_[cell]; }
   [[nodiscard]] const CompareCell& at(size_t cell) const { return cells_[cell]; }

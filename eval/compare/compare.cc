@@ -18,7 +18,6 @@
 #include "eval/compare/worker_pool.h"
 #include "eval/comparison/large_comparison.h"
 #include "eval/files/input_file.h"
-#include "eval/files/output_file.h"
 #include "eval/files/time_left.h"
 #include "eval/files/utc_day.h"
 #include "eval/report/report.h"
@@ -48,13 +47,14 @@ class Comparer {
   Result<CompareOutcome> Execute() {
     ALIDADE_RETURN_IF_ERROR(MakeCells());
     ALIDADE_RETURN_IF_ERROR(RemoveEarlier());
-    ALIDADE_RETURN_IF_ERROR(WriteCellTable());
+    ALIDADE_RETURN_IF_ERROR(cells_.WriteTable(options_.output));
     ALIDADE_RETURN_IF_ERROR(RunAll());
     return Finish();
   }
 
   Result<CompareOutcome> Collect() {
     ALIDADE_RETURN_IF_ERROR(MakeCells());
+    ALIDADE_RETURN_IF_ERROR(cells_.WriteTable(options_.output));
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
       Take(cell, {});
     }
@@ -85,16 +85,6 @@ class Comparer {
       fs::remove_all(options_.output + "/logs", error);
     }
     return error ? Status::Output(options_.output + ": cannot be emptied: " + error.message()) : Status::Ok();
-  }
-
-  /// cells.csv: what there is to do.
-  Status WriteCellTable() const {
-    std::string table = "estimator,sequence,seed\n";
-    for (size_t cell = 0; cell < cells_.size(); ++cell) {
-      const CellResult& result = cells_.at(cell).result;
-      table += result.estimator + "," + result.sequence + "," + std::to_string(result.seed) + "\n";
-    }
-    return WriteFileAtomically(options_.output + "/cells.csv", table);
   }
 
   Status RunAll() {
@@ -259,6 +249,7 @@ Result<CompareOutcome> CollectCells(const Plan& plan, const CompareOptions& opti
 Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart& part) {
   CellList cells;
   ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
+  ALIDADE_RETURN_IF_ERROR(cells.WriteTable(options.output));
   std::vector<size_t> wanted;
   for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()); ++cell) {
     const CompareCell& candidate = cells.at(cell);
@@ -276,6 +267,7 @@ Status RunCells(const Plan& plan, const CompareOptions& options, const CellPart&
 Status TrackInputs(const Plan& plan, const CompareOptions& options, const CellPart& part) {
   CellList cells;
   ALIDADE_RETURN_IF_ERROR(cells.Make(plan, options));
+  ALIDADE_RETURN_IF_ERROR(cells.WriteTable(options.output));
   CellRunner runner(plan, options, &cells);
   const CompareInput* prepared = nullptr;
   for (size_t cell = part.First(cells.size()); cell < part.End(cells.size()) && !options.Stopped(); ++cell) {

@@ -46,6 +46,27 @@ const std::array<AccelerometerSigns, 8>& SignChoices() {
   return choices;
 }
 
+std::optional<SignFinding> SearchSigns(const SignTrials& trials) {
+  int reruns = 0;
+  for (std::size_t choice = 0; choice < SignChoices().size() && reruns < kMostReruns && !trials.stopped();
+       ++choice) {
+    if (!trials.starts(choice)) {
+      continue;
+    }
+    if (choice == 0) {
+      return std::nullopt;
+    }
+    if (reruns == 0 && trials.holds(0)) {
+      return std::nullopt;  // the failure has another cause
+    }
+    ++reruns;
+    if (const std::optional<double> held_s = trials.holds(choice)) {
+      return SignFinding{choice, *held_s};
+    }
+  }
+  return std::nullopt;
+}
+
 MeasurementLog WithSigns(MeasurementLog log, const Eigen::Vector3d& signs) {
   for (ImuSample& sample : log.imu) {
     sample.accel = sample.accel.cwiseProduct(signs);

@@ -121,35 +121,29 @@ std::optional<std::string> DiagnoseAccelerometerSigns(const EstimatorConfig& con
   quiet.audit = false;
   const auto stopped = [&options] { return options.stop != nullptr && options.stop->load(); };
   const MeasurementLog span = SpanOfStart(log, tables, failed);
-  const auto holds = [&](const MeasurementLog& data) {
-    const double held_s = SecondsHeld(RunEstimator(filter, data, quiet));
+  const auto with_signs = [&span](std::size_t choice) {
+    return WithSigns(span, SignChoices()[choice].signs);
+  };
+  SignTrials trials;
+  trials.stopped = stopped;
+  trials.starts = [&](std::size_t choice) {
+    if (options.progress) {
+      options.progress(choice + 1, SignChoices().size());
+    }
+    return StartsInMotion(filter, with_signs(choice), options.stop);
+  };
+  trials.holds = [&](std::size_t choice) {
+    const double held_s = SecondsHeld(RunEstimator(filter, with_signs(choice), quiet));
     return stopped() || held_s <= kLeastS ? std::nullopt : std::optional(held_s);
   };
-  int reruns = 0;
-  for (std::size_t k = 0; k < SignChoices().size() && reruns < kMostReruns && !stopped(); ++k) {
-    const AccelerometerSigns& choice = SignChoices()[k];
-    if (options.progress) {
-      options.progress(k + 1, SignChoices().size());
-    }
-    const MeasurementLog changed = WithSigns(span, choice.signs);
-    if (!StartsInMotion(filter, changed, options.stop)) {
-      continue;
-    }
-    if (k == 0) {
-      return std::nullopt;  // as given
-    }
-    if (reruns == 0 && holds(span)) {
-      return std::nullopt;  // the failure has another cause
-    }
-    ++reruns;
-    if (const std::optional<double> held_s = holds(changed)) {
-      return Format(
-          "imu0: with %s negated a filter runs through %.0f s around the failed start without a fault: wrong "
-          "sign of the specific force (at rest it points up)",
-          choice.name, *held_s);
-    }
+  const std::optional<SignFinding> found = SearchSigns(trials);
+  if (!found) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  return Format(
+      "imu0: with %s negated a filter runs through %.0f s around the failed start without a fault: wrong "
+      "sign of the specific force (at rest it points up)",
+      SignChoices()[found->choice].name, found->held_s);
 }
 
 }  // namespace alidade

@@ -32,6 +32,4 @@ namespace alidade {
                                                                     const RunResult& failed,
                                                                     const RunOptions& options);
 
-inline constexpr int kMostReruns = 3;
-
 }  // namespace alidade

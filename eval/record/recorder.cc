@@ -78,6 +78,28 @@ Json SensorJson(const RunResult& result, Sensor sensor) {
   return json;
 }
 
+Json RestartsJson(const std::vector<Restart>& restarts) {
+  Json json = Json::array();
+  for (const Restart& restart : restarts) {
+    json.push_back({{"lost_ns", restart.lost_ns},
+                    {"reason", restart.reason},
+                    {"restarted_ns", restart.restarted_ns},
+                    {"report", restart.init_report}});
+  }
+  return json;
+}
+
+Json CalibrationErrorJson(const CalibrationError& error, bool with_line_delay) {
+  Json json = {{"rotation_rad", error.rotation_rad},
+               {"translation_m", error.translation_m},
+               {"time_offset_s", error.time_offset_s},
+               {"focal_px", error.focal_px}};
+  if (with_line_delay) {
+    json["line_delay_s"] = error.line_delay_s;
+  }
+  return json;
+}
+
 Json RunJson(const RunIdentity& identity, const RunResult& result) {
   EstimatorConfig config = identity.config;
   Json json;
@@ -109,23 +131,11 @@ Json RunJson(const RunIdentity& identity, const RunResult& result) {
   json["unsound_s"] = health.unsound_s;
   json["impaired"] = health.impairments;
   if (!result.restarts.empty()) {
-    json["restarts"] = Json::array();
-    for (const Restart& restart : result.restarts) {
-      json["restarts"].push_back({{"lost_ns", restart.lost_ns},
-                                  {"reason", restart.reason},
-                                  {"restarted_ns", restart.restarted_ns},
-                                  {"report", restart.init_report}});
-    }
+    json["restarts"] = RestartsJson(result.restarts);
   }
   if (result.calibration_error) {
-    const CalibrationError& error = *result.calibration_error;
-    json["calibration_error"] = {{"rotation_rad", error.rotation_rad},
-                                 {"translation_m", error.translation_m},
-                                 {"time_offset_s", error.time_offset_s},
-                                 {"focal_px", error.focal_px}};
-    if (result.records.back().calibration->layout.line_delay() >= 0) {
-      json["calibration_error"]["line_delay_s"] = error.line_delay_s;
-    }
+    json["calibration_error"] = CalibrationErrorJson(
+        *result.calibration_error, result.records.back().calibration->layout.line_delay() >= 0);
   }
   if (identity.config.gnss.enabled || HasGnss(result)) {
     json["gnss"] = GnssJson(identity, result);

@@ -55,7 +55,7 @@ void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
   const TimeNs imu_ns = ImuTime(frame.stamp_ns);
   DeliverImu(imu_ns + FrameLead());
   if (degradation_.IsFrozen(frame)) {
-    ProcessTracks({frame.stamp_ns, {}, frame.frontend_ms}, stopwatch);
+    ProcessTracks({frame.stamp_ns, {}, frame.frontend_ms, true}, stopwatch);
   } else {
     ProcessTracks(frame, stopwatch);
   }

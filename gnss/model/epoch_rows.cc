@@ -7,6 +7,18 @@
 #include "gnss/model/receiver_clock.h"
 
 namespace alidade {
+namespace {
+
+bool IsBelowMask(const GnssConfig& config, const SatelliteMeasurement& m) {
+  const double mask = config.corrections.elevation_mask_deg * M_PI / 180;
+  return m.direction.elevation_rad < mask;
+}
+
+bool HasRateRow(const GnssConfig& config, const SatelliteMeasurement& m) {
+  return config.doppler && m.range_rate_mps;
+}
+
+}  // namespace
 
 Eigen::Matrix<double, 1, 6> GnssRow::ClockJacobian() const {
   Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
@@ -32,12 +44,11 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
       mount.Velocity(point.nav, point.bias, point.gyro_radps, &velocity_jacobian);
   const Eigen::Matrix3d position_by_arm = mount.PositionByLeverArm(point.nav);
   const Eigen::Matrix3d velocity_by_arm = mount.VelocityByLeverArm(point.nav, point.bias, point.gyro_radps);
-  const double mask = config.corrections.elevation_mask_deg * M_PI / 180;
   std::vector<GnssRow> rows;
   std::vector<GnssRow> rates;
   residuals->satellites.clear();
   for (const SatelliteMeasurement& m : epoch.satellites) {
-    if (m.direction.elevation_rad < mask) {
+    if (IsBelowMask(config, m)) {
       continue;
     }
     SatelliteResidual satellite{m.satellite, m.direction,  0,    std::sqrt(m.pseudorange_variance),
@@ -56,7 +67,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
       row.lever_arm.noalias() = line * position_by_arm;
       rows.push_back(row);
     }
-    if (config.doppler && m.range_rate_mps) {
+    if (HasRateRow(config, m)) {
       RowVector3d by_velocity;
       row.is_rate = true;
       row.deviation = std::sqrt(m.range_rate_variance);
@@ -70,6 +81,16 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     residuals->satellites.push_back(satellite);
   }
   rows.insert(rows.end(), rates.begin(), rates.end());
+  return rows;
+}
+
+std::size_t CountEpochRows(const GnssConfig& config, const EpochMeasurements& epoch) {
+  std::size_t rows = 0;
+  for (const SatelliteMeasurement& m : epoch.satellites) {
+    if (!IsBelowMask(config, m)) {
+      rows += (config.pseudorange ? 1 : 0) + (HasRateRow(config, m) ? 1 : 0);
+    }
+  }
   return rows;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/clock_state.h"
@@ -41,6 +42,9 @@ void LocateEpoch(const MeasurementBuilder& builder, const AntennaMount& mount, c
 [[nodiscard]] std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount& mount,
                                                   const GnssPoint& point, const EpochMeasurements& epoch,
                                                   GnssResiduals* residuals);
+
+/// Their number, which does not depend on the point.
+[[nodiscard]] std::size_t CountEpochRows(const GnssConfig& config, const EpochMeasurements& epoch);
 
 /// Median of measured - predicted over the pseudoranges: the clock's error, whatever a minority of them
 /// reads. Zero without any.

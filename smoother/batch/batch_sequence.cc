@@ -127,7 +127,7 @@ void BatchSequence::AddFrame(const NavEstimate& estimate, std::vector<ImuSample>
 void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& frame) {
   WindowFrame& node = *frames_.back();
   AddObservations(frame, node);
-  if (config_.vision.rest_updates) {
+  if (config_.vision.rest_updates && !frame.repeated) {
     const RestVerdict verdict = rest_.AddFrame(frame, config_.vision.pixel_noise_px, estimate, rig_.T_BC);
     if (verdict.no_translation) {
       node.rest = MakeRestMeasurement(verdict, rest_.Rates(), rig_.T_BC.translation, config_.vision);

@@ -27,11 +27,21 @@ void NewestUpdate::Begin(const NavEstimate& newest, const ClockState& clock,
   covariance_ << clock.covariance, clock_state, clock_state.transpose(), newest.covariance;
 }
 
-void NewestUpdate::Carry(const NavEstimate& later, const ClockState& clock) {
-  state_ = later;
-  clock_ = clock.mean;
-  covariance_.topLeftCorner<kClock, kClock>() = clock.covariance;
-  covariance_.bottomRightCorner<15, 15>() = later.covariance;
+Status NewestUpdate::Carry(std::span<const ImuSample> interval, const ImuNoise& noise,
+                           const Eigen::Vector3d& gravity_W, const ClockTransition& clock) {
+  Preintegration preintegration(state_.bias, noise);
+  preintegration.Add(interval);
+  ImuTransition transition;
+  ALIDADE_RETURN_IF_ERROR(PropagateState(preintegration, gravity_W, &state_.nav, &transition));
+  state_.stamp_ns = interval.back().stamp_ns;
+  clock_ = clock.phi * clock_;
+  Covariance phi = Covariance::Zero();
+  phi.topLeftCorner<kClock, kClock>() = clock.phi;
+  phi.bottomRightCorner<15, 15>() = transition.phi;
+  covariance_ = phi * covariance_ * phi.transpose();
+  covariance_.topLeftCorner<kClock, kClock>() += clock.q;
+  covariance_.bottomRightCorner<15, 15>() += transition.q();
+  return Status::Ok();
 }
 
 AbsoluteCorrection NewestUpdate::Update(const Eigen::Ref<const Eigen::MatrixXd>& rows,

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "core/absolute_correction.h"
 #include "core/clock_state.h"
 #include "gnss/model/epoch_rows.h"
+#include "gnss/model/receiver_clock.h"
 #include "smoother/factors/gnss_factors.h"
 #include "smoother/window/frame_measurement.h"
 
@@ -22,8 +24,10 @@ class NewestUpdate {
   /// `clock_state`: covariance of the clock's error with the state's, 6 x 15.
   void Begin(const NavEstimate& newest, const ClockState& clock,
              const Eigen::Matrix<double, kClock, 15>& clock_state);
-  /// To a state that lies later, by the process models alone.
-  void Carry(const NavEstimate& later, const ClockState& clock);
+  /// Over consecutive samples that begin at the state, by the process models; what the measurements since
+  /// Begin did stays. kDiverged: PropagateState.
+  Status Carry(std::span<const ImuSample> interval, const ImuNoise& noise, const Eigen::Vector3d& gravity_W,
+               const ClockTransition& clock);
 
   [[nodiscard]] AbsoluteCorrection Add(const GnssFactorContext& context, double gate_threshold,
                                        const FrameEpoch& epoch, double dt_s);

@@ -104,10 +104,12 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(camera().time_offset_s)));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   statistics_.pixel_noise_px = pixel_noise_.px();
-  statistics_.observations_invalid =
-      window_.AddObservations(camera().camera, pixel_noise_.px(), frame.observations);
-  window_.Prune();
-  DetectRest(frame);
+  if (!frame.repeated) {
+    statistics_.observations_invalid =
+        window_.AddObservations(camera().camera, pixel_noise_.px(), frame.observations);
+    window_.Prune();
+    DetectRest(frame);
+  }
   if (window_.size() > 1) {
     std::vector<WindowTrack*> tracks = SelectTracks();
     ALIDADE_RETURN_IF_ERROR(SolveAndGate(&tracks));
@@ -154,6 +156,9 @@ bool SmootherEstimator::NewestIsKeyframe() const {
   }
   if (window_.newest().clock_anew) {
     return true;  // the step of the clock lies between this frame and the one before
+  }
+  if (!MayMoveMeasurements(window_.newest(), window_.frame(window_.size() - 2))) {
+    return true;
   }
   const FrameParallax parallax =
       ComputeParallax(window_, window_.frame(window_.size() - 2), window_.newest(), camera().T_BC);

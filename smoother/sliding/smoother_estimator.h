@@ -23,7 +23,8 @@ namespace alidade {
 /// Sliding-window smoother: least squares over the states of the last frames, their tracks and a prior that
 /// holds what left.
 ///
-/// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval.
+/// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval and
+///              its measurements the frame before; it is kept where that frame is too far from one of them.
 ///           2. When the window is full the oldest frame is marginalised together with every track based
 ///              there: all observations of such a track, in newer frames too, go into the prior, each exactly
 ///              once. A track still seen starts anew with its next observation. (Re-anchoring it and using
@@ -80,6 +81,8 @@ class SmootherEstimator final : public Estimator {
   /// Solves where the measurement has a state of its own.
   Status SolveWithMeasurement(const Attachment& attachment);
   [[nodiscard]] bool NewestIsKeyframe() const;
+  /// Whether all measurements of a frame lie within their max_interpolation_s after the frame `before` it.
+  [[nodiscard]] bool MayMoveMeasurements(const WindowFrame& frame, const WindowFrame& before) const;
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
   [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -55,6 +56,22 @@ Result<SmootherEstimator::Attachment> SmootherEstimator::ReachMeasurement(const 
     attachment.imu = {window_.newest().imu.back()};
   }
   return attachment;
+}
+
+bool SmootherEstimator::MayMoveMeasurements(const WindowFrame& frame, const WindowFrame& before) const {
+  // The link to a measurement leaves the IMU's noise out, which only a short one allows.
+  const auto reaches = [&](TimeNs stamp_ns, double max_interpolation_s) {
+    return SecondsBetween(before.stamp_ns, stamp_ns) <= max_interpolation_s;
+  };
+  return std::all_of(frame.epochs.begin(), frame.epochs.end(),
+                     [&](const FrameEpoch& epoch) {
+                       return reaches(epoch.stamp_ns, config_.gnss.max_interpolation_s);
+                     }) &&
+         std::all_of(frame.measurements.begin(), frame.measurements.end(),
+                     [&](const FrameMeasurement& attached) {
+                       return reaches(attached.imu.empty() ? frame.stamp_ns : attached.imu.back().stamp_ns,
+                                      MaxInterpolation(config_, SensorOf(attached.measurement)));
+                     });
 }
 
 Status SmootherEstimator::SolveWithMeasurement(const Attachment& attachment) {
@@ -121,19 +138,13 @@ Status SmootherEstimator::AddMeasurement(const Measurement& measurement) {
 }
 
 Status SmootherEstimator::CarryNewestUpdate() {
-  NavEstimate later = latest_;
-  if (const Status status = PropagateEstimate(interval_, noise_, gravity_W_, &later); !status.ok()) {
-    return Lost("smoother: " + status.message());
-  }
-  ClockState clock = latest_clock_;
+  ClockTransition clock;
   if (window_.newest().clock) {
-    const ClockTransition step =
-        PropagateClock(config_.gnss, SecondsBetween(latest_.stamp_ns, later.stamp_ns));
-    clock.mean = window_.newest().clock_state();
-    clock.covariance = step.phi * clock.covariance * step.phi.transpose() + step.q;
+    clock =
+        PropagateClock(config_.gnss, SecondsBetween(interval_.front().stamp_ns, interval_.back().stamp_ns));
   }
-  newest_update_.Carry(later, clock);
-  return Status::Ok();
+  const Status status = newest_update_.Carry(interval_, noise_, gravity_W_, clock);
+  return status.ok() ? status : Lost("smoother: " + status.message());
 }
 
 std::optional<ClockState> SmootherEstimator::LatestClock() const {

@@ -62,10 +62,12 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   std::vector<WindowTrack*> selected;
   std::vector<WindowTrack*> without_depth;
   for (auto& [id, track] : window_.tracks()) {
+    track.degenerate = false;
     if (track.anchor == nullptr && track.views.size() >= kMinViews) {
       const Landmark landmark = PrepareLandmark(geometry, &track);
       statistics_.features_waiting += landmark == Landmark::kWaiting ? 1 : 0;
-      statistics_.features_degenerate += landmark == Landmark::kDegenerate ? 1 : 0;
+      track.degenerate = landmark == Landmark::kDegenerate;
+      statistics_.features_degenerate += track.degenerate ? 1 : 0;
       (landmark == Landmark::kReady ? selected : without_depth).push_back(&track);
     }
   }
@@ -120,7 +122,7 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
   for (WindowTrack* track : tracks) {
     if (track->anchor == nullptr && !SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
                                                    &track->landmark, track->depth_prior)) {
-      ++statistics_.features_degenerate;
+      statistics_.features_degenerate += track->degenerate ? 0 : 1;  // it is counted once
       track->Restart();
       continue;
     }
@@ -148,7 +150,7 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
     if (statistics_.suspect) {
       track->ScaleInformation(gate_.Threshold(track->dof()) / chi_square);
     } else {
-      ++statistics_.features_gated;
+      statistics_.features_gated += track->degenerate ? 0 : 1;
       track->Restart();
     }
   }

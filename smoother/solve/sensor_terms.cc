@@ -34,15 +34,12 @@ void AddMeasurementTerms(const SensorContext& context, const WindowFrame& frame,
 
 void AddEpochTerms(const SensorContext& context, const WindowFrame& frame, WindowTerms* terms) {
   const GnssFactorContext& gnss = *context.gnss;
-  GnssResiduals ignored;
   for (const FrameEpoch& epoch : frame.epochs) {
     const double dt_s = epoch.SecondsAfter(frame.stamp_ns);
-    const FrameEpochRows rows = LinearizeFrameEpoch(gnss, epoch, dt_s, frame.nav_state(), frame.imu_bias(),
-                                                    frame.clock_state(), true, &ignored);
-    if (rows.residual.size() > 0) {
+    const auto rows = static_cast<int>(CountEpochRows(gnss.config, epoch.measurements));
+    if (rows > 0) {
       terms->push_back(MakeTerm(
-          GnssEpochFactor(&gnss, &epoch, dt_s, static_cast<int>(rows.residual.size()),
-                          context.calibration->layout),
+          GnssEpochFactor(&gnss, &epoch, dt_s, rows, context.calibration->layout),
           {NavBlock(frame), BiasBlock(frame), ClockBlock(frame), CalibrationBlock(*context.calibration)}));
     }
   }

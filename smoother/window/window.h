@@ -81,6 +81,7 @@ struct WindowTrack {
   bool has_landmark = false;            ///< its depth is known from parallax
   DepthPrior depth_prior;               ///< stands in for parallax while has_landmark is false
   bool alive = false;                   ///< seen in the newest frame
+  bool degenerate = false;              ///< at the last solve its views had no depth
 
   /// Degrees of freedom of its residuals: a SLAM feature's landmark is mostly the prior's.
   [[nodiscard]] int dof() const { return 2 * static_cast<int>(views.size()) - (anchor != nullptr ? 0 : 3); }
@@ -155,7 +156,8 @@ struct FrameParallax {
 [[nodiscard]] FrameParallax ComputeParallax(const Window& window, const WindowFrame& first,
                                             const WindowFrame& second, const Pose& T_BC);
 
-/// Epochs and measurements of a frame that was taken out move to the one before it, `frame`.
+/// Epochs and measurements of a frame that was taken out move to the one before it, `frame`, which lies
+/// within their limits of interpolation.
 void MoveMeasurements(WindowFrame* dropped, WindowFrame* frame);
 
 /// Integrates frame.imu anew at the bias `previous` holds now, when the preintegration is missing or the bias

@@ -83,5 +83,29 @@ TEST(SlamFilterTest, LandmarksLeaveWithTheirTracksAndMismatchesAreRefused) {
   EXPECT_EQ(filter.state().covariance().dimension(), 15 + 6 * config.filter.window);
 }
 
+// GIVEN landmarks in the state, WHEN an image is repeated, THEN the state moves on and keeps every landmark
+// and clone: no track has ended.
+TEST(SlamFilterTest, ARepeatedImageEndsNoTrack) {
+  const Dataset dataset = test::SimulateOrDie(ShortFigureEight(), 6);
+  FilterEstimator filter(SlamPreset(ErrorConvention::kRightInvariant, false, 30), dataset.rig);
+  ASSERT_TRUE(test::RunScenario(dataset, test::DrawInitialState(dataset, 6), &filter).status.ok());
+  const size_t landmarks = filter.state().landmarks().size();
+  ASSERT_GT(landmarks, 5u);
+  const auto dimension = filter.state().covariance().dimension();
+  TrackFrame repeated;
+  repeated.stamp_ns = dataset.frames.back().stamp_ns + 50'000'000;
+  repeated.repeated = true;
+  ImuSample sample = dataset.imu.back();
+  for (int i = 0; i < 10; ++i) {
+    sample.stamp_ns += 10'000'000;
+    ASSERT_TRUE(filter.AddImu(sample).ok());
+  }
+  ASSERT_TRUE(filter.AddFrame(repeated).ok());
+  EXPECT_EQ(filter.Latest().stamp_ns, repeated.stamp_ns);
+  EXPECT_EQ(filter.state().landmarks().size(), landmarks);
+  EXPECT_EQ(filter.state().covariance().dimension(), dimension);
+  EXPECT_EQ(filter.AddFrame(repeated).code(), StatusCode::kInput) << "a stamp once";
+}
+
 }  // namespace
 }  // namespace alidade

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/integration/command.h"
 #include "tests/support/temporary_folder.h"
@@ -44,7 +46,20 @@ class BadInput : public testing::Test {
     std::filesystem::remove_all(folder_.File("no_truth/mav0/state_groundtruth_estimate0"));
   }
 
+  static void ExpectRefused(const std::vector<BadCall>& calls) {
+    for (const BadCall& call : calls) {
+      const CommandResult result = Alidade(call.words);
+      EXPECT_EQ(result.code, call.code) << call.words << "\n" << result.output;
+      EXPECT_THAT(result.output, HasSubstr(call.message)) << call.words;
+      EXPECT_LT(result.output.size(), 2000u) << call.words << "\n" << result.output;
+    }
+  }
+
   TemporaryFolder folder_;
+  const std::string base_ = Source("configs/base.yaml");
+  const std::string seq_ = folder_.File("seq");
+  const std::string out_ = folder_.File("out");
+  const std::string run_ = "run --dataset=" + seq_ + " --output=" + out_;
 };
 
 // GIVEN a few rows of the IMU twice, late or not finite WHEN an estimator runs THEN they are reported and
@@ -76,68 +91,87 @@ TEST_F(BadInput, FaultyImuRowsAreDroppedAndCounted) {
   EXPECT_THAT(check.output, HasSubstr("rows 3 dropped"));
 }
 
-TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
-  const std::string base = Source("configs/base.yaml");
-  const std::string seq = folder_.File("seq"), out = folder_.File("out");
-  const std::string truth = seq + "/mav0/state_groundtruth_estimate0/data.csv";
-  const std::string run = "run --dataset=" + seq + " --output=" + out;
-  const std::string longer = folder_.File(std::string(300, 'x'));
-  const std::vector<BadCall> calls = {
+// Every refused call ends with its exit code and a message that names what is wrong.
+TEST_F(BadInput, WordsAndFlagsOfARunAreNamed) {
+  ExpectRefused({
       {"", 2, "Usage: alidade <command>"},
       {"evalute", 2, "did you mean 'evaluate'"},
       {"run --datset=x", 2, "did you mean '--dataset'"},
       {"run --plan=x", 2, "unknown flag '--plan'"},
-      {run, 2, "--config is missing"},
-      {run + " --config=" + base + " --output=twice", 2, "--output: given twice"},
-      {run + " --config=" + base + " --seed=x", 2, "--seed: found 'x'"},
-      {run + " --config=" + base + " --seed=-1", 2, "--seed: found '-1'"},
-      {run + " --config=" + base + " --seed", 2, "--seed: found no value"},
-      {run + " --config=" + base + " --backend=ekf", 2, "expected filter, smoother or batch"},
-      {run + " --config=" + base + " extra", 2, "found 'extra'"},
-      {run + " --config=" + folder_.File("none.yaml"), 3, "none.yaml"},
-      {run + " --config=" + folder_.File("unknown_key.yaml"), 3, "unknown_key.yaml:3:3"},
-      {run + " --config=" + base + " --set=filter.windw=3", 3, "filter.window"},
-      {run + " --config=" + base + " --set=filter.window=0", 3, "filter.window"},
-      {run + " --config=" + base + " --set=filter.window=6 --set=filter.window=7", 3,
+      {run_, 2, "--config is missing"},
+      {run_ + " --config=" + base_ + " --output=twice", 2, "--output: given twice"},
+      {run_ + " --config=" + base_ + " --seed=x", 2, "--seed: found 'x'"},
+      {run_ + " --config=" + base_ + " --seed=-1", 2, "--seed: found '-1'"},
+      {run_ + " --config=" + base_ + " --seed", 2, "--seed: found no value"},
+      {run_ + " --config=" + base_ + " --backend=ekf", 2, "expected filter, smoother or batch"},
+      {run_ + " --config=" + base_ + " extra", 2, "found 'extra'"},
+  });
+}
+
+TEST_F(BadInput, ConfigurationsAreNamed) {
+  ExpectRefused({
+      {run_ + " --config=" + folder_.File("none.yaml"), 3, "none.yaml"},
+      {run_ + " --config=" + folder_.File("unknown_key.yaml"), 3, "unknown_key.yaml:3:3"},
+      {run_ + " --config=" + base_ + " --set=filter.windw=3", 3, "filter.window"},
+      {run_ + " --config=" + base_ + " --set=filter.window=0", 3, "filter.window"},
+      {run_ + " --config=" + base_ + " --set=filter.window=6 --set=filter.window=7", 3,
        "setting 'filter.window': found '6' and '7', expected one value"},
-      {run + " --config=" + base + " --set=calibration.extrinsics=true,backend=batch", 3, "batch back end"},
-      {"run --dataset=" + folder_.File("none") + " --config=" + base + " --output=" + out, 4, "none"},
-      {"run --dataset=" + folder_.File("no_imu") + " --config=" + base + " --output=" + out, 4, "imu0"},
-      {"run --dataset=" + folder_.File("torn_imu") + " --config=" + base + " --output=" + out, 4,
-       "data.csv:50"},
-      {"run --dataset=" + folder_.File("no_truth") + " --config=" + base +
-           " --set=init.method=truth --output=" + folder_.File("of_no_truth"),
-       4, "no ground truth"},
-      {run + " --config=" + folder_.File("comma.yaml"), 3, "comma.yaml:1:1"},
-      {run + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
-      {run + " --config=" + folder_.File("loop"), 3, "Too many levels of symbolic links"},
-      {"run --dataset=" + longer + " --config=" + base + " --output=" + out, 4, "File name too long"},
-      {"run --dataset=" + folder_.File("loop") + " --config=" + base + " --output=" + out, 4,
-       "Too many levels of symbolic links"},
-      {"check --dataset=" + longer, 4, "File name too long"},
-      {"track --dataset=" + longer + " --output=" + out, 4, "File name too long"},
-      {"convert --dataset=" + longer + " --output=" + out + ".bag", 4, "File name too long"},
-      {"convert --dataset=" + seq + " --output=" + longer + ".bag", 6, "File name too long"},
-      {"spp --obs=" + longer + " --nav=x --output=" + folder_.File("z.pos"), 4, "File name too long"},
-      {"spp --obs=x --nav=x --output=" + longer, 4, "x: cannot be read"},
-      {"run --dataset=" + seq + " --config=" + base + " --output=" + seq, 6, "lies in the dataset"},
-      {"run --dataset=" + seq + " --config=" + base + " --output=" + seq + "/mav0/imu0 --overwrite", 6,
-       "expected a folder outside of it"},
-      {"run --dataset=" + seq + " --config=" + base + " --output=/ --overwrite", 6,
-       "root of the file system"},
-      {"run --dataset=" + seq + " --config=" + base + " --output=" + folder_.File("file") + "/x", 6,
-       "file/x"},
-      {"simulate --config=" + base + " --output=" + out, 3, "base.yaml"},
+      {run_ + " --config=" + base_ + " --set=calibration.extrinsics=true,backend=batch", 3, "batch back end"},
+      {run_ + " --config=" + folder_.File("comma.yaml"), 3, "comma.yaml:1:1"},
+      {run_ + " --config=" + folder_.File("long_base.yaml"), 3, "File name too long"},
+      {"simulate --config=" + base_ + " --output=" + out_, 3, "base.yaml"},
       {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
-           " --set=duration_s=nan --output=" + out,
+           " --set=duration_s=nan --output=" + out_,
        3, "duration_s"},
       {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
-           " --set=render.line_delay_s=nan --output=" + out,
+           " --set=render.line_delay_s=nan --output=" + out_,
        3, "render.line_delay_s: found 'nan', expected a finite number"},
       {"simulate --config=" + Source("configs/datasets/figure8.yaml") +
-           " --set=render.line_delay_s=29.7 --output=" + out,
+           " --set=render.line_delay_s=29.7 --output=" + out_,
        3, "render.line_delay_s: found '29.7', expected a number in [-0.001, 0.001]"},
-      {"track --dataset=" + seq + " --output=" + folder_.File("tracks"), 4, "no images"},
+      {"compare --plan=" + folder_.File("plan.yaml") + " --output=" + out_, 3, "did you mean 'path'"},
+      {"config --check " + folder_.File("unknown_key.yaml"), 3, "did you mean"},
+      {"spp --obs=x --nav=y --output=" + folder_.File("z.pos") + " --set=systems=GX", 3, "found 'X'"},
+  });
+}
+
+TEST_F(BadInput, FilesAndFoldersAreNamed) {
+  const std::string longer = folder_.File(std::string(300, 'x'));
+  ExpectRefused({
+      {"run --dataset=" + folder_.File("none") + " --config=" + base_ + " --output=" + out_, 4, "none"},
+      {"run --dataset=" + folder_.File("no_imu") + " --config=" + base_ + " --output=" + out_, 4, "imu0"},
+      {"run --dataset=" + folder_.File("torn_imu") + " --config=" + base_ + " --output=" + out_, 4,
+       "data.csv:50"},
+      {"run --dataset=" + folder_.File("no_truth") + " --config=" + base_ +
+           " --set=init.method=truth --output=" + folder_.File("of_no_truth"),
+       4, "no ground truth"},
+      {run_ + " --config=" + folder_.File("loop"), 3, "Too many levels of symbolic links"},
+      {"run --dataset=" + longer + " --config=" + base_ + " --output=" + out_, 4, "File name too long"},
+      {"run --dataset=" + folder_.File("loop") + " --config=" + base_ + " --output=" + out_, 4,
+       "Too many levels of symbolic links"},
+      {"check --dataset=" + longer, 4, "File name too long"},
+      {"track --dataset=" + longer + " --output=" + out_, 4, "File name too long"},
+      {"convert --dataset=" + longer + " --output=" + out_ + ".bag", 4, "File name too long"},
+      {"convert --dataset=" + seq_ + " --output=" + longer + ".bag", 6, "File name too long"},
+      {"spp --obs=" + longer + " --nav=x --output=" + folder_.File("z.pos"), 4, "File name too long"},
+      {"spp --obs=x --nav=x --output=" + longer, 4, "x: cannot be read"},
+      {"run --dataset=" + seq_ + " --config=" + base_ + " --output=" + seq_, 6, "lies in the dataset"},
+      {"run --dataset=" + seq_ + " --config=" + base_ + " --output=" + seq_ + "/mav0/imu0 --overwrite", 6,
+       "expected a folder outside of it"},
+      {"run --dataset=" + seq_ + " --config=" + base_ + " --output=/ --overwrite", 6,
+       "root of the file system"},
+      {"run --dataset=" + seq_ + " --config=" + base_ + " --output=" + folder_.File("file") + "/x", 6,
+       "file/x"},
+      {"track --dataset=" + seq_ + " --output=" + folder_.File("tracks"), 4, "no images"},
+      {"check --dataset=" + folder_.File("none"), 4, "none"},
+      {"spp --obs=none.rnx --nav=none.nav --output=" + folder_.File("z.pos"), 4, "none.rnx: cannot be read"},
+      {"spp --obs=x --nav=y --output=" + folder_.File("file"), 6, "--overwrite"},
+  });
+}
+
+TEST_F(BadInput, FlagsOfTheOtherCommandsAreNamed) {
+  const std::string truth = seq_ + "/mav0/state_groundtruth_estimate0/data.csv";
+  ExpectRefused({
       {"evaluate --truth=" + folder_.File("torn.tum") + " --estimate=" + folder_.File("torn.tum"), 4,
        "torn.tum:1"},
       {"evaluate --max_dt=-1 --truth=" + truth + " --estimate=" + truth, 2,
@@ -153,27 +187,15 @@ TEST_F(BadInput, EndsWithItsExitCodeAndAMessageThatNamesIt) {
       {"data fetch tumvy --output=x", 2, "did you mean 'tumvi'"},
       {"data fetch gvins --output=x", 2, "by hand from https://github.com/HKUST"},
       {"data verify tumvi/room1 --data=absent", 4, "1 of 1 files of tumvi"},
-      {"compare --plan=" + folder_.File("plan.yaml") + " --output=" + out, 3, "did you mean 'path'"},
-      {"compare --plan=" + folder_.File("plan.yaml") + " --jobs=0 --output=" + out, 2, "--jobs: found 0"},
+      {"compare --plan=" + folder_.File("plan.yaml") + " --jobs=0 --output=" + out_, 2, "--jobs: found 0"},
       {"probe --model=pose_onyl --input=" + folder_.File("file"), 2, "did you mean 'pose_only'"},
       {"probe --model=pose_only --input=" + folder_.File("file"), 4, "not JSON"},
       {"probe --model=pose_only --input=" + folder_.File("file") + " --error=left", 2,
        "--error: found 'left'"},
-      {"check --dataset=" + folder_.File("none"), 4, "none"},
-      {"config --check " + folder_.File("unknown_key.yaml"), 3, "did you mean"},
       {"config", 2, "--show FILE"},
-      {"config --diff " + base, 2, "--diff FILE FILE2"},
-      {"spp --obs=none.rnx --nav=none.nav --output=" + folder_.File("z.pos"), 4, "none.rnx: cannot be read"},
+      {"config --diff " + base_, 2, "--diff FILE FILE2"},
       {"spp --obs=x --nav=y", 2, "--output is missing"},
-      {"spp --obs=x --nav=y --output=" + folder_.File("z.pos") + " --set=systems=GX", 3, "found 'X'"},
-      {"spp --obs=x --nav=y --output=" + folder_.File("file"), 6, "--overwrite"},
-  };
-  for (const BadCall& call : calls) {
-    const CommandResult result = Alidade(call.words);
-    EXPECT_EQ(result.code, call.code) << call.words << "\n" << result.output;
-    EXPECT_THAT(result.output, HasSubstr(call.message)) << call.words;
-    EXPECT_LT(result.output.size(), 2000u) << call.words << "\n" << result.output;
-  }
+  });
 }
 
 // GIVEN a camera sheet with focal lengths in mm and a principal point far away THEN check lists both faults,

@@ -82,9 +82,11 @@ TEST_F(CompareCommand, StagesAndStatusRefuseWhatTheyCannotDo) {
   const CommandResult none = Alidade("compare --status=" + folder_.File("none"));
   EXPECT_EQ(none.code, 4);
   EXPECT_THAT(none.output, HasSubstr("no comparison has begun there"));
-  // Tables of a comparison none of whose cells has run: they have all failed.
+  // A stage writes what there is to do, and tables of a comparison none of whose cells has run: they have all
+  // failed.
   const CommandResult tables = Compare("out", "--stage=tables");
   EXPECT_EQ(tables.code, 7) << tables.output;
+  EXPECT_EQ(Alidade("compare --status=" + folder_.File("out")).code, 0);
 }
 
 // GIVEN the parts of a comparison run one by one, as the tasks of a cluster do WHEN the tables are collected
@@ -94,6 +96,9 @@ TEST_F(CompareCommand, PartsMakeTheWhole) {
   for (const char* part : {"2/3", "0/3", "1/3", "1/3"}) {
     ASSERT_EQ(Compare("parts", std::string("--stage=cells --part=") + part).code, 0);
   }
+  EXPECT_EQ(ReadFile(folder_.File("parts/cells.csv")), ReadFile(folder_.File("whole/cells.csv")));
+  EXPECT_THAT(Alidade("compare --status=" + folder_.File("parts")).output,
+              HasSubstr("0 of them failed, 0 run"));
   ASSERT_EQ(Compare("parts", "--stage=tables").code, 0);
   EXPECT_EQ(ComparableFiles(folder_.File("parts/cells")), ComparableFiles(folder_.File("whole/cells")));
   EXPECT_EQ(WithoutTimes(ReadFile(folder_.File("parts/summary.csv"))),

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "eval/bag/bag_folder.h"
-#include "eval/bag/bag_parts.h"
 #include "eval/bag/dataset_images.h"
 #include "eval/bag/dataset_source.h"
 #include "eval/dataset/dataset_reader.h"
@@ -289,38 +288,6 @@ TEST_F(ForeignBag, NamesWhatIsMissing) {
   options.topics = "imu=/imu/data";
   EXPECT_THAT(ReadBag(path_, options).message(),
               testing::AllOf(HasSubstr("no topic /imu/data"), HasSubstr("/imu0 (sensor_msgs/Imu)")));
-}
-
-TEST(BagTopicsTest, NamesAreChecked) {
-  const Result<BagTopics> topics = MakeBagTopics("imu=/a,cam0=/b");
-  ASSERT_TRUE(topics.ok()) << topics.message();
-  EXPECT_EQ((*topics)["imu"], "/a");
-  EXPECT_EQ((*topics)["cam0"], "/b");
-  EXPECT_EQ((*topics)["fix"], "/fix0/fix");
-  EXPECT_THAT(MakeBagTopics("imy=/a").message(), HasSubstr("imu"));
-  EXPECT_FALSE(MakeBagTopics("imu").ok());
-  EXPECT_FALSE(MakeBagTopics("imu=").ok());
-}
-
-TEST(BagTopicsTest, OfTwoThatCouldBeMeantNoneIsGuessed) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.File("two.bag");
-  Result<RosbagWriter> bag = RosbagWriter::Create(path, BagCompression::kNone);
-  ASSERT_TRUE(bag.ok());
-  for (const char* name : {"/left/imu", "/right/imu"}) {
-    const std::uint32_t topic = bag->AddTopic(name, "sensor_msgs/Imu");
-    for (TimeNs stamp : {1, 2}) {
-      ImuSample sample;
-      sample.stamp_ns = stamp;
-      ASSERT_TRUE(bag->Write(topic, stamp, EncodeImu(sample)).ok());
-    }
-  }
-  ASSERT_TRUE(bag->Close().ok());
-  BagImportOptions options;
-  options.imu = Noise();
-  EXPECT_THAT(ReadBag(path, options).message(), HasSubstr("--topics=imu=TOPIC"));
-  options.topics = "imu=/right/imu";
-  EXPECT_EQ(ReadBag(path, options)->dataset.imu.size(), 2u);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "eval/compare/plan.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,57 +6,39 @@
 #include <utility>
 #include <vector>
 
-#include "eval/compare/plan_parser.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/eval/compare/plan_fixture.h"
 
 namespace alidade {
 namespace {
 
+using test::PlanTest;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class PlanTest : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_.Write("estimators/a.yaml", "name: a\n");
-    folder_.Write("estimators/b.yaml", "name: b\n");
-    folder_.Write("sim.yaml", "name: s\n");
-    folder_.Write("data/seq/mav0/x", "");
-    folder_.Write("other.tum", "");
-  }
-  Result<Plan> Read(const std::string& text, const std::string& data_root = "") {
-    return ReadPlan(folder_.Write("plan.yaml", text), data_root);
-  }
-  test::TemporaryFolder folder_;
-};
+constexpr char kEveryKey[] =
+    "title: Both\n"
+    "set: {init.method: truth}\n"
+    "estimators:\n"
+    "  - estimators/a.yaml\n"
+    "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}, "
+    "sequences: [loud]}\n"
+    "  - {name: other, trajectories: {seq: other.tum}, align: pos, align_share: 0.05, mode: smoothed}\n"
+    "sequences:\n"
+    "  - {path: '${data}/seq', seeds: [4, 2]}\n"
+    "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
+    "'${data}/seq'}}\n"
+    "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}, group: one half, "
+    "anchor_at_first: true}\n"
+    "audit: true\n"
+    "metrics: {align: se3, align_share: 0.5, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
+    "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
+    "baseline: loud\n"
+    "reference:\n"
+    "  - {source: the paper, estimator: a, sequence: sim, figures: {ate_pos_m: 0.1}}\n";
 
-constexpr char kMinimal[] = "estimators: [estimators/a.yaml]\nsequences:\n  - config: sim.yaml\n";
-
-TEST_F(PlanTest, ReadsEveryKey) {
-  const Result<Plan> plan = Read(
-      "title: Both\n"
-      "set: {init.method: truth}\n"
-      "estimators:\n"
-      "  - estimators/a.yaml\n"
-      "  - {config: estimators/b.yaml, name: b2, set: {filter.window: 10, x.v: [1, 2, 3]}, "
-      "sequences: [loud]}\n"
-      "  - {name: other, trajectories: {seq: other.tum}, align: pos, align_share: 0.05, mode: smoothed}\n"
-      "sequences:\n"
-      "  - {path: '${data}/seq', seeds: [4, 2]}\n"
-      "  - {config: sim.yaml, name: loud, seeds: 1..3, set: {pixel_noise_px: 2, hybrid_dataset: "
-      "'${data}/seq'}}\n"
-      "  - {config: sim.yaml, seeds: 9, estimator_set: {vision.pixel_noise_px: 2}, group: one half, "
-      "anchor_at_first: true}\n"
-      "audit: true\n"
-      "metrics: {align: se3, align_share: 0.5, rpe: [5, 10], max_dt: 0.02, interpolate: true, max_gap: 0.2}\n"
-      "pairs: {figures: [ate_pos_m], across_sequences: true}\n"
-      "baseline: loud\n"
-      "reference:\n"
-      "  - {source: the paper, estimator: a, sequence: sim, figures: {ate_pos_m: 0.1}}\n",
-      folder_.File("data"));
+TEST_F(PlanTest, ReadsEveryKeyOfAnEstimator) {
+  const Result<Plan> plan = Read(kEveryKey, folder_.File("data"));
   ASSERT_TRUE(plan.ok()) << plan.message();
-  EXPECT_EQ(plan->title, "Both");
-  EXPECT_THAT(plan->settings, ElementsAre("init.method=truth"));
   ASSERT_EQ(plan->estimators.size(), 3u);
   EXPECT_EQ(plan->estimators[0].name, "a");
   EXPECT_EQ(plan->estimators[0].config, folder_.File("estimators/a.yaml"));
@@ -71,9 +51,11 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_TRUE(plan->estimators[2].smoothed);
   EXPECT_FALSE(plan->estimators[1].smoothed);
   EXPECT_EQ(plan->estimators[2].trajectories.at("seq"), folder_.File("other.tum"));
-  EXPECT_THAT(plan->pair_figures, ElementsAre("ate_pos_m"));
-  EXPECT_TRUE(plan->pair_across);
-  EXPECT_EQ(plan->baseline, "loud");
+}
+
+TEST_F(PlanTest, ReadsEveryKeyOfASequence) {
+  const Result<Plan> plan = Read(kEveryKey, folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
   ASSERT_EQ(plan->sequences.size(), 3u);
   EXPECT_THAT(plan->sequences[2].estimator_settings, ElementsAre("vision.pixel_noise_px=2"));
   EXPECT_EQ(plan->sequences[0].name, "seq");
@@ -83,13 +65,23 @@ TEST_F(PlanTest, ReadsEveryKey) {
   EXPECT_THAT(plan->sequences[1].settings,
               ElementsAre("pixel_noise_px=2", "hybrid_dataset=" + folder_.File("data") + "/seq"));
   EXPECT_THAT(plan->sequences[2].seeds, ElementsAre(9));
+  EXPECT_EQ(plan->sequences[2].group, "one half");
+}
+
+TEST_F(PlanTest, ReadsEveryKeyOfThePlanAndItsMetrics) {
+  const Result<Plan> plan = Read(kEveryKey, folder_.File("data"));
+  ASSERT_TRUE(plan.ok()) << plan.message();
+  EXPECT_EQ(plan->title, "Both");
+  EXPECT_THAT(plan->settings, ElementsAre("init.method=truth"));
+  EXPECT_THAT(plan->pair_figures, ElementsAre("ate_pos_m"));
+  EXPECT_TRUE(plan->pair_across);
+  EXPECT_EQ(plan->baseline, "loud");
   EXPECT_TRUE(plan->audit);
   EXPECT_EQ(plan->metrics.alignment, TrajectoryAlignment::kSe3);
   EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).alignment, TrajectoryAlignment::kSe3);
   EXPECT_EQ(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).align_share, 0.5);
   EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).alignment, TrajectoryAlignment::kPos);
   EXPECT_EQ(plan->MetricsOf(plan->estimators[2], plan->sequences[0]).align_share, 0.05);
-  EXPECT_EQ(plan->sequences[2].group, "one half");
   EXPECT_TRUE(plan->MetricsOf(plan->estimators[0], plan->sequences[2]).anchor_at_first);
   EXPECT_FALSE(plan->MetricsOf(plan->estimators[0], plan->sequences[0]).anchor_at_first);
   EXPECT_THAT(plan->metrics.rpe_distances_m, ElementsAre(5, 10));
@@ -105,7 +97,7 @@ TEST_F(PlanTest, ReadsEveryKey) {
 TEST_F(PlanTest, TheTruthOfASimulationIsInterpolated) {
   const std::string data = "  - {path: '${data}/seq'}\n";
   const auto interpolates = [&](const std::string& metrics, size_t sequence) {
-    const Result<Plan> plan = Read(kMinimal + data + metrics, folder_.File("data"));
+    const Result<Plan> plan = Read(test::kMinimalPlan + data + metrics, folder_.File("data"));
     EXPECT_TRUE(plan.ok()) << plan.message();
     return plan->MetricsOf(plan->estimators[0], plan->sequences[sequence]).association.interpolate;
   };
@@ -117,63 +109,69 @@ TEST_F(PlanTest, TheTruthOfASimulationIsInterpolated) {
 }
 
 TEST_F(PlanTest, FillsTitleAndSeedWhenTheyAreLeftOut) {
-  const Result<Plan> plan = Read(kMinimal);
+  const Result<Plan> plan = Read(test::kMinimalPlan);
   ASSERT_TRUE(plan.ok()) << plan.message();
   EXPECT_EQ(plan->title, "plan");
   EXPECT_THAT(plan->sequences[0].seeds, ElementsAre(1));
 }
 
+const std::string kSequences = "sequences: [{config: sim.yaml}]\n";
+const std::string kEstimators = "estimators: [estimators/a.yaml]\n";
+
+struct PlanFault {
+  std::string text;
+  std::string expected;  ///< in the message
+};
+const std::vector<PlanFault> kFaults = {
+    {"", "empty"},
+    {"- a\n", "expected keys and values"},
+    {"estimators: [\n", "not valid YAML"},
+    {kEstimators, "sequences: missing"},
+    {kSequences, "estimators: missing"},
+    {kSequences + "estimators: []\n", "at least one entry"},
+    {kSequences + kEstimators + "metrix: {}\n",
+     "plan.yaml:3:1: metrix: unknown key in a plan; did you mean 'metrics'"},
+    {kSequences + kEstimators + "title: x\ntitle: y\n", "duplicate"},
+    {kSequences + "estimators: [estimators/none.yaml]\n", "a file that exists"},
+    {kSequences + "estimators: [{name: x}]\n", "one of `config`, `trajectories` and `command`"},
+    {kSequences + "estimators: [{config: estimators/a.yaml, name: a/b}]\n", "letters, digits"},
+    {kSequences + "estimators: [{config: estimators/a.yaml, name: ..}]\n", "letters, digits"},
+    {kSequences + "estimators: [estimators/a.yaml, {config: estimators/b.yaml, name: a}]\n", "is taken"},
+    {kSequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
+     "no such sequence; did you mean 'sim'"},
+    {kSequences + "estimators:\n  - {name: o, trajectories: {sim: other.tum}, mode: online}\n",
+     "plan.yaml:3:53: mode: found 'online', expected causal or smoothed"},
+    {kSequences + "estimators: [{name: o, trajectories: {sim: other.tum}, frame: [body]}]\n",
+     "body or camera"},
+    {kSequences + "estimators: [{config: estimators/a.yaml, mode: causal}]\n",
+     "mode: found 'causal', expected `trajectories` or `command` beside it"},
+    {kEstimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
+    {kEstimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` only with `config`"},
+    {kEstimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
+    {kEstimators + "sequences: [{config: sim.yaml, anchor_at_first: perhaps}]\n", "anchor_at_first: found"},
+    {kEstimators + "sequences: [{config: sim.yaml, group: [a]}]\n", "group: found"},
+    {kEstimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
+    {kEstimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
+    {kEstimators + "sequences: [{config: sim.yaml, seeds: -1}]\n", "from 0 to"},
+    {kEstimators + "sequences: [{config: sim.yaml, seeds: 1.5}]\n", "whole number"},
+    {kEstimators + "sequences: [{config: sim.yaml, seeds: 0..4000000000}]\n", "at most 1000"},
+    {kEstimators + "sequences: [{config: sim.yaml, seeds: [010]}]\n", "whole number"},
+    {kSequences + kEstimators + "metrics: {align: yaw}\n", "posyaw"},
+    {kSequences + kEstimators + "metrics: {rpe: [0]}\n", "rpe: found"},
+    {kSequences + kEstimators + "metrics: {max_dt: .nan}\n", "max_dt: found"},
+    {kSequences + kEstimators + "metrics: {association: tum}\n", "alidade, evo or rpg"},
+    {kSequences + kEstimators + "metrics: {association: evo, interpolate: true}\n",
+     "which alone interpolates"},
+    {kSequences + kEstimators + "metrics: {interpolate: maybe}\n", "interpolate: found"},
+    {kSequences + kEstimators + "pairs: {figures: [rmse_pos]}\n", "did you mean 'rmse_pos_m'"},
+    {kSequences + kEstimators + "pairs: {figures: [backend_ms]}\n", "not a time"},
+    {kSequences + "estimators: [{config: estimators/a.yaml, sequences: [sin]}]\n",
+     "no such sequence; did you mean 'sim'"},
+    {kSequences + kEstimators + "baseline: sin\n", "no such sequence; did you mean 'sim'"},
+    {kSequences + kEstimators + "reference: [{source: x}]\n", "missing in reference"}};
+
 TEST_F(PlanTest, NamesPlaceAndExpectationOfEveryFault) {
-  const std::string sequences = "sequences: [{config: sim.yaml}]\n";
-  const std::string estimators = "estimators: [estimators/a.yaml]\n";
-  const std::vector<std::pair<std::string, std::string>> faults = {
-      {"", "empty"},
-      {"- a\n", "expected keys and values"},
-      {"estimators: [\n", "not valid YAML"},
-      {estimators, "sequences: missing"},
-      {sequences, "estimators: missing"},
-      {sequences + "estimators: []\n", "at least one entry"},
-      {sequences + estimators + "metrix: {}\n",
-       "plan.yaml:3:1: metrix: unknown key in a plan; did you mean 'metrics'"},
-      {sequences + estimators + "title: x\ntitle: y\n", "duplicate"},
-      {sequences + "estimators: [estimators/none.yaml]\n", "a file that exists"},
-      {sequences + "estimators: [{name: x}]\n", "one of `config`, `trajectories` and `command`"},
-      {sequences + "estimators: [{config: estimators/a.yaml, name: a/b}]\n", "letters, digits"},
-      {sequences + "estimators: [{config: estimators/a.yaml, name: ..}]\n", "letters, digits"},
-      {sequences + "estimators: [estimators/a.yaml, {config: estimators/b.yaml, name: a}]\n", "is taken"},
-      {sequences + "estimators: [{name: o, trajectories: {sin: other.tum}}]\n",
-       "no such sequence; did you mean 'sim'"},
-      {sequences + "estimators:\n  - {name: o, trajectories: {sim: other.tum}, mode: online}\n",
-       "plan.yaml:3:53: mode: found 'online', expected causal or smoothed"},
-      {sequences + "estimators: [{name: o, trajectories: {sim: other.tum}, frame: [body]}]\n",
-       "body or camera"},
-      {sequences + "estimators: [{config: estimators/a.yaml, mode: causal}]\n",
-       "mode: found 'causal', expected `trajectories` or `command` beside it"},
-      {estimators + "sequences: [{config: sim.yaml, path: data/seq}]\n", "either `path`"},
-      {estimators + "sequences: [{path: data/seq, set: {a: 1}}]\n", "`set` only with `config`"},
-      {estimators + "sequences: [{path: '${data}/seq'}]\n", "--data=FOLDER"},
-      {estimators + "sequences: [{config: sim.yaml, anchor_at_first: perhaps}]\n", "anchor_at_first: found"},
-      {estimators + "sequences: [{config: sim.yaml, group: [a]}]\n", "group: found"},
-      {estimators + "sequences: [{config: sim.yaml, seeds: 3..1}]\n", "FIRST <= LAST"},
-      {estimators + "sequences: [{config: sim.yaml, seeds: [1, 1]}]\n", "every seed once"},
-      {estimators + "sequences: [{config: sim.yaml, seeds: -1}]\n", "from 0 to"},
-      {estimators + "sequences: [{config: sim.yaml, seeds: 1.5}]\n", "whole number"},
-      {estimators + "sequences: [{config: sim.yaml, seeds: 0..4000000000}]\n", "at most 1000"},
-      {estimators + "sequences: [{config: sim.yaml, seeds: [010]}]\n", "whole number"},
-      {sequences + estimators + "metrics: {align: yaw}\n", "posyaw"},
-      {sequences + estimators + "metrics: {rpe: [0]}\n", "rpe: found"},
-      {sequences + estimators + "metrics: {max_dt: .nan}\n", "max_dt: found"},
-      {sequences + estimators + "metrics: {association: tum}\n", "alidade, evo or rpg"},
-      {sequences + estimators + "metrics: {association: evo, interpolate: true}\n",
-       "which alone interpolates"},
-      {sequences + estimators + "metrics: {interpolate: maybe}\n", "interpolate: found"},
-      {sequences + estimators + "pairs: {figures: [rmse_pos]}\n", "did you mean 'rmse_pos_m'"},
-      {sequences + estimators + "pairs: {figures: [backend_ms]}\n", "not a time"},
-      {sequences + "estimators: [{config: estimators/a.yaml, sequences: [sin]}]\n",
-       "no such sequence; did you mean 'sim'"},
-      {sequences + estimators + "baseline: sin\n", "no such sequence; did you mean 'sim'"},
-      {sequences + estimators + "reference: [{source: x}]\n", "missing in reference"}};
-  for (const auto& [text, expected] : faults) {
+  for (const auto& [text, expected] : kFaults) {
     const Result<Plan> plan = Read(text);
     EXPECT_EQ(plan.code(), StatusCode::kConfig) << text;
     EXPECT_THAT(plan.message(), HasSubstr(expected)) << text;
@@ -209,101 +207,6 @@ TEST_F(PlanTest, ANameThatFollowsFromAPathIsTheNameOfAFolder) {
 
 TEST_F(PlanTest, MissingFileIsAConfigurationFault) {
   EXPECT_EQ(ReadPlan(folder_.File("none.yaml"), "").code(), StatusCode::kConfig);
-}
-
-TEST_F(PlanTest, AnExternalProgramIsACommandOrFiles) {
-  const Result<Plan> plan = Read(
-      "estimators:\n"
-      "  - {name: theirs, command: 'run {dataset} {output}', result: out.txt, timeout: 60, frame: camera, "
-      "mode: causal}\n"
-      "sequences:\n  - config: sim.yaml\n");
-  ASSERT_TRUE(plan.ok()) << plan.message();
-  const PlanEstimator& theirs = plan->estimators.at(0);
-  EXPECT_TRUE(theirs.external());
-  EXPECT_EQ(theirs.command.text, "run {dataset} {output}");
-  EXPECT_EQ(theirs.command.result, "out.txt");
-  EXPECT_EQ(theirs.command.timeout_s, 60);
-  EXPECT_TRUE(theirs.camera_frame);
-  EXPECT_FALSE(theirs.smoothed);
-  for (const char* wrong : {"{name: x, command: a, config: estimators/a.yaml}", "{command: a}",
-                            "{name: x, command: a, frame: lens}", "{name: x, command: a, set: {b: 1}}",
-                            "{config: estimators/a.yaml, program: other.tum}"}) {
-    const Result<Plan> refused =
-        Read(std::string("estimators:\n  - ") + wrong + "\nsequences:\n  - config: sim.yaml\n");
-    EXPECT_EQ(refused.code(), StatusCode::kConfig) << wrong;
-  }
-}
-
-TEST_F(PlanTest, AnEstimatorWhoseProgramIsMissingIsListedAsAbsent) {
-  const std::string there = "  - {name: there, program: other.tum, command: '{program} {dataset}'}\n";
-  const std::string missing = "  - {name: gone, program: build/gone, command: '{program} {dataset}'}\n";
-  const std::string rest = "sequences:\n  - config: sim.yaml\n";
-  const Result<Plan> plan = Read("estimators:\n" + missing + there + rest);
-  ASSERT_TRUE(plan.ok()) << plan.message();
-  ASSERT_EQ(plan->estimators.size(), 1u);
-  EXPECT_EQ(plan->estimators[0].command.program, folder_.File("other.tum"));
-  EXPECT_THAT(plan->absent_programs, ElementsAre(testing::Pair("gone", folder_.File("build/gone"))));
-  const Result<Plan> none = Read("estimators:\n" + missing + rest);
-  EXPECT_EQ(none.code(), StatusCode::kInput);
-  EXPECT_THAT(none.message(), HasSubstr("the program of the first, gone, was expected as"));
-}
-
-TEST_F(PlanTest, ABagMayBringItsTopicsAndCalibration) {
-  const std::string head =
-      "estimators: [estimators/a.yaml]\nskip_missing: true\nsequences:\n  - config: sim.yaml\n";
-  const std::string keys = "topics: imu=/imu/data, calibration: ['${data}/a.yaml', b.yaml], camera: cam1";
-  folder_.Write("data/walk.bag", "");
-  const Result<Plan> plan =
-      Read(head + "  - {path: '${data}/walk.bag', " + keys + "}\n", folder_.File("data"));
-  ASSERT_TRUE(plan.ok()) << plan.message();
-  const PlanSequence& sequence = plan->sequences.at(1);
-  EXPECT_EQ(sequence.name, "walk");
-  EXPECT_EQ(sequence.dataset.topics, "imu=/imu/data");
-  EXPECT_EQ(sequence.dataset.camera, "cam1");
-  EXPECT_EQ(sequence.dataset.calibration,
-            (std::vector<std::string>{folder_.File("data/a.yaml"), folder_.File("b.yaml")}));
-  const Result<Plan> of_folder =
-      Read(head + "  - {path: '${data}/seq', " + keys + "}\n", folder_.File("data"));
-  EXPECT_EQ(of_folder.code(), StatusCode::kConfig);
-  EXPECT_THAT(of_folder.message(), HasSubstr("`path` of a bag"));
-}
-
-TEST_F(PlanTest, AFolderMayHaveItsLinksFollowed) {
-  const std::string head = "estimators: [estimators/a.yaml]\nskip_missing: true\nsequences:\n";
-  const std::string simulation = "  - {config: sim.yaml, seeds: 1}\n";
-  const auto read = [&](const std::string& entry) {
-    return Read(head + simulation + "  - {" + entry + ", name: linked}\n", folder_.File("data"));
-  };
-  for (const bool follow : {true, false}) {
-    const Result<Plan> plan =
-        read("path: '${data}/seq', follow_links: " + std::string(follow ? "true" : "false"));
-    ASSERT_TRUE(plan.ok()) << plan.message();
-    EXPECT_EQ(plan->sequences.at(1).dataset.follow_links, follow);
-  }
-  EXPECT_FALSE(read("path: '${data}/seq'")->sequences.at(1).dataset.follow_links);
-  folder_.Write("data/walk.bag", "");
-  for (const char* other : {"path: '${data}/walk.bag'", "config: sim.yaml"}) {
-    const Result<Plan> plan = read(std::string(other) + ", follow_links: true");
-    EXPECT_EQ(plan.code(), StatusCode::kConfig) << other;
-    EXPECT_THAT(plan.message(), HasSubstr("`follow_links` only with the `path` of a folder"));
-  }
-}
-
-TEST_F(PlanTest, WhatIsMissingIsLeftOutOnlyWhenThePlanAllowsIt) {
-  const std::string rest =
-      "estimators: [estimators/a.yaml]\nsequences:\n  - path: ${data}/seq\n  - {path: '${data}/gone', name: "
-      "far}\n";
-  EXPECT_EQ(Read(rest, folder_.File("data")).code(), StatusCode::kConfig);
-  // Wherever the key stands.
-  const Result<Plan> plan = Read(rest + "skip_missing: true\n", folder_.File("data"));
-  ASSERT_TRUE(plan.ok()) << plan.message();
-  ASSERT_EQ(plan->sequences.size(), 1u);
-  ASSERT_EQ(plan->absent.size(), 1u);
-  EXPECT_EQ(plan->absent[0].first, "far");
-  EXPECT_EQ(plan->absent[0].second, folder_.File("data/gone"));
-  const Result<Plan> none = Read(rest + "skip_missing: true\n", folder_.File("nowhere"));
-  EXPECT_EQ(none.code(), StatusCode::kInput);
-  EXPECT_THAT(none.message(), HasSubstr("none of its 2 sequences is present"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "eval/record/accelerometer_signs.h"
 #include "tests/support/scenario.h"
 
 namespace alidade::test {
@@ -105,6 +106,37 @@ TEST(FailureDiagnosisTest, WhatIsUnderWayIsShownAndAStopEndsIt) {
   EXPECT_FALSE(DiagnoseAccelerometerSigns(SmallFilter(), log, TablesOf(log), failed, options).has_value());
   const std::vector<std::pair<size_t, size_t>> expected = {{1, 8}, {2, 8}};
   EXPECT_EQ(reported, expected);
+}
+
+/// Trials in which all combinations start but that given, which holds or not; of the others the fourth alone
+/// does.
+SignTrials AllButThatGivenStart(bool as_given_holds, std::vector<size_t>* runs) {
+  SignTrials trials;
+  trials.starts = [](size_t choice) { return choice > 0; };
+  trials.holds = [=](size_t choice) {
+    runs->push_back(choice);
+    const bool holds = choice == 0 ? as_given_holds : choice == 3;
+    return holds ? std::optional(20.0) : std::nullopt;
+  };
+  trials.stopped = [] { return false; };
+  return trials;
+}
+
+// GIVEN other signs with which the data start and run WHEN a run with the signs as given holds too THEN no
+// sign is blamed, and no other is run.
+TEST(FailureDiagnosisTest, SignsAreNotBlamedWhileARunWithThoseGivenHolds) {
+  std::vector<size_t> runs;
+  EXPECT_FALSE(SearchSigns(AllButThatGivenStart(true, &runs)).has_value());
+  EXPECT_EQ(runs, std::vector<size_t>{0});
+}
+
+TEST(FailureDiagnosisTest, ARunWithTheSignsAsGivenComesFirst) {
+  std::vector<size_t> runs;
+  const std::optional<SignFinding> found = SearchSigns(AllButThatGivenStart(false, &runs));
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->choice, 3u);
+  EXPECT_EQ(found->held_s, 20);
+  EXPECT_EQ(runs, (std::vector<size_t>{0, 1, 2, 3}));
 }
 
 // GIVEN an IMU that measures nonsense in the middle of a log WHEN the run is lost there THEN its signs are

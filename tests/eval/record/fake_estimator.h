@@ -25,6 +25,7 @@ class FakeEstimator final : public Estimator {
   }
   Status AddFrame(const TrackFrame& frame) override {
     imu_before_frame.push_back(imu_stamps.empty() ? -1 : imu_stamps.back());
+    repeated.push_back(frame.repeated);
     if (static_cast<int>(imu_before_frame.size()) == diverge_at_frame) {
       return Status::Diverged("fake: lost");
     }
@@ -65,6 +66,7 @@ class FakeEstimator final : public Estimator {
   int not_finite_at_frame = 0;
   std::vector<TimeNs> imu_stamps;
   std::vector<TimeNs> imu_before_frame;  ///< newest sample when each frame came
+  std::vector<bool> repeated;            ///< of each frame
 
  private:
   ImuBuffer imu_{0.5};

@@ -76,6 +76,26 @@ TEST(Runner, SampleOnTheFramesStampIsTheLastOneDelivered) {
   }
 }
 
+// GIVEN an image that is the one before, THEN its frame has no observations and is marked, and no other is.
+TEST(Runner, ARepeatedImageIsMarked) {
+  constexpr size_t kRepeated = 4;
+  RestingScene scene;
+  for (size_t i = 0; i < scene.log.frames.size(); ++i) {
+    const double shift_px = static_cast<double>(i == kRepeated ? i - 1 : i);
+    scene.log.frames[i].observations.clear();
+    for (int k = 0; k < 10; ++k) {
+      scene.log.frames[i].observations.push_back({k, {10.0 * k + shift_px, 20}});
+    }
+  }
+  FakeEstimator estimator;
+  const RunResult result = RunScene(TruthConfig(), scene, &estimator);
+  ASSERT_EQ(estimator.repeated.size(), scene.log.frames.size());
+  for (size_t i = 0; i < scene.log.frames.size(); ++i) {
+    EXPECT_EQ(estimator.repeated[i], i == kRepeated) << i;
+    EXPECT_EQ(result.records[i].statistics.tracks_in, i == kRepeated ? 0 : 10) << i;
+  }
+}
+
 TEST(Runner, WaitsForTruthThatStartsLater) {
   const RestingScene scene(1.0, 0.0, 0.25);
   FakeEstimator estimator;

@@ -106,6 +106,29 @@ std::vector<GnssRow> Linearize(const NavCase& c, const SatelliteMeasurement& m, 
   return rows;
 }
 
+// GIVEN an epoch with satellites below the mask and without a rate THEN the rows are counted as they are
+// linearised, whatever the configuration uses.
+TEST(MeasurementModelTest, RowsAreCountedWithoutLinearising) {
+  EpochMeasurements epoch = Measure(Moving());
+  ASSERT_GE(epoch.satellites.size(), 12u);
+  epoch.satellites[0].range_rate_mps.reset();
+  epoch.satellites[3].direction.elevation_rad = 0.01;
+  test::RandomStates random(1);
+  const NavCase c = RandomCase(&random);
+  for (const bool pseudorange : {false, true}) {
+    for (const bool doppler : {false, true}) {
+      GnssConfig config;
+      config.pseudorange = pseudorange;
+      config.doppler = doppler;
+      GnssResiduals residuals;
+      const std::size_t rows =
+          LinearizeEpoch(config, c.mount, {c.state, c.bias, c.gyro}, epoch, &residuals).size();
+      EXPECT_EQ(CountEpochRows(config, epoch), rows) << pseudorange << doppler;
+      EXPECT_EQ(rows == 0, !pseudorange && !doppler);
+    }
+  }
+}
+
 TEST(MeasurementModelTest, JacobiansAgreeWithCentralDifferencesInAllConventions) {
   const EpochMeasurements epoch = Measure(Moving());
   for (unsigned seed = 1; seed <= 24; ++seed) {

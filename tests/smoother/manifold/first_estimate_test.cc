@@ -191,28 +191,31 @@ TEST(FirstEstimateTest, WithoutFirstEstimatesThePriorLearnsThem) {
   }
 }
 
+/// The residual, and beside it the sums of the Jacobians' columns, one column a block.
+template <typename Factor>
+MatrixXd Evaluate(const Factor& factor, const std::vector<const double*>& parameters) {
+  MatrixXd all(factor.rows(), 1);
+  std::vector<std::vector<double>> storage;
+  std::vector<double*> jacobians;
+  for (const BlockKind kind : factor.blocks()) {
+    storage.emplace_back(static_cast<size_t>(factor.rows() * TangentSize(kind)));
+  }
+  for (std::vector<double>& each : storage) {
+    jacobians.push_back(each.data());
+  }
+  EXPECT_TRUE(factor.Evaluate(parameters.data(), all.data(), jacobians.data()));
+  for (const std::vector<double>& each : storage) {
+    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
+    using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Index width = static_cast<Index>(each.size()) / factor.rows();
+    all.rightCols<1>() = Eigen::Map<const RowMatrix>(each.data(), factor.rows(), width).rowwise().sum();
+  }
+  return all;
+}
+
 // The first estimates change no residual, and at the first estimate itself no Jacobian.
 TEST(FirstEstimateTest, FactorsKeepTheirResiduals) {
   Sliding sliding(6, true);
-  const auto evaluate = [&](const auto& factor, std::vector<const double*> parameters) {
-    MatrixXd all(factor.rows(), 1);
-    std::vector<std::vector<double>> storage;
-    std::vector<double*> jacobians;
-    for (const BlockKind kind : factor.blocks()) {
-      storage.emplace_back(static_cast<size_t>(factor.rows() * TangentSize(kind)));
-    }
-    for (std::vector<double>& each : storage) {
-      jacobians.push_back(each.data());
-    }
-    EXPECT_TRUE(factor.Evaluate(parameters.data(), all.data(), jacobians.data()));
-    for (const std::vector<double>& each : storage) {
-      all.conservativeResize(Eigen::NoChange, all.cols() + 1);
-      using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      const Index width = static_cast<Index>(each.size()) / factor.rows();
-      all.rightCols<1>() = Eigen::Map<const RowMatrix>(each.data(), factor.rows(), width).rowwise().sum();
-    }
-    return all;
-  };
   const WindowTrack& track = *sliding.tracks().front();
   const WindowFrame& first = *track.views.front().frame;
   const WindowFrame& last = *track.views.back().frame;
@@ -230,9 +233,9 @@ TEST(FirstEstimateTest, FactorsKeepTheirResiduals) {
     const WindowFrame& zero = sliding.window.frame(0);
     const WindowFrame& one = sliding.window.frame(1);
     return std::vector<MatrixXd>{
-        evaluate(imu, {zero.nav.data(), zero.bias.data(), one.nav.data(), one.bias.data()}),
-        evaluate(depth, {first.nav.data(), last.nav.data(), track.landmark.data(), no_error.data()}),
-        evaluate(pose_only, frames)};
+        Evaluate(imu, {zero.nav.data(), zero.bias.data(), one.nav.data(), one.bias.data()}),
+        Evaluate(depth, {first.nav.data(), last.nav.data(), track.landmark.data(), no_error.data()}),
+        Evaluate(pose_only, frames)};
   };
   const std::vector<MatrixXd> plain = everything();
   for (int i = 0; i < sliding.window.size(); ++i) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include "gnss/model/gnss_epoch.h"
 #include "smoother/sliding/smoother_estimator.h"
@@ -87,6 +89,48 @@ TEST(MeasurementFrame, ATrackIsCountedAsDegenerateOnce) {
   EXPECT_GT(leaving, 100) << "tracks that the next frame looks at twice";
 }
 
+/// Of frames that leave the window as soon as they may, whatever the tracks: none has parallax enough.
+EstimatorConfig FewKeyframes() {
+  EstimatorConfig config;
+  config.backend = Backend::kSmoother;
+  config.smoother.keyframe_parallax_px = 500;
+  config.smoother.keyframe_min_tracked = 0;
+  config.vision.rest_updates = false;
+  return config;
+}
+
+double LongestInterval(const Window& window) {
+  double longest_s = 0;
+  for (int i = 1; i < window.size(); ++i) {
+    longest_s = std::max(longest_s, SecondsBetween(window.frame(i - 1).stamp_ns, window.frame(i).stamp_ns));
+  }
+  return longest_s;
+}
+
+// GIVEN fixes between frames that are no keyframes, WHEN these leave the window, THEN no fix is attached to a
+// frame further away than max_interpolation_s.
+TEST(MeasurementFrame, AFixStaysNearTheFrameItIsAttachedTo) {
+  const Dataset dataset = SlowWalkWithFixes();
+  const EstimatorConfig config = FewKeyframes();
+  SmootherEstimator smoother(config, dataset.rig);
+  int attached = 0;
+  double longest_s = 0;
+  RunWithFixes(dataset, DrawInitialState(dataset, 3), &smoother, [&](const PositionFix&) {
+    const Window& window = smoother.window();
+    longest_s = std::max(longest_s, LongestInterval(window));
+    for (int i = 0; i < window.size(); ++i) {
+      for (const FrameMeasurement& fix : window.frame(i).measurements) {
+        ASSERT_FALSE(fix.imu.empty());
+        EXPECT_LE(SecondsBetween(window.frame(i).stamp_ns, fix.imu.back().stamp_ns),
+                  config.fix.max_interpolation_s);
+        ++attached;
+      }
+    }
+  });
+  EXPECT_GT(attached, 20);
+  EXPECT_GT(longest_s, 0.25) << "frames have left";
+}
+
 /// An epoch of a receiver at rest whose clock stands at `clock_m`.
 GnssEpoch EpochAtRest(const EstimatorConfig& config, SyntheticReceiver receiver, TimeNs stamp_ns,
                       double clock_m) {
@@ -101,45 +145,87 @@ GnssEpoch EpochAtRest(const EstimatorConfig& config, SyntheticReceiver receiver,
   return epoch;
 }
 
+/// A rig at rest with a receiver whose sky is synthetic, aligned, and the IMU of the seconds that come.
+struct RestingReceiver {
+  explicit RestingReceiver(EstimatorConfig config_in) : config(std::move(config_in)) {
+    receiver.stamp_ns = 1'700'000'100 * kSecondNs;
+    config.backend = Backend::kSmoother;
+    config.gnss.enabled = true;
+    config.gnss.corrections.ionosphere = IonosphereMode::kNone;
+    SimulatorConfig scene;
+    scene.duration_s = 1;
+    scene.path_m = 1;
+    smoother = std::make_unique<SmootherEstimator>(config, SimulateOrDie(scene, 1).rig);
+  }
+
+  [[nodiscard]] TimeNs StampAt(double seconds) const { return receiver.stamp_ns + SecondsToNs(seconds); }
+  void Begin(double imu_s) {
+    NavEstimate start;
+    start.stamp_ns = receiver.stamp_ns;
+    start.covariance = Matrix15d::Identity();
+    ASSERT_TRUE(smoother->Initialize(start).ok());
+    GnssAlignment alignment = IdentityAlignment(start.stamp_ns);
+    alignment.enu = EnuFrame::At(receiver.position_E);
+    alignment.clock = Vector6d::Zero();
+    ASSERT_TRUE(smoother->Align(alignment).ok());
+    for (int i = 0; i <= static_cast<int>(std::lround(100 * imu_s)); ++i) {
+      ASSERT_TRUE(
+          smoother->AddImu({start.stamp_ns + i * 10'000'000LL, Eigen::Vector3d::Zero(), {0, 0, 9.81}}).ok());
+    }
+  }
+  void AddEpoch(double seconds, double clock_m) const {
+    const Status status = smoother->AddGnss(EpochAtRest(config, receiver, StampAt(seconds), clock_m));
+    ASSERT_TRUE(status.ok()) << status.message();
+  }
+
+  SyntheticReceiver receiver;
+  EstimatorConfig config;
+  std::unique_ptr<SmootherEstimator> smoother;
+};
+
 // GIVEN an epoch that corrected the estimate, WHEN the receiver's clock steps so that the next one is left
 // out, THEN that one has no correction: it would be compared with a position that it did not cause.
 TEST(MeasurementFrame, AnEpochThatIsLeftOutHasNoCorrection) {
-  SyntheticReceiver receiver;
-  receiver.stamp_ns = 1'700'000'100 * kSecondNs;
   EstimatorConfig config;
-  config.backend = Backend::kSmoother;
-  config.gnss.enabled = true;
-  config.gnss.corrections.ionosphere = IonosphereMode::kNone;
   config.calibration.watch = true;
-  SimulatorConfig scene;
-  scene.duration_s = 1;
-  scene.path_m = 1;
-  SmootherEstimator smoother(config, SimulateOrDie(scene, 1).rig);
-  NavEstimate start;
-  start.stamp_ns = receiver.stamp_ns;
-  start.covariance = Matrix15d::Identity();
-  ASSERT_TRUE(smoother.Initialize(start).ok());
-  GnssAlignment alignment = IdentityAlignment(start.stamp_ns);
-  alignment.enu = EnuFrame::At(receiver.position_E);
-  alignment.clock = Vector6d::Zero();
-  ASSERT_TRUE(smoother.Align(alignment).ok());
-  for (int i = 0; i <= 30; ++i) {
-    ASSERT_TRUE(
-        smoother.AddImu({start.stamp_ns + i * 10'000'000LL, Eigen::Vector3d::Zero(), {0, 0, 9.81}}).ok());
+  RestingReceiver rig(config);
+  rig.Begin(0.3);
+  ASSERT_TRUE(rig.smoother->AddFrame({rig.StampAt(0), {}}).ok());
+  rig.AddEpoch(0.1, 0);
+  EXPECT_FALSE(rig.smoother->last_statistics().clock_jump);
+  ASSERT_NE(rig.smoother->last_correction(), nullptr);
+  rig.AddEpoch(0.2, 1000);
+  ASSERT_TRUE(rig.smoother->last_statistics().clock_jump);
+  EXPECT_EQ(rig.smoother->last_correction(), nullptr);
+}
+
+// GIVEN epochs after frames that are no keyframes, THEN likewise.
+TEST(MeasurementFrame, AnEpochStaysNearTheFrameItIsAttachedTo) {
+  RestingReceiver rig(FewKeyframes());
+  rig.Begin(3.2);
+  const Window& window = rig.smoother->window();
+  int attached = 0;
+  double longest_s = 0;
+  for (int k = 0; k <= 30; ++k) {
+    TrackFrame frame{rig.StampAt(0.1 * k), {}};
+    for (int i = 0; i < 30; ++i) {
+      frame.observations.push_back({i, {100.0 + 50 * (i % 6), 100.0 + 40 * (i / 6)}});
+    }
+    const Status status = rig.smoother->AddFrame(frame);
+    ASSERT_TRUE(status.ok()) << status.message();
+    if (k % 5 == 1) {
+      rig.AddEpoch(0.1 * k + 0.05, 0);
+    }
+    longest_s = std::max(longest_s, LongestInterval(window));
+    for (int i = 0; i < window.size(); ++i) {
+      for (const FrameEpoch& epoch : window.frame(i).epochs) {
+        EXPECT_LE(epoch.SecondsAfter(window.frame(i).stamp_ns), rig.config.gnss.max_interpolation_s);
+        ++attached;
+      }
+    }
   }
-  ASSERT_TRUE(smoother.AddFrame({start.stamp_ns, {}}).ok());
-
-  const TimeNs first_ns = start.stamp_ns + SecondsToNs(0.1);
-  const Status first = smoother.AddGnss(EpochAtRest(config, receiver, first_ns, 0));
-  ASSERT_TRUE(first.ok()) << first.message();
-  EXPECT_FALSE(smoother.last_statistics().clock_jump);
-  ASSERT_NE(smoother.last_correction(), nullptr);
-
-  const TimeNs next_ns = start.stamp_ns + SecondsToNs(0.2);
-  const Status next = smoother.AddGnss(EpochAtRest(config, receiver, next_ns, 1000));
-  ASSERT_TRUE(next.ok()) << next.message();
-  ASSERT_TRUE(smoother.last_statistics().clock_jump);
-  EXPECT_EQ(smoother.last_correction(), nullptr);
+  EXPECT_GT(attached, 20);
+  EXPECT_GT(longest_s, 0.25) << "frames have left";
 }
 
 // GIVEN a fix that corrected the estimate, WHEN the estimator starts anew, THEN nothing has been corrected.

@@ -77,6 +77,37 @@ TEST(SmootherEstimatorTest, ARefusedSlamFeatureIsNotCountedAsUsed) {
   EXPECT_GT(refused, 3);
 }
 
+std::int64_t CountSlamFeatures(const Window& window) {
+  return std::count_if(window.tracks().begin(), window.tracks().end(),
+                       [](const auto& item) { return item.second.anchor != nullptr && item.second.alive; });
+}
+
+// GIVEN landmarks in the prior, WHEN images are repeated, THEN most of them stay: no track has ended.
+TEST(SmootherEstimatorTest, ARepeatedImageEndsNoSlamFeature) {
+  SimulatorConfig simulator;
+  simulator.duration_s = 8;
+  simulator.path_m = 10;
+  const Dataset dataset = test::SimulateOrDie(simulator, 3);
+  SmootherEstimator estimator(WithSlamFeatures(60), dataset.rig);
+  ASSERT_TRUE(test::RunScenario(dataset, test::DrawInitialState(dataset, 3), &estimator).status.ok());
+  const std::int64_t before = CountSlamFeatures(estimator.window());
+  ASSERT_GT(before, 5);
+  TrackFrame repeated = dataset.frames.back();
+  repeated.observations.clear();
+  repeated.repeated = true;
+  ImuSample sample = dataset.imu.back();
+  for (int i = 0; i < 2; ++i) {
+    repeated.stamp_ns += 50'000'000;
+    while (sample.stamp_ns < repeated.stamp_ns) {
+      sample.stamp_ns += 10'000'000;
+      ASSERT_TRUE(estimator.AddImu(sample).ok());
+    }
+    ASSERT_TRUE(estimator.AddFrame(repeated).ok());
+    EXPECT_EQ(estimator.Latest().stamp_ns, repeated.stamp_ns);
+  }
+  EXPECT_GT(2 * CountSlamFeatures(estimator.window()), before);
+}
+
 // Landmarks change their anchors, are lost and replaced all the time: nothing of it may show on exact data.
 TEST(SmootherEstimatorTest, SlamFeaturesLeaveExactDataExact) {
   const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});

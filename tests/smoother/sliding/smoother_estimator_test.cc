@@ -205,6 +205,40 @@ TEST(SmootherEstimatorTest, FramesThatAreNotKeyframesLeaveTheWindow) {
   EXPECT_NEAR(newest.preintegration->duration_s(), 0.6, 1e-9);
 }
 
+// GIVEN a range of depths that no landmark is in, and outliers, WHEN the gate refuses a track that was
+// degenerate and had an assumed depth, THEN it is counted once.
+TEST(SmootherEstimatorTest, ADegenerateTrackThatTheGateRefusesIsCountedOnce) {
+  SimulatorConfig simulator;
+  simulator.duration_s = 8;
+  simulator.path_m = 10;
+  simulator.outlier_rate = 0.02;
+  const Dataset dataset = test::SimulateOrDie(simulator, 3);
+  EstimatorConfig config = MakeConfig(SmootherLandmark::kPoseOnly);
+  config.smoother.frames = FramePolicy::kEveryFrame;
+  config.vision.min_depth_m = 200;
+  config.vision.max_depth_m = 100;
+  config.vision.max_relative_depth_deviation = 10;  // hardly any waits
+  SmootherEstimator estimator(config, dataset.rig);
+  for (const ImuSample& sample : dataset.imu) {
+    ASSERT_TRUE(estimator.AddImu(sample).ok());
+  }
+  ASSERT_TRUE(estimator.Initialize(test::DrawInitialState(dataset, 3)).ok());
+  int refused = 0;
+  int waiting = 0;
+  for (const TrackFrame& frame : dataset.frames) {
+    ASSERT_TRUE(estimator.AddFrame(frame).ok());
+    int examined = 0;
+    for (const auto& [id, track] : estimator.window().tracks()) {
+      examined += track.views.size() != 1 ? 1 : 0;
+      refused += track.views.empty() ? 1 : 0;
+    }
+    const FrameStatistics& statistics = estimator.last_statistics();
+    EXPECT_LE(statistics.features_degenerate + statistics.features_gated, examined);
+    waiting += statistics.features_waiting;
+  }
+  EXPECT_GT(refused, waiting + 20);
+}
+
 TEST(SmootherEstimatorTest, BadInputIsAStatusAndLeavesTheStateAlone) {
   const Dataset dataset = MakeSequence({.duration_s = 2});
   const EstimatorConfig config = MakeConfig(SmootherLandmark::kInverseDepth);
