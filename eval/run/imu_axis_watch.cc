@@ -85,6 +85,10 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
   }
 }
 
+bool ImuAxisWatch::IsExtreme(double value, const Axis& axis) {
+  return value >= axis.highest || value <= axis.lowest;
+}
+
 ImuAxisWatch::Fault ImuAxisWatch::Classify(double value, double floor, const Axis& axis) {
   if (axis.limit != 0 && value == axis.limit) {
     return Fault::kSaturated;
@@ -92,8 +96,7 @@ ImuAxisWatch::Fault ImuAxisWatch::Classify(double value, double floor, const Axi
   if (axis.measured < kLeastMeasurements || axis.resolution == 0) {
     return Fault::kNone;
   }
-  const bool extreme = value >= axis.highest || value <= axis.lowest;
-  if (axis.equal >= kSaturated && extreme && std::abs(value) > floor &&
+  if (axis.equal >= kSaturated && IsExtreme(value, axis) && std::abs(value) > floor &&
       std::abs(value - axis.came_from) >= kSteps * axis.resolution) {
     return Fault::kSaturated;
   }
@@ -134,7 +137,7 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
   }
   axis.limit = fault == Fault::kSaturated ? value : axis.limit;
   Eigen::Vector3d axes = Eigen::Vector3d::Unit(index);
-  if (fault == Fault::kSaturated) {
+  if (fault == Fault::kSaturated || IsExtreme(value, axis)) {
     axes.setOnes();
   }
   Eigen::Vector3d& densities = sample->*signal->fault_density;

@@ -31,8 +31,9 @@ namespace alidade {
 /// that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the mean, in
 /// the step that detects about the stuck value. Saturated: the motion goes on as it came, at most half beyond
 /// the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2 rad/s and 1 m/s^2
-/// (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a saturated one is in all
-/// three: in a motion beyond the range the other axes may be clipped in samples that do not reveal it yet.
+/// (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a saturated one, or of one
+/// that is stuck at its largest or smallest value, is in all three: in a motion beyond the range the other
+/// axes may be clipped in samples that do not reveal it yet.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
 /// kLeastMeasurements.
@@ -91,6 +92,8 @@ class ImuAxisWatch {
   static void CountShare(bool changed, Axis* axis);
   static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                     Axis* axis);
+  /// Of all measurements so far.
+  [[nodiscard]] static bool IsExtreme(double value, const Axis& axis);
   [[nodiscard]] static Fault Classify(double value, double floor, const Axis& axis);
   [[nodiscard]] static double Sigma(Fault fault, double value, double floor, double seconds,
                                     const Axis& axis);

@@ -132,6 +132,25 @@ TEST(ImuAxisWatchTest, ALongSaturationIsFoundThroughoutWhileTheOthersMove) {
   }
 }
 
+// GIVEN an axis that is clipped at a small value, which counts as stuck, THEN its noise is in all axes, as
+// that of a saturated one.
+TEST(ImuAxisWatchTest, TheNoiseOfAnAxisThatSticksAtItsLargestValueIsInAllAxes) {
+  std::vector<ImuSample> samples = Motion(4000, 1e-3);
+  for (ImuSample& sample : samples) {
+    sample.gyro.x() = std::min(sample.gyro.x(), 0.15);
+  }
+  const Watched watched = Watch(std::move(samples));
+  ASSERT_FALSE(watched.reported.empty());
+  EXPECT_THAT(watched.reported[0], HasSubstr("the gyroscope's x axis repeats 0.15 rad/s"));
+  std::size_t noisy = 0;
+  for (std::size_t k = 0; k < watched.faulty.size(); ++k) {
+    const Eigen::Vector3d& densities = watched.samples[k].gyro_fault_density_radps_sqrthz;
+    EXPECT_EQ(densities.minCoeff(), densities.maxCoeff()) << k;
+    noisy += densities.z() > 0 ? 1 : 0;
+  }
+  EXPECT_GT(noisy, 1000u);
+}
+
 TEST(ImuAxisWatchTest, RowsThatAreHandedOutTwiceAreNoFault) {
   std::vector<ImuSample> samples = Motion(8000, 1e-9);
   for (std::size_t k = 0; k < samples.size(); ++k) {
