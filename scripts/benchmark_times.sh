@@ -4,6 +4,7 @@
 # A benchmark that skips itself is named with its reason on standard error. JSON, because the csv output ends the program where two
 # benchmarks have different counters.
 set -euo pipefail
+export LC_ALL=C  # the decimal separator of awk
 
 program=$1
 shift

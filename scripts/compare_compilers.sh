@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # Builds the program with GCC -O2, GCC -O3 and Clang -O3, runs the demo's plan (60 s, both back ends, without and with GNSS) with each,
 # and prints the largest difference of the estimated states to the first one's: of the position in metres, of each other quantity
-# relative to its value where that is above 1. Only rooms with TEXT keep their own -O2 (eval/CMakeLists.txt).
-# Exit code 1: a difference is above the bound, a number is missing or not finite, or rows or columns differ.
+# relative to its value where that is above 1. These targets are always built with -O2, so
+# that the levels are not compared for them: eval_X for X = bag, calibrate, compare, comparison, config, dataset, download, files,
+# frontend_run, identify, peers, probe, record, report, rosbag, run_images, study, trajectory and truth (option TEXT in their CMakeLists.txt).
+# Exit code 1: a difference is above the bound, a number is missing or not finite, rows or columns differ, or there are no states.
 # Usage: scripts/compare_compilers.sh [output folder] [bound, default 1e-6]
-#        scripts/compare_compilers.sh --compare STATES STATES [bound]     compares two files states.csv
+#        scripts/compare_compilers.sh --compare FIRST SECOND [bound]     two files states.csv, or all of them below two folders
 # Takes about half an hour on two cores. Needs Debian's clang beside what scripts/install_dependencies.sh installs.
 set -euo pipefail
+export LC_ALL=C  # the decimal separator of awk
 
 # Prints the largest difference of each quantity, one line a file: "p 0 q 1e-12 ...", and of columns that only GNSS adds "gnss".
 compare_states() {
@@ -51,8 +54,25 @@ compare_states() {
     }' "$1" "$2"
 }
 
+# compare_folders FIRST SECOND BOUND: each states.csv below either of them, one line a file. None at all is a failure.
+compare_folders() {
+  local file found files=0 failed=0
+  while read -r file; do
+    found=$(compare_states "$1/$file" "$2/$file" "$3") || failed=1
+    printf '%-45s %s\n' "${file%/states.csv}" "$found"
+    files=$((files + 1))
+  done < <(find "$1" "$2" -name states.csv -printf '%P\n' | sort -u)
+  if ((files == 0)); then
+    echo "no states.csv below $1 and $2"
+    failed=1
+  fi
+  return $failed
+}
+
 if [[ ${1:-} == --compare ]]; then
-  compare_states "$2" "$3" "${4:-1e-6}"
+  compare=compare_states
+  [[ -d $2 ]] && compare=compare_folders
+  $compare "$2" "$3" "${4:-1e-6}"
   exit
 fi
 
@@ -73,12 +93,9 @@ done
 
 reference=${variants[0]%% *}
 failed=0
-echo "largest differences to $reference"
-while read -r cell; do
-  for variant in "${variants[@]:1}"; do
-    name=${variant%% *}
-    found=$(compare_states "$output/$reference/demo/cells/$cell/states.csv" "$output/$name/demo/cells/$cell/states.csv" "$bound") || failed=1
-    printf '%-45s %-9s %s\n' "$cell" "$name" "$found"
-  done
-done < <(cd "$output/$reference/demo/cells" && find . -name states.csv -printf '%h\n' | sed 's|^\./||' | sort)
+for variant in "${variants[@]:1}"; do
+  name=${variant%% *}
+  echo "largest differences of $name to $reference"
+  compare_folders "$output/$reference/demo/cells" "$output/$name/demo/cells" "$bound" || failed=1
+done
 exit $failed

@@ -10,6 +10,7 @@
 #   --tolerance  of an exponent (default 0.15)
 #   --output     where times.csv (program, benchmark, CPU time) and growth.csv are written (default out/growth)
 set -euo pipefail
+export LC_ALL=C  # the decimal separator of awk
 shopt -s inherit_errexit
 cd "$(dirname "$0")/.."
 

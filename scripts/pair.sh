@@ -4,6 +4,7 @@
 # Prints, for each estimator and sequence, the number of pairs and of each figure the ratio after / before (geometric mean over the pairs)
 # with Student's t of its logarithm, and the largest |t|. With ten pairs |t| = 2.26 is the 5 % level of one figure.
 set -euo pipefail
+export LC_ALL=C  # the decimal separator of awk
 [[ $# -eq 2 && -f $1/summary.csv && -f $2/summary.csv ]] || { echo "usage: $0 BEFORE AFTER (folders with a summary.csv)" >&2; exit 2; }
 
 # Fields with commas are quoted and stand last (message), so that splitting at commas is enough.

@@ -2,7 +2,7 @@
 # How many times faster than real time a run from pixels is on one core: renders a figure-8 of EuRoC's size, lens and rates (752 x 480,
 # 20 Hz, configs/datasets/hard_pixels/easy.yaml) once, runs alidade_filter and alidade_smoother on its images, pinned to one core, and
 # prints the time of a frame [ms] and the real-time factor, both for each part. Wall time of the parts, from timing.csv, mean over the
-# frames after the start: decoding (- where the table does not separate it; it is part of tracking then), tracking, back end, total.
+# frames after the start: tracking, back end, total of both; images are decoded before.
 # CPU time, which other load affects less: "backCPU" of the back end a frame (run.json), "allCPU" of the whole program an image, with
 # reading, start and writing. Median of the rounds. The machine should be idle.
 # Usage: scripts/realtime.sh [--dataset=DIR] [--seed=N] [--duration=S] [--core=N] [--rounds=N] [--program=FILE] [--output=DIR]
@@ -10,17 +10,18 @@
 #   --dataset   a sequence with images instead of the rendered one
 #   --seed      of the rendered sequence (default 901)
 #   --duration  of the rendered sequence [s] (default 20, of which 2 s are at rest)
-#   --core      where the runs are pinned (default 0)
+#   --core      where the runs are pinned (default: the first core that the script may use)
 #   --rounds    runs of each estimator (default 3)
 #   --program   the command line (default build/alidade)
 #   --against   another build of it, which runs by turns with its own configs folder; ratios (program / other) follow
 #   --output    where sequence, runs and frames.csv are written (default out/realtime); a sequence that is there is not rendered again
 set -euo pipefail
+export LC_ALL=C  # the decimal separator of awk and of the shell's `time`
 shopt -s inherit_errexit
 cd "$(dirname "$0")/.."
 
 usage() { sed -n '8,17s/^# //p' "$0" >&2; exit 2; }
-dataset='' seed=901 duration=20 core=0 rounds=3 program=build/alidade output=out/realtime against='' against_configs=''
+dataset='' seed=901 duration=20 core='' rounds=3 program=build/alidade output=out/realtime against='' against_configs=''
 for argument in "$@"; do
   case "$argument" in
     --dataset=?*) dataset=${argument#*=} ;;
@@ -37,6 +38,9 @@ for argument in "$@"; do
 done
 [[ -z $against || -n $against_configs ]] || { echo "--against needs --against-configs" >&2; usage; }
 
+# Of "pid 7's current affinity list: 2,4-7", the 2.
+[[ -n $core ]] || core=$(taskset -pc $$ | sed 's/.*: *\([0-9]*\).*/\1/')
+
 mkdir -p "$output"
 if [[ -z $dataset ]]; then
   dataset=$output/sequence_${seed}_$duration
@@ -47,8 +51,8 @@ if [[ -z $dataset ]]; then
 fi
 images=$dataset/mav0/cam0/data.csv
 
-# run SIDE PROGRAM CONFIGS ESTIMATOR ROUND: appends side,estimator,round and the milliseconds of a frame: decoding (empty where it is not
-# separate), tracking, back end, total, CPU of the back end, CPU of all.
+# run SIDE PROGRAM CONFIGS ESTIMATOR ROUND: appends side,estimator,round and the milliseconds of a frame: tracking, back end, total, CPU of
+# the back end, CPU of all.
 run() {
   local folder=$output/run_$1_$4 cpu_s back_cpu_s
   cpu_s=$({ TIMEFORMAT='%U %S'
@@ -56,21 +60,19 @@ run() {
       --config="$3/estimators/$4.yaml" --output="$folder" >"$output/run.log" 2>&1; } 2>&1) || { cat "$output/run.log" >&2; exit 1; }
   back_cpu_s=$(sed -n 's/^ *"cpu_s": *\([0-9.e+-]*\).*/\1/p' "$folder/run.json")
   awk -F, -v row="$1,$4,$5" -v cpu_s="$cpu_s" -v back_cpu_s="$back_cpu_s" -v images="$(grep -vc '^#' "$images")" '
-    NR == 1 { for (i = 1; i <= NF; i++) { column[$i] = i; if ($i ~ /^decod/) decoding = i } next }
+    NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
     {
       frames++
-      decode += decoding ? $decoding : 0
       back += $column["backend_ms"]
       total += $column["total_ms"]
     }
     END {
       split(cpu_s, cpu, " ")
-      printf "%s,%s,%.6g,%.6g,%.6g,%.6g,%.6g\n", row, decoding ? sprintf("%.6g", decode / frames) : "", (total - back - decode) / frames,
-        back / frames, total / frames, 1e3 * back_cpu_s / frames, 1e3 * (cpu[1] + cpu[2]) / images
+      printf "%s,%.6g,%.6g,%.6g,%.6g,%.6g\n", row, (total - back) / frames, back / frames, total / frames, 1e3 * back_cpu_s / frames, 1e3 * (cpu[1] + cpu[2]) / images
     }' "$folder/timing.csv" >>"$output/frames.csv"
 }
 
-echo "side,estimator,round,decoding_ms,tracking_ms,backend_ms,total_ms,backend_cpu_ms,process_cpu_ms" >"$output/frames.csv"
+echo "side,estimator,round,tracking_ms,backend_ms,total_ms,backend_cpu_ms,process_cpu_ms" >"$output/frames.csv"
 for ((round = 1; round <= rounds; round++)); do
   for estimator in alidade_filter alidade_smoother; do
     run new "$program" configs "$estimator" "$round"
@@ -92,7 +94,7 @@ awk -F, -v period_ms="$period_ms" -v rounds="$rounds" '
   # kind: "ms" | "x" (real-time factor) | "ratio" of the two sides.
   function line(side, estimator, kind,    part, mine, other) {
     printf "%-5s %-17s %-6s", side, estimator, kind
-    for (part = 4; part <= 9; part++) {
+    for (part = 4; part <= 8; part++) {
       mine = median(side SUBSEP estimator SUBSEP part)
       other = median("base" SUBSEP estimator SUBSEP part)
       if (mine == "" || mine == 0 || (kind == "ratio" && other + 0 == 0)) cell("-")
@@ -104,11 +106,10 @@ awk -F, -v period_ms="$period_ms" -v rounds="$rounds" '
   }
   NR > 1 {
     if (!(($1, $2) in known)) { known[$1, $2] = 1; sides[++rows] = $1; names[rows] = $2 }
-    for (i = 4; i <= 9; i++) if ($i != "") time[$1, $2, i, $3] = $i
+    for (i = 4; i <= 8; i++) time[$1, $2, i, $3] = $i
   }
   END {
-    printf "%-5s %-17s %-6s %9s %9s %9s %9s %9s %9s\n", "", "estimator", "", "decoding", "tracking", "back end", "total", "backCPU",
-      "allCPU"
+    printf "%-5s %-17s %-6s %9s %9s %9s %9s %9s\n", "", "estimator", "", "tracking", "back end", "total", "backCPU", "allCPU"
     for (r = 1; r <= rows; r++) { line(sides[r], names[r], "ms"); line(sides[r], names[r], "x") }
     for (r = 1; r <= rows; r++) if (sides[r] == "new" && (("base", names[r]) in known)) line("new", names[r], "ratio")
   }' "$output/frames.csv"

@@ -31,6 +31,13 @@ class Playback {
     const GreyImage& image = sequence_.images[next_++];
     return tracker_.Track(stamp_ns, image.pixels.data(), image.width_px, image.height_px);
   }
+  /// The first images, which are not timed.
+  Status WarmUp() {
+    for (std::size_t i = 0; i < kWarmUpFrames && !AtEnd(); ++i) {
+      ALIDADE_RETURN_IF_ERROR(Step().status());
+    }
+    return AtEnd() ? Status::Input("no image after the warm-up") : Status::Ok();
+  }
 
  private:
   KltTracker tracker_;
@@ -68,12 +75,17 @@ void FrontendFrame(benchmark::State& state, const Result<test::ImageSequence>& s
     state.PauseTiming();
     if (playback == nullptr || playback->AtEnd()) {
       playback = std::make_unique<Playback>(config, *sequence);
-      for (std::size_t i = 0; i < kWarmUpFrames; ++i) {
-        benchmark::DoNotOptimize(playback->Step());
+      if (const Status warmed = playback->WarmUp(); !warmed.ok()) {
+        state.SkipWithError(warmed.message().c_str());
+        break;
       }
     }
     state.ResumeTiming();
-    benchmark::DoNotOptimize(playback->Step());
+    const Result<TrackFrame> frame = playback->Step();
+    if (!frame.ok()) {
+      state.SkipWithError(frame.message().c_str());
+      break;
+    }
   }
   state.counters["features"] = summary->features_per_frame;
   state.counters["life"] = summary->mean_length;
@@ -81,7 +93,7 @@ void FrontendFrame(benchmark::State& state, const Result<test::ImageSequence>& s
   state.counters["rejected_share"] = summary->rejected_share;
 }
 
-/// A sequence is made once a program, when its benchmark is the first time due.
+/// Each sequence is rendered or read when its benchmark first runs.
 void Rendered(benchmark::State& state) {
   static const Result<test::ImageSequence> kSequence = test::RenderedFigureEight();
   FrontendFrame(state, kSequence);

@@ -25,8 +25,9 @@ struct Row {
 
 class FixAcceptanceTest : public testing::Test {
  protected:
-  /// The script's answer when the last row is `last`; `others`: rows before it.
-  CommandResult Check(const Row& last, int others = 3) const {
+  /// The script's answer when the last row is `last`; `others`: rows before it; `compared`: exit code of
+  /// the comparison. The program fails in another locale than C.
+  CommandResult Check(const Row& last, int others = 3, int compared = 0) const {
     std::string table =
         "| sequence | estimator | runs aligned | after [s], mean, worst | RMSE [m] | worst [m] | to the "
         "first "
@@ -36,10 +37,10 @@ class FixAcceptanceTest : public testing::Test {
       table += Line(Row());
     }
     table += Line(last) + "\n| metre | `filter` | 0.7 | – | – | – | – | 0.1 | 0.2 | 9 of 12 | 0.1 | 0.2 |\n";
-    const std::string program =
-        folder_.Write("alidade", "#!/bin/sh\n[ \"$1\" = gnss_study ] || exit 0\ncat '" +
-                                     folder_.Write("table.md", table) + "'\n");
-    return test::Shell("chmod +x " + program + " && ALIDADE=" + program + " " +
+    const std::string program = folder_.Write(
+        "alidade", "#!/bin/sh\n[ \"$LC_ALL\" = C ] || exit 9\n[ \"$1\" = gnss_study ] || exit " +
+                       std::to_string(compared) + "\ncat '" + folder_.Write("table.md", table) + "'\n");
+    return test::Shell("chmod +x " + program + " && LC_ALL=C.UTF-8 ALIDADE=" + program + " " +
                        Source("scripts/fix_acceptance.sh") + " " + folder_.File("out"));
   }
 
@@ -77,6 +78,20 @@ TEST_F(FixAcceptanceTest, GIVEN_a_row_that_is_missing_THEN_it_fails) {
   const CommandResult result = Check({}, 2);
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.output, HasSubstr("found 3 of the 4"));
+}
+
+TEST_F(FixAcceptanceTest, GIVEN_runs_that_failed_THEN_the_others_are_checked_and_it_fails) {
+  const CommandResult result = Check({}, 3, 7);
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.output, HasSubstr("some runs failed"));
+  EXPECT_THAT(result.output, HasSubstr(": met"));
+}
+
+TEST_F(FixAcceptanceTest, GIVEN_a_comparison_that_ends_early_THEN_nothing_is_checked) {
+  const CommandResult result = Check({}, 3, 6);
+  EXPECT_EQ(result.code, 6);
+  EXPECT_THAT(result.output, HasSubstr("compare ended with exit code 6"));
+  EXPECT_THAT(result.output, testing::Not(HasSubstr(": met")));
 }
 
 }  // namespace

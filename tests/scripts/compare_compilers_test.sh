@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # GIVEN two files states.csv WHEN compare_compilers.sh compares them THEN the largest difference of each quantity is printed, and one
-# above the bound in any column, a NaN, a blank, a missing row and another header fail.
+# above the bound in any column, a NaN, a blank, a missing row and another header fail; so do a
+# missing file of two folders and folders without any.
 # Usage: compare_compilers_test.sh SCRIPT
 set -euo pipefail
 script=$1
@@ -38,3 +39,23 @@ expect 1 "columns differ" "s/p_z/p_w/"
 # A NaN of both is no agreement either.
 sed -i "s/-3.5/nan/" "$work/first.csv"
 expect 1 "column 4 at 2000000000 is nan and nan" ""
+
+# Two folders: each file of either of them counts, and none is a failure.
+# expect_folders CODE TEXT: of the folders first and second.
+expect_folders() {
+  local code=0 output
+  output=$("$script" --compare "$work/first" "$work/second" 2>&1) || code=$?
+  if [[ $code -ne $1 || $output != *"$2"* ]]; then
+    printf 'two folders: code %s, expected %s; output, expected "%s":\n%s\n' "$code" "$1" "$2" "$output"
+    exit 1
+  fi
+}
+mkdir -p "$work/first/a/1" "$work/second/a/1" "$work/second/b/2"
+expect_folders 1 "no states.csv below"
+sed "s/nan/-3.5/" "$work/first.csv" | tee "$work/first/a/1/states.csv" >"$work/second/a/1/states.csv"
+expect_folders 0 "p 0.0e+00"
+sed "s/-3.5/-3.4/" "$work/first/a/1/states.csv" >"$work/second/a/1/states.csv"
+expect_folders 1 "p 1.0e-01"
+cp "$work/first/a/1/states.csv" "$work/second/a/1/states.csv"
+cp "$work/first/a/1/states.csv" "$work/second/b/2/states.csv"
+expect_folders 1 "b/2"

@@ -6,14 +6,16 @@ set -euo pipefail
 root=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+export LC_ALL=C.UTF-8  # in place of one with a decimal comma, which few machines have
 
 # programs EXPONENT_OF_TRACKS LARGEST_WINDOW: the time is 20 us times window^2 (window from 20 on; below it is constant) times a power
-# of the tracks, in output as that of Google Benchmark.
+# of the tracks, in output as that of Google Benchmark. It fails in another locale than C.
 programs() {
   local name
   for name in filter smoother; do
     cat >"$work/alidade_${name}_benchmark" <<PROGRAM
 #!/usr/bin/env bash
+[[ \$LC_ALL == C ]] || exit 1
 awk -v name="$name" -v power="$1" -v largest="$2" '
   function row(window, tracks,    long) {
     long = window < 20 ? 20 : window
