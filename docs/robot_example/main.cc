@@ -9,8 +9,7 @@
 // Streams a folder with imu0/data.csv and cam0/tracks.csv into a session, in the order of arrival: samples at
 // once, frames 60 ms late. On a robot the drivers take the place of the files.
 namespace {
-std::vector<alidade::ImuSample> ReadImu(const std::string& path) {
-  std::ifstream file(path);
+std::vector<alidade::ImuSample> ReadImu(std::ifstream file) {
   std::vector<alidade::ImuSample> samples;
   for (std::string line; std::getline(file, line);) {
     alidade::ImuSample s;
@@ -22,8 +21,7 @@ std::vector<alidade::ImuSample> ReadImu(const std::string& path) {
   return samples;
 }
 
-std::vector<alidade::TrackFrame> ReadTracks(const std::string& path) {
-  std::ifstream file(path);
+std::vector<alidade::TrackFrame> ReadTracks(std::ifstream file) {
   std::vector<alidade::TrackFrame> frames;
   for (std::string line; std::getline(file, line);) {
     alidade::TimeNs stamp_ns = 0;
@@ -38,18 +36,14 @@ std::vector<alidade::TrackFrame> ReadTracks(const std::string& path) {
   }
   return frames;
 }
-
-void Print(alidade::Session* session) {
-  for (const alidade::SessionEvent& event : session->TakeEvents()) {
-    std::printf("%s\n", alidade::Describe(event).c_str());
-  }
-}
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string folder = argc == 2 ? argv[1] : "";
-  const auto samples = ReadImu(folder + "/mav0/imu0/data.csv");
-  const auto frames = ReadTracks(folder + "/mav0/cam0/tracks.csv");
+  const std::string imu_path = folder + "/mav0/imu0/data.csv";
+  const std::string tracks_path = folder + "/mav0/cam0/tracks.csv";
+  const auto samples = ReadImu(std::ifstream(imu_path));
+  const auto frames = ReadTracks(std::ifstream(tracks_path));
   alidade::RigCalibration rig;  // of the simulator; a robot has its own
   rig.camera =
       *alidade::CameraModel::Create(alidade::DistortionModel::kNone, {460, 460, 376, 240}, {}, 752, 480);
@@ -58,8 +52,12 @@ int main(int argc, char** argv) {
   alidade::SessionOptions options;
   options.lateness.camera_s = 0.1;
   const auto session = alidade::Session::Make(alidade::EstimatorConfig(), rig, options);
-  if (samples.empty() || frames.empty() || !session.ok()) {
-    std::fprintf(stderr, "usage: robot FOLDER; %s\n", session.message().c_str());
+  const std::string error = argc != 2         ? "usage: robot FOLDER"
+                            : samples.empty() ? "no IMU samples in " + imu_path
+                            : frames.empty()  ? "no tracks in " + tracks_path
+                                              : session.message();
+  if (argc != 2 || samples.empty() || frames.empty() || !session.ok()) {
+    std::fprintf(stderr, "%s\n", error.c_str());
     return 1;
   }
   auto frame = frames.begin();
@@ -68,9 +66,11 @@ int main(int argc, char** argv) {
     for (; frame != frames.end() && frame->stamp_ns + 60'000'000 <= sample.stamp_ns; ++frame) {
       (*session)->AddFrame(*frame);
     }
-    Print(session->get());
+    for (const alidade::SessionEvent& event : (*session)->TakeEvents()) {
+      std::printf("%s\n", alidade::Describe(event).c_str());
+    }
   }
-  const auto newest = (*session)->Newest();  // without the frames that still wait
+  const auto newest = (*session)->Newest();  // frames of the last 60 ms have not arrived, earlier ones wait
   if (!newest.ok()) {
     std::fprintf(stderr, "no estimate: %s\n", newest.message().c_str());
     return 1;

@@ -48,14 +48,7 @@ bool IsLocalPosition(const std::string& type) {
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-/// Of the positions of a message's topic that have no covariance.
-Result<double> DeviationOf(const BagMessage& message, const BagContext& bag) {
-  const std::string& text = bag.topics[kDeviation];
-  if (text.empty()) {
-    return Status::Input(bag.path + ": " + message.connection->topic + " (" + message.connection->type +
-                         "): found a position without a covariance, expected --topics=...," + kDeviation +
-                         "=METRES with its standard deviation");
-  }
+Result<double> ParseDeviation(const std::string& text) {
   double deviation_m = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), deviation_m);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(deviation_m) ||
@@ -66,12 +59,35 @@ Result<double> DeviationOf(const BagMessage& message, const BagContext& bag) {
   return deviation_m;
 }
 
+/// Of the positions of a message's topic that have no covariance.
+Result<double> DeviationOf(const BagMessage& message, const BagContext& bag) {
+  if (bag.topics.IsNamed(kDeviation)) {
+    return ParseDeviation(bag.topics[kDeviation]);
+  }
+  const std::string& type = message.connection->type;
+  return Status::Input(
+      bag.path + ": " + message.connection->topic + " (" + type + "): found a position without a " +
+      (LocalPositionHasCovariance(type) ? "positive definite " : "") + "covariance, expected --topics=...," +
+      kDeviation + "=METRES with its standard deviation");
+}
+
 }  // namespace
 
 std::vector<BagTopic> FixTopics() {
   std::vector<std::string> types = LocalPositionTypes();
   types.insert(types.begin(), "sensor_msgs/NavSatFix");
   return {{"fix", "/fix0/fix", std::move(types), BagTopic::Search::kWhenNamed}, {kDeviation, "", {}}};
+}
+
+Status CheckFixTopics(const BagTopics& topics) {
+  if (!topics.IsNamed(kDeviation)) {
+    return Status::Ok();
+  }
+  if (!topics.IsNamed("fix")) {
+    return Status::Usage(std::string("--topics: found ") + kDeviation +
+                         " without fix, expected fix=TOPIC with the topic of the positions");
+  }
+  return ParseDeviation(topics[kDeviation]).status();
 }
 
 Result<bool> BagFixes::Take(const BagMessage& message, BagContext* bag) {

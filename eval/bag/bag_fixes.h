@@ -17,11 +17,12 @@ namespace alidade {
 // covariance.
 
 [[nodiscard]] std::vector<BagTopic> FixTopics();
+/// kUsage: fix_std_m is no length, or is set without a topic that it applies to.
+[[nodiscard]] Status CheckFixTopics(const BagTopics& topics);
 
 /// Each sensor by its sheet; without one, with a lever arm and a time offset of zero. A NavSatFix of a
 /// topic that was not named is passed over, for its clock and its lever arm are not known. kInput: a sheet
-/// that does not parse, a position without a covariance and without fix_std_m. kUsage: fix_std_m is no
-/// length.
+/// that does not parse, a position without a positive definite covariance and without fix_std_m.
 class BagFixes : public BagCollector {
  public:
   Result<bool> Take(const BagMessage& message, BagContext* bag) override;

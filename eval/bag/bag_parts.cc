@@ -16,6 +16,7 @@ Result<BagTopics> MakeBagTopics(const std::string& list) {
   }
   BagTopics topics(all);
   ALIDADE_RETURN_IF_ERROR(topics.Set(list));
+  ALIDADE_RETURN_IF_ERROR(CheckFixTopics(topics));
   return topics;
 }
 

@@ -12,7 +12,7 @@ namespace alidade {
 // What a bag can hold, a line a sensor in each of these lists.
 
 /// The topics that can be named, with the names of `list`: "imu=/imu/data,cam0=/left/image_raw" (docs/bags.md
-/// lists the words). kUsage: an unknown word, or no name.
+/// lists the words). kUsage: an unknown word, no name, or one that CheckFixTopics refuses.
 Result<BagTopics> MakeBagTopics(const std::string& list);
 
 /// A message goes to the first collector that takes it; datasets are assembled in this order.

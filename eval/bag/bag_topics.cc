@@ -19,6 +19,15 @@ std::string Inventory(const Found& found) {
   return text;
 }
 
+/// "a, b or c" of the types that a topic may hold.
+std::string TypesOf(const BagTopic& topic) {
+  std::string text;
+  for (std::size_t i = 0; i < topic.types.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 < topic.types.size() ? ", " : " or ") + topic.types[i];
+  }
+  return text;
+}
+
 /// One topic's part of BagTopics::Resolve.
 Status ResolveOne(const std::string& path, const Found& found, const BagTopic& topic, std::string* name) {
   const auto fits = [&](const std::string& type) {
@@ -29,7 +38,7 @@ Status ResolveOne(const std::string& path, const Found& found, const BagTopic& t
     return Status::Ok();
   }
   if (*name != topic.usual_name) {
-    return Status::Input(path + ": no topic " + *name + " of type " + topic.types.front() + "; found " +
+    return Status::Input(path + ": no topic " + *name + " of type " + TypesOf(topic) + "; found " +
                          Inventory(found));
   }
   std::vector<std::string> candidates;
@@ -40,8 +49,8 @@ Status ResolveOne(const std::string& path, const Found& found, const BagTopic& t
   }
   if (candidates.size() > 1) {
     return Status::Input(path + ": " + std::to_string(candidates.size()) + " topics of type " +
-                         topic.types.front() + ", expected --topics=" + topic.word +
-                         "=TOPIC to name one; found " + Inventory(found));
+                         TypesOf(topic) + ", expected --topics=" + topic.word + "=TOPIC to name one; found " +
+                         Inventory(found));
   }
   *name = candidates.empty() ? std::string() : candidates.front();
   return Status::Ok();
@@ -51,7 +60,7 @@ Status ResolveOne(const std::string& path, const Found& found, const BagTopic& t
 
 BagTopics::BagTopics(const std::vector<BagTopic>& topics) {
   for (const BagTopic& topic : topics) {
-    topics_.push_back({topic, topic.usual_name});
+    topics_.push_back({topic, topic.usual_name, false});
   }
 }
 
@@ -71,7 +80,9 @@ Status BagTopics::Set(const std::string& list) {
     if (named == words.end()) {
       return Status::Usage("--topics: unknown sensor '" + word + "'" + Suggestion(word, words));
     }
-    topics_[static_cast<std::size_t>(named - words.begin())].name = entry.substr(equals + 1);
+    Named& topic = topics_[static_cast<std::size_t>(named - words.begin())];
+    topic.name = entry.substr(equals + 1);
+    topic.is_named = true;
   }
   return Status::Ok();
 }
@@ -86,18 +97,17 @@ Status BagTopics::Resolve(const std::string& path, const std::map<std::string, s
   }
   for (const Named& topic : topics_) {
     if (topic.search == BagTopic::Search::kRequired && topic.name.empty()) {
-      return Status::Input(path + ": no topic of type " + topic.types.front() + "; found " +
-                           Inventory(found));
+      return Status::Input(path + ": no topic of type " + TypesOf(topic) + "; found " + Inventory(found));
     }
   }
   return Status::Ok();
 }
 
-const std::string& BagTopics::operator[](std::string_view word) const {
+const BagTopics::Named& BagTopics::Find(std::string_view word) const {
   const auto topic =
       std::find_if(topics_.begin(), topics_.end(), [&](const Named& named) { return named.word == word; });
   CHECK(topic != topics_.end()) << "topic '" << word << "' is in no list";
-  return topic->name;
+  return *topic;
 }
 
 }  // namespace alidade

@@ -37,13 +37,19 @@ class BagTopics {
   /// does not exist, an ambiguous topic.
   Status Resolve(const std::string& path, const std::map<std::string, std::string>& found);
 
+  /// Whether Set has named a topic that exists in the list.
+  [[nodiscard]] bool IsNamed(std::string_view word) const { return Find(word).is_named; }
+
   /// The name of a topic that exists in the list.
-  [[nodiscard]] const std::string& operator[](std::string_view word) const;
+  [[nodiscard]] const std::string& operator[](std::string_view word) const { return Find(word).name; }
 
  private:
   struct Named : BagTopic {
     std::string name;
+    bool is_named = false;
   };
+  [[nodiscard]] const Named& Find(std::string_view word) const;
+
   std::vector<Named> topics_;
 };
 

@@ -63,7 +63,7 @@ const std::vector<Command>& Commands() {
        0,
        RunStarts},
       {"gnss_study",
-       "evaluate runs with positions: alignment, outages, clock jumps",
+       "evaluate runs with GNSS: alignment, outages, clock jumps",
        "gnss_study --plan=gvio --input=out/gvio",
        {"plan", "input", "data", "quiet"},
        {"plan", "input"},

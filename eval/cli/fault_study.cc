@@ -113,7 +113,7 @@ class FaultStudy {
     return ScoreFault(rows, times, &clean_rows);
   }
 
-  /// The estimator's run on the same sequence without the fault.
+  /// The estimator's first stored run on the same sequence without the fault.
   [[nodiscard]] Result<std::optional<RunResult>> CleanRun(const Scene& scene, const PlanEstimator& estimator,
                                                           unsigned seed) const {
     for (const Scene& other : scenes_) {
@@ -122,7 +122,10 @@ class FaultStudy {
           other.sequence->estimator_settings == scene.sequence->estimator_settings &&
           estimator.RunsOn(other.sequence->name) &&
           std::find(seeds.begin(), seeds.end(), seed) != seeds.end()) {
-        return StoredRun(estimator.name, other.sequence->name, seed);
+        Result<std::optional<RunResult>> run = StoredRun(estimator.name, other.sequence->name, seed);
+        if (!run.ok() || run->has_value()) {
+          return run;
+        }
       }
     }
     return std::optional<RunResult>();

@@ -133,6 +133,10 @@ const std::vector<std::string>& LocalPositionTypes() {
   return types;
 }
 
+bool LocalPositionHasCovariance(std::string_view type) {
+  return LayoutOf(type).has_covariance;
+}
+
 std::optional<LocalPosition> DecodeLocalPosition(std::string_view type, std::string_view bytes) {
   const LocalLayout layout = LayoutOf(type);
   ByteReader in(bytes);

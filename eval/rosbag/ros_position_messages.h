@@ -32,6 +32,8 @@ struct DecodedNavSatFix {
 /// Types of other programs that hold a position in a frame of their own, such as motion capture and UWB:
 /// geometry_msgs/PointStamped, PoseStamped, PoseWithCovarianceStamped, TransformStamped, nav_msgs/Odometry.
 [[nodiscard]] const std::vector<std::string>& LocalPositionTypes();
+/// Whether messages of one of LocalPositionTypes hold a covariance of the position.
+[[nodiscard]] bool LocalPositionHasCovariance(std::string_view type);
 struct LocalPosition {
   TimeNs stamp_ns = 0;                            ///< of the header
   Eigen::Vector3d p_A = Eigen::Vector3d::Zero();  ///< of the moving frame's origin [m]

@@ -60,11 +60,12 @@ double FirstWindowAfter(const std::vector<RunInstant>& run, TimeNs from_ns, cons
 double Rmse(const std::vector<RunInstant>& run, TimeNs from_ns, TimeNs to_ns) {
   double sum = 0;
   int count = 0;
-  for (const RunInstant& row : run) {
-    if (row.reported.stamp_ns >= from_ns && row.reported.stamp_ns <= to_ns) {
-      sum += row.error_m * row.error_m;
-      ++count;
-    }
+  const auto first = std::lower_bound(
+      run.begin(), run.end(), from_ns,
+      [](const RunInstant& row, TimeNs stamp_ns) { return row.reported.stamp_ns < stamp_ns; });
+  for (auto row = first; row != run.end() && row->reported.stamp_ns <= to_ns; ++row) {
+    sum += row->error_m * row->error_m;
+    ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : kNan;
 }

@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-/// "mean, worst", and the count where some runs never recovered.
+/// "mean, worst", and the count of the runs in which it happened if those are not all.
 std::string Times(const FaultStudyRow& row, double FaultFigures::*figure) {
   std::vector<double> times;
   std::size_t applies = 0;
@@ -36,7 +36,7 @@ bool IsBesideClean(const FaultStudyRow& row) {
 
 std::string FaultStudyTable(const std::vector<FaultStudyRow>& rows) {
   std::string table =
-      "Mean and worst over the runs [s]; in brackets: runs that recovered at all.\n\n"
+      "Mean and worst over the runs [s]; in brackets: runs in which it happened.\n\n"
       "| sequence | estimator | runs | reported after the start | ok after the end | pose within 3 sigma | "
       "position as without the fault | longest silent failure |\n"
       "|---|---|---:|---:|---:|---:|---:|---:|\n";

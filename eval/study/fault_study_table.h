@@ -14,8 +14,8 @@ struct FaultStudyRow {
   std::vector<FaultFigures> runs;
 };
 
-/// Markdown: mean and worst of the times of the runs that have recovered, and how many of all those are. A
-/// row without runs is omitted.
+/// Markdown: of each event, mean and worst time of the runs in which it happened, and how many those are if
+/// not all. A row without runs is omitted.
 [[nodiscard]] std::string FaultStudyTable(const std::vector<FaultStudyRow>& rows);
 
 }  // namespace alidade

@@ -42,6 +42,14 @@ TEST(FaultStudyCommand, ABlackoutOfTwoSeconds) {
                             "\\| 0\\.00, 0\\.00 \\|"));
   EXPECT_THAT(result.output, Not(HasSubstr("| clean |"))) << "has no fault";
   EXPECT_THAT(result.output, Not(HasSubstr("\\*"))) << "the clean run was found";
+
+  std::string more = test::ReadFile(plan);
+  more.insert(more.find(scene), scene + "name: not_run, set: {duration_s: 25, path_m: 32.5}}\n");
+  EXPECT_EQ(Alidade("fault_study --quiet --plan=" + folder.Write("more.yaml", more) +
+                    " --input=" + folder.File("out"))
+                .output,
+            result.output)
+      << "another sequence without the fault comes first, without a run";
 }
 
 }  // namespace

@@ -75,6 +75,19 @@ void ExpectRobotFollowsALog(const TemporaryFolder& folder) {
   EXPECT_NEAR(speed_mps, TrueSpeedAtTheEnd(folder.File("log")), 0.1);
 }
 
+/// Expects build/robot of the folder to end with an error without its input, and to name the file.
+void ExpectRobotNamesMissingFiles(const TemporaryFolder& folder) {
+  const auto expect = [&](const std::string& arguments, const std::string& text) {
+    const CommandResult run = ShellIn(folder.path(), "build/robot " + arguments);
+    EXPECT_EQ(run.code, 1) << text;
+    EXPECT_THAT(run.output, testing::HasSubstr(text));
+  };
+  expect("", "usage: robot FOLDER");
+  expect("none", "no IMU samples in none/mav0/imu0/data.csv");
+  folder.Write("imu_alone/mav0/imu0/data.csv", "#\n1000000000,0,0,0,0,0,9.81\n");
+  expect("imu_alone", "no tracks in imu_alone/mav0/cam0/tracks.csv");
+}
+
 // GIVEN a program that links alidade::run alone, WHEN it streams a recorded log into a session, THEN the
 // session starts and follows, and the program needs neither OpenCV nor yaml nor what reads bags and
 // downloads.
@@ -100,6 +113,7 @@ TEST(Consumer, ARobotNeedsTheSessionAlone) {
   EXPECT_THAT(symbols.output, testing::Not(testing::HasSubstr("nlohmann")));
 
   ExpectRobotFollowsALog(folder);
+  ExpectRobotNamesMissingFiles(folder);
 
   // A log that ends before a start is possible.
   folder.Write("short/mav0/imu0/data.csv", "#\n1000000000,0,0,0,0,0,9.81\n1010000000,0,0,0,0,0,9.81\n");

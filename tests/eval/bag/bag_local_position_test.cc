@@ -128,7 +128,10 @@ TEST_P(BagLocalPosition, GIVEN_no_deviation_THEN_a_message_without_a_covariance_
 
 TEST_P(BagLocalPosition, GIVEN_a_covariance_of_zeros_THEN_it_counts_as_none) {
   const std::string path = Recorded(Vector3d::Zero());
-  EXPECT_EQ(Read(path, "fix=/vrpn/robot").code(), StatusCode::kInput);
+  const Result<BagImport> import = Read(path, "fix=/vrpn/robot");
+  EXPECT_EQ(import.code(), StatusCode::kInput);
+  EXPECT_THAT(import.message(), HasSubstr(GetParam().has_covariance ? "without a positive definite covariance"
+                                                                    : "without a covariance"));
   ExpectPositions(Read(path, "fix=/vrpn/robot,fix_std_m=0.01"), Vector3d::Constant(1e-4));
 }
 
@@ -140,12 +143,19 @@ TEST_P(BagLocalPosition, GIVEN_a_topic_that_is_not_named_THEN_it_is_not_used) {
 }
 
 TEST_P(BagLocalPosition, GIVEN_a_deviation_that_is_no_length_THEN_it_is_named) {
-  const std::string path = Recorded(Vector3d::Zero());
-  for (const char* text : {"0", "-1", "nan", "inf", "1cm", "0.01x"}) {
+  // Positions with a covariance do not need it; a wrong one is refused all the same.
+  const std::string path = Recorded(Vector3d::Ones());
+  for (const char* text : {"0", "-1", "nan", "inf", "1cm", "0.01x", "abc"}) {
     const Result<BagImport> import = Read(path, std::string("fix=/vrpn/robot,fix_std_m=") + text);
     EXPECT_EQ(import.code(), StatusCode::kUsage) << text;
     EXPECT_THAT(import.message(), HasSubstr("fix_std_m: found '" + std::string(text) + "'"));
   }
+}
+
+TEST_P(BagLocalPosition, GIVEN_a_deviation_without_the_topic_THEN_it_is_refused) {
+  const Result<BagImport> import = Read(Recorded(Vector3d::Ones()), "fix_std_m=0.01");
+  EXPECT_EQ(import.code(), StatusCode::kUsage);
+  EXPECT_THAT(import.message(), HasSubstr("expected fix=TOPIC"));
 }
 
 TEST_P(BagLocalPosition, GIVEN_torn_bytes_THEN_nothing_is_decoded) {

@@ -46,5 +46,15 @@ TEST(BagTopicsTest, OfTwoThatCouldBeMeantNoneIsGuessed) {
   EXPECT_EQ(ReadBag(path, options)->dataset.imu.size(), 2u);
 }
 
+TEST(BagTopicsTest, GivenATopicOfSeveralTypesThenErrorsListAllOfThem) {
+  const BagTopic topic{"pose", "/pose", {"a/One", "b/Two", "c/Three"}, BagTopic::Search::kByType};
+  BagTopics topics({topic});
+  EXPECT_THAT(topics.Resolve("x.bag", {{"/p", "a/One"}, {"/q", "c/Three"}}).message(),
+              HasSubstr("2 topics of type a/One, b/Two or c/Three, expected --topics=pose=TOPIC"));
+  ASSERT_TRUE(topics.Set("pose=/absent").ok());
+  EXPECT_THAT(topics.Resolve("x.bag", {{"/p", "a/One"}}).message(),
+              HasSubstr("no topic /absent of type a/One, b/Two or c/Three; found /p (a/One)"));
+}
+
 }  // namespace
 }  // namespace alidade
