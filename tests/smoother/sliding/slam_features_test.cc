@@ -170,8 +170,8 @@ TEST_P(FrozenCamera, PushesNoImageOutOfTheWindow) {
 
 INSTANTIATE_TEST_SUITE_P(SmootherEstimatorTest, FrozenCamera,
                          testing::Values(FramePolicy::kEveryFrame, FramePolicy::kKeyframes),
-                         [](const auto& info) {
-                           return info.param == FramePolicy::kEveryFrame ? "EveryFrame" : "Keyframes";
+                         [](const testing::TestParamInfo<FramePolicy>& policy) {
+                           return policy.param == FramePolicy::kEveryFrame ? "EveryFrame" : "Keyframes";
                          });
 
 // Landmarks change their anchors, are lost and replaced all the time: nothing of it may show on exact data.
