@@ -106,6 +106,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   ALIDADE_RETURN_IF_ERROR(PropagateTo(frame.stamp_ns + SecondsToNs(state_.calibration().time_offset_s)));
   frame_stamp_ns_ = state_.stamp_ns();
   if (frame.repeated) {
+    statistics_.propagate_ms = stopwatch.ElapsedMs();
     return EndFrame(frame.stamp_ns, true);
   }
   ++serial_;

@@ -7,7 +7,7 @@
 namespace alidade {
 
 /// Fills the figures and the series of `cell` from an estimate and the truth. `truth` null: figures stay
-/// unknown and the message states it. Too few common stamps: status "failed" with the reason.
+/// unknown and the message gives the reason. Too few common stamps: status "failed" with the reason.
 void ScoreTrajectory(const Trajectory* truth, const Trajectory& estimate, const EvaluationOptions& options,
                      CellResult* cell);
 

@@ -72,7 +72,7 @@ void PoseOnlyFactor::Linearize() const {
   memo.columns = system.columns;
   std::vector<WindowView> renormalized;
   for (size_t i = 0; i < tracks_.size(); ++i) {
-    if (memo.landmarks[i]) {  // one that its views do not determine has no row
+    if (memo.landmarks[i]) {  // a landmark that its views do not determine gives no rows
       AddTrack(Renormalized(memo.camera, tracks_[i]->views, &renormalized), memo.geometry, kernel_,
                *memo.landmarks[i], &memo.workspace, &system, tracks_[i]->depth_prior);
     }

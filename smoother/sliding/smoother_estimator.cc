@@ -104,6 +104,7 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   ALIDADE_RETURN_IF_ERROR(BeginFrame(frame.stamp_ns + SecondsToNs(camera().time_offset_s)));
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   statistics_.pixel_noise_px = pixel_noise_.px();
+  window_.newest().repeated = frame.repeated;
   if (!frame.repeated) {
     statistics_.observations_invalid =
         window_.AddObservations(camera().camera, pixel_noise_.px(), frame.observations);
@@ -145,6 +146,9 @@ Status SmootherEstimator::BeginFrame(TimeNs stamp_ns) {
 }
 
 bool SmootherEstimator::NewestIsKeyframe() const {
+  if (window_.newest().repeated && window_.size() > 1) {
+    return !MayTakeOutNewest();
+  }
   // The prior holds the first frame; with fewer than three frames every one is needed.
   if (config_.smoother.frames == FramePolicy::kEveryFrame || window_.size() <= 2) {
     return true;
@@ -154,10 +158,7 @@ bool SmootherEstimator::NewestIsKeyframe() const {
   if (window_.newest().rest) {
     return true;
   }
-  if (window_.newest().clock_anew) {
-    return true;  // the step of the clock lies between this frame and the one before
-  }
-  if (!MayMoveMeasurements(window_.newest(), window_.frame(window_.size() - 2))) {
+  if (!MayTakeOutNewest()) {
     return true;
   }
   const FrameParallax parallax =

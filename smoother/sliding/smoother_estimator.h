@@ -25,6 +25,7 @@ namespace alidade {
 ///
 /// A frame:  1. The previous frame is kept as a keyframe or taken out, its IMU joining the next interval and
 ///              its measurements the frame before; it is kept where that frame is too far from one of them.
+///              Else the frame of a repeated image, which has no view, is always taken out.
 ///           2. When the window is full the oldest frame is marginalised together with every track based
 ///              there: all observations of such a track, in newer frames too, go into the prior, each exactly
 ///              once. A track still seen starts anew with its next observation. (Re-anchoring it and using
@@ -81,8 +82,9 @@ class SmootherEstimator final : public Estimator {
   /// Solves where the measurement has a state of its own.
   Status SolveWithMeasurement(const Attachment& attachment);
   [[nodiscard]] bool NewestIsKeyframe() const;
-  /// Whether all measurements of a frame lie within their max_interpolation_s after the frame `before` it.
-  [[nodiscard]] bool MayMoveMeasurements(const WindowFrame& frame, const WindowFrame& before) const;
+  /// Whether the frame before the newest one predicts its clock, and all measurements of the newest one lie
+  /// within their max_interpolation_s after that frame. Precondition: two frames.
+  [[nodiscard]] bool MayTakeOutNewest() const;
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
   [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);

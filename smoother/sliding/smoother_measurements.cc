@@ -58,7 +58,12 @@ Result<SmootherEstimator::Attachment> SmootherEstimator::ReachMeasurement(const 
   return attachment;
 }
 
-bool SmootherEstimator::MayMoveMeasurements(const WindowFrame& frame, const WindowFrame& before) const {
+bool SmootherEstimator::MayTakeOutNewest() const {
+  const WindowFrame& frame = window_.newest();
+  const WindowFrame& before = window_.frame(window_.size() - 2);
+  if (frame.clock_anew) {
+    return false;  // the step of the clock lies between the two
+  }
   // The link to a measurement leaves the IMU's noise out, which only a short one allows.
   const auto reaches = [&](TimeNs stamp_ns, double max_interpolation_s) {
     return SecondsBetween(before.stamp_ns, stamp_ns) <= max_interpolation_s;

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 struct CarriedPrior::Rows {
   Rows(Index rows, Index columns) : count(rows), jacobian(MatrixXd::Zero(rows + rows % 2, columns)) {}
 
-  [[nodiscard]] auto Columns(const ColumnMap::Range& range) {
+  [[nodiscard]] Eigen::Block<MatrixXd> Columns(const ColumnMap::Range& range) {
     return jacobian.block(0, range.first, count, range.size);
   }
 
@@ -73,9 +73,12 @@ void CarriedPrior::AddFrames(Rows* rows) const {
   for (size_t i = 0; i < prior_.anchors.size(); ++i) {
     const WindowFrame& frame = *prior_.anchors[i].frame;
     const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
-    const auto columns = prior_.jacobian.middleCols(from.first, from.size);
-    Vector15d xi;
-    xi << prior_.NavError(i, frame.nav_state()), prior_.BiasError(frame.imu_bias());
+    const MatrixXd::ConstColsBlockXpr columns = prior_.jacobian.middleCols(from.first, from.size);
+    Vector15d xi = Vector15d::Zero();
+    xi.head<kNavColumns>() = prior_.NavError(i, frame.nav_state());
+    if (from.size == kStateColumns) {
+      xi.tail<kBiasColumns>() = prior_.BiasError(frame.imu_bias());
+    }
     rows->Columns({columns_.Frame(frame.index).first, from.size}) = columns;
     rows->residual.noalias() += columns * xi.head(from.size);
   }
@@ -99,7 +102,7 @@ void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
   const WindowTrack* track = landmarks_[landmark].track;
   const MatrixXd columns =
       prior_.jacobian.middleCols<kLandmarkColumns>(prior_columns_.Landmark(static_cast<int>(landmark)).first);
-  auto own = rows->Columns(columns_.Landmark(landmarks_[landmark].number));
+  Eigen::Block<MatrixXd> own = rows->Columns(columns_.Landmark(landmarks_[landmark].number));
   if (track == nullptr) {
     own = columns;
     return;
@@ -119,7 +122,7 @@ void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
   AnchorChange change;
   CHECK(ChangeAnchor(from_geometry, to_geometry, back.to, &change, calibration_.layout,
                      {known.plane, track->plane()}));
-  const auto pose = [&](const WindowFrame& frame) {
+  const auto pose = [&](const WindowFrame& frame) -> Eigen::Block<MatrixXd> {
     return rows->Columns({columns_.Frame(frame.index).first, kPoseColumns});
   };
   own.noalias() = columns * change.landmark;

@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-/// Whose landmarks a LinearPrior has, and how they are numbered among a window's unknowns.
+/// A landmark of a LinearPrior: its track, and its number among the window's unknowns.
 struct PriorLandmark {
   const WindowTrack* track = nullptr;  ///< null: lost
   int number = 0;

@@ -68,11 +68,16 @@ bool LeavingColumns::Reach(const InformationTerm& term) const {
   });
 }
 
-/// The old prior and the views of its landmarks and of the next prior's, as terms.
+/// The old prior and the landmarks' views that leave (SlamChange), as terms.
 class CarriedTerms {
  public:
   CarriedTerms(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
                const SlamChange& slam, const LeavingColumns& leaving);
+  CarriedTerms(const CarriedTerms&) = delete;  // the terms refer to geometry_
+  CarriedTerms& operator=(const CarriedTerms&) = delete;
+  CarriedTerms(CarriedTerms&&) = delete;
+  CarriedTerms& operator=(CarriedTerms&&) = delete;
+  ~CarriedTerms() = default;
 
   [[nodiscard]] const InformationTerm& prior() const { return *prior_; }
   [[nodiscard]] const std::vector<AnchoredViewTerm>& views() const { return views_; }
@@ -91,19 +96,23 @@ CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior,
   }
   CHECK(slam.before.size() == prior.landmarks.size());
   std::vector<PriorLandmark> landmarks;
-  const auto add_views = [&](const WindowTrack& track, int number) {
-    for (const WindowView& view : track.views) {
-      views_.emplace_back(geometry_, calibration, slam.kernel, track, view, number);
-    }
+  const auto add_view = [&](const WindowTrack& track, const WindowView& view, int number) {
+    views_.emplace_back(geometry_, calibration, slam.kernel, track, view, number);
   };
   for (size_t i = 0; i < slam.before.size(); ++i) {
     landmarks.push_back({slam.before[i], leaving.before[i]});
     if (leaving.leaves[i] && slam.before[i] != nullptr) {
-      add_views(*slam.before[i], leaving.before[i]);
+      for (const WindowView& view : slam.before[i]->views) {
+        add_view(*slam.before[i], view, leaving.before[i]);
+      }
     }
   }
   for (size_t i = 0; i < slam.after.size(); ++i) {
-    add_views(*slam.after[i], leaving.after[i]);
+    for (const WindowView& view : slam.after[i]->views) {
+      if (view.frame->index == 0) {
+        add_view(*slam.after[i], view, leaving.after[i]);
+      }
+    }
   }
   prior_.emplace(prior, window, calibration, std::move(landmarks), geometry_);
 }

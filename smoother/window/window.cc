@@ -44,7 +44,6 @@ WindowFrame& Window::AddFrame(std::unique_ptr<WindowFrame> frame) {
 int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
                             const std::vector<TrackObservation>& observations) {
   int invalid = 0;
-  // A frame without an image of its own, as that of a measurement, neither ends nor extends tracks.
   for (auto& [id, track] : tracks_) {
     track.alive = false;
   }

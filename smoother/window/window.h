@@ -31,6 +31,7 @@ struct WindowFrame {
   std::vector<ImuSample> imu;                    ///< from the previous frame to this one; empty in the first
   std::optional<Preintegration> preintegration;  ///< of `imu`, at the previous frame's bias
   std::optional<RestMeasurement> rest;           ///< set when the rig stood still in this frame
+  bool repeated = false;                         ///< TrackFrame::repeated: without an image of its own
   // With an estimated time offset: the camera saw from where the body is later by the present offset less
   // this one, moving on at these rates (core/calibration.h, BodyRates).
   double time_offset_s = 0;           ///< that placed the frame in IMU time
@@ -80,7 +81,7 @@ struct WindowTrack {
   BearingPlane anchor_plane;            ///< likewise
   bool has_landmark = false;            ///< its depth is known from parallax
   DepthPrior depth_prior;               ///< stands in for parallax while has_landmark is false
-  bool alive = false;                   ///< seen in the newest frame
+  bool alive = false;                   ///< seen in the newest frame with an image of its own
   bool degenerate = false;              ///< at the last solve its views had no depth
 
   /// Degrees of freedom of its residuals: a SLAM feature's landmark is mostly the prior's.
@@ -108,7 +109,8 @@ class Window {
   void Clear();
   WindowFrame& AddFrame(std::unique_ptr<WindowFrame> frame);
   /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's
-  /// domain.
+  /// domain. Not for a frame without an image of its own, as that of a measurement: it neither ends nor
+  /// extends tracks.
   int AddObservations(const CameraModel& camera, double pixel_noise_px,
                       const std::vector<TrackObservation>& observations);
   /// UpdateRates of every frame.

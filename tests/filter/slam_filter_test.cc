@@ -102,6 +102,7 @@ TEST(SlamFilterTest, ARepeatedImageEndsNoTrack) {
   }
   ASSERT_TRUE(filter.AddFrame(repeated).ok());
   EXPECT_EQ(filter.Latest().stamp_ns, repeated.stamp_ns);
+  EXPECT_GT(filter.last_statistics().propagate_ms, 0);
   EXPECT_EQ(filter.state().landmarks().size(), landmarks);
   EXPECT_EQ(filter.state().covariance().dimension(), dimension);
   EXPECT_EQ(filter.AddFrame(repeated).code(), StatusCode::kInput) << "a stamp once";

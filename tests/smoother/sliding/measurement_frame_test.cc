@@ -107,11 +107,9 @@ double LongestInterval(const Window& window) {
   return longest_s;
 }
 
-// GIVEN fixes between frames that are no keyframes, WHEN these leave the window, THEN no fix is attached to a
-// frame further away than max_interpolation_s.
-TEST(MeasurementFrame, AFixStaysNearTheFrameItIsAttachedTo) {
-  const Dataset dataset = SlowWalkWithFixes();
-  const EstimatorConfig config = FewKeyframes();
+/// Runs over the fixes of `dataset`: frames leave the window, but none that holds a fix where the frame
+/// before it is further than max_interpolation_s away.
+void ExpectFixesNearTheirFrames(const Dataset& dataset, const EstimatorConfig& config) {
   SmootherEstimator smoother(config, dataset.rig);
   int attached = 0;
   double longest_s = 0;
@@ -129,6 +127,24 @@ TEST(MeasurementFrame, AFixStaysNearTheFrameItIsAttachedTo) {
   });
   EXPECT_GT(attached, 20);
   EXPECT_GT(longest_s, 0.25) << "frames have left";
+}
+
+// GIVEN fixes between frames that are no keyframes, WHEN these leave the window, THEN no fix is attached to a
+// frame further away than max_interpolation_s.
+TEST(MeasurementFrame, AFixStaysNearTheFrameItIsAttachedTo) {
+  ExpectFixesNearTheirFrames(SlowWalkWithFixes(), FewKeyframes());
+}
+
+// GIVEN fixes between frames of an image that is repeated, THEN likewise.
+TEST(MeasurementFrame, AFixStaysNearTheFrameOfARepeatedImage) {
+  Dataset dataset = SlowWalkWithFixes();
+  for (size_t i = 10; i < dataset.frames.size(); ++i) {
+    dataset.frames[i].observations.clear();
+    dataset.frames[i].repeated = true;
+  }
+  EstimatorConfig config = FewKeyframes();
+  config.smoother.frames = FramePolicy::kEveryFrame;
+  ExpectFixesNearTheirFrames(dataset, config);
 }
 
 /// An epoch of a receiver at rest whose clock stands at `clock_m`.

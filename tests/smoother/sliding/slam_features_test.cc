@@ -108,6 +108,72 @@ TEST(SmootherEstimatorTest, ARepeatedImageEndsNoSlamFeature) {
   EXPECT_GT(2 * CountSlamFeatures(estimator.window()), before);
 }
 
+/// Tracks seen in the newest frame and in one up to `stamp_ns`.
+std::int64_t CountTracksAcross(const Window& window, TimeNs stamp_ns) {
+  return std::count_if(window.tracks().begin(), window.tracks().end(), [&](const auto& item) {
+    const std::vector<WindowView>& views = item.second.views;
+    return !views.empty() && views.back().frame == &window.newest() &&
+           views.front().frame->stamp_ns <= stamp_ns;
+  });
+}
+
+class FrozenCamera : public testing::TestWithParam<FramePolicy> {};
+
+// GIVEN landmarks in the prior, WHEN an image is repeated more often than the window has frames, THEN the
+// frames of the images before stay in the window with their views, and the next image continues the tracks.
+TEST_P(FrozenCamera, PushesNoImageOutOfTheWindow) {
+  SimulatorConfig simulator;
+  simulator.duration_s = 4;
+  simulator.path_m = 3;
+  const Dataset dataset = test::SimulateOrDie(simulator, 3);
+  EstimatorConfig config = WithSlamFeatures(60);
+  config.smoother.frames = GetParam();
+  SmootherEstimator estimator(config, dataset.rig);
+  NavEstimate initial = test::DrawInitialState(dataset, 3);
+  initial.covariance.diagonal().segment<3>(6).setConstant(1e-6);
+  ASSERT_TRUE(estimator.Initialize(initial).ok());
+  const Window& window = estimator.window();
+  constexpr size_t kFrozen = 21;  // the first repeated frame
+  const size_t seen_again = kFrozen + static_cast<size_t>(config.smoother.window) + 2;
+  ASSERT_LT(seen_again, dataset.frames.size());
+  const TimeNs last_ns = dataset.frames[kFrozen - 1].stamp_ns;
+  int size = 0;
+  int landmarks = 0;
+  std::int64_t features = 0;
+  size_t next = 0;
+  for (size_t i = 0; i <= seen_again; ++i) {
+    TrackFrame frame = dataset.frames[i];
+    if (i >= kFrozen && i < seen_again) {
+      frame.observations.clear();
+      frame.repeated = true;
+    }
+    while (next < dataset.imu.size() && (next == 0 || dataset.imu[next - 1].stamp_ns < frame.stamp_ns)) {
+      ASSERT_TRUE(estimator.AddImu(dataset.imu[next++]).ok());
+    }
+    ASSERT_TRUE(estimator.AddFrame(frame).ok());
+    ASSERT_EQ(estimator.Latest().stamp_ns, frame.stamp_ns);
+    if (i == kFrozen) {
+      size = window.size();
+      landmarks = Landmarks(window);
+      features = CountSlamFeatures(window);
+      ASSERT_GT(landmarks, 5);
+    }
+    if (i >= kFrozen) {
+      EXPECT_EQ(window.size(), size) << i;
+      EXPECT_LE(window.frame(window.size() - 2).stamp_ns, last_ns) << i;
+      EXPECT_GT(2 * Landmarks(window), landmarks) << i;
+    }
+  }
+  EXPECT_GT(CountTracksAcross(window, last_ns), 5);
+  EXPECT_GE(2 * CountSlamFeatures(window), features);
+}
+
+INSTANTIATE_TEST_SUITE_P(SmootherEstimatorTest, FrozenCamera,
+                         testing::Values(FramePolicy::kEveryFrame, FramePolicy::kKeyframes),
+                         [](const testing::TestParamInfo<FramePolicy>& policy) {
+                           return policy.param == FramePolicy::kEveryFrame ? "EveryFrame" : "Keyframes";
+                         });
+
 // Landmarks change their anchors, are lost and replaced all the time: nothing of it may show on exact data.
 TEST(SmootherEstimatorTest, SlamFeaturesLeaveExactDataExact) {
   const Dataset dataset = MakeSequence({.duration_s = 8, .exact = true});
