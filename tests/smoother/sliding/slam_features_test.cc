@@ -165,7 +165,7 @@ TEST_P(FrozenCamera, PushesNoImageOutOfTheWindow) {
     }
   }
   EXPECT_GT(CountTracksAcross(window, last_ns), 5);
-  EXPECT_GE(2 * CountSlamFeatures(window), features);
+  EXPECT_GT(3 * CountSlamFeatures(window), features);  // those that are in view after 1.2 s
 }
 
 INSTANTIATE_TEST_SUITE_P(SmootherEstimatorTest, FrozenCamera,
