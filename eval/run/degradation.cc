@@ -53,6 +53,10 @@ bool Degradation::IsFrozen(const TrackFrame& frame) {
   return frozen_;
 }
 
+bool Degradation::TracksGoOn(TimeNs imu_ns) const {
+  return sighted_ns_ == INT64_MIN || SecondsBetween(sighted_ns_, imu_ns) <= kMaxFrozenS;
+}
+
 void Degradation::OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison) {
   absolute_.try_emplace({sensor, comparison.index});
   for (auto& [source, monitor] : absolute_) {

@@ -28,6 +28,7 @@ class Degradation {
 
   /// Without tracks for this long the estimate is dead reckoning.
   static constexpr double kMaxBlindS = 0.15;
+  static constexpr double kMaxFrozenS = 0.25;
   /// After a silence of the IMU.
   static constexpr double kSettlingS = 0.5;
   /// Fewer equal pixels may be chance.
@@ -61,6 +62,9 @@ class Degradation {
   /// very same pixel. A sensor's noise moves each of them even at rest: it is the old image under a new
   /// stamp, and carries no information. Every frame, in order.
   bool IsFrozen(const TrackFrame& frame);
+  /// Whether tracks may be followed across a frame at `imu_ns` that is frozen: up to kMaxFrozenS after the
+  /// last frame with tracks. What a front end finds again after a longer motion is rather another point.
+  [[nodiscard]] bool TracksGoOn(TimeNs imu_ns) const;
   /// Whether the estimate after a frame at `imu_ns` is degraded; by data rather than by the model when both
   /// hold. Every frame, in order, after IsFrozen of it.
   /// `doubt`: of a watched calibration, else null.

@@ -55,12 +55,8 @@ void EstimatorLoop::ProcessFrame(const TrackFrame& frame) {
   const TimeNs imu_ns = ImuTime(frame.stamp_ns);
   DeliverImu(imu_ns + FrameLead());
   if (degradation_.IsFrozen(frame)) {
-    // After a longer freeze a tracker confuses points, so that tracks end.
-    constexpr double kMostRepeatS = 0.25;
-    const bool repeated = SecondsBetween(new_image_ns_, imu_ns) <= kMostRepeatS;
-    ProcessTracks({frame.stamp_ns, {}, frame.frontend_ms, repeated}, stopwatch);
+    ProcessTracks({frame.stamp_ns, {}, frame.frontend_ms, degradation_.TracksGoOn(imu_ns)}, stopwatch);
   } else {
-    new_image_ns_ = imu_ns;
     ProcessTracks(frame, stopwatch);
   }
   if (running()) {

@@ -107,7 +107,6 @@ class EstimatorLoop {
   Phase phase_ = Phase::kSeeking;
   Eigen::Vector3d gyro_radps_ = Eigen::Vector3d::Zero();  ///< of the last delivered sample
   TimeNs state_ns_ = 0;                                   ///< of the newest state
-  TimeNs new_image_ns_ = 0;                               ///< of the newest frame that is no repetition
 };
 
 }  // namespace alidade

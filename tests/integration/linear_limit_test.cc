@@ -110,12 +110,22 @@ NavEstimate Estimate(const OneWindow& window, Estimator* estimator) {
 constexpr SmootherLandmark kSmootherLandmarks[] = {SmootherLandmark::kPoseOnly,
                                                    SmootherLandmark::kInverseDepth};
 
-class LinearLimitTest : public testing::TestWithParam<ErrorConvention> {
- protected:
-  [[nodiscard]] static std::string Name(const FilterCase& filter, SmootherLandmark landmark) {
-    return filter.name + (landmark == SmootherLandmark::kPoseOnly ? " to pose-only" : " to inverse depth");
+class LinearLimitTest : public testing::TestWithParam<ErrorConvention> {};
+
+std::string Name(const FilterCase& filter, SmootherLandmark landmark) {
+  return filter.name + (landmark == SmootherLandmark::kPoseOnly ? " to pose-only" : " to inverse depth");
+}
+
+/// Every filter ends at `solved`, the means to a millionth of `correction`.
+void ExpectFiltersAgree(const OneWindow& window, const EstimatorConfig& config, SmootherLandmark landmark,
+                        const NavEstimate& solved, double correction) {
+  for (const FilterCase& filter : FilterCases()) {
+    SCOPED_TRACE(Name(filter, landmark));
+    const NavEstimate filtered = Estimate(window, MakeFilter(filter, config, window.rig).get());
+    EXPECT_LT(MeanDifference(filtered, solved), 1e-6 * correction);
+    EXPECT_LT(RelativeDifference(filtered.covariance, solved.covariance), 1e-6);
   }
-};
+}
 
 // GIVEN equal starts, IMU samples and tracks whose errors are small WHEN the filter has read one window and
 // the smoother's terms of it are solved, THEN the newest states agree to a millionth: the means relative to
@@ -129,12 +139,7 @@ TEST_P(LinearLimitTest, FilterAgreesWithTheSolutionOfTheSmoothersTerms) {
     const double correction = MeanDifference(window.carried, solved);
     EXPECT_GT(correction, 1e-6) << "vision has something to correct";
     EXPECT_GT(RelativeDifference(window.carried.covariance, solved.covariance), 1) << "and is informative";
-    for (const FilterCase& filter : FilterCases()) {
-      SCOPED_TRACE(Name(filter, landmark));
-      const NavEstimate filtered = Estimate(window, MakeFilter(filter, config, window.rig).get());
-      EXPECT_LT(MeanDifference(filtered, solved), 1e-6 * correction);
-      EXPECT_LT(RelativeDifference(filtered.covariance, solved.covariance), 1e-6);
-    }
+    ExpectFiltersAgree(window, config, landmark, solved, correction);
   }
 }
 
@@ -153,12 +158,7 @@ TEST_P(LinearLimitTest, FilterSmootherAndTermsAgreeOnPositionFixes) {
     const NavEstimate smoothed = Estimate(window, MakeSmoother(landmark, config, window.rig).get());
     EXPECT_LT(MeanDifference(smoothed, solved), 1e-6 * correction);
     EXPECT_LT(RelativeDifference(smoothed.covariance, solved.covariance), 1e-6);
-    for (const FilterCase& filter : FilterCases()) {
-      SCOPED_TRACE(Name(filter, landmark));
-      const NavEstimate filtered = Estimate(window, MakeFilter(filter, config, window.rig).get());
-      EXPECT_LT(MeanDifference(filtered, solved), 1e-6 * correction);
-      EXPECT_LT(RelativeDifference(filtered.covariance, solved.covariance), 1e-6);
-    }
+    ExpectFiltersAgree(window, config, landmark, solved, correction);
   }
 }
 

@@ -125,6 +125,33 @@ inline std::vector<PositionFix> MakeFixes(const std::vector<NavState>& states, c
   return fixes;
 }
 
+/// Adds `scale` times the white noise of the rig's IMU to the samples.
+inline void AddImuNoise(double scale, RandomStream* random, OneWindow* window) {
+  const ImuNoise& noise = window->rig.imu_noise;
+  const double root_rate = scale * std::sqrt(kImuRateHz);
+  for (ImuSample& sample : window->samples) {
+    sample.gyro += root_rate * noise.gyro_noise_density_radps_sqrthz * random->Normal3();
+    sample.accel += root_rate * noise.accel_noise_density_mps2_sqrthz * random->Normal3();
+  }
+  SetCurvatures(window->samples);
+}
+
+/// The start off the truth by `scale` times a draw of its covariance, and carried to the last sample.
+inline void DrawStart(const NavEstimate& truth, double scale, RandomStream* random, OneWindow* window) {
+  Vector15d draw;
+  for (double& entry : draw) {
+    entry = random->Normal();
+  }
+  const Matrix15d root = window->start.covariance.llt().matrixL();
+  const Vector15d error = scale * (root * draw);
+  window->start.nav = Retract(ErrorConvention::kSo3xRn, truth.nav, Vector9d(error.head<9>()));
+  window->start.bias = {truth.bias.gyro + error.segment<3>(9), truth.bias.accel + error.tail<3>()};
+  window->carried = window->start;
+  EXPECT_TRUE(
+      PropagateEstimate(window->samples, window->rig.imu_noise, GravityInWorld(kGravity), &window->carried)
+          .ok());
+}
+
 /// One window whose errors, of the start, the IMU and the pixels, are `scale` times draws from what the back
 /// ends assume of them.
 inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
@@ -147,27 +174,9 @@ inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
       observation.pixel += scale * Eigen::Vector2d(random.Normal(), random.Normal());
     }
   }
-  const double root_rate = std::sqrt(kImuRateHz);
-  for (ImuSample& sample : window.samples) {
-    sample.gyro +=
-        scale * root_rate * window.rig.imu_noise.gyro_noise_density_radps_sqrthz * random.Normal3();
-    sample.accel +=
-        scale * root_rate * window.rig.imu_noise.accel_noise_density_mps2_sqrthz * random.Normal3();
-  }
-  SetCurvatures(window.samples);
+  AddImuNoise(scale, &random, &window);
   window.start.covariance = StartCovariance(&random);
-  Vector15d draw;
-  for (double& entry : draw) {
-    entry = random.Normal();
-  }
-  const Matrix15d root = window.start.covariance.llt().matrixL();
-  const Vector15d error = scale * (root * draw);
-  window.start.nav = Retract(ErrorConvention::kSo3xRn, truth.nav, Vector9d(error.head<9>()));
-  window.start.bias = {truth.bias.gyro + error.segment<3>(9), truth.bias.accel + error.tail<3>()};
-  window.carried = window.start;
-  EXPECT_TRUE(
-      PropagateEstimate(window.samples, window.rig.imu_noise, GravityInWorld(kGravity), &window.carried)
-          .ok());
+  DrawStart(truth, scale, &random, &window);
   return window;
 }
 
@@ -179,30 +188,15 @@ inline OneWindow MakeWindowAtRest(double scale) {
   truth.nav.R_WB = so3::Exp(Eigen::Vector3d(0.1, -0.2, 0.5));
   truth.bias = {Eigen::Vector3d(0.01, -0.02, 0.005), Eigen::Vector3d(0.1, 0.05, -0.2)};
   const Eigen::Vector3d up_B = truth.nav.R_WB.transpose() * Eigen::Vector3d(0, 0, kGravity);
-  const double root_rate = std::sqrt(kImuRateHz);
   for (ImuSample& sample : window.samples) {
-    sample.gyro = truth.bias.gyro +
-                  scale * root_rate * window.rig.imu_noise.gyro_noise_density_radps_sqrthz * random.Normal3();
-    sample.accel =
-        truth.bias.accel + up_B +
-        scale * root_rate * window.rig.imu_noise.accel_noise_density_mps2_sqrthz * random.Normal3();
+    sample.gyro = truth.bias.gyro;
+    sample.accel = truth.bias.accel + up_B;
   }
-  SetCurvatures(window.samples);
+  AddImuNoise(scale, &random, &window);
   for (TrackFrame& frame : window.frames) {
     frame.observations = window.frames.front().observations;
   }
-  Vector15d draw;
-  for (double& entry : draw) {
-    entry = random.Normal();
-  }
-  const Matrix15d root = window.start.covariance.llt().matrixL();
-  const Vector15d error = scale * (root * draw);
-  window.start.nav = Retract(ErrorConvention::kSo3xRn, truth.nav, Vector9d(error.head<9>()));
-  window.start.bias = {truth.bias.gyro + error.segment<3>(9), truth.bias.accel + error.tail<3>()};
-  window.carried = window.start;
-  EXPECT_TRUE(
-      PropagateEstimate(window.samples, window.rig.imu_noise, GravityInWorld(kGravity), &window.carried)
-          .ok());
+  DrawStart(truth, scale, &random, &window);
   return window;
 }
 

@@ -13,16 +13,9 @@ a,s,1,ok,i1,x1,0.5,6
 a,s,2,ok,i2,x2,0.25,5
 b,s,1,ok,i1,y1,1,7
 EOF
-# expect CODE TEXT SED_PROGRAM: of stored figures that the program has changed.
-expect() {
-  local code=0 output
-  sed "$3" "$work/stored.csv" >"$work/measured.csv"
-  output=$("$script" --compare "$work/stored.csv" "$work/measured.csv") || code=$?
-  if [[ $code -ne $1 || $output != *"$2"* ]]; then
-    printf 'with %s: code %s, expected %s; output, expected "%s":\n%s\n' "$3" "$code" "$1" "$2" "$output"
-    exit 1
-  fi
-}
+# shellcheck source=tests/scripts/expect_change.sh
+source "$(dirname "$0")/../scripts/expect_change.sh"
+expect() { expect_change "$script" "$work/stored.csv" "$@"; }
 expect 0 "a on s: 2 of 2 runs equal to the byte" ""
 expect 0 "  rmse_pos_m: +5e-05 % +- 5e-05, at most 0.0001 % (seed 1)" "s/x1,0.5/z,0.5000005/"
 expect 0 "a on s: 1 of 2 runs equal to the byte; inputs of 1 changed" "s/i1,x1/j,z/"

@@ -13,16 +13,9 @@ timestamp_ns,p_x,p_y,p_z,q_w,v_x,c_00,clock_m
 1000000000,1,2,-3,1,0.5,1e-05,
 2000000000,1.5,2,-3.5,1,0.25,1e-05,200000
 EOF
-# expect CODE TEXT SED_PROGRAM: of states that the program has changed, with the default bound of 1e-6.
-expect() {
-  local code=0 output
-  sed "$3" "$work/first.csv" >"$work/second.csv"
-  output=$("$script" --compare "$work/first.csv" "$work/second.csv") || code=$?
-  if [[ $code -ne $1 || $output != *"$2"* ]]; then
-    printf 'with %s: code %s, expected %s; output, expected "%s":\n%s\n' "$3" "$code" "$1" "$2" "$output"
-    exit 1
-  fi
-}
+# shellcheck source=tests/scripts/expect_change.sh
+source "$(dirname "$0")/expect_change.sh"
+expect() { expect_change "$script" "$work/first.csv" "$@"; }
 expect 0 "p 0.0e+00  q 0.0e+00  v 0.0e+00  c 0.0e+00  gnss 0.0e+00" ""
 expect 0 "p 5.0e-07" "s/-3.5/-3.5000005/"
 expect 1 "p 2.0e-06" "s/-3.5/-3.500002/"

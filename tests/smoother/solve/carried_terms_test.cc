@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/smoother/factors/slam_fixture.h"
-#include "tests/smoother/sliding/gnss_fixture.h"
+#include "tests/smoother/solve/carried_prior.h"
 #include "tests/smoother/solve/ceres_view.h"
 
 namespace alidade::test {
@@ -36,19 +36,7 @@ void ToCanonical(ErrorConvention convention, const Window& window, LinearTerm* l
 TEST(CarriedTermsTest, APriorHasTheRowsOfItsFactor) {
   for (const ErrorConvention convention : kAllConventions) {
     GnssFixture fixture(4);
-    const CalibrationEstimate estimate = CalibrateWindow(&fixture);
-    fixture.calibration = {estimate.layout, estimate.mean};
-    LinearPrior prior;
-    ASSERT_TRUE(MakeInitialPrior(convention, fixture.window.frame(0), SomeCovariance(), &prior));
-    GnssWindow gnss(fixture.context.config, {}, fixture.gravity_W);
-    GnssAlignment alignment;
-    alignment.enu = fixture.context.mount.enu;
-    alignment.clock = Vector6d::Zero();
-    gnss.Align(alignment, &fixture.window.frame(0), &prior);
-    AddCalibrationPrior(estimate, &prior);
-    prior = Marginalize(fixture.window, prior, PoseSystem(4, &fixture.calibration),
-                        {fixture.gravity_W, &fixture.context});
-    fixture.window.RemoveOldest();
+    const LinearPrior prior = PriorWithoutTheOldest(convention, &fixture);
     const std::vector<FrameGeometry> geometry;
     const CarriedPrior carried(prior, fixture.window, fixture.calibration, {}, geometry);
     const std::unique_ptr<WindowTerm> factor = MakePriorTerm(prior, fixture.calibration);

@@ -4,10 +4,8 @@
 
 #include "smoother/batch/sequence_covariance.h"
 #include "smoother/solve/vision_terms.h"
-#include "tests/smoother/sliding/gnss_fixture.h"
+#include "tests/smoother/solve/carried_prior.h"
 #include "tests/smoother/solve/ceres_view.h"
-#include "tests/smoother/solve/given_terms.h"
-#include "tests/smoother/window/calibrated_window.h"
 #include "tests/support/jacobian_checker.h"
 
 namespace alidade::test {
@@ -72,19 +70,7 @@ TEST(WindowTermTest, RowsOfTheSensorsAreThoseOfCeresAndNumeric) {
 TEST(WindowTermTest, RowsOfAPriorWithClockAndCalibrationAreThoseOfCeresAndNumeric) {
   for (const ErrorConvention made_in : kAllConventions) {
     GnssFixture fixture(4);
-    const CalibrationEstimate estimate = CalibrateWindow(&fixture);
-    fixture.calibration = {estimate.layout, estimate.mean};
-    LinearPrior prior;
-    ASSERT_TRUE(MakeInitialPrior(made_in, fixture.window.frame(0), test::SomeCovariance(), &prior));
-    GnssWindow gnss(fixture.context.config, {}, fixture.gravity_W);
-    GnssAlignment alignment;
-    alignment.enu = fixture.context.mount.enu;
-    alignment.clock = Vector6d::Zero();
-    gnss.Align(alignment, &fixture.window.frame(0), &prior);
-    AddCalibrationPrior(estimate, &prior);
-    const SensorContext sensors{fixture.gravity_W, &fixture.context};
-    prior = Marginalize(fixture.window, prior, PoseSystem(4, &fixture.calibration), sensors);
-    fixture.window.RemoveOldest();
+    const LinearPrior prior = PriorWithoutTheOldest(made_in, &fixture);
     Disturb(&fixture);
     WindowTerms terms;
     terms.push_back(MakePriorTerm(prior, fixture.calibration));
