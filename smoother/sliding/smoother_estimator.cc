@@ -243,9 +243,8 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
-  const std::vector<WindowTrack*> features = FeaturesInSight();
-  std::vector<WindowTrack*> gated = *tracks;
-  gated.insert(gated.end(), features.begin(), features.end());
+  std::vector<WindowTrack*> gated = FeaturesInSight();
+  gated.insert(gated.begin(), tracks->begin(), tracks->end());
   if (GateTracks(Geometry(), gated) && slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, &terms)));
   }
