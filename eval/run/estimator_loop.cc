@@ -16,7 +16,8 @@ EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration
       read_out_span_ns_(SecondsToNs(ReadOutSpan(GivenCamera(rig, config.vision)))),
       estimator_(*estimator),
       events_(*events),
-      imu_(config.imu.guard),
+      implied_(config.imu.gravity_mps2),
+      imu_(config.imu.guard, &implied_),
       recovery_(config, rig, options.camera) {
   if (options.camera && config.init.method != InitMethod::kTruth) {
     initializer_ = std::make_unique<Initializer>(config, rig);
@@ -206,6 +207,7 @@ Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_n
 }
 
 void EstimatorLoop::PassAlignment(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
+  implied_.Forget();
   for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
     if (run.get() != by) {
       run->AlignedByAnother(enu);
@@ -235,6 +237,9 @@ void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double fronten
     return;
   }
   state_ns_ = event.estimate.stamp_ns;
+  if (is_frame || !options_.camera) {
+    implied_.Add(event.estimate);
+  }
   event.statistics = is_frame ? estimator_.last_statistics() : BetweenFrames(estimator_.last_statistics());
   event.clock = estimator_.LatestClock();
   event.calibration = estimator_.LatestCalibration();

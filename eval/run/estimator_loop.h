@@ -97,6 +97,7 @@ class EstimatorLoop {
   const TimeNs read_out_span_ns_;
   Estimator& estimator_;
   std::vector<SessionEvent>& events_;
+  ImpliedImu implied_;
   ImuStream imu_;
   std::unique_ptr<Initializer> initializer_;  ///< until the first start
   Recovery recovery_;

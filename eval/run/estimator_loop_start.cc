@@ -83,6 +83,7 @@ bool EstimatorLoop::Begin(const NavEstimate& start) {
   }
   phase_ = Phase::kRunning;
   degradation_.Reset();
+  implied_.Forget();
   state_ns_ = start.stamp_ns;
   for (const ImuSample& sample : imu_.DeliveredSince(start.stamp_ns)) {
     AddImu(sample);

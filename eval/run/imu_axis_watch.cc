@@ -9,7 +9,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kMemory = 1000;  // measurements
+constexpr double kMemory = 1000;      // measurements
+constexpr double kBeyondRange = 0.5;  // share of the range by which a motion may exceed it
 
 int Other(int axis, int which) {
   return (axis + 1 + which) % 3;
@@ -17,11 +18,12 @@ int Other(int axis, int which) {
 
 }  // namespace
 
-ImuAxisWatch::ImuAxisWatch()
-    : signals_{Signal{&ImuSample::gyro, &ImuSample::gyro_fault_density_radps_sqrthz, "gyroscope", "rad/s",
-                      imu_gap::kMinGyroRadps},
-               Signal{&ImuSample::accel, &ImuSample::accel_fault_density_mps2_sqrthz, "accelerometer",
-                      "m/s^2", imu_gap::kMinAccelMps2}} {}
+ImuAxisWatch::ImuAxisWatch(const ImpliedImu* implied)
+    : implied_(implied),
+      signals_{Signal{&ImuSample::gyro, &ImuSample::gyro_fault_density_radps_sqrthz, &ImpliedImu::Gyro,
+                      "gyroscope", "rad/s", imu_gap::kMinGyroRadps},
+               Signal{&ImuSample::accel, &ImuSample::accel_fault_density_mps2_sqrthz, &ImpliedImu::Accel,
+                      "accelerometer", "m/s^2", imu_gap::kMinAccelMps2}} {}
 
 void ImuAxisWatch::CountShare(bool changed, Axis* axis) {
   constexpr double kKept = 1 - 1 / kMemory;
@@ -114,7 +116,16 @@ double ImuAxisWatch::Sigma(Fault fault, double value, double floor, double secon
     return std::max(floor, std::sqrt(std::max(0.0, square)));
   }
   const double rate = axis.came_from_s > 0 ? std::abs(value - axis.came_from) / axis.came_from_s : 0;
-  return std::max(floor, std::min(rate * seconds, 0.5 * std::abs(value)));
+  return std::max(floor, std::min(rate * seconds, kBeyondRange * std::abs(value)));
+}
+
+double ImuAxisWatch::Reading(Fault fault, double value, const Axis& axis,
+                             std::optional<double> implied) const {
+  if (fault == Fault::kStuck) {
+    return implied.value_or(axis.mean);
+  }
+  const double beyond = implied ? *implied / value : 0;
+  return value * std::clamp(beyond, 1.0, 1.0 + kBeyondRange);
 }
 
 std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,
@@ -132,9 +143,9 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
   const double density = axis.faulty ? sigma * std::sqrt(2 * std::min(seconds, kConstantS))
                                      : sigma * seconds / std::sqrt(step_s);
   axis.faulty = true;
-  if (fault == Fault::kStuck) {
-    (sample->*signal->value)[index] = axis.mean;
-  }
+  const std::optional<double> implied =
+      implied_ != nullptr ? (implied_->*signal->implied)(index, sample->stamp_ns) : std::nullopt;
+  (sample->*signal->value)[index] = Reading(fault, value, axis, implied);
   axis.limit = fault == Fault::kSaturated ? value : axis.limit;
   Eigen::Vector3d axes = Eigen::Vector3d::Unit(index);
   if (fault == Fault::kSaturated || IsExtreme(value, axis)) {

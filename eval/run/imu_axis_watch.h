@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/imu_sample.h"
+#include "eval/run/implied_imu.h"
 
 namespace alidade {
 
@@ -48,7 +50,8 @@ class ImuAxisWatch {
   /// A fault that returns within this time is the same one.
   static constexpr double kSameFaultS = 10;
 
-  ImuAxisWatch();
+  /// implied: may be null; must outlive the object.
+  explicit ImuAxisWatch(const ImpliedImu* implied = nullptr);
 
   /// The next sample in order; sets the noise of its fault and replaces a stuck axis. Returns what is wrong,
   /// unless it was reported before; else nothing.
@@ -81,6 +84,7 @@ class ImuAxisWatch {
   struct Signal {
     Eigen::Vector3d ImuSample::*value;
     Eigen::Vector3d ImuSample::*fault_density;
+    std::optional<double> (ImpliedImu::*implied)(int axis, TimeNs stamp_ns) const;
     const char* name;
     const char* unit;
     double floor;
@@ -97,10 +101,14 @@ class ImuAxisWatch {
   [[nodiscard]] static Fault Classify(double value, double floor, const Axis& axis);
   [[nodiscard]] static double Sigma(Fault fault, double value, double floor, double seconds,
                                     const Axis& axis);
+  /// What a faulty axis is taken to read.
+  [[nodiscard]] double Reading(Fault fault, double value, const Axis& axis,
+                               std::optional<double> implied) const;
   /// What is wrong with one axis, if it is to be reported.
   std::string AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,
                       ImuSample* sample);
 
+  const ImpliedImu* implied_;
   std::array<Signal, 2> signals_;
   bool any_ = false;
   ImuSample last_;

@@ -25,6 +25,10 @@ namespace alidade {
 /// not found: nothing reveals its unit.
 class ImuGuard {
  public:
+  /// implied: what the motion implies, for axes that do not measure; null: nothing is known. Must outlive the
+  /// object.
+  explicit ImuGuard(const ImpliedImu* implied = nullptr) : axes_(implied) {}
+
   /// Checks the next sample in order and mends it. `next`: the one after it, null when it is not to be waited
   /// for. Returns what was wrong, or nothing.
   std::string Mend(const ImuSample* next, ImuSample* sample);

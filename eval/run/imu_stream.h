@@ -18,7 +18,8 @@ class ImuStream {
 
   /// guard: samples are mended as they are delivered (ImuGuard). The last one of a delivery is checked
   /// without its successor, whether that has arrived or not.
-  explicit ImuStream(bool guard) : guarded_(guard) {}
+  /// implied: see ImuGuard; may be null.
+  explicit ImuStream(bool guard, const ImpliedImu* implied = nullptr) : guarded_(guard), guard_(implied) {}
 
   /// Sorts the sample in. kTooLate: it is not after the last delivered one.
   Arrival Add(const ImuSample& sample);
