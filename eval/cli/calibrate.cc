@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "eval/bag/bag_import.h"
 #include "eval/bag/dataset_source.h"
 #include "eval/calibrate/camera_calibration.h"
 #include "eval/calibrate/camera_report.h"
@@ -32,7 +31,7 @@ struct RecordingToCalibrate {
 Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const std::atomic<bool>* stop) {
   DatasetSource source = SourceFromFlags();
   ProvisionalSequence sequence;
-  if (!IsBag(source.path)) {
+  if (FormatOf(source.path).is_asl) {
     Result<ProvisionalSequence> completed = CompleteSheets(source.path, StagingFolder(), source.follow_links);
     ALIDADE_RETURN_IF_ERROR(completed.status());
     sequence = *std::move(completed);

@@ -114,7 +114,7 @@ const std::vector<Command>& Commands() {
        0,
        RunCheck},
       {"convert",
-       "convert folders and ROS 1 bags, or calibrations of other programs to sensor sheets",
+       "convert sequences between formats, or calibrations of other programs to sensor sheets",
        "convert --dataset=recording.bag --calibration=camchain.yaml --output=out/sequence",
        {"dataset", "output", "topics", "compression", "calibration", "camera", "follow_links", "overwrite",
         "quiet"},
