@@ -50,8 +50,7 @@ DEFINE_bool(follow_links, false,
 DEFINE_bool(
     imu_scale, false,
     "estimate a scale factor for each axis of the IMU, and multiply the samples that are written by it");
-DEFINE_string(input, "",
-              "input: a JSON file of cases (- reads standard input), or the output folder of compare");
+DEFINE_string(input, "", "output folder of compare");
 DEFINE_string(export, "", "folder for both trajectories in the formats of evo and rpg_trajectory_evaluation");
 DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into figures/");
 DEFINE_bool(interpolate, false,
