@@ -2,7 +2,7 @@
 
 #include <gflags/gflags.h>
 
-// Every flag of the program; eval/cli/commands.cc lists which command takes which. The only folder that knows
+// Every flag of the program; eval/cli/commands.cc lists which command takes which. The only folder that includes
 // gflags.
 DECLARE_string(align);
 DECLARE_bool(anchor_at_first);

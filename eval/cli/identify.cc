@@ -52,7 +52,7 @@ int IdentifyMotion(const EstimatorConfig& config) {
   options.run.seed = FLAGS_seed;
   options.run.stop = stop;
   options.jobs = FLAGS_jobs;
-  options.say = Say;
+  options.progress = PrintNote;
   const Result<MotionNoise> noise = IdentifyInMotion(config, *log, options);
   if (!noise.ok()) {
     return stop->load() ? kExitInterrupted : Report(noise.status());
