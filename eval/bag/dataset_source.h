@@ -19,7 +19,7 @@ struct DatasetSource {
   bool follow_links = false;             ///< of a folder, DatasetStorage::follow_links
 };
 
-/// A format of sequences, with all that code outside of its reader distinguishes.
+/// A format of sequences: its reader, and its properties that other code depends on.
 struct DatasetFormat {
   std::string_view name;       ///< in messages, with its article
   std::string_view extension;  ///< of its one file, with the dot; empty: a sequence is a folder
