@@ -57,9 +57,37 @@ void Set(Matrix15d* covariance, int row, int column, const Matrix3d& block) {
   }
 }
 
-/// Responses at the step's end to noise a lag s before: gyroscope white noise -E, A s, A s^2/2 in theta,
-/// beta, alpha; its walk 1 in bg, else the integral of those over s; accelerometer white noise -M, -M s in
-/// beta, alpha; its walk likewise. Their products are integrated over s from 0 to dt.
+/// Squared densities of one sensor, integrated over a step.
+struct StepNoise {
+  double white = 0;
+  double walk = 0;
+};
+
+/// Products of the responses at a step's end to noise a lag s before, without their powers of s: gyroscope
+/// white noise -E, A s, A s^2/2 in theta, beta, alpha; accelerometer white noise -M, -M s in beta, alpha; of
+/// their walks the integrals of those over s.
+struct ResponseProducts {
+  Matrix3d EEt, AEt, AAt, MMt;
+};
+
+/// Covariance blocks of (theta, alpha, beta): the products, integrated over s from 0 to dt.
+void SetMotionBlocks(const ResponseProducts& response, const StepNoise& gyro, const StepNoise& accel,
+                     double dt, Matrix15d* q) {
+  const double g = gyro.white, wg = gyro.walk;
+  const double a = accel.white, wa = accel.walk;
+  const auto& [EEt, AEt, AAt, MMt] = response;
+  const double dt2 = dt * dt;
+  const double dt3 = dt2 * dt;
+  const double dt4 = dt2 * dt2;
+  Set(q, kTheta, kTheta, (g + wg * dt2 / 3) * EEt);
+  Set(q, kAlpha, kTheta, -(g * dt2 / 6 + wg * dt4 / 30) * AEt);
+  Set(q, kBeta, kTheta, -(g * dt / 2 + wg * dt3 / 8) * AEt);
+  Set(q, kAlpha, kAlpha, (a * dt2 / 3 + wa * dt4 / 20) * MMt + (g * dt4 / 20 + wg * dt4 * dt2 / 252) * AAt);
+  Set(q, kAlpha, kBeta, (a * dt / 2 + wa * dt3 / 8) * MMt + (g * dt3 / 8 + wg * dt4 * dt / 72) * AAt);
+  Set(q, kBeta, kBeta, (a + wa * dt2 / 3) * MMt + (g * dt2 / 3 + wg * dt4 / 20) * AAt);
+}
+
+/// Of all noises of a step. A walk's response in its own bias is 1.
 Matrix15d StepCovariance(const Matrix3d& M, const Matrix3d& E, const Vector3d& accel, double dt,
                          const ImuNoise& noise) {
   const double g = noise.gyro_noise_density_radps_sqrthz * noise.gyro_noise_density_radps_sqrthz * dt;
@@ -68,18 +96,10 @@ Matrix15d StepCovariance(const Matrix3d& M, const Matrix3d& E, const Vector3d& a
   const double wa = noise.accel_random_walk_mps3_sqrthz * noise.accel_random_walk_mps3_sqrthz * dt;
   const Matrix3d I = Matrix3d::Identity();
   const Matrix3d A = M * Skew(accel);
-  const Matrix3d AEt = A * E.transpose();
-  const Matrix3d AAt = A * A.transpose();
   const double dt2 = dt * dt;
   const double dt3 = dt2 * dt;
-  const double dt4 = dt2 * dt2;
   Matrix15d q = Matrix15d::Zero();
-  Set(&q, kTheta, kTheta, (g + wg * dt2 / 3) * I);
-  Set(&q, kAlpha, kTheta, -(g * dt2 / 6 + wg * dt4 / 30) * AEt);
-  Set(&q, kBeta, kTheta, -(g * dt / 2 + wg * dt3 / 8) * AEt);
-  Set(&q, kAlpha, kAlpha, (a * dt2 / 3 + wa * dt4 / 20) * I + (g * dt4 / 20 + wg * dt4 * dt2 / 252) * AAt);
-  Set(&q, kAlpha, kBeta, (a * dt / 2 + wa * dt3 / 8) * I + (g * dt3 / 8 + wg * dt4 * dt / 72) * AAt);
-  Set(&q, kBeta, kBeta, (a + wa * dt2 / 3) * I + (g * dt2 / 3 + wg * dt4 / 20) * AAt);
+  SetMotionBlocks({I, A * E.transpose(), A * A.transpose(), I}, {g, wg}, {a, wa}, dt, &q);
   Set(&q, kTheta, kBg, -wg * dt / 2 * E);
   Set(&q, kAlpha, kBg, wg * dt3 / 24 * A);
   Set(&q, kBeta, kBg, wg * dt2 / 6 * A);
@@ -138,22 +158,14 @@ ImuIncrement StepIncrement(const Vector3d& omega, const Vector3d& accel, double 
 
 void AddAxisNoise(const Vector3d& omega, const Vector3d& accel, double dt_s, const Vector3d& gyro_densities,
                   const Vector3d& accel_densities, Matrix15d* covariance) {
-  // The responses of StepCovariance, with the noise of each axis in its own direction.
+  // The noise of each axis in its own direction; E = M^T.
   const Matrix3d M = so3::Exp(0.5 * dt_s * omega);
   const Matrix3d A = M * Skew(accel);
   const Matrix3d G = (dt_s * gyro_densities.cwiseAbs2()).asDiagonal();
   const Matrix3d AG = A * G;
-  const Matrix3d AGAt = AG * A.transpose();
-  const Matrix3d AGEt = AG * M;  // E = M^T
   const Matrix3d force = M * (dt_s * accel_densities.cwiseAbs2()).asDiagonal() * M.transpose();
-  const double dt2 = dt_s * dt_s;
   Matrix15d q = Matrix15d::Zero();
-  Set(&q, kTheta, kTheta, M.transpose() * G * M);
-  Set(&q, kAlpha, kTheta, -dt2 / 6 * AGEt);
-  Set(&q, kBeta, kTheta, -dt_s / 2 * AGEt);
-  Set(&q, kAlpha, kAlpha, dt2 / 3 * force + dt2 * dt2 / 20 * AGAt);
-  Set(&q, kAlpha, kBeta, dt_s / 2 * force + dt2 * dt_s / 8 * AGAt);
-  Set(&q, kBeta, kBeta, force + dt2 / 3 * AGAt);
+  SetMotionBlocks({M.transpose() * G * M, AG * M, AG * A.transpose(), force}, {1, 0}, {1, 0}, dt_s, &q);
   *covariance += q;
 }
 

@@ -38,11 +38,20 @@ void SetCurvatures(std::span<ImuSample> samples) {
   }
 }
 
-StepMean MeanOverStep(const ImuSample& from, const ImuSample& to, const ImuBias& bias) {
+Vector6d ParabolaMean(const ImuSample& from, const ImuSample& to, const ImuBias& bias) {
   const double dt_s = SecondsBetween(from.stamp_ns, to.stamp_ns);
   const double bow = dt_s * dt_s / 12;
-  const Vector3d gyro = 0.5 * (from.gyro + to.gyro) - bias.gyro - bow * to.gyro_curvature;
-  const Vector3d accel = 0.5 * (from.accel + to.accel) - bias.accel - bow * to.accel_curvature;
+  Vector6d mean;
+  mean << 0.5 * (from.gyro + to.gyro) - bias.gyro - bow * to.gyro_curvature,
+      0.5 * (from.accel + to.accel) - bias.accel - bow * to.accel_curvature;
+  return mean;
+}
+
+StepMean MeanOverStep(const ImuSample& from, const ImuSample& to, const ImuBias& bias) {
+  const double dt_s = SecondsBetween(from.stamp_ns, to.stamp_ns);
+  const Vector6d mean = ParabolaMean(from, to, bias);
+  const Vector3d gyro = mean.head<3>();
+  const Vector3d accel = mean.tail<3>();
   if (imu_gap::IsInside(from, to)) {
     return {gyro, accel, Matrix3d::Identity(), Matrix3d::Zero()};
   }

@@ -14,6 +14,10 @@ void SetCurvature(const ImuSample& first, const ImuSample& second, ImuSample* la
 /// The same for all from the third of consecutive measured samples on.
 void SetCurvatures(std::span<ImuSample> samples);
 
+/// Mean (gyro, accel) [rad/s, m/s^2], 6x1, bias removed, over the step between two consecutive samples of the
+/// parabola through them whose curvature is that of `to`.
+[[nodiscard]] Vector6d ParabolaMean(const ImuSample& from, const ImuSample& to, const ImuBias& bias);
+
 /// Angular rate [rad/s] and specific force [m/s^2], bias removed, that have over a step the effect of the
 /// measured motion when they are constant in the body. StepIncrement takes them.
 struct StepMean {
@@ -24,9 +28,8 @@ struct StepMean {
   Eigen::Matrix3d accel_over_gyro;
 };
 
-/// The mean over the step between two consecutive samples of the parabola through them whose curvature is
-/// that of `to`. The turn of the axes within the step adds the coning and the sculling term of a rate w and a
-/// force f that change linearly (Savage 1998),
+/// ParabolaMean with the effect of the turning body. The turn of the axes within the step adds the coning and
+/// the sculling term of a rate w and a force f that change linearly (Savage 1998),
 ///
 ///     dt/12 w_k x w_{k+1},   dt/12 (w x (f_{k+1} - f_k) - (w_{k+1} - w_k) x f);
 ///

@@ -11,7 +11,7 @@
 // composes what stands here.
 //
 // Derivatives come as a chain. A model forms its rows over q, the landmark in the camera's frame: those of
-// the projection, whitened where it wants them so. Chain() carries the rows to what q depends on. Cameras are
+// the projection, whitened where it needs them so. Chain() carries the rows to what q depends on. Cameras are
 // in the canonical chart (phi, dp) of core/model.h; where the pose of a camera depends on a body, extrinsics
 // or a time offset, the rows over the camera go on through BodyToCameraJacobian (core/visual_observation.h)
 // and CalibrationRows (core/calibration.h).

@@ -19,7 +19,7 @@ enum class GateNoiseModel {
 
 /// On which plane the observations of a track are (core/bearing_plane.h).
 enum class PlaneChoice {
-  kLens,        ///< what the lens wants: CameraModel::plane
+  kLens,        ///< that of the lens: CameraModel::plane
   kNormalized,  ///< z = 1; what lies beside or behind the camera is not seen
   kTangent,     ///< of the unit sphere, at each measured ray
 };

@@ -12,7 +12,7 @@ namespace alidade {
 struct NormalizedObservation {
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
   Eigen::Matrix2d sqrt_information = Eigen::Matrix2d::Identity();
-  BearingPlane plane = {};  ///< the ideal normalised plane, unless the lens wants another
+  BearingPlane plane = {};  ///< the ideal normalised plane, unless the lens needs another
   /// Of the pixel, its row less that in the middle of the image: with a rolling shutter, when it was exposed.
   double row_px = 0;
 

@@ -70,7 +70,7 @@ class FeatureUpdate {
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   /// One a block, when tracing.
   [[nodiscard]] const std::vector<TracedBlock>& traces() const { return traces_; }
-  /// What the track of a block remembers once its rows were applied with the given robust weight; call before
+  /// What the track of a block keeps once its rows were applied with the given robust weight; call before
   /// the state is corrected. `nis`: normalised innovation squared of the rows. A memory ends when its point
   /// does not stand still (TrackMemory::Drifts).
   void Remember(const FilterState& state, size_t block, double weight, double nis, Track* track);

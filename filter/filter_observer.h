@@ -26,7 +26,7 @@ struct TracedBlock {
 /// The sensor whose measurements made the rows of an update.
 enum class RowSource { kVision, kRest, kGnss, kMeasurement };
 
-/// The rows of one update as the filter applies them: y = H xi + n, n ~ N(0, I) as the filter believes.
+/// The rows of one update as the filter applies them: y = H xi + n, n ~ N(0, I) as the filter assumes.
 struct FilterRows {
   Eigen::MatrixXd jacobian;    ///< rows x error dimension, weighted; a refused track's rows are zero
   Eigen::VectorXd innovation;  ///< weighted likewise

@@ -210,7 +210,7 @@ TrackOutcome FilterEstimator::AppendViews(const Track& track, int leaving_serial
   if (track.memory.active) {
     return update_.AppendRemembered(state_, track);
   }
-  // A memory wants a good depth to start from; the last chance to use the views does not.
+  // A memory needs a good depth to start from; the last chance to use the views does not.
   const bool last_chance = track.last_serial != serial_ || track.views.front().serial == leaving_serial;
   const bool to_remember = config_.filter.track_memory != TrackMemoryPolicy::kNone && !last_chance;
   if (due_ == DueTracks::kAll) {

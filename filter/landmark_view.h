@@ -17,8 +17,8 @@ struct LandmarkViewRows {
   Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, CalibrationLayout::kMaxSize> calibration;
 };
 
-/// Linearises the view of a clone: residual at the present pose and p_W, Jacobians where the state wants
-/// them, at clone.T_WC_jacobian and `jacobian_p_W`. False when the landmark lies behind the camera.
+/// Linearises the view of a clone: residual at the present pose and p_W, Jacobians at
+/// clone.T_WC_jacobian and `jacobian_p_W`. False when the landmark lies behind the camera.
 bool LinearizeView(const FilterState& state, const Clone& clone, const NormalizedObservation& observation,
                    const Eigen::Vector3d& p_W, const Eigen::Vector3d& jacobian_p_W, LandmarkViewRows* rows);
 

@@ -92,7 +92,7 @@ void CovarianceAnalysis::OnUpdate(const FilterState& state, const FilterRows& ro
   innovation.diagonal().array() += 1;
   const MatrixXd gain = innovation.llt().solve(projected).transpose();
   // Covariance of V n: tracks share no observation, so it is block-diagonal. Rows without a track are as the
-  // filter believes.
+  // filter assumes.
   MatrixXd noise = MatrixXd::Identity(h.rows(), h.rows());
   MatrixXd reused = MatrixXd::Zero(h.rows(), cross_.cols());
   for (const TracedBlock& block : rows.blocks) {
@@ -138,9 +138,9 @@ void CovarianceAnalysis::OnFrame(const FilterState& state) {
   }
   CovarianceRecord record;
   record.stamp_ns = state.stamp_ns();
-  const Matrix6d believed = state.covariance().CoreCovariance().topLeftCorner<6, 6>();
+  const Matrix6d reported = state.covariance().CoreCovariance().topLeftCorner<6, 6>();
   const Matrix6d actual = actual_.topLeftCorner<6, 6>();
-  record.nees_ratio = believed.llt().solve(actual).trace() / 6;
+  record.nees_ratio = reported.llt().solve(actual).trace() / 6;
   const Matrix6d chart = ChartJacobian(state.convention(), state.nav().T_WB());
   const Matrix6d canonical = chart * actual * chart.transpose();
   record.orientation_rad = std::sqrt(canonical.diagonal().head<3>().sum());

@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-/// What a filter believes about the newest pose against what is true of it, after one frame.
+/// Covariance of the newest pose that a filter reports against that of its error, after one frame.
 struct CovarianceRecord {
   TimeNs stamp_ns = 0;
   double nees_ratio = 0;  ///< tr(P^-1 Sigma) / 6: mean pose NEES over its ideal; 1 is consistent
@@ -19,7 +19,7 @@ struct CovarianceRecord {
   double orientation_rad = 0;
 };
 
-/// Linear covariance analysis of a filter at work: beside the covariance P that the filter believes, the
+/// Linear covariance analysis of a filter at work: beside the covariance P that the filter reports, the
 /// covariance Sigma of the error that its gains really leave,
 ///
 ///   e+ = (I - K H) e - K V n,     K = P H^T (H P H^T + I)^-1,

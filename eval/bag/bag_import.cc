@@ -27,6 +27,7 @@ class Importer {
     ALIDADE_RETURN_IF_ERROR(scan.status());
     DescribeScan(*scan);
     bag_.dataset.path = bag_.path;
+    bag_.dataset.has_sheets = false;
     bag_.dataset.name = std::filesystem::path(bag_.path).stem().string();
     for (const std::unique_ptr<BagCollector>& collector : collectors_) {
       ALIDADE_RETURN_IF_ERROR(collector->Assemble(&bag_));

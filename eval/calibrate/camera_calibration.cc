@@ -89,9 +89,9 @@ class Calibration {
   }
 
  private:
-  void Say(const std::string& line) const {
-    if (options_.say) {
-      options_.say(line);
+  void Progress(const std::string& line) const {
+    if (options_.progress) {
+      options_.progress(line);
     }
   }
 
@@ -107,7 +107,7 @@ class Calibration {
       if (rates.certain()) {
         return Status::Input(text);
       }
-      Say(text);
+      Progress(text);
       result_.remarks.push_back(text);
     }
     const std::vector<FramePair> pairs = FramePairsOf(log_, kMostPairs);
@@ -123,7 +123,7 @@ class Calibration {
           "the gyroscope's rates agree with the rotation of the images only once they are negated: wrong "
           "sign, or an axis of a left-handed system; no sheet can express that");
     }
-    Say(Format("camera and gyroscope: %d pairs, %.2f px", result_.fit.pairs, result_.fit.residual_px));
+    Progress(Format("camera and gyroscope: %d pairs, %.2f px", result_.fit.pairs, result_.fit.residual_px));
     const auto middle = pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2);
     const std::array<std::vector<FramePair>, 2> halves = {std::vector<FramePair>(pairs.begin(), middle),
                                                           std::vector<FramePair>(middle, pairs.end())};
@@ -185,8 +185,8 @@ class Calibration {
     log.rig = result_.rig;
     const RunResult run = RunEstimator(config, log, options_.run);
     if (run.records.empty() || !run.status.ok() || !run.records.back().calibration || !run.restarts.empty()) {
-      Say("lever arm: " +
-          (run.status.ok() ? std::string("the estimator was lost on the way") : run.status.message()));
+      Progress("lever arm: " +
+               (run.status.ok() ? std::string("the estimator was lost on the way") : run.status.message()));
       return std::nullopt;
     }
     const CalibrationEstimate& last = *run.records.back().calibration;

@@ -37,7 +37,7 @@ struct CameraCalibrationOptions {
   bool readout = true;  ///< of a rolling shutter
   /// Starts for the focal length, times the given one.
   std::vector<double> focal_factors = {1};
-  std::function<void(const std::string& line)> say;  ///< may be empty
+  std::function<void(const std::string& line)> progress;  ///< may be empty
 };
 
 /// Name, unit and scale of a coordinate in texts: "time offset", "ms", 1e3.

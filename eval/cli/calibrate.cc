@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "eval/bag/bag_import.h"
 #include "eval/bag/dataset_source.h"
 #include "eval/calibrate/camera_calibration.h"
 #include "eval/calibrate/camera_report.h"
@@ -32,7 +31,7 @@ struct RecordingToCalibrate {
 Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const std::atomic<bool>* stop) {
   DatasetSource source = SourceFromFlags();
   ProvisionalSequence sequence;
-  if (!IsBag(source.path)) {
+  if (FormatOf(source.path).is_asl) {
     Result<ProvisionalSequence> completed = CompleteSheets(source.path, StagingFolder(), source.follow_links);
     ALIDADE_RETURN_IF_ERROR(completed.status());
     sequence = *std::move(completed);
@@ -41,17 +40,18 @@ Result<RecordingToCalibrate> ReadRecording(const FrontendConfig& frontend, const
   Result<Dataset> dataset = ReadDataset(source);
   ALIDADE_RETURN_IF_ERROR(dataset.status());
   for (const std::string& remark : dataset->remarks) {
-    Say(remark);
+    PrintNote(remark);
   }
   if (sequence.imu_noise) {
-    Say("imu0/sensor.yaml is missing: noise of a consumer IMU is assumed; `alidade identify` finds that of "
+    PrintNote(
+        "imu0/sensor.yaml is missing: noise of a consumer IMU is assumed; `alidade identify` finds that of "
         "this one");
   }
   ProgressLine progress("images");
   PipelineOptions options;
   options.stop = stop;
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
-  options.remark = Say;
+  options.remark = PrintNote;
   Result<MeasurementLog> log = MakeLog(*dataset, frontend, options);
   dataset->path = FLAGS_dataset;  // what is staged will be gone
   ALIDADE_RETURN_IF_ERROR(log.status());
@@ -97,7 +97,7 @@ int RunCalibrate(const std::vector<std::string>&) {
   CameraCalibrationOptions options;
   options.run.stop = stop;
   options.run.seed = FLAGS_seed;
-  options.say = Say;
+  options.progress = PrintNote;
   if (recording->guessed) {
     options.focal_factors = {0.7, 1, 1.4};
   }

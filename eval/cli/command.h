@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Command {
   size_t max_arguments = 0;           ///< words that are no flags
   int (*run)(const std::vector<std::string>& arguments) = nullptr;
   ConfigKind config = ConfigKind::kEstimator;  ///< what --config is
+  std::map<std::string, std::string> texts{};  ///< of flags that mean something else here, by name
 };
 
 /// All commands, in the order of the help text (eval/cli/commands.cc).

@@ -70,12 +70,12 @@ int Conclude(const Result<CompareOutcome>& outcome) {
     return Report(outcome.status());
   }
   if (outcome->interrupted) {
-    Say(FLAGS_engine == "slurm" ? "interrupted: the jobs go on, and the last one writes the tables"
-                                : "interrupted: complete cells are kept, --resume continues");
+    PrintNote(FLAGS_engine == "slurm" ? "interrupted: the jobs go on, and the last one writes the tables"
+                                      : "interrupted: complete cells are kept, --resume continues");
     return kExitInterrupted;
   }
   std::fputs(FormatTable(outcome->comparison).c_str(), stdout);
-  Say(FLAGS_output + "/report.html");
+  PrintNote(FLAGS_output + "/report.html");
   if (outcome->cells_failed > 0) {
     std::fprintf(stderr, "alidade: %d of %zu cells failed\n", outcome->cells_failed,
                  outcome->comparison.cells.size());
@@ -160,7 +160,7 @@ int RunCompare(const std::vector<std::string>&) {
   options.command = "alidade compare --plan=" + FLAGS_plan +
                     (FLAGS_data.empty() ? "" : " --data=" + FLAGS_data) + " --output=" + FLAGS_output +
                     (FLAGS_figures.empty() ? "" : " --figures=" + FLAGS_figures);
-  options.progress = Say;
+  options.progress = PrintNote;
   options.stop = InstallInterruptHandler();
   options.limits = {FLAGS_cell_time_limit_s, FLAGS_cell_memory_limit_mib};
   if (FLAGS_stage != "all") {

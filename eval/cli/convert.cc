@@ -25,7 +25,7 @@ int FolderToBag(BagCompression compression) {
     return Report(dataset.status());
   }
   for (const std::string& remark : dataset->remarks) {
-    Say(remark);
+    PrintNote(remark);
   }
   BagExportOptions options{FLAGS_topics, compression, InstallInterruptHandler(), {}};
   ProgressLine progress("messages");
@@ -56,7 +56,7 @@ int BagToFolder(const ImportedCalibration& calibration) {
     return Report(remarks.status());
   }
   for (const std::string& remark : *remarks) {
-    Say(remark);
+    PrintNote(remark);
   }
   return kExitDone;
 }

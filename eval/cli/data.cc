@@ -78,7 +78,7 @@ Status Fetch(const CatalogueChoice& choice, const std::string& folder) {
                          dataset.page);
   }
   if (!dataset.licence.empty()) {
-    Say(dataset.name + ": licence " + dataset.licence + " (" + dataset.page + ")");
+    PrintNote(dataset.name + ": licence " + dataset.licence + " (" + dataset.page + ")");
   }
   const std::string base = FLAGS_mirror.empty() ? dataset.base : FLAGS_mirror;
   const std::atomic<bool>* stop = InstallInterruptHandler();
@@ -87,7 +87,7 @@ Status Fetch(const CatalogueChoice& choice, const std::string& folder) {
     request.url = WithSlash(base) + file->path;
     request.path = (std::filesystem::path(folder) / dataset.name / file->file).string();
     request.expected = file->expected;
-    Say(request.url);
+    PrintNote(request.url);
     ProgressLine line(file->file);
     ALIDADE_RETURN_IF_ERROR(Download(
         request,

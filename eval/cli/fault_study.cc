@@ -60,7 +60,7 @@ class FaultStudy {
           ALIDADE_RETURN_IF_ERROR(AddRow(scene, estimator));
         }
       }
-      Say(scene.sequence->name + ": " + std::to_string(scene.sequence->seeds.size()) + " seeds");
+      PrintNote(scene.sequence->name + ": " + std::to_string(scene.sequence->seeds.size()) + " seeds");
     }
     const bool has_runs =
         std::any_of(rows_.begin(), rows_.end(), [](const FaultStudyRow& row) { return !row.runs.empty(); });

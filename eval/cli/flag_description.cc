@@ -51,14 +51,15 @@ FlagDescription DescribeFlag(const Command& command, const std::string& flag) {
   gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
   FlagDescription description;
   description.name = flag;
-  description.text = info.description;
+  const auto text = command.texts.find(flag);
+  description.text = text == command.texts.end() ? info.description : text->second;
   description.type = info.type;
   // gflags prints 17 digits.
   description.fallback =
       info.type == "double" ? ShortestDouble(std::stod(info.default_value)) : info.default_value;
   description.required =
       std::find(command.required.begin(), command.required.end(), flag) != command.required.end();
-  description.words = LeadingWords(info.description);
+  description.words = LeadingWords(description.text);
   description.value = ValueOf(description);
   description.config = flag == "config" ? command.config
                        : flag == "plan" ? ConfigKind::kPlan

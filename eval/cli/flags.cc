@@ -50,8 +50,7 @@ DEFINE_bool(follow_links, false,
 DEFINE_bool(
     imu_scale, false,
     "estimate a scale factor for each axis of the IMU, and multiply the samples that are written by it");
-DEFINE_string(input, "",
-              "input: a JSON file of cases (- reads standard input), or the output folder of compare");
+DEFINE_string(input, "", "output folder of compare");
 DEFINE_string(export, "", "folder for both trajectories in the formats of evo and rpg_trajectory_evaluation");
 DEFINE_string(figures, "", "svg | pdf | svg,pdf: write figures for papers into figures/");
 DEFINE_bool(interpolate, false,
@@ -107,8 +106,8 @@ DEFINE_int32(starts, 100, "total number of starts, distributed over the sequence
 DEFINE_string(status, "", "output folder of a comparison: print its progress");
 DEFINE_double(time_offset, 0, "added to the stamps of the estimate before rows are paired [s]");
 DEFINE_string(topics, "",
-              "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones; "
-              "fix_std_m=METRES: standard deviation of positions without a covariance (docs/bags.md)");
+              "imu=/topic,cam0=/topic,...: topics of a bag whose names are not the usual ones, and what its "
+              "messages lack (docs/bags.md)");
 DEFINE_string(tracks, "", "tracks.csv to score with --score, instead of tracks of the front end");
 DEFINE_string(truth, "", "ground-truth trajectory file");
 DEFINE_double(truth_rate, 0,

@@ -2,8 +2,8 @@
 
 #include <gflags/gflags.h>
 
-// Every flag of the program; eval/cli/commands.cc lists which command takes which. The only folder that knows
-// gflags.
+// Every flag of the program; eval/cli/commands.cc lists which command takes which. The only folder that
+// includes gflags.
 DECLARE_string(align);
 DECLARE_bool(anchor_at_first);
 DECLARE_double(align_share);

@@ -31,7 +31,7 @@ class Study {
   Result<std::vector<GnssStudyRow>> Execute() {
     for (const PlanSequence& sequence : plan_.sequences) {
       ALIDADE_RETURN_IF_ERROR(AddSequence(sequence));
-      Say(sequence.name + ": " + std::to_string(sequence.seeds.size()) + " seeds");
+      PrintNote(sequence.name + ": " + std::to_string(sequence.seeds.size()) + " seeds");
     }
     return std::move(rows_);
   }

@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "eval/bag/bag_import.h"
+#include "eval/bag/dataset_source.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -16,7 +16,7 @@ namespace {
 
 /// Of a folder the IMU alone: a recording at rest often has no other sensor.
 Result<Dataset> ReadImuFromFlags() {
-  if (IsBag(FLAGS_dataset) || !FLAGS_topics.empty() || !FLAGS_calibration.empty()) {
+  if (!FormatOf(FLAGS_dataset).is_asl || !FLAGS_topics.empty() || !FLAGS_calibration.empty()) {
     return ReadDatasetFromFlags();
   }
   Dataset dataset;
@@ -52,7 +52,7 @@ int IdentifyMotion(const EstimatorConfig& config) {
   options.run.seed = FLAGS_seed;
   options.run.stop = stop;
   options.jobs = FLAGS_jobs;
-  options.say = Say;
+  options.progress = PrintNote;
   const Result<MotionNoise> noise = IdentifyInMotion(config, *log, options);
   if (!noise.ok()) {
     return stop->load() ? kExitInterrupted : Report(noise.status());

@@ -3,7 +3,7 @@
 
 #include "core/format.h"
 #include "core/numbers.h"
-#include "eval/bag/bag_import.h"
+#include "eval/bag/dataset_source.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/exit_code.h"
 #include "eval/cli/flags.h"
@@ -52,9 +52,9 @@ Result<Dataset> DatasetToRefine() {
 
 /// What is wrong with the places of input and output, before anything is read or made.
 Status CheckFolders() {
-  if (IsBag(FLAGS_dataset)) {
-    return Status::Usage(
-        "refine_truth: --dataset: found a bag, expected a folder (alidade convert makes one)");
+  if (const DatasetFormat& format = FormatOf(FLAGS_dataset); !format.is_asl) {
+    return Status::Usage("refine_truth: --dataset: found " + std::string(format.name) + ", expected " +
+                         FormatsWith(&DatasetFormat::is_asl) + " (alidade convert makes one)");
   }
   // Whoever reads the dataset reports what is wrong with it.
   if (Status shared = CheckRefinedOutput(FLAGS_dataset, FLAGS_output); shared.code() == StatusCode::kUsage) {

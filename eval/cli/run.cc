@@ -59,7 +59,7 @@ Result<LogTables> TablesWithProgress(const Dataset& dataset, const FrontendConfi
   PipelineOptions options;
   options.stop = stop;
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
-  options.remark = Say;
+  options.remark = PrintNote;
   return MakeTables(dataset, frontend, options, SpoolFolder());
 }
 
@@ -79,7 +79,7 @@ Status CheckFirst(const Dataset& dataset, const LogTables& tables) {
   std::string errors;
   for (const DatasetFinding& finding : list) {
     if (finding.severity == DatasetFinding::Severity::kWarning) {
-      Say("warning: " + finding.text);
+      PrintNote("warning: " + finding.text);
     } else if (finding.severity == DatasetFinding::Severity::kError) {
       errors += (errors.empty() ? "" : "; ") + finding.text;
     }
@@ -113,12 +113,12 @@ RunResult RunWithProgress(const EstimatorConfig& config, const MeasurementLog& l
 int Conclude(const EstimatorConfig& config, const Dataset& dataset, const LogTables& tables,
              const MeasurementLog& log, const RunResult& result, const std::atomic<bool>* stop) {
   const RunHealth health = HealthOf(config, result);
-  SayResult(DescribeRun(health, result));
+  PrintResult(DescribeRun(health, result));
   if (Failed(result)) {
     RunOptions options;
     options.stop = stop;
     options.progress = [](size_t choice, size_t choices) {
-      Say(Format("looking for the cause: signs of the accelerometer, %zu of %zu", choice, choices));
+      PrintNote(Format("looking for the cause: signs of the accelerometer, %zu of %zu", choice, choices));
     };
     if (const std::optional<std::string> cause =
             DiagnoseAccelerometerSigns(config, log, tables, result, options)) {
@@ -168,7 +168,7 @@ int RunRun(const std::vector<std::string>&) {
   }
   const MeasurementLog log = MeasurementsOf(*dataset);
   for (const std::string& sensor : MissingSensors(*config, log)) {
-    Say("warning: the sequence has no " + sensor + ", which the configuration enables");
+    PrintNote("warning: the sequence has no " + sensor + ", which the configuration enables");
   }
   const Result<std::string> input_digest = DigestOf(log, *tables);
   if (!input_digest.ok()) {
@@ -176,7 +176,7 @@ int RunRun(const std::vector<std::string>&) {
   }
   const RunIdentity identity{*config,    dataset->name,      *dataset_digest,       *input_digest,
                              FLAGS_seed, tables->imu.size(), tables->frames.size(), FLAGS_audit};
-  Say(DescribeLog(log, *tables, identity.input_digest));
+  PrintNote(DescribeLog(log, *tables, identity.input_digest));
   ReleaseChecked(&dataset.value());
   const RunResult result = RunWithProgress(*config, log, *tables, *dataset, stop);
   if (const Status status = WriteRun(identity, result, FLAGS_output); !status.ok()) {

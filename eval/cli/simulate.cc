@@ -52,11 +52,11 @@ int RunSimulate(const std::vector<std::string>&) {
     if (status.code() == StatusCode::kDiverged) {
       return kExitInterrupted;
     }
-    Say(FLAGS_output + ": " + std::to_string(dataset.imu.size()) + " IMU samples, " +
-        std::to_string(dataset.camera_stamps.size()) + " images");
+    PrintNote(FLAGS_output + ": " + std::to_string(dataset.imu.size()) + " IMU samples, " +
+              std::to_string(dataset.camera_stamps.size()) + " images");
   } else if (status.ok()) {
     const MeasurementLog log{dataset.rig, dataset.imu, dataset.frames, dataset.extra_cameras};
-    Say(FLAGS_output + ": " + DescribeLog(log, DigestOf(log)));
+    PrintNote(FLAGS_output + ": " + DescribeLog(log, DigestOf(log)));
   }
   return Report(status);
 }

@@ -37,12 +37,12 @@ Result<SppConfig> ConfigFromFlags() {
   return config;
 }
 
-void SayWarnings(const ReaderWarnings& warnings) {
+void PrintWarnings(const ReaderWarnings& warnings) {
   for (const std::string& text : warnings.first) {
-    Say("skipped: " + text);
+    PrintNote("skipped: " + text);
   }
   if (const auto more = warnings.count - static_cast<std::int64_t>(warnings.first.size()); more > 0) {
-    Say(Format("and %lld more", static_cast<long long>(more)));
+    PrintNote(Format("and %lld more", static_cast<long long>(more)));
   }
 }
 
@@ -65,8 +65,8 @@ Status SolveAll(std::size_t epochs, SinglePointSolver* solver, std::string* text
   if (solved == 0) {
     return Status::Input(FLAGS_obs + ": no epoch has a solution; the first one: " + first_failure);
   }
-  Say(FLAGS_output + Format(": %zu of %zu epochs solved", solved, epochs) +
-      (first_failure.empty() ? "" : "; first failure: " + first_failure));
+  PrintNote(FLAGS_output + Format(": %zu of %zu epochs solved", solved, epochs) +
+            (first_failure.empty() ? "" : "; first failure: " + first_failure));
   return Status::Ok();
 }
 
@@ -88,7 +88,7 @@ int Run() {
   if (!catalog.ok()) {
     return Report(catalog.status());
   }
-  SayWarnings(warnings);
+  PrintWarnings(warnings);
   SinglePointSolver solver(MeasurementBuilder(*catalog, config->corrections, observations->glonass_channels),
                            config->solution, observations->approximate_position_E);
   std::vector<std::string> remarks = {std::string("program   : alidade ") + ALIDADE_VERSION};

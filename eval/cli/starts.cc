@@ -73,7 +73,8 @@ int RunStarts(const std::vector<std::string>&) {
       return Report(found.status());
     }
     outcomes.insert(outcomes.end(), found->begin(), found->end());
-    Say(plan->sequences[static_cast<size_t>(i)].name + ": " + std::to_string(found->size()) + " starts");
+    PrintNote(plan->sequences[static_cast<size_t>(i)].name + ": " + std::to_string(found->size()) +
+              " starts");
   }
   std::fputs(StartTable(outcomes).c_str(), stdout);
   return FLAGS_output.empty() ? kExitDone : Report(WriteLoneFileAtomically(FLAGS_output, StartCsv(outcomes)));

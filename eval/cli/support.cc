@@ -53,7 +53,7 @@ Result<Dataset> ReadDatasetFromFlags(const DatasetStorage& storage) {
   Result<Dataset> dataset = ReadDataset(SourceFromFlags(), storage);
   if (dataset.ok()) {
     for (const std::string& remark : dataset->remarks) {
-      Say(remark);
+      PrintNote(remark);
     }
   }
   return dataset;
@@ -139,13 +139,13 @@ Status CheckOutputFile(const std::string& path) {
              : Status::Ok();
 }
 
-void Say(const std::string& line) {
+void PrintNote(const std::string& line) {
   if (!FLAGS_quiet) {
-    SayResult(line);
+    PrintResult(line);
   }
 }
 
-void SayResult(const std::string& line) {
+void PrintResult(const std::string& line) {
   std::fflush(stdout);  // a log of both streams keeps their order
   std::fprintf(stderr, "%s\n", line.c_str());
 }

@@ -34,9 +34,9 @@ Status PrepareOutputFolder(const std::string& path, bool allowed);
 Status CheckOutputFile(const std::string& path);
 
 /// A line for people on standard error, unless --quiet.
-void Say(const std::string& line);
+void PrintNote(const std::string& line);
 /// Likewise, whatever the flag: the result of a command.
-void SayResult(const std::string& line);
+void PrintResult(const std::string& line);
 
 /// "label 120/600, about 2 min left": one line that rewrites itself on a terminal, every tenth as a plain
 /// line otherwise; nothing with --quiet.

@@ -63,7 +63,7 @@ int TrackAndWrite(const FrontendConfig& config, Dataset* dataset) {
   options.statistics = &statistics;
   options.cpu_ms = &cpu_ms;
   options.stop = InstallInterruptHandler();
-  options.remark = Say;
+  options.remark = PrintNote;
   ProgressLine progress("images");
   options.progress = [&progress](size_t done, size_t total) { progress.Update(done, total); };
   Result<std::vector<TrackFrame>> frames = TrackImages(*dataset, config, options);

@@ -112,8 +112,8 @@ class Comparer {
     Take(cell, fault);
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
     ++cells_done_;
-    Say("[" + std::to_string(cells_done_) + "/" + std::to_string(cells_.size()) +
-        TimeLeft(elapsed_s, cells_done_, cells_.size()) + "] " + OneLine(cells_.at(cell).result));
+    Progress("[" + std::to_string(cells_done_) + "/" + std::to_string(cells_.size()) +
+             TimeLeft(elapsed_s, cells_done_, cells_.size()) + "] " + OneLine(cells_.at(cell).result));
   }
 
   /// Reads what the cell has left; `fault`: why it left nothing.
@@ -144,17 +144,17 @@ class Comparer {
       return;
     }
     for (const std::string& remark : report.remarks) {
-      Say(remark);
+      Progress(remark);
     }
     if (!report.frontend) {
       return;
     }
     const FrontendSummary& summary = *report.frontend;
     frontends_.emplace(cell.input, summary);
-    Say("front end of " + summary.sequence + ": " +
-        Format("%d images, %.2f ms each, %.0f features, tracks of %.0f frames, %.2f %% rejected",
-               summary.images, summary.mean_ms, summary.features_per_frame, summary.mean_length,
-               100 * summary.rejected_share));
+    Progress("front end of " + summary.sequence + ": " +
+             Format("%d images, %.2f ms each, %.0f features, tracks of %.0f frames, %.2f %% rejected",
+                    summary.images, summary.mean_ms, summary.features_per_frame, summary.mean_length,
+                    100 * summary.rejected_share));
   }
 
   Result<CompareOutcome> Finish() {
@@ -218,7 +218,7 @@ class Comparer {
     return notes;
   }
 
-  void Say(const std::string& line) const {
+  void Progress(const std::string& line) const {
     if (options_.progress) {
       options_.progress(line);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eval/bag/dataset_source.h"
 #include "eval/files/suggest.h"
 
 namespace alidade {
@@ -70,8 +71,7 @@ Status CheckPlan(const Plan& plan, const YAML::Node& root) {
   return CheckAnyThere(plan);
 }
 
-Status CheckSequenceKeys(const PlanReader& reader, const YAML::Node& node, const PlanSequence& sequence,
-                         bool is_bag) {
+Status CheckSequenceKeys(const PlanReader& reader, const YAML::Node& node, const PlanSequence& sequence) {
   const bool is_dataset = !sequence.dataset.path.empty();
   if (is_dataset == !sequence.config.empty()) {
     return reader.Fault(node, "sequences", "either `path` of a dataset or `config` of a simulation");
@@ -82,12 +82,16 @@ Status CheckSequenceKeys(const PlanReader& reader, const YAML::Node& node, const
   if (!is_dataset && !sequence.truth.empty()) {
     return reader.Fault(node, "sequences", "`truth` only with `path`: a simulation has its own");
   }
-  if (!is_bag && (node["topics"] || node["calibration"] || node["camera"])) {
+  const DatasetFormat* const format = is_dataset ? &FormatOf(sequence.dataset.path) : nullptr;
+  if ((node["topics"] || node["calibration"] || node["camera"]) &&
+      !(format != nullptr && format->takes_topics)) {
     return reader.Fault(node, "sequences",
-                        "`topics`, `calibration` and `camera` only with the `path` of a bag");
+                        "`topics`, `calibration` and `camera` only with the `path` of " +
+                            FormatsWith(&DatasetFormat::takes_topics));
   }
-  if (sequence.dataset.follow_links && (is_bag || !is_dataset)) {
-    return reader.Fault(node, "sequences", "`follow_links` only with the `path` of a folder");
+  if (sequence.dataset.follow_links && !(format != nullptr && format->is_asl)) {
+    return reader.Fault(node, "sequences",
+                        "`follow_links` only with the `path` of " + FormatsWith(&DatasetFormat::is_asl));
   }
   return Status::Ok();
 }

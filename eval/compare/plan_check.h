@@ -10,9 +10,8 @@ namespace alidade {
 /// reference to an unknown sequence (kConfig); all sequences are missing (kInput).
 Status CheckPlan(const Plan& plan, const YAML::Node& root);
 
-/// Whether the keys of a sequence, whose node is given, go together: those of a folder, a bag or a
-/// simulation. Errors (kConfig): they do not.
-Status CheckSequenceKeys(const PlanReader& reader, const YAML::Node& node, const PlanSequence& sequence,
-                         bool is_bag);
+/// Whether the keys of a sequence, whose node is given, go together: those of a simulation or of the format
+/// of its path, which may be missing. Errors (kConfig): they do not.
+Status CheckSequenceKeys(const PlanReader& reader, const YAML::Node& node, const PlanSequence& sequence);
 
 }  // namespace alidade

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "eval/bag/bag_import.h"
+#include "eval/bag/dataset_source.h"
 #include "eval/compare/plan_check.h"
 #include "eval/compare/plan_metrics.h"
 #include "eval/compare/plan_reader.h"
@@ -189,15 +189,15 @@ class PlanParser {
          {"estimator_set", [&](const Node& n) {
             return reader_.Settings(n, "estimator_set", &sequence.estimator_settings);
           }}}));
-    const bool is_bag = sequence.dataset.path.ends_with(".bag");  // it may be absent
-    ALIDADE_RETURN_IF_ERROR(CheckSequenceKeys(reader_, node, sequence, is_bag));
+    ALIDADE_RETURN_IF_ERROR(CheckSequenceKeys(reader_, node, sequence));
+    const std::string& path = sequence.dataset.path;
     if (sequence.name.empty()) {
-      sequence.name = sequence.dataset.path.empty() || is_bag
-                          ? Stem(sequence.dataset.path.empty() ? sequence.config : sequence.dataset.path)
-                          : FolderOf(sequence.dataset.path);
+      sequence.name = path.empty()               ? Stem(sequence.config)
+                      : FormatOf(path).is_file() ? Stem(path)
+                                                 : FolderOf(path);
       ALIDADE_RETURN_IF_ERROR(reader_.CheckFolderName(node, "sequences", sequence.name));
     }
-    if (!sequence.dataset.path.empty() && !PlanReader::IsDataset(sequence.dataset.path)) {
+    if (!path.empty() && !IsDataset(path)) {
       plan_.absent.emplace_back(sequence.name, sequence.dataset.path);
       return Status::Ok();
     }

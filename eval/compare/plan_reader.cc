@@ -4,7 +4,7 @@
 #include <charconv>
 #include <filesystem>
 
-#include "eval/bag/bag_import.h"
+#include "eval/bag/dataset_source.h"
 #include "eval/files/suggest.h"
 
 namespace alidade {
@@ -130,11 +130,6 @@ Status PlanReader::Path(const YAML::Node& node, const std::string& name, std::st
   // An absolute `text` replaces the folder.
   *value = (std::filesystem::path(path_).parent_path() / text).lexically_normal().string();
   return Status::Ok();
-}
-
-bool PlanReader::IsDataset(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored) || IsBag(path);
 }
 
 Status PlanReader::ExistingPath(const YAML::Node& node, const std::string& name, bool folder,

@@ -37,8 +37,6 @@ class PlanReader {
                                        const std::string& derived) const;
   /// A path, resolved: ${data} replaced, relative to the plan's folder.
   Status Path(const YAML::Node& node, const std::string& name, std::string* value) const;
-  /// The path of a dataset: a folder, or a bag.
-  [[nodiscard]] static bool IsDataset(const std::string& path);
   /// A path of a file or of a dataset (`folder`) that exists, resolved.
   Status ExistingPath(const YAML::Node& node, const std::string& name, bool folder, std::string* value) const;
   Status Real(const YAML::Node& node, const std::string& name, double min, double max, double* value) const;

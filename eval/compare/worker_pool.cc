@@ -88,14 +88,14 @@ Status WorkerPool::Listen() {
   for (const pollfd& descriptor : descriptors) {
     const auto next = std::next(worker);
     if (descriptor.revents != 0) {
-      ALIDADE_RETURN_IF_ERROR(worker->process.Read() ? Hear(&*worker) : Bury(worker, {}));
+      ALIDADE_RETURN_IF_ERROR(worker->process.Read() ? TakeLines(&*worker) : Remove(worker, {}));
     }
     worker = next;
   }
   return Status::Ok();
 }
 
-Status WorkerPool::Hear(Worker* worker) {
+Status WorkerPool::TakeLines(Worker* worker) {
   while (const std::optional<std::string> line = worker->process.Line()) {
     if (*line == "ready") {
       worker->ready = true;
@@ -129,14 +129,14 @@ Status WorkerPool::Watch() {
     const auto next = std::next(worker);
     if (const std::string fault = worker->cell ? BeyondLimit(*worker) : std::string(); !fault.empty()) {
       worker->process.Kill();
-      ALIDADE_RETURN_IF_ERROR(Bury(worker, fault));
+      ALIDADE_RETURN_IF_ERROR(Remove(worker, fault));
     }
     worker = next;
   }
   return Status::Ok();
 }
 
-Status WorkerPool::Bury(std::list<Worker>::iterator worker, const std::string& fault) {
+Status WorkerPool::Remove(std::list<Worker>::iterator worker, const std::string& fault) {
   const std::string how = worker->process.Join();
   const std::optional<size_t> cell = worker->cell;
   const bool ready = worker->ready;

@@ -38,9 +38,9 @@ class WorkerPool {
   void Feed();
   /// Waits for a line of any worker, and takes it.
   Status Listen();
-  Status Hear(Worker* worker);
-  /// `fault`: why it was killed; empty: it ended by itself.
-  Status Bury(std::list<Worker>::iterator worker, const std::string& fault);
+  Status TakeLines(Worker* worker);
+  /// One that ended. `fault`: why it was killed; empty: it ended by itself.
+  Status Remove(std::list<Worker>::iterator worker, const std::string& fault);
   /// Kills the workers whose cells are beyond a limit.
   Status Watch();
   [[nodiscard]] std::string BeyondLimit(const Worker& worker) const;

@@ -56,7 +56,8 @@ struct TruthExtent {
 /// A sequence in the extended ASL layout (contract: <seq>/mav0/{imu0,cam0,state_groundtruth_estimate0}).
 struct Dataset {
   std::string path;
-  std::string name;  ///< last folder of the path
+  std::string name;        ///< last folder of the path
+  bool has_sheets = true;  ///< a sensor's calibration is in its sensor.yaml; else in any file
   RigCalibration rig;
   /// The true rig, of a simulation that writes a wrong calibration (calibration_*_error).
   std::optional<RigCalibration> true_rig;

@@ -13,7 +13,6 @@
 #include "eval/dataset/dataset_camera.h"
 #include "eval/dataset/dataset_findings.h"
 #include "eval/dataset/sensor_yaml.h"
-#include "eval/rosbag/rosbag_reader.h"
 
 namespace alidade {
 namespace {
@@ -26,9 +25,9 @@ void AddFinding(bool impossible, std::string text, Findings* findings) {
   }
 }
 
-/// Where a sensor's calibration stands: its sheet, or of a bag the sensor, whose sheet may be any file.
+/// Where a sensor's calibration stands: its sheet, or the sensor where that may be any file.
 std::string SheetOf(const Dataset& dataset, const std::string& sensor) {
-  return IsBag(dataset.path) ? sensor : sensor + "/sensor.yaml";
+  return dataset.has_sheets ? sensor + "/sensor.yaml" : sensor;
 }
 
 /// One camera of the rig.

@@ -101,7 +101,7 @@ Result<YAML::Node> LoadYaml(const std::string& text, const std::string& where, S
 Result<YAML::Node> ParseYaml(const std::string& text, const std::string& where, StatusCode code) {
   std::string content = text;
   if (content.starts_with(
-          "%YAML:")) {  // OpenCV writes a colon where YAML wants a blank; a comment keeps the line count
+          "%YAML:")) {  // OpenCV writes a colon where YAML needs a blank; a comment keeps the line count
     content[0] = '#';
   }
   Result<YAML::Node> root = LoadYaml(content, where, code);

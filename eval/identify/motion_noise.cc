@@ -89,19 +89,19 @@ class MotionFit {
     }
     result_.runs += fit_->runs();
     result_.converged = most < kSettled;
-    Say(result_.rounds);
+    ReportRound(result_.rounds);
     return Status::Ok();
   }
 
-  void Say(int round) const {
-    if (!options_.say) {
+  void ReportRound(int round) const {
+    if (!options_.progress) {
       return;
     }
     std::string line = Format("round %d:", round);
     for (const NoiseSource source : fit_->sources()) {
       line += Format("  %s %.3g", NameOf(source), noise_[IndexOf(source)]);
     }
-    options_.say(line);
+    options_.progress(line);
   }
 
   /// Intervals and the check by halves, at the last noises.

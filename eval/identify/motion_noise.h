@@ -48,7 +48,7 @@ struct MotionOptions {
   RunOptions run;
   int jobs = 1;
   int most_rounds = 6;
-  std::function<void(const std::string& line)> say;  ///< may be empty
+  std::function<void(const std::string& line)> progress;  ///< may be empty
 };
 
 /// Maximum likelihood of the innovations over the logarithms of the noises. A round runs the filter, records

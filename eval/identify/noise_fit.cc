@@ -152,7 +152,7 @@ class AllanFit {
   }
 
   /// Iterates until no point's variance changes by a thousandth. The criterion stays infinite when a power
-  /// wants to be negative: another set has the fit without it.
+  /// would be negative: another set has the fit without it.
   [[nodiscard]] SetFit Converge(Noises noises) const {
     constexpr int kMostRounds = 60;
     constexpr double kSettled = 1e-3;

@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-constexpr char kHead[] = "%YAML:1.0\n";  // as OpenCV's reader wants it
+constexpr char kHead[] = "%YAML:1.0\n";  // as OpenCV's reader needs it
 
 std::string Map(const char* key, const std::vector<std::pair<const char*, double>>& values) {
   std::string text = std::string(key) + ":\n";

@@ -94,7 +94,7 @@ const char* const kReading =
     "data per second of front end and back end, of the back end alone where the tracks were read from a "
     "file. RMSE is unaligned. ATE: error after alignment to the truth, which summary.csv names (posyaw: in "
     "position and yaw about gravity). RPE: error of the relative motion over stretches of that length of the "
-    "path. NEES: squared error in units of the covariance that the estimator claims. The best value of a "
+    "path. NEES: squared error in units of the covariance that the estimator reports. The best value of a "
     "column is bold (NEES: nearest to its degrees of freedom, 6, 3 and 3), among the estimators with the "
     "most runs ok; \u2248 marks values "
     "whose paired difference to it is not significant. Published figures are in italics. NEES in band: share "

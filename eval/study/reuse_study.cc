@@ -15,8 +15,8 @@ void Immediate(BaseReuse reuse, FilterConfig* filter) {
   filter->base_reuse = reuse;
 }
 
-/// The filter at its believed noise, the world without any.
-EstimatorConfig Believing(const EstimatorConfig& estimator, const SimulatorConfig& simulation) {
+/// The filter with the noise that it assumes, the world without any.
+EstimatorConfig WithAssumedNoise(const EstimatorConfig& estimator, const SimulatorConfig& simulation) {
   EstimatorConfig config = estimator;
   config.backend = Backend::kFilter;
   config.vision.pixel_noise_px = simulation.pixel_noise_px;
@@ -59,7 +59,7 @@ Result<ReusePrediction> PredictConsistency(const SimulatorConfig& simulation,
   if (simulation.IsHybrid()) {
     return Status::Config("hybrid_dataset: the analysis needs a noise-free IMU; expected a simulated one");
   }
-  EstimatorConfig config = Believing(estimator, simulation);
+  EstimatorConfig config = WithAssumedNoise(estimator, simulation);
   config.filter.window = window;
   policy.apply(&config.filter);
   ALIDADE_RETURN_IF_ERROR(config.Validate());

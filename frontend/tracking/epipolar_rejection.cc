@@ -233,7 +233,8 @@ double AdaptedThreshold(const std::vector<BearingPair>& pairs, const std::vector
 
 Consensus AgreeWithRotation(const std::vector<BearingPair>& pairs, const Matrix3d& R_21,
                             const EpipolarOptions& options) {
-  // 1 mrad: rotation noise and calibration at high frame rates, where the bias alone would promise too much.
+  // 1 mrad: rotation noise and calibration at high frame rates, where the bias alone gives too small a
+  // deviation.
   const double rotation_std = std::max(1e-3, kGyroError * options.dt_s);
   EpipolarOptions loose = options;
   loose.threshold_px += 2 * rotation_std * options.focal_px;

@@ -17,7 +17,7 @@ struct SinglePointState {
   std::array<int, kGnssSystems> column{};  ///< of a bias; -1 where the system is absent or the datum
   GnssSystem datum = GnssSystem::kGps;
   int unknowns = 4;
-  bool biases_anew = false;        ///< the carried ones are not believed
+  bool biases_anew = false;        ///< the carried ones are not used
   bool located = false;            ///< direction and variances of the measurements are known
   std::vector<bool> active;        ///< by measurement
   std::vector<double> residual_m;  ///< by measurement, at the solution

@@ -3,6 +3,7 @@
 #include "core/error_convention.h"
 #include "core/imu_buffer.h"
 #include "core/imu_propagation.h"
+#include "core/imu_step.h"
 
 namespace alidade {
 
@@ -21,11 +22,7 @@ std::optional<TruthLink> LinearizeLink(const ImuSample& from, const ImuSample& t
   // A factor acts on the mean over the step, as a bias of the other sign does. Neglected: its effect on what
   // the change within the step adds (core/imu_step.h).
   link.of_constants.setZero();
-  const double dt_s = SecondsBetween(from.stamp_ns, to.stamp_ns);
-  const double bow = dt_s * dt_s / 12;
-  Vector6d mean;
-  mean << 0.5 * (from.gyro + to.gyro) - bow * to.gyro_curvature,
-      0.5 * (from.accel + to.accel) - bow * to.accel_curvature;
+  const Vector6d mean = ParabolaMean(from, to, ImuBias());
   link.of_constants.block<9, kScales>(0, kScaleColumn) =
       -link.of_first.block<9, kScales>(0, 9) * mean.asDiagonal();
   const auto lower = whitening.triangularView<Eigen::Lower>();

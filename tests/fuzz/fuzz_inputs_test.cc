@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/random.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/support/read_file.h"
 
-// What fuzzing has found, and a few random bytes, fed to each target once.
+// The committed files of each target, and a few random bytes, fed to it once.
 
 namespace alidade::test {
 namespace {
@@ -19,20 +22,39 @@ std::vector<FuzzTarget> AllTargets() {
   return all;
 }
 
-class FuzzInputsTest : public testing::TestWithParam<FuzzTarget> {};
-
-// GIVEN an input that once aborted, hung or broke a promise, THEN it is taken or refused.
-TEST_P(FuzzInputsTest, AreTakenOrRefused) {
-  const std::filesystem::path folder =
-      std::filesystem::path(ALIDADE_SOURCE_DIR) / "tests/fuzz/inputs" / GetParam().name;
-  if (!std::filesystem::exists(folder)) {
-    return;
+/// Folders of committed files: examples, and inputs that once aborted, hung or broke a Require. Each has the
+/// name of its target.
+std::vector<std::string> InputFolders() {
+  std::vector<std::string> folders;
+  for (const char* kind : {"seeds", "inputs"}) {
+    std::error_code missing;  // without a finding there is no `inputs`
+    for (const auto& entry : std::filesystem::directory_iterator(
+             std::filesystem::path(ALIDADE_SOURCE_DIR) / "tests/fuzz" / kind, missing)) {
+      folders.push_back(entry.path().string());
+    }
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+class FuzzFilesTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(FuzzFilesTest, AreTakenOrRefused) {
+  const FuzzTarget* const target = FindFuzzTarget(std::filesystem::path(GetParam()).filename().string());
+  ASSERT_NE(target, nullptr) << GetParam() << " has the name of no target";
+  ASSERT_FALSE(std::filesystem::is_empty(GetParam())) << GetParam();
+  for (const auto& entry : std::filesystem::directory_iterator(GetParam())) {
     SCOPED_TRACE(entry.path().string());
-    GetParam().take(ReadFile(entry.path().string()));
+    target->take(ReadFile(entry.path().string()));
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Committed, FuzzFilesTest, testing::ValuesIn(InputFolders()), [](const auto& param) {
+  const std::filesystem::path folder = param.param;
+  return folder.parent_path().filename().string() + "_" + folder.filename().string();
+});
+
+class FuzzInputsTest : public testing::TestWithParam<FuzzTarget> {};
 
 TEST_P(FuzzInputsTest, RandomBytesAreTakenOrRefused) {
   RandomStream random(1, GetParam().name);

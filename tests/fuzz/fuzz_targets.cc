@@ -16,9 +16,9 @@ const FuzzTarget* FindFuzzTarget(std::string_view name) {
   return nullptr;
 }
 
-void Require(bool kept, const std::string& promise) {
+void Require(bool kept, const std::string& property) {
   if (!kept) {
-    std::fprintf(stderr, "broken: %s\n", promise.c_str());
+    std::fprintf(stderr, "broken: %s\n", property.c_str());
     std::abort();
   }
 }

@@ -6,8 +6,8 @@
 
 namespace alidade::test {
 
-/// A part of the program that must bear any bytes: it takes them or refuses them with a message. What else it
-/// promises is checked by Require, which ends the program.
+/// A part of the program that must bear any bytes: it takes them or refuses them with a message. Its other
+/// properties are checked by Require, which ends the program.
 struct FuzzTarget {
   const char* name;
   void (*take)(std::string_view bytes);
@@ -20,7 +20,7 @@ struct FuzzTarget {
 /// The target of this name, or null.
 [[nodiscard]] const FuzzTarget* FindFuzzTarget(std::string_view name);
 
-/// Aborts with the text where a promise is broken.
-void Require(bool kept, const std::string& promise);
+/// Aborts with the text where a property does not hold.
+void Require(bool kept, const std::string& property);
 
 }  // namespace alidade::test

@@ -70,7 +70,8 @@ TEST_P(AddingTest, GivenThePageThenItsCommandPrintsTheFilesOfItsTable) {
 
 INSTANTIATE_TEST_SUITE_P(Additions, AddingTest,
                          testing::Values(Addition{"a visual residual", 8}, Addition{"a sensor", 15},
-                                         Addition{"a second camera", 0}, Addition{"an error convention", 5}),
+                                         Addition{"a second camera", 0}, Addition{"a dataset format", 6},
+                                         Addition{"an error convention", 5}),
                          [](const auto& addition) {
                            std::string name = addition.param.name;
                            std::replace(name.begin(), name.end(), ' ', '_');

@@ -33,7 +33,7 @@ class CompareLimits : public testing::Test {
 };
 
 // GIVEN a limit of time WHEN a cell of ours stands still and a command never ends, nor what it has left in
-// the background, THEN both have failed and say why, nothing of them lives on, and the others are there.
+// the background, THEN both have failed with the reason, nothing of them lives on, and the others are there.
 TEST_F(CompareLimits, ACellThatHangsIsEnded) {
   WritePlan(
       ", {name: theirs, command: 'setsid sleep 3000 & echo $! > {output}/pid; sleep 3000', sequences: "
@@ -63,7 +63,7 @@ TEST_F(CompareLimits, ACellThatHangsIsEnded) {
 }
 
 // GIVEN a limit of memory WHEN a command and a cell of ours take more, in one process or as a task of a
-// cluster does it, THEN they have failed and say why, and the others are there.
+// cluster does it, THEN they have failed with the reason, and the others are there.
 TEST_F(CompareLimits, ACellThatTakesAllMemoryIsEnded) {
   WritePlan(", {name: theirs, command: 'tail /dev/zero', sequences: [short]}",
             kShort + "}, {config: " + Source("configs/datasets/figure8_short.yaml") +

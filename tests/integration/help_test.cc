@@ -24,6 +24,17 @@ TEST(Help, FitsOnAScreen) {
   EXPECT_LT(Alidade("help").output.size(), 2000u);
 }
 
+// GIVEN a flag of two meanings THEN the help of each command has its own.
+TEST(Help, DescribesTheInputOfEachCommand) {
+  const std::string cases = "JSON file of cases", folder = "output folder of compare";
+  const std::string probe = Alidade("probe --help").output;
+  EXPECT_THAT(probe, HasSubstr(cases));
+  EXPECT_THAT(probe, Not(HasSubstr(folder)));
+  const std::string study = Alidade("fault_study --help").output;
+  EXPECT_THAT(study, HasSubstr(folder));
+  EXPECT_THAT(study, Not(HasSubstr(cases)));
+}
+
 TEST(Help, PrintsDefaultsWithTheFewestDigits) {
   const std::string output = Alidade("evaluate --help").output;
   EXPECT_THAT(output, HasSubstr("relative tolerance of the delta (double, default 0.1)"));

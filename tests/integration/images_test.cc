@@ -141,7 +141,7 @@ TEST(Images, AComparisonFromPixelsKeepsItsLog) {
   EXPECT_EQ(DigestIn(ReadFile(out + "/summary.csv")), DigestIn(summary));
 }
 
-// Estimators that want different tracks cannot share one run of the front end.
+// Estimators that need different tracks cannot share one run of the front end.
 TEST(Images, AComparisonFromPixelsRefusesTwoFrontends) {
   TemporaryFolder folder;
   folder.Write("tiny.yaml", kTiny);

@@ -57,9 +57,9 @@
     const mean = allSeeds();
     const width = mean ? 1 : 3;
     const grid = group(title, mean ?
-      'Root mean square over the seeds (line) and root mean square of the claimed standard deviation (1\u03c3, shaded). ' +
+      'Root mean square over the seeds (line) and root mean square of the reported standard deviation (1\u03c3, shaded). ' +
       'For a consistent estimator the line follows the edge of the shaded area.' :
-      'Truth minus estimate, not aligned (line), and the claimed \u00b13\u03c3 (shaded). Drag across a plot to zoom, double-click to reset; on the keyboard, arrows read values.');
+      'Truth minus estimate, not aligned (line), and the reported \u00b13\u03c3 (shaded). Drag across a plot to zoom, double-click to reset; on the keyboard, arrows read values.');
     names.forEach(function (name, axis) {
       const bands = entries.filter(function (entry) { return entry.series[key + '_sigma'].length; }).map(function (entry) {
         const sigma = entry.series[key + '_sigma'][axis];
@@ -76,7 +76,7 @@
     const runs = allSeeds() ? d3.max(entries, function (entry) { return entry.cells.length; }) || 1 : 1;
     const band = data.nees_bands[runs - 1];
     const few = allSeeds() && entries.some(function (entry) { return entry.cells.length < runs; });
-    const grid = group('Consistency', 'Normalised estimation error squared (NEES) of the pose: squared error in units of the claimed covariance, 6 on average when the claim is true, ' +
+    const grid = group('Consistency', 'Normalised estimation error squared (NEES) of the pose: squared error in units of the reported covariance, 6 on average when the estimator is consistent, ' +
       'more when it is overconfident. Shaded: where ' +
       (runs > 1 ? 'the mean of ' + runs + ' independent runs' : 'a single run') + ' lies with 95 % probability (' + report.digits(band[0]) + ' to ' +
       report.digits(band[1]) + '). Dashed: mean over time.' + (few ? ' An estimator that lost runs has a wider band than the one shown.' : '') +
@@ -104,7 +104,7 @@
       { x: 'length of the sub-trajectory [m]', height: 300, groups: groups }));
   };
 
-  // How often the mean over the runs is inside its band: 95 % of the time, when the covariance is honest.
+  // How often the mean over the runs is inside its band: 95 % of the time, when the estimator is consistent.
   function insideText(entries) {
     return ' Inside: ' + entries.map(function (entry) {
       const curve = data.nees_over_time.find(function (c) { return c.estimator === entry.name && c.sequence === state.sequence; });

@@ -18,8 +18,8 @@
   // Empty for figures that name themselves, such as times.
   report.meaning = function (key, align) {
     if (key.indexOf('nees_') === 0 && key !== 'nees_inside_share') {
-      return 'NEES: squared error in units of the covariance that the estimator claims. Its mean is the number of degrees of freedom (6 for ' +
-        'the pose, 3 for the others) when the claim is true; above, the estimator is overconfident, below, cautious. Unaligned.';
+      return 'NEES: squared error in units of the covariance that the estimator reports. Its mean is the number of degrees of freedom (6 for ' +
+        'the pose, 3 for the others) when the estimator is consistent; above, the estimator is overconfident, below, cautious. Unaligned.';
     }
     if (key.indexOf('rpe_') === 0) {
       return 'RPE: error of the relative motion over stretches of this length of the path, which no alignment but one in scale changes: drift, ' +
@@ -38,7 +38,7 @@
     }
     if (key === 'realtime_factor') {
       return 'x real time: seconds of camera data that a second of front end and back end processes; of the back end alone where the tracks were ' +
-        'read from a file, of the whole program where it tells no times.';
+        'read from a file, of the whole program where it reports no times.';
     }
     return '';
   };

@@ -244,6 +244,7 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
                   .ok());
   const Result<Dataset> dataset = ReadDataset(source);
   ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_FALSE(dataset->has_sheets);
   EXPECT_EQ(dataset->images.size(), 6u);
   EXPECT_NEAR(dataset->rig.T_BC.translation.x(), 0.1, 1e-12);
   EXPECT_THAT(dataset->remarks, Contains(HasSubstr("lever arm")));
@@ -254,12 +255,13 @@ TEST_F(ForeignBag, ReadsWithTheCalibrationOfOtherPrograms) {
   EXPECT_NE(DigestOf(source).value(), digest)
       << "the front end's tracks would be taken for those of another rig";
   source.follow_links = true;
-  EXPECT_THAT(ReadDataset(source).message(), HasSubstr("is a bag; follow_links applies to folders"));
+  EXPECT_THAT(ReadDataset(source).message(), HasSubstr("found a bag, expected a folder for follow_links"));
   source.follow_links = false;
   source.topics = "cam0=/none";
   EXPECT_THAT(ReadDataset(source).message(), HasSubstr("no topic /none"));
   source.path = folder_.path();
-  EXPECT_THAT(ReadDataset(source).message(), HasSubstr("is not a bag"));
+  EXPECT_THAT(ReadDataset(source).message(),
+              HasSubstr("found a folder, expected a bag for topics or calibration"));
 }
 
 TEST_F(ForeignBag, ObservationsWithoutEphemerisAreLeftOut) {

@@ -136,7 +136,7 @@ TEST(CalibrateCamera, ClocksSecondsApartAreRefusedOrReported) {
     std::string said;
     CameraCalibrationOptions options;
     options.lever_arm = false;
-    options.say = [&said](const std::string& line) { said += line + "\n"; };
+    options.progress = [&said](const std::string& line) { said += line + "\n"; };
     const Result<CalibratedCamera> camera = CalibrateCamera(EstimatorConfig(), log, options);
     const std::string text = "the clocks of camera and imu0 differ";
     if (duration_s > 30) {

@@ -241,7 +241,7 @@ TEST(GnssInertialStartTest, GIVEN_epochs_without_solution_or_velocity_THEN_they_
       << start.report();
 }
 
-// GIVEN a receiver that speaks before the IMU, THEN its first epochs are left out.
+// GIVEN a receiver whose epochs begin before the IMU, THEN its first epochs are left out.
 TEST(GnssInertialStartTest, GIVEN_epochs_before_the_IMU_THEN_the_start_does_without_them) {
   const Body body = Flying();
   GnssInertialStart start = MakeStart(Config(), body);

@@ -40,7 +40,7 @@ TEST(Sp3Test, ReadsPositionsAndClocksAndLeavesBadOnesOut) {
                            "EOF\nPG01  13287.682546 -15491.926575  16545.690647    703.963460\n";
   const Result<PreciseProducts> products = ParseSp3("file", text);
   ASSERT_TRUE(products.ok()) << products.message();
-  ASSERT_EQ(products->orbits.size(), 1u) << "the header's 289 epochs are not believed";
+  ASSERT_EQ(products->orbits.size(), 1u) << "the header's 289 epochs are not used";
   const SatelliteId g01{GnssSystem::kGps, 1};
   ASSERT_EQ(products->orbits.at(g01).size(), 2u);
   EXPECT_EQ(products->orbits.at(g01)[0].stamp_ns,

@@ -281,10 +281,10 @@ TEST_P(SlamPriorTest, WhatIsKnownOfTheNewestStateStaysTheSame) {
   EXPECT_LT((after - before).norm(), 1e-5 * before.norm());
   ASSERT_EQ(camera_after.size(), fixture.calibration.size());
   // Within a narrow cone a coefficient of a curved lens is hardly seen.
-  const double learnt = fixture.seen_view == test::FixtureView::kBehind ? 0.9999 : 0.999;
+  const double most_share = fixture.seen_view == test::FixtureView::kBehind ? 0.9999 : 0.999;
   for (Index i = 0; i < camera_after.size(); ++i) {
     EXPECT_NEAR(camera_after[i], camera_before[i], 1e-5 * camera_before[i]) << i;
-    EXPECT_LT(camera_after[i], learnt * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
+    EXPECT_LT(camera_after[i], most_share * 1 / fixture.first.jacobian.diagonal()[15 + i]) << i;
   }
 }
 

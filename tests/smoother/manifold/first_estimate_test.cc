@@ -177,8 +177,8 @@ TEST(FirstEstimateTest, YawAndPositionStayUnobservable) {
   }
 }
 
-// WHEN they move along with the states, THEN the prior has learnt something of them after the second frame.
-TEST(FirstEstimateTest, WithoutFirstEstimatesThePriorLearnsThem) {
+// WHEN they move along with the states, THEN the prior holds information about them after the second frame.
+TEST(FirstEstimateTest, WithoutFirstEstimatesThePriorGainsInformationAboutThem) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Sliding sliding(seed, false);
     sliding.Leave();
