@@ -98,8 +98,10 @@ void LogPlayer::PlayFrames() {
       options_.progress(i + 1, tables_.frames.size());
     }
   }
-  session_.EndDoubt();
-  TakeEvents();
+  if (result_.status.ok()) {
+    session_.EndDoubt();
+    TakeEvents();
+  }
 }
 
 bool LogPlayer::PlayFrame(const TrackFrame& frame) {
