@@ -51,6 +51,12 @@ Vector3d GyroRotation::RateAt(TimeNs t_ns) const {
   return Interpolate(*(after - 1), *after, t_ns).gyro;
 }
 
+void GyroRotation::TakeBack(TimeNs from_ns, TimeNs by_ns) {
+  for (ImuSample& sample : samples_) {
+    sample.stamp_ns -= sample.stamp_ns >= from_ns ? by_ns : 0;
+  }
+}
+
 void GyroRotation::DropBefore(TimeNs t0_ns) {
   // The last sample at or before t0 is kept: the rate at t0 is interpolated from it.
   while (samples_.size() >= 2 && samples_[1].stamp_ns <= t0_ns) {

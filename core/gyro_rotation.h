@@ -30,6 +30,8 @@ class GyroRotation {
   /// kMaxGapS apart, or it reaches so far beyond them.
   [[nodiscard]] std::optional<Eigen::Matrix3d> Between(
       TimeNs t0_ns, TimeNs t1_ns, const Eigen::Vector3d& bias = Eigen::Vector3d::Zero()) const;
+  /// Moves the samples from `from_ns` on back by `by_ns`, less than the step before them.
+  void TakeBack(TimeNs from_ns, TimeNs by_ns);
   /// Forgets what rotations from t0 on do not need.
   void DropBefore(TimeNs t0_ns);
 

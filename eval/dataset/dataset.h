@@ -33,6 +33,7 @@ struct ImuRejections {
   std::size_t late = 0;        ///< dropped: out of order by more than kMaxImuLatenessNs
   std::size_t not_finite = 0;  ///< dropped: a NaN or an infinity
   std::size_t reordered = 0;   ///< kept: out of order by less
+  double set_back_s = 0;       ///< by which the clock was set back in all; later stamps are moved by that
   [[nodiscard]] std::size_t dropped() const { return duplicate + late + not_finite; }
 };
 

@@ -98,6 +98,10 @@ void LogPlayer::PlayFrames() {
       options_.progress(i + 1, tables_.frames.size());
     }
   }
+  if (result_.status.ok()) {
+    session_.EndDoubt();
+    TakeEvents();
+  }
 }
 
 bool LogPlayer::PlayFrame(const TrackFrame& frame) {
@@ -146,7 +150,7 @@ void LogPlayer::PlayEpochs() {
 }
 
 void LogPlayer::AddImuUntil(TimeNs stamp_ns) {
-  while (last_imu_ns_ < stamp_ns) {
+  while (last_imu_ns_ < stamp_ns + session_.imu_jump_ns()) {
     const Result<const ImuSample*> sample = imu_.Next();
     if (!sample.ok() || *sample == nullptr) {
       result_.status = sample.ok() ? result_.status : sample.status();

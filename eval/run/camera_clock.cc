@@ -1,11 +1,7 @@
 #include "eval/run/camera_clock.h"
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/median.h"
-#include "frontend/initialization/epipolar_ray.h"
+#include "eval/run/turn_misfit.h"
 
 namespace alidade {
 
@@ -24,43 +20,6 @@ std::optional<TimeNs> CameraClock::Period() const {
     return std::nullopt;
   }
   return static_cast<TimeNs>(Median({steps_.begin(), steps_.end()}));
-}
-
-std::optional<double> CameraClock::Misfit(const TrackFrame& a, const TrackFrame& b,
-                                          const Matrix3d& R_ab) const {
-  const CameraModel& camera = rig_.camera;
-  const double sigma = std::sqrt(2.0) * pixel_noise_px_ / camera.mean_focal_px();
-  const Matrix3d R_BC = rig_.T_BC.rotation;
-  std::vector<EpipolarRay> rays;
-  auto seen = a.observations.begin();
-  for (const TrackObservation& now : b.observations) {
-    while (seen != a.observations.end() && seen->track_id < now.track_id) {
-      ++seen;
-    }
-    if (seen == a.observations.end() || seen->track_id != now.track_id) {
-      continue;
-    }
-    Vector3d ray_a;
-    Vector3d ray_b;
-    if (camera.Bearing(seen->pixel, &ray_a) && camera.Bearing(now.pixel, &ray_b)) {
-      EpipolarRay ray{R_BC * ray_a, R_ab * (R_BC * ray_b), {}, sigma};
-      ray.normal = ray.ray_i.cross(ray.ray_j);
-      rays.push_back(ray);
-    }
-  }
-  if (static_cast<int>(rays.size()) < kLeastTracks) {
-    return std::nullopt;
-  }
-  constexpr double kKernelSigma = 2;
-  constexpr double kMedianOfChiSquare = 0.455;
-  std::vector<double> weights;
-  const Vector3d direction = TranslationDirection(rays, kKernelSigma, &weights);
-  std::vector<double> squares;
-  for (const EpipolarRay& ray : rays) {
-    const double distance = direction.dot(ray.normal);
-    squares.push_back(distance * distance / EpipolarVariance(ray, direction));
-  }
-  return Median(std::move(squares)) / kMedianOfChiSquare;
 }
 
 std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_ns,
@@ -84,18 +43,14 @@ std::optional<TimeNs> CameraClock::FindJump(const TrackFrame& frame, TimeNs imu_
     const TimeNs before_ns = step_->before.imu_ns;
     const auto misfit = [&](TimeNs until_ns) {
       const std::optional<Matrix3d> turn = gyro_.Between(before_ns, until_ns, gyro_bias);
-      return turn ? Misfit(step_->before.frame, frame, *turn) : std::nullopt;
+      return turn ? TurnMisfit(rig_, pixel_noise_px_, step_->before.frame, frame, *turn) : std::nullopt;
     };
-    const std::optional<double> as_is = misfit(imu_ns);
-    const std::optional<double> jumped = misfit(imu_ns - step_->excess_ns);
-    const bool stamps_hold = as_is && jumped && *jumped > kContrast * *as_is && *as_is < kFits;
-    const bool stamps_jumped =
-        as_is && jumped && *as_is > kContrast * std::max(1.0, *jumped) && *jumped < kFits;
-    if (stamps_jumped) {
+    const ClockVerdict verdict = CompareTurns(misfit(imu_ns), misfit(imu_ns - step_->excess_ns));
+    if (verdict == ClockVerdict::kJumped) {
       jump = step_->excess_ns;
       imu_ns -= *jump;
     }
-    if (stamps_jumped || stamps_hold || !as_is || imu_ns > step_->end_ns) {
+    if (verdict != ClockVerdict::kOpen || imu_ns > step_->end_ns) {
       step_.reset();
     }
   }

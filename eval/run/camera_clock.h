@@ -14,10 +14,8 @@ namespace alidade {
 ///
 /// A step of the stamps that is much longer than those before is either a silence of the camera or a jump.
 /// Both give how far the rig has turned between the frame before the step and a frame after it: the gyroscope
-/// over the stamps as they are, or over the usual step. The tracks of both frames
-/// decide, by their distance to the epipolar plane of the best direction of translation (Kneip and Lynen
-/// 2013; frontend/initialization/epipolar_ray.h). Without enough common tracks, or a turn that decides, the
-/// stamps stay as they are.
+/// over the stamps as they are, or over the usual step. The tracks of both frames decide (TurnMisfit).
+/// Without enough common tracks, or a turn that decides, the stamps stay as they are.
 ///
 /// Neglected: clocks that step back (such frames are late and refused), and jumps of less than kLeastStepS.
 class CameraClock {
@@ -26,11 +24,6 @@ class CameraClock {
   static constexpr double kLeastPeriods = 4;
   static constexpr double kMostStepS = 10;  ///< for so long the gyroscope is remembered
   static constexpr double kDoubtS = 2;      ///< after the step
-  static constexpr int kLeastTracks = 12;
-  /// Largest squared distance, in its variance, of an explanation that holds, and how much larger that of the
-  /// other must be.
-  static constexpr double kFits = 4;
-  static constexpr double kContrast = 10;
 
   /// `pixel_noise_px`: of an observation. `rig` must outlive the object.
   CameraClock(const RigCalibration& rig, double pixel_noise_px)
@@ -38,6 +31,8 @@ class CameraClock {
 
   /// Every sample that comes; one out of order is ignored.
   void AddImu(const ImuSample& sample);
+  /// The stamps of the samples from `from_ns` on were moved back by `by_ns`.
+  void TakeBackImu(TimeNs from_ns, TimeNs by_ns) { gyro_.TakeBack(from_ns, by_ns); }
   /// A frame that the IMU reaches at `imu_ns`, the time of its stamp; every one, in order. By how much the
   /// stamps have jumped [ns], if this frame decides; it and later frames lie that much earlier.
   std::optional<TimeNs> FindJump(const TrackFrame& frame, TimeNs imu_ns, const Eigen::Vector3d& gyro_bias);
@@ -55,10 +50,6 @@ class CameraClock {
 
   /// Of the usual steps.
   [[nodiscard]] std::optional<TimeNs> Period() const;
-  /// Median squared distance of the common tracks to the epipolar plane, in its variance, when the body
-  /// turned by R_ab between the frames; nothing with too few tracks.
-  [[nodiscard]] std::optional<double> Misfit(const TrackFrame& a, const TrackFrame& b,
-                                             const Eigen::Matrix3d& R_ab) const;
 
   const RigCalibration& rig_;
   const double pixel_noise_px_;

@@ -111,7 +111,7 @@ Degradation::Verdict Degradation::Check(TimeNs imu_ns, const FrameStatistics& st
 
 std::string Degradation::FaultOfData(TimeNs imu_ns) const {
   if (imu_ns < jump_until_ns_) {
-    return Format("the camera's clock jumped by %.3f s, which is taken off its stamps", jump_s_);
+    return Format("the %s's clock jumped by %.3f s, which is taken off its stamps", jumped_, jump_s_);
   }
   if (frozen_) {
     return "the image did not change at all";

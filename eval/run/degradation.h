@@ -49,8 +49,9 @@ class Degradation {
   void OnAbsolute(Sensor sensor, const AbsoluteComparison& comparison);
   /// Why measured positions contradict the rest, which is `by`; empty: they do not.
   [[nodiscard]] std::string AgainstSensors(const char* by) const;
-  /// The camera's clock has jumped before the next frame.
-  void OnCameraJump(double jump_s) {
+  /// The clock of the camera or the IMU has jumped before the next frame. `whose`: "camera" or "IMU".
+  void OnClockJump(const char* whose, double jump_s) {
+    jumped_ = whose;
     jump_s_ = jump_s;
     jump_until_ns_ = INT64_MAX;
   }
@@ -96,6 +97,7 @@ class Degradation {
   TimeNs doubtful_until_ns_ = INT64_MIN;
   std::string doubt_;  ///< of the IMU, until then
   TimeNs jump_until_ns_ = INT64_MIN;
+  const char* jumped_ = "";
   double jump_s_ = 0;
   TimeNs sighted_ns_ = INT64_MIN;  ///< the last frame with tracks
   std::vector<TrackObservation> shown_;

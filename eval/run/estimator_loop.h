@@ -41,8 +41,8 @@ class EstimatorLoop {
   /// How far beyond a frame: with a rolling shutter until its last row, once the estimator runs.
   [[nodiscard]] TimeNs FrameLead() const { return running() ? read_out_span_ns_ : 0; }
 
-  /// The stamps of the camera had jumped, and were taken back.
-  void OnCameraJump(double jump_s) { degradation_.OnCameraJump(jump_s); }
+  /// The stamps of "camera" or "IMU" had jumped, and were taken back.
+  void OnClockJump(const char* whose, double jump_s) { degradation_.OnClockJump(whose, jump_s); }
   /// The IMU that there is reaches the message; what it lacks is the estimator's to refuse.
   void ProcessFrame(const TrackFrame& frame);
   /// The next one of gnss().

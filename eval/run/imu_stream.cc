@@ -1,6 +1,10 @@
 #include "eval/run/imu_stream.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "core/imu_gap.h"
+#include "core/median.h"
 
 namespace alidade {
 namespace {
@@ -58,6 +62,42 @@ std::optional<ImuSample> ImuStream::PassOver(TimeNs stamp_ns) {
 std::optional<TimeNs> ImuStream::FirstAtOrAfter(TimeNs stamp_ns) const {
   const auto found = std::lower_bound(samples_.begin(), samples_.end(), stamp_ns, Earlier);
   return found == samples_.end() ? std::nullopt : std::optional(found->stamp_ns);
+}
+
+std::optional<TimeNs> ImuStream::UsualStep(size_t before) const {
+  constexpr size_t kLeast = 5;
+  constexpr size_t kMost = 20;
+  std::vector<double> steps;
+  for (size_t i = before; i >= 2 && steps.size() < kMost; --i) {
+    steps.push_back(static_cast<double>(samples_[i - 1].stamp_ns - samples_[i - 2].stamp_ns));
+  }
+  return steps.size() < kLeast ? std::nullopt : std::optional(static_cast<TimeNs>(Median(std::move(steps))));
+}
+
+std::optional<ImuSilence> ImuStream::FirstSilence(TimeNs after_ns, TimeNs stamp_ns) const {
+  constexpr TimeNs kLeastSteps = 4;
+  for (size_t i = std::max<size_t>(delivered_, 1); i < samples_.size(); ++i) {
+    const TimeNs begin_ns = samples_[i - 1].stamp_ns;
+    const TimeNs end_ns = samples_[i].stamp_ns;
+    if (begin_ns >= stamp_ns) {
+      break;
+    }
+    const double length_s = SecondsBetween(begin_ns, end_ns);
+    if (end_ns > after_ns && length_s > imu_gap::kMinGapS && length_s < kMostSilenceS) {
+      const std::optional<TimeNs> usual_ns = UsualStep(i);
+      if (usual_ns && end_ns - begin_ns >= kLeastSteps * *usual_ns) {
+        return ImuSilence{begin_ns, end_ns, end_ns - begin_ns - *usual_ns};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+void ImuStream::TakeBack(const ImuSilence& silence) {
+  for (ImuSample& sample : samples_) {
+    sample.stamp_ns -= sample.stamp_ns >= silence.end_ns ? silence.excess_ns : 0;
+  }
+  newest_ns_ -= newest_ns_ >= silence.end_ns ? silence.excess_ns : 0;
 }
 
 std::vector<ImuSample> ImuStream::DeliveredSince(TimeNs stamp_ns) const {

@@ -10,6 +10,13 @@
 
 namespace alidade {
 
+/// A silence of the IMU (core/imu_gap.h) between two samples.
+struct ImuSilence {
+  TimeNs begin_ns = 0;   ///< stamp of the sample before it
+  TimeNs end_ns = 0;     ///< and after it
+  TimeNs excess_ns = 0;  ///< its length less the usual step
+};
+
 /// Inertial samples in the order of their stamps, whatever the order they arrive in, with a mark up to which
 /// they are delivered.
 class ImuStream {
@@ -38,6 +45,13 @@ class ImuStream {
 
   /// Stamp of the first sample at or after `stamp_ns`, if there is one.
   [[nodiscard]] std::optional<TimeNs> FirstAtOrAfter(TimeNs stamp_ns) const;
+  /// The longest silence that FirstSilence finds.
+  static constexpr double kMostSilenceS = 2;
+  /// The first silence of at least four usual steps that begins before `stamp_ns`, ends after `after_ns` and
+  /// with a sample that is not delivered yet. Nothing where the usual step is not known.
+  [[nodiscard]] std::optional<ImuSilence> FirstSilence(TimeNs after_ns, TimeNs stamp_ns) const;
+  /// The IMU's clock has jumped: the samples from `silence` on lie its excess earlier.
+  void TakeBack(const ImuSilence& silence);
   /// INT64_MIN before the first sample.
   [[nodiscard]] TimeNs newest_ns() const { return newest_ns_; }
   [[nodiscard]] Eigen::Vector3d newest_gyro() const { return guard_.InRadians(newest_gyro_); }
@@ -53,6 +67,8 @@ class ImuStream {
   [[nodiscard]] size_t size() const { return samples_.size(); }
 
  private:
+  /// Median step of the samples before the one with this index; nothing with too few.
+  [[nodiscard]] std::optional<TimeNs> UsualStep(size_t before) const;
   [[nodiscard]] std::vector<ImuSample> Range(TimeNs stamp_ns, size_t end) const;
 
   std::deque<ImuSample> samples_;

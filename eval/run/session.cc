@@ -25,6 +25,7 @@ Session::Session(const EstimatorConfig& config, const RigCalibration& rig, Sessi
       options_(std::move(options)),
       loop_(config_, rig_, options_, estimator, &events_),
       camera_clock_(rig_, config_.vision.pixel_noise_px),
+      imu_clock_(rig_, config_.vision.pixel_noise_px),
       frame_offset_ns_(loop_.ImuTime(0)) {}
 
 void Session::AdvanceTo(TimeNs imu_ns) {
@@ -61,29 +62,35 @@ Session::Due Session::NextDue() {
   return due;
 }
 
+TimeNs Session::LeadOf(const Due& due) const {
+  if (due.sensor == nullptr) {
+    return loop_.FrameLead();
+  }
+  return due.sensor->sensor() == Sensor::kGnss ? loop_.EpochLead() : 0;
+}
+
+bool Session::ImuReaches(TimeNs imu_ns) {
+  const std::optional<TimeNs> reaching_ns = loop_.imu().FirstAtOrAfter(imu_ns);
+  return reaching_ns && loop_.imu().newest_ns() - *reaching_ns >= SecondsToNs(options_.lateness.imu_s);
+}
+
 bool Session::IsReady(const Due& due) {
   const bool is_frame = due.sensor == nullptr;
   if (is_frame && frames_.empty()) {
     return false;
   }
-  const bool is_epoch = !is_frame && due.sensor->sensor() == Sensor::kGnss;
-  const TimeNs needed_ns = due.imu_ns + (is_frame ? loop_.FrameLead() : is_epoch ? loop_.EpochLead() : 0);
+  const TimeNs needed_ns = due.imu_ns + LeadOf(due);
   // Another message of the same time would be of another sensor: it comes after the frame.
   const auto passed = [&](TimeNs watermark) {
     return is_frame ? needed_ns <= watermark : needed_ns < watermark;
   };
-  if (passed(advanced_ns_)) {
-    return true;
-  }
-  const std::optional<TimeNs> reaching_ns = loop_.imu().FirstAtOrAfter(needed_ns);
-  return passed(Watermark()) && reaching_ns &&
-         loop_.imu().newest_ns() - *reaching_ns >= SecondsToNs(options_.lateness.imu_s);
+  return passed(advanced_ns_) || (passed(Watermark()) && ImuReaches(needed_ns));
 }
 
 void Session::Process() {
   while (!failed()) {
     const Due due = NextDue();
-    const bool ready = IsReady(due);
+    const bool ready = IsReady(due) && !IsInDoubt(due);
     const TimeNs now_ns = std::min(ready ? due.imu_ns : Watermark(), loop_.imu().newest_ns());
     if (now_ns != INT64_MIN) {
       loop_.PassTime(now_ns);
@@ -106,12 +113,14 @@ void Session::ProcessNext(SensorRun* sensor) {
   }
 }
 
+Eigen::Vector3d Session::GyroBias() const {
+  return running() ? loop_.estimator().Latest().bias.gyro : Eigen::Vector3d::Zero();
+}
+
 void Session::ProcessNextFrame() {
   TrackFrame frame = std::move(frames_.extract(frames_.begin()).mapped());
-  const Eigen::Vector3d gyro_bias =
-      running() ? loop_.estimator().Latest().bias.gyro : Eigen::Vector3d::Zero();
   if (const std::optional<TimeNs> jump_ns =
-          camera_clock_.FindJump(frame, frame.stamp_ns + frame_offset_ns_, gyro_bias)) {
+          camera_clock_.FindJump(frame, frame.stamp_ns + frame_offset_ns_, GyroBias())) {
     TakeBackJump(*jump_ns, &frame);
   }
   last_frame_ns_ = frame.stamp_ns;
@@ -129,7 +138,7 @@ void Session::TakeBackJump(TimeNs jump_ns, TrackFrame* frame) {
   }
   frames_ = std::move(waiting);
   processed_ns_ = running() ? loop_.state_ns() : processed_ns_ - jump_ns;
-  loop_.OnCameraJump(SecondsBetween(0, jump_ns));
+  loop_.OnClockJump("camera", SecondsBetween(0, jump_ns));
 }
 
 void Session::ProcessNextEpoch() {

@@ -7,6 +7,7 @@
 
 #include "eval/run/camera_clock.h"
 #include "eval/run/estimator_loop.h"
+#include "eval/run/imu_clock.h"
 #include "eval/run/imu_leap.h"
 #include "eval/run/session_event.h"
 #include "eval/run/session_options.h"
@@ -49,7 +50,7 @@ class Session {
 
   /// In a live session a sample more than ImuLeap::kMaxLeapS after the newest one is held until the next
   /// confirms it, else skipped.
-  void AddImu(const ImuSample& sample);
+  void AddImu(const ImuSample& as_stamped);
   /// Tracks of one image; stamp in camera time.
   void AddFrame(TrackFrame frame);
   /// Raw observations of one receiver epoch; stamp: the receiver's tag.
@@ -64,10 +65,14 @@ class Session {
   void AddCatalog(TimeNs from_tag_ns, std::shared_ptr<const SatelliteCatalog> catalog);
 
   /// No message with an IMU time before `imu_ns` is awaited any more: all that waits up to there is
-  /// processed.
+  /// processed, but for what lies after a silence of the IMU that may be a jump of its clock (ImuClock). That
+  /// waits until frames decide, for ImuClock::kDoubtS beyond the silence at most.
   void AdvanceTo(TimeNs imu_ns);
   /// Processes all that waits: at the end of a log.
   void Flush() { AdvanceTo(INT64_MAX); }
+
+  /// No frame comes any more: what waits for one that decides about a silence of the IMU is processed.
+  void EndDoubt();
 
   /// What happened since the last call, in order.
   [[nodiscard]] std::vector<SessionEvent> TakeEvents();
@@ -76,6 +81,9 @@ class Session {
 
   /// IMU time of a camera stamp as the driver gives it, as far as the time offset is known now.
   [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const { return loop_.ImuTime(camera_ns - camera_jump_ns_); }
+  /// By how much the IMU's clock has jumped, as far as was found: it is taken off the stamps of samples as
+  /// they are added.
+  [[nodiscard]] TimeNs imu_jump_ns() const { return imu_jump_ns_; }
   [[nodiscard]] bool running() const { return loop_.running(); }
   /// After a FailedEvent; messages are then ignored.
   [[nodiscard]] bool failed() const { return loop_.failed(); }
@@ -100,10 +108,22 @@ class Session {
   void SkipUnused(Sensor sensor, TimeNs stamp_ns, const char* name);
   [[nodiscard]] Due NextDue();
   [[nodiscard]] bool IsReady(const Due& due);
+  /// How far beyond it the IMU is needed [ns].
+  [[nodiscard]] TimeNs LeadOf(const Due& due) const;
+  /// The IMU reaches `imu_ns`, and no sample before that is awaited.
+  [[nodiscard]] bool ImuReaches(TimeNs imu_ns);
+  /// Before it the IMU was silent, and may have jumped instead.
+  bool IsInDoubt(const Due& due);
+  /// Compares the frames that wait with the gyroscope, as far as both are complete.
+  void DecideOnSilence();
+  /// The IMU's clock has jumped by the silence in question.
+  void TakeBackImuJump();
   /// No message before this IMU time is awaited.
   [[nodiscard]] TimeNs Watermark();
   void ProcessNext(SensorRun* sensor);
   void ProcessNextFrame();
+  /// As far as it is known [rad/s].
+  [[nodiscard]] Eigen::Vector3d GyroBias() const;
   /// The camera's clock has jumped: this frame and all that wait lie earlier by `jump_ns`.
   void TakeBackJump(TimeNs jump_ns, TrackFrame* frame);
   void ProcessNextEpoch();
@@ -118,6 +138,8 @@ class Session {
   std::vector<SessionEvent> events_;
   EstimatorLoop loop_;
   CameraClock camera_clock_;
+  ImuClock imu_clock_;
+  TimeNs imu_jump_ns_ = 0;               ///< by which the IMU's stamps are off
   ImuLeap leap_;                         ///< in a live session
   TimeNs camera_jump_ns_ = 0;            ///< by which the camera's stamps are off
   std::map<TimeNs, TrackFrame> frames_;  ///< waiting, by camera stamp less the jump

@@ -11,8 +11,8 @@
 
 namespace alidade {
 
-// What a Session reports. Stamps of messages are those of their sensor: camera time (less the jumps of the
-// camera's clock that were found), receiver's tag. Stamps of estimates are IMU time.
+// What a Session reports. Stamps of messages are those of their sensor: camera time and IMU time (less the
+// jumps of their clocks that were found), receiver's tag. Stamps of estimates are IMU time.
 
 /// The first state was found. The StateEvent of the frame that gave it follows.
 struct StartedEvent {

@@ -7,10 +7,12 @@
 
 namespace alidade {
 
-void Session::AddImu(const ImuSample& sample) {
+void Session::AddImu(const ImuSample& as_stamped) {
   if (failed()) {
     return;
   }
+  ImuSample sample = as_stamped;
+  sample.stamp_ns -= imu_jump_ns_;
   if (!sample.gyro.allFinite() || !sample.accel.allFinite()) {
     Skip(Sensor::kImu, sample.stamp_ns, "not finite");
     return;

@@ -27,6 +27,18 @@ TEST(GyroRotation, AStepTurnsByTheMeanOfItsEnds) {
   EXPECT_LT((turn - 0.25 * Vector3d(1.5, -3, 0.55)).norm(), 1e-15);
 }
 
+TEST(GyroRotation, TakenBackSamplesFollowThoseBefore) {
+  GyroRotation gyro;
+  for (int k = 0; k <= 20; ++k) {
+    ASSERT_TRUE(gyro.Add(Sample((k < 10 ? k : k + 50) * 10 * kMs, Vector3d(0, 0, 0.1 * k))));
+  }
+  EXPECT_FALSE(gyro.Between(0, 200 * kMs));  // half a second without samples
+  gyro.TakeBack(600 * kMs, 500 * kMs);
+  const auto turn = gyro.Between(0, 200 * kMs);
+  ASSERT_TRUE(turn);
+  EXPECT_LT((*turn - so3::Exp(Vector3d(0, 0, 0.2))).norm(), 1e-12);
+}
+
 // What TurnOverStep leaves out of a hand-held motion after a second, 0.8 rad/s at 1 Hz and 200 samples a
 // second, is a hundredth of a pixel at 460 pixels a radian.
 TEST(GyroRotation, TheTrapezoidIsAHundredthOfAPixelOff) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,6 +75,47 @@ TEST(FaultyImuRows, GivenFewOfThemThenTheSamplesAreThoseOfACleanFileAndTheyAreCo
     reported = reported || finding.text.find("rows 3 dropped") != std::string::npos;
   }
   EXPECT_TRUE(reported);
+}
+
+// GIVEN a clock that is set back by 0.2 s, THEN the samples are those of a clock that is not.
+TEST(FaultyImuRows, GivenAClockThatIsSetBackThenLaterStampsAreMoved) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  folder.Write("mav0/imu0/data.csv", kImuHeader + Joined(StillRows(200)));
+  const Result<Dataset> clean = ReadDataset(folder.path());
+  ASSERT_TRUE(clean.ok()) << clean.message();
+  std::vector<std::string> rows = StillRows(160);
+  const std::vector<std::string> back(rows.begin() + 60, rows.end());
+  rows.erase(rows.begin() + 100, rows.end());
+  rows.insert(rows.end(), back.begin(), back.end());
+  folder.Write("mav0/imu0/data.csv", kImuHeader + Joined(rows));
+  const Result<Dataset> set_back = ReadDataset(folder.path());
+  ASSERT_TRUE(set_back.ok()) << set_back.message();
+  EXPECT_EQ(set_back->imu_rejections.dropped(), 0u);
+  EXPECT_NEAR(set_back->imu_rejections.set_back_s, 0.2, 1e-9);
+  ASSERT_EQ(set_back->imu.size(), clean->imu.size());
+  for (size_t i = 0; i < clean->imu.size(); ++i) {
+    ASSERT_EQ(set_back->imu[i].stamp_ns, clean->imu[i].stamp_ns) << i;
+    ASSERT_EQ(set_back->imu[i].accel, clean->imu[i].accel) << i;
+  }
+  ASSERT_EQ(set_back->remarks.size(), 1u);
+  EXPECT_THAT(set_back->remarks[0],
+              testing::AllOf(HasSubstr("data.csv: of 200 rows the clock set back by 0.200 s"),
+                             HasSubstr("data.csv:102: found stamp")));
+}
+
+// GIVEN samples that are delayed by 0.2 s, THEN they are dropped, and later ones keep their stamps.
+TEST(FaultyImuRows, GivenADelayedBlockThenTheClockWasNotSetBack) {
+  const test::TemporaryFolder folder;
+  WriteGoodSequence(folder);
+  std::vector<std::string> rows = StillRows(400);
+  std::rotate(rows.begin() + 100, rows.begin() + 112, rows.begin() + 160);  // twelve rows
+  folder.Write("mav0/imu0/data.csv", kImuHeader + Joined(rows));
+  const Result<Dataset> delayed = ReadDataset(folder.path());
+  ASSERT_TRUE(delayed.ok()) << delayed.message();
+  EXPECT_EQ(delayed->imu_rejections.late, 12u);
+  EXPECT_EQ(delayed->imu_rejections.set_back_s, 0);
+  EXPECT_EQ(delayed->imu.back().stamp_ns, 1000 + 399 * 5'000'000LL);
 }
 
 TEST(FaultyImuRows, GivenMoreThanFivePerCentThenTheSequenceIsRefused) {

@@ -130,6 +130,15 @@ TEST_P(FaultRunTest, AJumpOfTheCamerasClockIsTakenOffItsStamps) {
   EXPECT_LT(run.rmse_m, 1.2 * clean.rmse_m + 0.003);
 }
 
+// GIVEN an IMU whose clock jumps, THEN likewise.
+TEST_P(FaultRunTest, AJumpOfTheImusClockIsTakenOffItsStamps) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  const Faulty run = Run(SimFaultKind::kImuClock, 1);
+  ExpectReportedAtOnce(run, 1);
+  EXPECT_EQ(run.result.records.size(), clean.result.records.size());
+  EXPECT_EQ(run.rmse_m, clean.rmse_m);
+}
+
 TEST_P(FaultRunTest, MissingFramesCostLittle) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kFrameDrops, 1000);

@@ -53,6 +53,50 @@ TEST(ImuStreamTest, ForgetsDeliveredSamplesButTheLastTwoNotAfter) {
   EXPECT_EQ(stream.size(), 4u);
 }
 
+/// A hundred samples a second, of which those from 300 to `end_ms` are missing.
+ImuStream WithSilence(TimeNs end_ms) {
+  ImuStream stream(false);
+  for (TimeNs ms = 0; ms <= end_ms + 100; ms += 10) {
+    if (ms < 300 || ms >= end_ms) {
+      stream.Add(At(ms * 1'000'000));
+    }
+  }
+  return stream;
+}
+
+TEST(ImuStreamTest, FindsASilenceThatBeginsBeforeTheStamp) {
+  constexpr TimeNs kMs = 1'000'000;
+  const ImuStream stream = WithSilence(700);
+  EXPECT_FALSE(stream.FirstSilence(INT64_MIN, 290 * kMs));
+  const std::optional<ImuSilence> silence = stream.FirstSilence(INT64_MIN, 291 * kMs);
+  ASSERT_TRUE(silence);
+  EXPECT_EQ(silence->begin_ns, 290 * kMs);
+  EXPECT_EQ(silence->end_ns, 700 * kMs);
+  EXPECT_EQ(silence->excess_ns, 400 * kMs);
+  EXPECT_FALSE(stream.FirstSilence(700 * kMs, 800 * kMs));
+  EXPECT_FALSE(WithSilence(380).FirstSilence(INT64_MIN, 400 * kMs));   // steps of up to 0.1 s are usual
+  EXPECT_FALSE(WithSilence(2400).FirstSilence(INT64_MIN, 400 * kMs));  // longer than is questioned
+}
+
+TEST(ImuStreamTest, ASilenceWhoseEndWasDeliveredIsNotFound) {
+  constexpr TimeNs kMs = 1'000'000;
+  ImuStream stream = WithSilence(700);
+  while (stream.Deliver(300 * kMs) != nullptr) {
+  }
+  ASSERT_EQ(stream.delivered_ns(), 700 * kMs);
+  EXPECT_FALSE(stream.FirstSilence(INT64_MIN, 800 * kMs));
+}
+
+TEST(ImuStreamTest, AJumpIsTakenOffTheLaterStamps) {
+  constexpr TimeNs kMs = 1'000'000;
+  ImuStream stream = WithSilence(700);
+  stream.TakeBack(*stream.FirstSilence(INT64_MIN, 400 * kMs));
+  EXPECT_EQ(stream.newest_ns(), 400 * kMs);
+  EXPECT_EQ(stream.FirstAtOrAfter(291 * kMs), std::optional<TimeNs>(300 * kMs));
+  EXPECT_FALSE(stream.FirstSilence(INT64_MIN, 500 * kMs));
+  EXPECT_EQ(stream.Add(At(410 * kMs)), ImuStream::Arrival::kTaken);
+}
+
 TEST(ImuStreamTest, PassesOverSamplesThatNobodyAskedFor) {
   ImuStream stream(false);
   for (TimeNs stamp = 10; stamp <= 40; stamp += 10) {
