@@ -27,15 +27,16 @@ namespace alidade {
 /// itself more often than not in the last thousand measurements before does not count as stuck. In recordings
 /// of five kinds of sensors, faultless ones, no more than 7 in a row are equal.
 ///
-/// A stuck axis reads its mean of the last thousand measurements before; a saturated one stays as it is. The
-/// error of the axis is taken as constant with the deviation sigma for kConstantS, and as white noise of that
-/// correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t since the first equal sample; the step
-/// that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the mean, in
-/// the step that detects about the stuck value. Saturated: the motion goes on as it came, at most half beyond
-/// the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2 rad/s and 1 m/s^2
-/// (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a saturated one, or of one
-/// that is stuck at its largest or smallest value, is in all three: in a motion beyond the range the other
-/// axes may be clipped in samples that do not reveal it yet.
+/// A stuck axis reads what the motion implies (ImpliedImu), where that is not known its mean of the last
+/// thousand measurements before. A saturated one reads that where it is beyond the limit, at most by half of
+/// the range. The error of the axis is taken as constant with the deviation sigma for kConstantS, and as
+/// white noise of that correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t since the first
+/// equal sample; the step that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the
+/// variance about the mean, in the step that detects about the stuck value. Saturated: the motion goes on as
+/// it came, at most half beyond the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2
+/// rad/s and 1 m/s^2 (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a
+/// saturated one, or of one that is stuck at its largest or smallest value, is in all three: in a motion
+/// beyond the range the other axes may be clipped in samples that do not reveal it yet.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
 /// kLeastMeasurements.

@@ -102,6 +102,37 @@ TEST_P(FaultRunTest, AStuckAxisIsReportedWhileItLasts) {
   }
 }
 
+// GIVEN a gyroscope axis that sticks for ten seconds while the body turns about it, THEN the covariance still
+// holds: a correction of the attitude by some degrees in every frame would deform the estimate.
+TEST(StuckGyroscope, LeavesTheCovarianceTrue) {
+  SimulatorConfig simulation;
+  simulation.duration_s = 60;
+  simulation.path_m = 78;
+  simulation.imu_rate_hz = 100;
+  simulation.camera_rate_hz = 10;
+  simulation.fault = SimFaultKind::kGyroStuck;
+  simulation.fault_start_s = 20;
+  simulation.fault_duration_s = 10;
+  for (const std::uint64_t seed : {915u, 919u}) {
+    Result<Dataset> dataset = Simulate(simulation, seed);
+    ASSERT_TRUE(dataset.ok()) << dataset.message();
+    EstimatorConfig config;
+    config.init.method = InitMethod::kTruth;
+    const RunResult run =
+        RunEstimator(config, {dataset->rig, dataset->imu, dataset->frames}, &*dataset->truth, seed);
+    ASSERT_TRUE(run.status.ok()) << run.status.message();
+    double nees = 0;
+    for (const RunRecord& record : run.records) {
+      const Result<TrajectoryPoint> truth = InterpolateTruth(*dataset->truth, record.estimate.stamp_ns);
+      Vector6d error;
+      error << so3::Log(record.estimate.nav.R_WB.transpose() * truth->nav.R_WB),
+          truth->nav.p_WB - record.estimate.nav.p_WB;
+      nees += error.dot(record.estimate.covariance.topLeftCorner<6, 6>().llt().solve(error));
+    }
+    EXPECT_LT(nees / static_cast<double>(run.records.size()), 15) << seed;
+  }
+}
+
 TEST_P(FaultRunTest, AGyroscopeThatChangesToDegreesIsConvertedAndReported) {
   const Faulty clean = Run(SimFaultKind::kNone, 0);
   const Faulty run = Run(SimFaultKind::kImuUnit, 3);
