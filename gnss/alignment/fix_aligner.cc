@@ -149,7 +149,7 @@ FixAligner::Normal FixAligner::NormalEquations(const std::vector<FixPoint>& poin
     ++normal.inside;
     const Eigen::Matrix<double, kRows, 7> jacobian = guess.Jacobian(point);
     const double weight =
-        RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma * normal.scale, norms[k] * norms[k]);
+        RobustWeight(config_.robust_kernel, config_.robust_scale_sigma * normal.scale, norms[k] * norms[k]);
     normal.hessian += weight * jacobian.transpose() * jacobian;
     normal.gradient += weight * jacobian.transpose() * guess.Residual(point);
   }

@@ -21,7 +21,7 @@ namespace alidade {
 ///
 /// with dv_W held by the estimate's own covariance of velocity. The least median of squares over all pairs of
 /// fixes (Rousseeuw 1984) starts it, so that up to half of the fixes may be wrong; then Gauss-Newton steps
-/// with Huber weights over the fixes inside a gate. A row's deviation contains the growth
+/// with the weights of fix.robust_kernel over the fixes inside a gate. A row's deviation contains the growth
 /// of the estimate's covariance of position from then to the newest fix. Neglected: what else is correlated;
 /// align_inflation covers it.
 class FixAligner {

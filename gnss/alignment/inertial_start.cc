@@ -198,7 +198,7 @@ NavState GnssInertialStart::FirstGuess(const Fit& fit) const {
 
 GnssInertialStart::Equations GnssInertialStart::Linearize(const Fit& fit) const {
   const AntennaMount mount{*enu_, receiver_.p_BA};
-  const ObservationKernel kernel{RobustKernel::kHuber, config_.robust_scale_sigma};
+  const ObservationKernel kernel{config_.robust_kernel, config_.robust_scale_sigma};
   Equations equations;
   for (std::size_t k = 0; k < fixes_.size(); ++k) {
     const AntennaAtEpoch at = PredictAntenna(mount, k > 0 ? &fit.intervals[k - 1] : nullptr, gravity_W_,
