@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <tuple>
 
@@ -31,6 +32,10 @@ struct Estimated {
   bool line_delay = false;
   bool time_offset = false;
 };
+
+void PrintTo(const Estimated& estimated, std::ostream* out) {
+  *out << estimated.name;
+}
 
 const Estimated kExtrinsics = {.name = "extrinsics", .extrinsics = true};
 const Estimated kIntrinsics = {.name = "intrinsics", .intrinsics = true};
