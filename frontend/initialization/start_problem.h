@@ -22,6 +22,9 @@ class StartProblem {
 
   /// Builds the normal equations at the current states and landmarks; returns the robust cost.
   double Linearize();
+  /// After Linearize: half the derivative of that cost over (phi, dp, dv, dbg, dba) of each state, the
+  /// landmarks following their optimum.
+  [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
   /// Solves with Marquardt damping into a trial state with its landmarks; returns its robust cost (infinite:
   /// singular).
   double TryStep(double damping);

@@ -38,9 +38,10 @@ struct GnssAlignment {
 [[nodiscard]] NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate);
 
 /// Finds the alignment from epochs and the visual-inertial estimate at their times: least squares over yaw,
-/// p_NW, the clock of each epoch (tied by its process) and the biases between systems, with Huber weights.
-/// Every pseudorange and range rate counts, so that epochs with few satellites accumulate, at any rate, and
-/// the rates give the yaw from the first metres on. Yaw starts from the best of a ring of candidates.
+/// p_NW, the clock of each epoch (tied by its process) and the biases between systems, with the weights of
+/// gnss.robust_kernel. Every pseudorange and range rate counts, so that epochs with few satellites
+/// accumulate, at any rate, and the rates give the yaw from the first metres on. Yaw starts from the best of
+/// a ring of candidates.
 ///
 /// The estimate's velocity may have a constant error of the size of its covariance
 /// (gnss/alignment/alignment_fit.h). Its drift over the window is not modelled otherwise; align_inflation

@@ -131,9 +131,9 @@ void AlignmentFit::AddEpoch(std::size_t index, const Options& options, Alignment
   for (const GnssRow& row : epoch.rows) {
     const Eigen::Matrix<double, 1, kState> shared = row.jacobian * epoch.chart;
     const double r = row.residual / row.deviation;
-    const double huber = RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma, r * r);
-    const double weight = std::abs(r) < options.gate_sigma ? (options.robust ? huber : 1) : 0;
-    step->cost += huber * r * r;
+    const double kernel = RobustWeight(config_.robust_kernel, config_.robust_scale_sigma, r * r);
+    const double weight = std::abs(r) < options.gate_sigma ? (options.robust ? kernel : 1) : 0;
+    step->cost += kernel * r * r;
     whitened->push_back(r);
     NormalEquations::Row entries = {{kShift, shared[1]},
                                     {kShift + 1, shared[2]},

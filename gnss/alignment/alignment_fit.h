@@ -57,7 +57,7 @@ class AlignmentFit {
  public:
   struct Options {
     bool yaw_free = true;   ///< and the time offset, where it is estimated
-    bool robust = true;     ///< Huber weights
+    bool robust = true;     ///< the weights of gnss.robust_kernel
     double gate_sigma = 0;  ///< rows beyond have no weight
   };
 

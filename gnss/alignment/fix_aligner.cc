@@ -24,25 +24,6 @@ constexpr int kRows = PositionFixModel::kRows;
 
 }  // namespace
 
-/// A sample as the fit takes it.
-struct FixAligner::Point {
-  Vector3d p_WA;          ///< of the estimate
-  Vector3d p_NA;          ///< measured
-  double since_newest_s;  ///< not positive
-  Matrix3d sqrt_information;
-  Vector3d velocity_variance_W;
-};
-
-struct FixAligner::Guess {
-  YawShift transform;
-  Vector3d dv_W = Vector3d::Zero();
-
-  [[nodiscard]] Vector3d Residual(const Point& point) const {
-    const Vector3d turned = transform.Rotation() * (point.p_WA + point.since_newest_s * dv_W);
-    return point.sqrt_information * (turned + transform.p_NW - point.p_NA);
-  }
-};
-
 /// Of yaw, shift and velocity's correction, Gauss-Newton.
 struct FixAligner::Normal {
   Matrix7d hessian = Matrix7d::Zero();
@@ -53,7 +34,7 @@ struct FixAligner::Normal {
 
 struct FixAligner::Fit {
   bool ok = false;
-  Guess guess;
+  FixGuess guess;
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of yaw and shift
   int inside = 0;                                        ///< points inside the gate
   double scale = 1;                                      ///< robust deviation of the whitened residuals
@@ -100,10 +81,10 @@ void FixAligner::MatchFixes() {
   }
 }
 
-std::vector<FixAligner::Point> FixAligner::Points() const {
+std::vector<FixPoint> FixAligner::Points() const {
   const std::size_t step = (samples_.size() + kMaxPoints - 1) / kMaxPoints;
   const AlignmentState& newest = samples_.back().state;
-  std::vector<Point> points;
+  std::vector<FixPoint> points;
   for (std::size_t i = (samples_.size() - 1) % step; i < samples_.size(); i += step) {
     const Sample& sample = samples_[i];
     const Matrix3d& root = sample.fix.sqrt_information;
@@ -118,15 +99,15 @@ std::vector<FixAligner::Point> FixAligner::Points() const {
 }
 
 /// Each pair of points determines yaw and shift; the pair counts whose residuals have the least median.
-FixAligner::Guess FixAligner::FirstGuess(const std::vector<Point>& points) {
-  Guess best;
+FixGuess FixAligner::FirstGuess(const std::vector<FixPoint>& points) {
+  FixGuess best;
   double best_median = INFINITY;
   std::vector<double> squares(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {
       const Vector3d chord_W = points[j].p_WA - points[i].p_WA;
       const Vector3d chord_N = points[j].p_NA - points[i].p_NA;
-      Guess guess;
+      FixGuess guess;
       YawShift& transform = guess.transform;
       transform.yaw_rad = std::atan2(chord_N.y(), chord_N.x()) - std::atan2(chord_W.y(), chord_W.x());
       transform.p_NW =
@@ -144,7 +125,8 @@ FixAligner::Guess FixAligner::FirstGuess(const std::vector<Point>& points) {
   return best;
 }
 
-FixAligner::Normal FixAligner::NormalEquations(const std::vector<Point>& points, const Guess& guess) const {
+FixAligner::Normal FixAligner::NormalEquations(const std::vector<FixPoint>& points,
+                                               const FixGuess& guess) const {
   constexpr double kHeld = 1e-9;     // of a velocity that is known
   constexpr double kAnyYawRad = 10;  // at rest no fix determines the yaw
   constexpr double kGateScales = 3.5;
@@ -152,28 +134,22 @@ FixAligner::Normal FixAligner::NormalEquations(const std::vector<Point>& points,
   const double median_norm = std::sqrt(ChiSquareQuantile(kRows, 0.5));  // of a residual of deviation 1
   std::vector<double> norms;
   norms.reserve(points.size());
-  for (const Point& point : points) {
+  for (const FixPoint& point : points) {
     norms.push_back(guess.Residual(point).norm());
   }
   Normal normal;
   normal.scale = std::max(1.0, Median(norms) / median_norm);
-  const Matrix3d R_NW = guess.transform.Rotation();
   Vector3d velocity_variance = Vector3d::Zero();
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const Point& point = points[k];
+    const FixPoint& point = points[k];
     velocity_variance += point.velocity_variance_W / static_cast<double>(points.size());
     if (norms[k] > std::max(gate, kGateScales * median_norm * normal.scale)) {
       continue;
     }
     ++normal.inside;
-    NavState antenna;
-    antenna.p_WB = point.p_WA + point.since_newest_s * guess.dv_W;
-    Eigen::Matrix<double, kRows, 7> jacobian;
-    jacobian << guess.transform.ParameterJacobian(guess.transform * antenna).middleRows<3>(3),
-        point.since_newest_s * R_NW;
-    jacobian = (point.sqrt_information * jacobian).eval();
+    const Eigen::Matrix<double, kRows, 7> jacobian = guess.Jacobian(point);
     const double weight =
-        RobustWeight(RobustKernel::kHuber, config_.robust_scale_sigma * normal.scale, norms[k] * norms[k]);
+        RobustWeight(config_.robust_kernel, config_.robust_scale_sigma * normal.scale, norms[k] * norms[k]);
     normal.hessian += weight * jacobian.transpose() * jacobian;
     normal.gradient += weight * jacobian.transpose() * guess.Residual(point);
   }
@@ -186,7 +162,7 @@ FixAligner::Normal FixAligner::NormalEquations(const std::vector<Point>& points,
   return normal;
 }
 
-FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess) const {
+FixAligner::Fit FixAligner::Refine(const std::vector<FixPoint>& points, FixGuess guess) const {
   constexpr int kIterations = 12;
   Fit fit;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -198,9 +174,7 @@ FixAligner::Fit FixAligner::Refine(const std::vector<Point>& points, Guess guess
     if (!solver.positive() || !step.allFinite()) {
       return fit;
     }
-    guess.transform.yaw_rad = std::remainder(guess.transform.yaw_rad + step[0], 2 * M_PI);
-    guess.transform.p_NW += step.segment<3>(1);
-    guess.dv_W += step.tail<3>();
+    guess.Move(step);
     fit.covariance = solver.Solve(Eigen::Matrix<double, 7, 4>::Identity()).topRows<4>();
   }
   fit.guess = guess;
@@ -219,7 +193,7 @@ std::optional<GnssAlignment> FixAligner::TryAlign() {
     return std::nullopt;
   }
   tried_ns_ = newest;
-  const std::vector<Point> points = Points();
+  const std::vector<FixPoint> points = Points();
   const Fit fit = Refine(points, FirstGuess(points));
   if (!fit.ok) {
     report_ = "the position fixes do not determine the alignment";

@@ -8,6 +8,7 @@
 #include "core/fix_config.h"
 #include "core/position_fix.h"
 #include "gnss/alignment/alignment.h"
+#include "gnss/alignment/fix_rows.h"
 #include "gnss/alignment/state_matcher.h"
 
 namespace alidade {
@@ -20,9 +21,9 @@ namespace alidade {
 ///
 /// with dv_W held by the estimate's own covariance of velocity. The least median of squares over all pairs of
 /// fixes (Rousseeuw 1984) starts it, so that up to half of the fixes may be wrong; then Gauss-Newton steps
-/// with Huber weights over the fixes inside a gate. A row's deviation contains the growth of the estimate's
-/// covariance of position from then to the newest fix. Neglected: what else is correlated; align_inflation
-/// covers it.
+/// with the weights of fix.robust_kernel over the fixes inside a gate. A row's deviation contains the growth
+/// of the estimate's covariance of position from then to the newest fix. Neglected: what else is correlated;
+/// align_inflation covers it.
 class FixAligner {
  public:
   /// `enu`: what N is, if its place on the Earth is known.
@@ -47,17 +48,14 @@ class FixAligner {
     FixMeasurement fix;
     Eigen::Vector3d p_WA = Eigen::Vector3d::Zero();  ///< of the estimate
   };
-  struct Guess;
   struct Normal;
   struct Fit;
 
-  struct Point;
-
   void MatchFixes();
-  [[nodiscard]] std::vector<Point> Points() const;
-  [[nodiscard]] static Guess FirstGuess(const std::vector<Point>& points);
-  [[nodiscard]] Normal NormalEquations(const std::vector<Point>& points, const Guess& guess) const;
-  [[nodiscard]] Fit Refine(const std::vector<Point>& points, Guess guess) const;
+  [[nodiscard]] std::vector<FixPoint> Points() const;
+  [[nodiscard]] static FixGuess FirstGuess(const std::vector<FixPoint>& points);
+  [[nodiscard]] Normal NormalEquations(const std::vector<FixPoint>& points, const FixGuess& guess) const;
+  [[nodiscard]] Fit Refine(const std::vector<FixPoint>& points, FixGuess guess) const;
   std::optional<GnssAlignment> Accept(const Fit& fit, std::size_t points);
 
   FixConfig config_;

@@ -10,6 +10,7 @@
 #include "core/imu_propagation.h"
 #include "core/lever_arm.h"
 #include "core/robust.h"
+#include "gnss/alignment/antenna_at_epoch.h"
 #include "gnss/model/measurement_model.h"
 #include "gnss/model/receiver_clock.h"
 
@@ -81,9 +82,9 @@ struct GnssInertialStart::Equations {
 
   /// `jacobian`: of the residual over the state at its epoch; `chain`: of that state over the first.
   void Add(const Vector3d& residual, const Eigen::Matrix<double, 3, 15>& jacobian, const Matrix15d& chain,
-           const Matrix3d& root, double huber_sigma) {
+           const Matrix3d& root, const ObservationKernel& kernel) {
     const Vector3d r = root * residual;
-    const double weight = RobustWeight(RobustKernel::kHuber, huber_sigma, r.squaredNorm());
+    const double weight = kernel.Weight(r.squaredNorm());
     const Eigen::Matrix<double, 3, 15> j = root * jacobian * chain;
     hessian += weight * j.transpose() * j;
     gradient += weight * j.transpose() * r;
@@ -197,20 +198,15 @@ NavState GnssInertialStart::FirstGuess(const Fit& fit) const {
 
 GnssInertialStart::Equations GnssInertialStart::Linearize(const Fit& fit) const {
   const AntennaMount mount{*enu_, receiver_.p_BA};
+  const ObservationKernel kernel{config_.robust_kernel, config_.robust_scale_sigma};
   Equations equations;
   for (std::size_t k = 0; k < fixes_.size(); ++k) {
-    NavState nav = fit.nav;
-    Matrix15d chain = Matrix15d::Identity();
-    if (k > 0) {
-      nav = CarryState(fit.intervals[k - 1], fit.nav, fit.bias, gravity_W_, &chain);
-    }
-    Eigen::Matrix<double, 3, 15> jacobian;
-    const Vector3d position_E = mount.Position(nav, &jacobian);
-    equations.Add(position_E - fixes_[k].position_E, jacobian, chain, fixes_[k].position_root,
-                  config_.robust_scale_sigma);
-    const Vector3d velocity_E = mount.Velocity(nav, fit.bias, fit.gyro_radps[k], &jacobian);
-    equations.Add(velocity_E - fixes_[k].velocity_E, jacobian, chain, fixes_[k].velocity_root,
-                  config_.robust_scale_sigma);
+    const AntennaAtEpoch at = PredictAntenna(mount, k > 0 ? &fit.intervals[k - 1] : nullptr, gravity_W_,
+                                             fit.nav, fit.bias, fit.gyro_radps[k]);
+    equations.Add(at.position_E - fixes_[k].position_E, at.position_jacobian, at.chain,
+                  fixes_[k].position_root, kernel);
+    equations.Add(at.velocity_E - fixes_[k].velocity_E, at.velocity_jacobian, at.chain,
+                  fixes_[k].velocity_root, kernel);
   }
   equations.AddPrior(9, fit.bias.gyro, init_.gyro_bias_std_radps);
   equations.AddPrior(12, fit.bias.accel, init_.accel_bias_std_mps2);

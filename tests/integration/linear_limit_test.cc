@@ -1,17 +1,11 @@
+#include "tests/integration/linear_limit.h"
+
 #include <gtest/gtest.h>
 
-#include <array>
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "filter/filter.h"
-#include "smoother/sliding/smoother.h"
-#include "tests/integration/one_window.h"
 #include "tests/integration/term_solution.h"
-#include "tests/support/estimate_difference.h"
-#include "tests/support/fix_scenario.h"
 #include "tests/support/jacobian_checker.h"
 
 // One window without marginalisation is one least-squares problem. The filter linearises it once and the
@@ -21,111 +15,23 @@
 namespace alidade {
 namespace {
 
-using test::kFrames;
-using test::kGravity;
+using test::Estimate;
+using test::ExpectFiltersAgree;
+using test::FilterCase;
+using test::FilterCases;
+using test::kSmootherLandmarks;
 using test::kTracks;
+using test::MakeConfig;
+using test::MakeFilter;
+using test::MakeSmoother;
 using test::MakeWindow;
 using test::MeanDifference;
+using test::Name;
 using test::OneWindow;
 using test::RelativeDifference;
 using test::TermSolution;
 
-/// Room for the whole window, no kernel; the gate passes all that the model explains.
-EstimatorConfig MakeConfig(ErrorConvention convention) {
-  EstimatorConfig config;
-  config.imu.gravity_mps2 = kGravity;
-  config.vision.robust_kernel = RobustKernel::kNone;
-  config.vision.max_relative_depth_deviation = 1;
-  config.vision.gate_probability = 1 - 1e-9;
-  config.vision.rest_updates = false;
-  config.fix.robust_kernel = RobustKernel::kNone;
-  config.fix.gate_probability = 1 - 1e-9;
-  config.filter.error = convention;
-  config.filter.window = kFrames + 2;
-  config.filter.update = UpdateTiming::kDelayedAll;
-  config.smoother.error = convention;
-  config.smoother.window = kFrames + 2;
-  config.smoother.frames = FramePolicy::kEveryFrame;
-  return config;
-}
-
-struct FilterCase {
-  std::string name;
-  FilterLandmark landmark = FilterLandmark::kMsckf;
-  int slam_features = 0;
-  TrackMemoryPolicy memory = TrackMemoryPolicy::kNone;
-};
-
-/// How the filter uses a view: with its track at the end, or at once by what it keeps of the landmark.
-const std::array<FilterCase, 4>& FilterCases() {
-  static const std::array<FilterCase, 4> cases = {
-      {{"pose-only", FilterLandmark::kPoseOnlyMulti},
-       {"eliminated landmarks", FilterLandmark::kMsckf},
-       {"SLAM features", FilterLandmark::kMsckf, kTracks},
-       {"track memory", FilterLandmark::kPoseOnlyMulti, 0, TrackMemoryPolicy::kCarry}}};
-  return cases;
-}
-
-std::unique_ptr<Estimator> MakeFilter(const FilterCase& of, EstimatorConfig config,
-                                      const RigCalibration& rig) {
-  config.filter.landmark = of.landmark;
-  config.filter.slam_features = of.slam_features;
-  config.filter.slam_min_track = 4;
-  config.filter.slam_max_depth_deviation = 1;
-  config.filter.track_memory = of.memory;
-  config.filter.memory_depth_deviation = 1;
-  return alidade::MakeFilter(config, rig);
-}
-
-std::unique_ptr<Estimator> MakeSmoother(SmootherLandmark landmark, EstimatorConfig config,
-                                        const RigCalibration& rig) {
-  config.smoother.landmark = landmark;
-  return alidade::MakeSmoother(config, rig);
-}
-
-NavEstimate Estimate(const OneWindow& window, Estimator* estimator) {
-  EXPECT_TRUE(estimator->Initialize(window.start).ok());
-  if (!window.fixes.empty()) {
-    EXPECT_TRUE(estimator->Align(test::IdentityAlignment(window.start.stamp_ns)).ok());
-  }
-  size_t next = 0;
-  size_t next_fix = 0;
-  for (const TrackFrame& frame : window.frames) {
-    while (next < window.samples.size() && window.samples[next].stamp_ns <= frame.stamp_ns) {
-      EXPECT_TRUE(estimator->AddImu(window.samples[next++]).ok());
-    }
-    const Status status = estimator->AddFrame(frame);
-    EXPECT_TRUE(status.ok()) << status.message();
-    EXPECT_EQ(estimator->last_statistics().features_gated, 0);
-    EXPECT_EQ(estimator->last_statistics().features_degenerate, 0);
-    for (; next_fix < window.fixes.size() && window.fixes[next_fix].stamp_ns == frame.stamp_ns; ++next_fix) {
-      const Status taken = estimator->AddMeasurement(window.fixes[next_fix]);
-      EXPECT_TRUE(taken.ok()) << taken.message();
-    }
-  }
-  EXPECT_EQ(next_fix, window.fixes.size());
-  return estimator->Latest();
-}
-
-constexpr SmootherLandmark kSmootherLandmarks[] = {SmootherLandmark::kPoseOnly,
-                                                   SmootherLandmark::kInverseDepth};
-
 class LinearLimitTest : public testing::TestWithParam<ErrorConvention> {};
-
-std::string Name(const FilterCase& filter, SmootherLandmark landmark) {
-  return filter.name + (landmark == SmootherLandmark::kPoseOnly ? " to pose-only" : " to inverse depth");
-}
-
-/// Every filter ends at `solved`, the means to a millionth of `correction`.
-void ExpectFiltersAgree(const OneWindow& window, const EstimatorConfig& config, SmootherLandmark landmark,
-                        const NavEstimate& solved, double correction) {
-  for (const FilterCase& filter : FilterCases()) {
-    SCOPED_TRACE(Name(filter, landmark));
-    const NavEstimate filtered = Estimate(window, MakeFilter(filter, config, window.rig).get());
-    EXPECT_LT(MeanDifference(filtered, solved), 1e-6 * correction);
-    EXPECT_LT(RelativeDifference(filtered.covariance, solved.covariance), 1e-6);
-  }
-}
 
 // GIVEN equal starts, IMU samples and tracks whose errors are small WHEN the filter has read one window and
 // the smoother's terms of it are solved, THEN the newest states agree to a millionth: the means relative to
@@ -146,7 +52,7 @@ TEST_P(LinearLimitTest, FilterAgreesWithTheSolutionOfTheSmoothersTerms) {
 // GIVEN position fixes at some of the frames besides, THEN the same holds, and the smoother itself, its
 // solver going on to the minimum, ends there too.
 TEST_P(LinearLimitTest, FilterSmootherAndTermsAgreeOnPositionFixes) {
-  const OneWindow window = MakeWindow(1e-6, true);
+  const OneWindow window = MakeWindow(1e-6, {.with_fixes = true});
   ASSERT_EQ(window.fixes.size(), 3u);
   EstimatorConfig config = MakeConfig(GetParam());
   config.smoother.solve_to_rounding = true;

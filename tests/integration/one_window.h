@@ -5,15 +5,20 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/body_motion.h"
+#include "core/calibration.h"
 #include "core/error_convention.h"
 #include "core/estimator/measurement_log.h"
 #include "core/imu_propagation.h"
 #include "core/imu_step.h"
 #include "core/position_fix.h"
 #include "core/random.h"
+#include "gnss/alignment/alignment.h"
+#include "tests/support/fix_scenario.h"
 
 namespace alidade::test {
 
@@ -30,7 +35,21 @@ struct OneWindow {
   NavEstimate carried;  ///< the start at the last frame, by the IMU alone
   std::vector<ImuSample> samples;
   std::vector<TrackFrame> frames;
-  std::vector<PositionFix> fixes;  ///< at stamps of frames
+  // At stamps of frames:
+  std::vector<PositionFix> fixes;
+  std::vector<GnssEpoch> epochs;
+  std::optional<GnssAlignment> alignment;  ///< of the start, for what stands in another frame
+  // The truth:
+  std::vector<NavState> states;  ///< at the frames
+  ImuBias bias;
+};
+
+struct WindowOptions {
+  bool with_fixes = false;
+  double start_position_std_m = 0.05;
+  /// What of the camera is off by `scale` times a draw of these deviations.
+  CalibrationConfig calibration;
+  bool staggered = true;  ///< some tracks end early
 };
 
 inline RigCalibration MakeRig() {
@@ -45,9 +64,9 @@ inline RigCalibration MakeRig() {
   return rig;
 }
 
-inline Matrix15d StartCovariance(RandomStream* random) {
+inline Matrix15d StartCovariance(double position_std_m, RandomStream* random) {
   Vector15d deviation;
-  deviation << Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.05),
+  deviation << Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(position_std_m),
       Eigen::Vector3d::Constant(0.05), Eigen::Vector3d::Constant(0.002), Eigen::Vector3d::Constant(0.03);
   Matrix15d mixing = Matrix15d::Identity();
   for (double& entry : mixing.reshaped()) {
@@ -79,10 +98,43 @@ inline std::vector<NavState> MakeMotion(NavEstimate at, const ImuNoise& noise,
   return states;
 }
 
-/// Tracks of kTracks landmarks without noise; some begin a frame late, some end early.
-inline std::vector<TrackFrame> MakeTracks(const RigCalibration& rig, const std::vector<NavState>& states,
-                                          RandomStream* random) {
-  std::vector<TrackFrame> frames(states.size());
+/// The camera that has seen, off from the one given.
+inline CameraCalibration TrueCamera(const RigCalibration& rig, const CalibrationConfig& config,
+                                    double scale) {
+  RandomStream random(24, "camera of one window");
+  CalibrationEstimate camera = InitialCalibration(config, GivenCamera(rig, {}));
+  Eigen::VectorXd error(camera.layout.size());
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    error[i] = scale * camera.deviations[i] * random.Normal();
+  }
+  EXPECT_TRUE(Retract(camera.layout, error, &camera.mean));
+  return camera.mean;
+}
+
+/// The pixel of a landmark in the camera of a body at a frame; `gyro_radps` without bias. False outside the
+/// image.
+inline bool See(const CameraCalibration& camera, const NavState& body, const Eigen::Vector3d& gyro_radps,
+                const Eigen::Vector3d& p_W, Eigen::Vector2d* pixel) {
+  const BodyMotion motion = MotionOf(MeasuredTurn{gyro_radps}, Eigen::Vector3d::Zero(), body.R_WB, body.v_WB);
+  const Pose T_WC =
+      BodyAfter(body.T_WB(), BodyRates(gyro_radps, body.v_WB), camera.time_offset_s) * camera.T_BC;
+  double row_px = 0;
+  for (int i = 0; i < 3; ++i) {  // the line delay is small
+    const double later_s = camera.line_delay_s.value_or(0) * row_px;
+    const Pose T_WR = T_WC * CameraAfter(motion, camera.T_BC, later_s);
+    if (!camera.camera.Project(T_WR.Inverse() * p_W, pixel) || !camera.camera.InImage(*pixel)) {
+      return false;
+    }
+    row_px = pixel->y() - 0.5 * camera.camera.height_px();
+  }
+  return true;
+}
+
+/// Tracks of kTracks landmarks without noise; some begin a frame late, some end early where they are
+/// `staggered`.
+inline std::vector<TrackFrame> MakeTracks(const CameraCalibration& camera, const OneWindow& window,
+                                          bool staggered, RandomStream* random) {
+  std::vector<TrackFrame> frames(window.states.size());
   for (size_t i = 0; i < frames.size(); ++i) {
     frames[i].stamp_ns = SecondsToNs(static_cast<double>(i) * kSamplesPerFrame / kImuRateHz);
   }
@@ -90,19 +142,19 @@ inline std::vector<TrackFrame> MakeTracks(const RigCalibration& rig, const std::
     const double depth = random->Uniform(3, 6);
     const Eigen::Vector3d p_C(random->Uniform(-0.6, 0.6) * depth, random->Uniform(-0.35, 0.35) * depth,
                               depth);
-    const Eigen::Vector3d p_W = states[kFrames / 2].T_WB() * rig.T_BC * p_C;
+    const Eigen::Vector3d p_W = window.states[kFrames / 2].T_WB() * camera.T_BC * p_C;
     std::vector<TrackObservation> seen;
     for (size_t i = 0; i < kFrames; ++i) {
       Eigen::Vector2d pixel;
-      if (rig.camera.Project((states[i].T_WB() * rig.T_BC).Inverse() * p_W, &pixel) &&
-          rig.camera.InImage(pixel)) {
+      const Eigen::Vector3d gyro_radps = window.samples[i * kSamplesPerFrame].gyro - window.bias.gyro;
+      if (See(camera, window.states[i], gyro_radps, p_W, &pixel)) {
         seen.push_back({id, pixel});
       }
     }
     if (seen.size() < kFrames) {
       continue;
     }
-    for (size_t i = id % 3 == 1 ? 1 : 0; i < kFrames - (id % 3 == 2 ? 2 : 0); ++i) {
+    for (size_t i = id % 3 == 1 ? 1 : 0; i < kFrames - (staggered && id % 3 == 2 ? 2 : 0); ++i) {
       frames[i].observations.push_back(seen[i]);
     }
     ++id;
@@ -154,7 +206,7 @@ inline void DrawStart(const NavEstimate& truth, double scale, RandomStream* rand
 
 /// One window whose errors, of the start, the IMU and the pixels, are `scale` times draws from what the back
 /// ends assume of them.
-inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
+inline OneWindow MakeWindow(double scale, const WindowOptions& options = {}) {
   RandomStream random(21, "one window");
   OneWindow window;
   window.rig = MakeRig();
@@ -163,11 +215,14 @@ inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
                Eigen::Vector3d::Zero()};
   truth.nav.v_WB = truth.nav.R_WB * Eigen::Vector3d(1.5, 0.1, -0.2);
   truth.bias = {Eigen::Vector3d(0.01, -0.02, 0.005), Eigen::Vector3d(0.1, 0.05, -0.2)};
-  const std::vector<NavState> states = MakeMotion(truth, window.rig.imu_noise, &window.samples);
-  window.frames = MakeTracks(window.rig, states, &random);
-  if (with_fixes) {
+  window.bias = truth.bias;
+  window.states = MakeMotion(truth, window.rig.imu_noise, &window.samples);
+  window.frames =
+      MakeTracks(TrueCamera(window.rig, options.calibration, scale), window, options.staggered, &random);
+  if (options.with_fixes) {
     window.rig.fixes = {{Eigen::Vector3d(0.3, -0.2, 0.4)}};
-    window.fixes = MakeFixes(states, window.rig.fixes.front().p_BA, scale);
+    window.fixes = MakeFixes(window.states, window.rig.fixes.front().p_BA, scale);
+    window.alignment = IdentityAlignment(window.start.stamp_ns);
   }
   for (TrackFrame& frame : window.frames) {
     for (TrackObservation& observation : frame.observations) {
@@ -175,7 +230,7 @@ inline OneWindow MakeWindow(double scale, bool with_fixes = false) {
     }
   }
   AddImuNoise(scale, &random, &window);
-  window.start.covariance = StartCovariance(&random);
+  window.start.covariance = StartCovariance(options.start_position_std_m, &random);
   DrawStart(truth, scale, &random, &window);
   return window;
 }

@@ -9,12 +9,12 @@
 
 #include "core/smoother_config.h"
 #include "smoother/manifold/nav_state_manifold.h"
+#include "smoother/sliding/gnss_window.h"
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/vision_terms.h"
 #include "smoother/solve/window_system.h"
 #include "tests/integration/one_window.h"
-#include "tests/support/fix_scenario.h"
 
 namespace alidade::test {
 
@@ -24,18 +24,20 @@ namespace alidade::test {
 class TermSolution {
  public:
   TermSolution(const OneWindow& data, const EstimatorConfig& config, SmootherLandmark landmark)
-      : landmark_(landmark), calibration_{{}, {data.rig.camera, data.rig.T_BC, 0}} {
+      : landmark_(landmark), gnss_(config.gnss, data.rig.gnss, gravity_W_) {
     for (const TrackFrame& frame : data.frames) {
       AddFrame(data, frame.stamp_ns);
+      if (window_.size() == 1) {
+        MakePrior(data, config);
+      }
       EXPECT_EQ(window_.AddObservations(data.rig.camera, config.vision.pixel_noise_px, frame.observations),
                 0);
-      AttachFixes(data, config.fix, &window_.newest());
+      AttachMeasurements(data, config.fix, &window_.newest());
     }
-    const NavEstimate start =
-        data.fixes.empty() ? data.start : TurnIntoEnu(IdentityAlignment(data.start.stamp_ns), data.start);
-    EXPECT_TRUE(MakeInitialPrior(config.smoother.error, window_.frame(0), start.covariance, &prior_));
+    window_.UpdateRates();
     for (auto& [id, track] : window_.tracks()) {
-      EXPECT_TRUE(InitializeLandmark(track.views, MakeGeometry(window_, data.rig.T_BC), 1, &track.landmark));
+      EXPECT_TRUE(
+          InitializeLandmark(track.views, MakeGeometry(window_, calibration_.mean), 1, &track.landmark));
       tracks_.push_back(&track);
     }
     constexpr int kSteps = 4;  // the errors are small: each step squares what is left
@@ -46,10 +48,31 @@ class TermSolution {
 
   [[nodiscard]] NavEstimate Newest() const {
     const WindowFrame& newest = window_.newest();
-    return {newest.stamp_ns, newest.nav_state(), newest.imu_bias(), covariance_};
+    return {newest.stamp_ns, newest.nav_state(), newest.imu_bias(), covariance_.bottomRightCorner<15, 15>()};
+  }
+  /// Precondition: the window has epochs.
+  [[nodiscard]] ClockState Clock() const {
+    const Eigen::Index first = covariance_.rows() - 15 - kClockColumns;
+    return {window_.newest().clock_state(), covariance_.block<kClockColumns, kClockColumns>(first, first)};
+  }
+  [[nodiscard]] CalibrationEstimate Calibration() const {
+    return {calibration_.layout, calibration_.mean,
+            covariance_.diagonal().head(calibration_.size()).cwiseSqrt()};
   }
 
  private:
+  void MakePrior(const OneWindow& data, const EstimatorConfig& config) {
+    const NavEstimate start = data.alignment ? TurnIntoEnu(*data.alignment, data.start) : data.start;
+    EXPECT_TRUE(MakeInitialPrior(config.smoother.error, window_.frame(0), start.covariance, &prior_));
+    if (data.alignment && data.alignment->clock) {
+      gnss_.Align(*data.alignment, &window_.frame(0), &prior_);
+    }
+    const CalibrationEstimate given =
+        InitialCalibration(config.calibration, GivenCamera(data.rig, config.vision));
+    calibration_ = {given.layout, given.mean};
+    AddCalibrationPrior(given, &prior_);
+  }
+
   /// At the start, or where the IMU leads from the frame before.
   void AddFrame(const OneWindow& data, TimeNs stamp_ns) {
     auto frame = std::make_unique<WindowFrame>();
@@ -65,12 +88,16 @@ class TermSolution {
       state.nav = CarryState(*frame->preintegration, from.nav_state(), from.imu_bias(), gravity_W_, nullptr);
     }
     frame->stamp_ns = stamp_ns;
+    frame->turn = TurnAround(data.samples, stamp_ns, 0);
+    if (window_.size() > 0) {
+      gnss_.PredictClock(window_.newest(), frame.get());
+    }
     PackNavState(state.nav, frame->nav.data());
     PackBias(state.bias, frame->bias.data());
     window_.AddFrame(std::move(frame));
   }
 
-  static void AttachFixes(const OneWindow& data, const FixConfig& config, WindowFrame* frame) {
+  void AttachMeasurements(const OneWindow& data, const FixConfig& config, WindowFrame* frame) {
     for (const PositionFix& fix : data.fixes) {
       if (fix.stamp_ns == frame->stamp_ns) {
         FrameMeasurement& attached = frame->measurements.emplace_back();
@@ -78,12 +105,19 @@ class TermSolution {
         attached.Set({}, frame->imu_bias(), data.rig.imu_noise);
       }
     }
+    for (const GnssEpoch& epoch : data.epochs) {
+      if (epoch.stamp_ns == frame->stamp_ns) {
+        EXPECT_TRUE(gnss_.Attach(epoch, {frame->imu.back()}, data.rig.imu_noise, frame));
+      }
+    }
   }
 
   [[nodiscard]] WindowTerms MakeTerms() const {
     WindowTerms terms;
     terms.push_back(MakePriorTerm(prior_, calibration_));
-    EXPECT_TRUE(AddSensorTerms({gravity_W_}, window_.frames(), window_.size(), &terms).ok());
+    EXPECT_TRUE(
+        AddSensorTerms({gravity_W_, gnss_.context(), &calibration_}, window_.frames(), window_.size(), &terms)
+            .ok());
     if (landmark_ == SmootherLandmark::kInverseDepth) {
       AddTrackTerms(window_.frames(), tracks_, calibration_, {}, &terms);
     } else {
@@ -94,13 +128,20 @@ class TermSolution {
     return terms;
   }
 
-  /// Columns of the landmarks, then of the states.
+  /// Columns of the landmarks and of the older frames, then of calibration, newest clock and newest state.
   [[nodiscard]] ColumnMap Columns() const {
     ColumnMap columns;
     for (int i = 0; landmark_ == SmootherLandmark::kInverseDepth && i < kTracks; ++i) {
       columns.AddLandmark(i);
     }
-    for (int i = 0; i < window_.size(); ++i) {
+    const int newest = window_.size() - 1;
+    for (int i = 0; i <= newest; ++i) {
+      if (i == newest) {
+        columns.AddCalibration(calibration_.size());
+      }
+      if (gnss_.aligned()) {
+        columns.AddClock(i);
+      }
       columns.AddState(i);
     }
     return columns;
@@ -130,9 +171,10 @@ class TermSolution {
     }
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
     Move(columns, qr.solve(-residual));
-    const Matrix15d root =
-        qr.matrixQR().topRows(columns.size()).bottomRightCorner<15, 15>().triangularView<Eigen::Upper>();
-    const Matrix15d inverse = root.triangularView<Eigen::Upper>().solve(Matrix15d::Identity());
+    const Eigen::Index known = calibration_.size() + (gnss_.aligned() ? kClockColumns : 0) + kStateColumns;
+    const Eigen::MatrixXd root = qr.matrixQR().topRows(columns.size()).bottomRightCorner(known, known);
+    const Eigen::MatrixXd inverse =
+        root.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(known, known));
     covariance_ = inverse * inverse.transpose();
   }
 
@@ -144,16 +186,24 @@ class TermSolution {
                    frame.nav.data());
       const ImuBias bias = frame.imu_bias();
       PackBias({bias.gyro + own.segment<3>(9), bias.accel + own.tail<3>()}, frame.bias.data());
+      if (gnss_.aligned()) {
+        Eigen::Map<Vector6d>{frame.clock->data()} += step.segment<kClockColumns>(columns.Clock(i).first);
+      }
     }
+    const ColumnMap::Range camera = columns.Calibration();
+    EXPECT_TRUE(Retract(calibration_.layout, step.segment(camera.first, camera.size), &calibration_.mean));
+    window_.Renormalize(calibration_);
+    window_.UpdateRates();
   }
 
   SmootherLandmark landmark_;
-  WindowCalibration calibration_;
   Eigen::Vector3d gravity_W_ = GravityInWorld(kGravity);
+  GnssWindow gnss_;
+  WindowCalibration calibration_;
   Window window_;
   LinearPrior prior_;
   std::vector<WindowTrack*> tracks_;
-  Matrix15d covariance_;
+  Eigen::MatrixXd covariance_;  ///< of calibration, newest clock and newest state
 };
 
 }  // namespace alidade::test

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "tests/gnss/alignment/kernel_choice.h"
 #include "tests/gnss/model/synthetic_sky.h"
 
 namespace alidade {
@@ -280,6 +281,17 @@ TEST(TurnIntoEnuTest, TurnsAndWidens) {
   EXPECT_NEAR(turned.covariance(3, 3), 100 + 4, 1e-9);
   EXPECT_NEAR(turned.covariance(4, 4), 4, 1e-9);
   EXPECT_NEAR(turned.covariance(2, 2), 0.01, 1e-12);
+}
+
+TEST(GnssAlignerTest, GIVEN_noise_THEN_the_kernel_is_the_configured_one) {
+  Walk walk;
+  test::ExpectKernelIsTaken([&](RobustKernel kernel, double scale_sigma) {
+    walk.config.robust_kernel = kernel;
+    walk.config.robust_scale_sigma = scale_sigma;
+    GnssAligner aligner(walk.config, AtAnchor(walk));
+    const auto alignment = Follow(walk, 30, 40, &aligner);
+    return alignment ? alignment->yaw_rad : 0;
+  });
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "core/random.h"
+#include "tests/gnss/alignment/kernel_choice.h"
 
 namespace alidade {
 namespace {
@@ -142,6 +143,19 @@ TEST(FixAlignerTest, GIVEN_fewer_fixes_than_it_needs_THEN_it_counts_them) {
   FixAligner aligner({}, {walk.sensor}, std::nullopt);
   EXPECT_FALSE(Follow(walk, 3, &aligner));
   EXPECT_NE(aligner.report().find("expected 5"), std::string::npos) << aligner.report();
+}
+
+TEST(FixAlignerTest, GIVEN_fixes_of_a_metre_THEN_the_kernel_is_the_configured_one) {
+  const FixWalk walk;
+  test::ExpectKernelIsTaken([&](RobustKernel kernel, double scale_sigma) {
+    FixConfig config;
+    config.robust_kernel = kernel;
+    config.robust_scale_sigma = scale_sigma;
+    FixAligner aligner(config, {walk.sensor}, std::nullopt);
+    const auto alignment = Follow(walk, 30, &aligner);
+    EXPECT_TRUE(alignment) << aligner.report();
+    return alignment ? alignment->yaw_rad : 0;
+  });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/imu_propagation.h"
+#include "tests/gnss/alignment/kernel_choice.h"
 
 namespace alidade {
 namespace {
@@ -276,6 +277,18 @@ TEST(GnssInertialStartTest, GIVEN_another_datum_THEN_the_clock_refers_to_GPS) {
   const Vector6d& clock = *found->alignment.clock;
   EXPECT_NEAR(clock[ClockState::kClock], 900 + 20 * 20 - 30, 1e-9);
   EXPECT_NEAR(clock[ClockState::kBiases], 30, 1e-12) << "Galileo against GPS";
+}
+
+TEST(GnssInertialStartTest, GIVEN_epochs_that_are_late_THEN_the_kernel_is_the_configured_one) {
+  const Body body = Flying();
+  test::ExpectKernelIsTaken([&](RobustKernel kernel, double scale_sigma) {
+    EstimatorConfig config = Config();
+    config.gnss.robust_kernel = kernel;
+    config.gnss.robust_scale_sigma = scale_sigma;
+    GnssInertialStart start = MakeStart(config, body);
+    const auto found = Follow(body, 20, 0.5, &start, 0.1);
+    return found ? found->estimate.nav.p_WB.x() : 0;
+  });
 }
 
 }  // namespace
