@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "core/dense_solvers.h"
 #include "core/format.h"
 #include "core/median.h"
 #include "core/robust.h"
-#include "eval/calibrate/camera_gyro_rays.h"
+#include "eval/calibrate/block_scatter.h"
+#include "eval/calibrate/camera_gyro_equations.h"
 #include "eval/calibrate/gyro_path.h"
 #include "frontend/initialization/epipolar_ray.h"
 
@@ -19,9 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Coordinate = CameraGyroCoordinate;
-using Tangent = Eigen::Matrix<double, 3, 2>;
 
-constexpr double kKernelSigma = 2.5;
 /// Cost of a view that the lens model cannot take, as of one four sigma off.
 constexpr double kUnseenSquared = 16;
 /// Variances of real recordings over those of independent errors, where one is too short to show it.
@@ -29,22 +27,6 @@ constexpr double kInflationOfShort = 10;
 /// Share of the readout time: while rows are read the camera is taken to move as on average between its two
 /// frames.
 constexpr double kReadoutModel = 0.03;
-
-Tangent TangentOf(const Vector3d& direction) {
-  Tangent tangent;
-  tangent.col(0) = direction.unitOrthogonal();
-  tangent.col(1) = direction.cross(tangent.col(0));
-  return tangent;
-}
-
-/// Normal equations of one pair with its direction eliminated, and what gives the direction's step back.
-struct PairEquations {
-  CameraGyroMatrix information = CameraGyroMatrix::Zero();
-  CameraGyroError gradient = CameraGyroError::Zero();
-  Eigen::Matrix<double, 2, Coordinate::kCount> direction_by_model =
-      Eigen::Matrix<double, 2, Coordinate::kCount>::Zero();
-  Vector2d direction_step = Vector2d::Zero();
-};
 
 /// The samples that pairs need at any time offset within its prior, so that few pairs of a long recording are
 /// cheap. Between them the path makes a step that no pair sees.
@@ -105,7 +87,8 @@ class Fit {
           rays.push_back(at.epipolar);
         }
       }
-      directions_[k] = rays.empty() ? Vector3d::UnitX() : TranslationDirection(rays, kKernelSigma, &weights);
+      directions_[k] =
+          rays.empty() ? Vector3d::UnitX() : TranslationDirection(rays, kCameraGyroKernelSigma, &weights);
     }
   }
 
@@ -127,7 +110,7 @@ class Fit {
             residuals->push_back(std::abs(residual));
           }
         }
-        cost += RobustCost(RobustKernel::kCauchy, kKernelSigma, squared);
+        cost += RobustCost(RobustKernel::kCauchy, kCameraGyroKernelSigma, squared);
       }
     }
     const CameraGyroError offset = CameraGyroOffset(start_, model);
@@ -139,73 +122,8 @@ class Fit {
     return cost;
   }
 
-  /// Adds one view's row over model and direction.
-  void AddView(const ViewRays& rays, const PairMotion& motion, const Vector3d& t, const Tangent& tangent,
-               Eigen::Matrix<double, Coordinate::kCount + 2, Coordinate::kCount + 2>* information,
-               Eigen::Matrix<double, Coordinate::kCount + 2, 1>* gradient) const {
-    const double variance = EpipolarVariance(rays.epipolar, t);
-    const double residual = t.dot(rays.epipolar.normal);
-    // Both rays moved onto their epipolar plane, each by its share of the noise.
-    Vector3d a = rays.epipolar.ray_i;
-    Vector3d q = rays.epipolar.ray_j;
-    const Vector3d by_a = q.cross(t);
-    const Vector3d by_q = t.cross(a);
-    const double squared_i = rays.i.sigma * rays.i.sigma, squared_j = rays.j.sigma * rays.j.sigma;
-    const double spread = squared_i * by_a.squaredNorm() + squared_j * by_q.squaredNorm();
-    if (spread > 1e-4 * (squared_i + squared_j)) {
-      a = (a - by_a * (residual * squared_i / spread)).normalized();
-      q = (q - by_q * (residual * squared_j / spread)).normalized();
-    }
-    const Vector3d u = t.cross(a);                   // d residual / d q
-    const Vector3d w = motion.R_ij.transpose() * u;  // d residual / d ray j in its own camera
-    const Vector3d b = motion.R_ij.transpose() * q;
-    const Vector3d by_turn_i = u.cross(q);
-    const Vector3d by_turn_j = b.cross(w);
-    Eigen::Matrix<double, Coordinate::kCount + 2, 1> row;
-    row.setZero();
-    row.segment<3>(Coordinate::kGyroBias) = motion.bias_j.transpose() * by_turn_j;
-    row.segment<3>(Coordinate::kRotation) = by_turn_i + by_turn_j;
-    row[Coordinate::kTimeOffset] = by_turn_i.dot(motion.i.rate_C) + by_turn_j.dot(motion.j.rate_C);
-    row[Coordinate::kReadout] =
-        rays.i.pixel_row * by_turn_i.dot(motion.i.rate_C) + rays.j.pixel_row * by_turn_j.dot(motion.j.rate_C);
-    if (intrinsics_free_) {
-      row.segment<Coordinate::kCount - Coordinate::kFocal>(Coordinate::kFocal) =
-          IntrinsicsOfRay(fit_.model.camera, a).transpose() * q.cross(t) +
-          IntrinsicsOfRay(fit_.model.camera, b).transpose() * w;
-    }
-    row.tail<2>() = tangent.transpose() * a.cross(q);
-    const double weight =
-        RobustWeight(RobustKernel::kCauchy, kKernelSigma, residual * residual / variance) / variance;
-    *information += weight * row * row.transpose();
-    *gradient += weight * residual * row;
-  }
-
-  [[nodiscard]] PairEquations EquationsOf(std::size_t k, const GyroPath& path) const {
-    const Vector3d& t = directions_[k];
-    const Tangent tangent = TangentOf(t);
-    const PairMotion motion = MotionOf(pairs_[k], fit_.model, path);
-    Eigen::Matrix<double, Coordinate::kCount + 2, Coordinate::kCount + 2> information;
-    Eigen::Matrix<double, Coordinate::kCount + 2, 1> gradient;
-    information.setZero();
-    gradient.setZero();
-    for (const PairView& view : pairs_[k].views) {
-      if (const ViewRays rays = RaysOf(view, fit_.model, motion, path, noise_px_); rays.seen) {
-        AddView(rays, motion, t, tangent, &information, &gradient);
-      }
-    }
-    // Without parallax the direction is loose: the unit prior on its two angles keeps the elimination
-    // regular.
-    const Eigen::Matrix2d loose =
-        (information.bottomRightCorner<2, 2>() + Eigen::Matrix2d::Identity()).inverse();
-    PairEquations equations;
-    equations.direction_by_model = loose * information.bottomLeftCorner<2, Coordinate::kCount>();
-    equations.direction_step = loose * gradient.tail<2>();
-    equations.information =
-        information.topLeftCorner<Coordinate::kCount, Coordinate::kCount>() -
-        information.topRightCorner<Coordinate::kCount, 2>() * equations.direction_by_model;
-    equations.gradient = gradient.head<Coordinate::kCount>() -
-                         information.topRightCorner<Coordinate::kCount, 2>() * equations.direction_step;
-    return equations;
+  [[nodiscard]] CameraGyroEquations EquationsAt(std::size_t k, const GyroPath& path) const {
+    return EquationsOf(pairs_[k], fit_.model, path, directions_[k], intrinsics_free_, noise_px_);
   }
 
   /// Holds the fixed coordinates and adds the prior of the others.
@@ -232,11 +150,11 @@ class Fit {
     fit_.converged = false;
     for (int iteration = 0; iteration < options_.iterations && !fit_.converged; ++iteration) {
       const GyroPath path(imu_, fit_.model.gyro_bias, fit_.model.gyro_sign);
-      std::vector<PairEquations> equations;
+      std::vector<CameraGyroEquations> equations;
       CameraGyroMatrix information = CameraGyroMatrix::Zero();
       CameraGyroError gradient = CameraGyroError::Zero();
       for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        equations.push_back(EquationsOf(k, path));
+        equations.push_back(EquationsAt(k, path));
         information += equations.back().information;
         gradient += equations.back().gradient;
       }
@@ -252,7 +170,7 @@ class Fit {
         if (better) {
           for (std::size_t k = 0; k < pairs_.size(); ++k) {
             const Vector2d angles = -equations[k].direction_step - equations[k].direction_by_model * step;
-            directions[k] = (directions_[k] + TangentOf(directions_[k]) * angles).normalized();
+            directions[k] = MovedDirection(directions_[k], angles);
           }
           next = Cost(model, directions);
           better = next <= cost;
@@ -296,7 +214,7 @@ class Fit {
     CameraGyroError gradient = CameraGyroError::Zero();
     std::vector<CameraGyroError> gradients;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      const PairEquations equations = EquationsOf(k, path);
+      const CameraGyroEquations equations = EquationsAt(k, path);
       information += equations.information;
       gradient += equations.gradient;
       gradients.push_back(equations.gradient);
@@ -310,7 +228,8 @@ class Fit {
     CameraGyroError variances = alone;
     bool scattered = false;
     for (const double block_s : {options_.block_s, 2 * options_.block_s}) {
-      if (const std::optional<CameraGyroError> scatter = VariancesByBlocks(covariance, gradients, block_s)) {
+      if (const std::optional<CameraGyroError> scatter =
+              VariancesByBlocks(pairs_, covariance, gradients, options_.prior, block_s)) {
         variances = variances.cwiseMax(*scatter);
         scattered = true;
       }
@@ -328,33 +247,6 @@ class Fit {
       free += prior > 0 ? 1 : 0;
     }
     fit_.inflation /= std::max(1, free);
-  }
-
-  /// Of the estimate, from the scatter of what each block of time moves it by; none with fewer
-  /// than four blocks. The sandwich estimator with clusters (Liang and Zeger 1986), each coordinate for
-  /// itself.
-  [[nodiscard]] std::optional<CameraGyroError> VariancesByBlocks(
-      const CameraGyroMatrix& covariance, const std::vector<CameraGyroError>& gradients,
-      double block_s) const {
-    constexpr std::size_t kLeastBlocks = 4;
-    std::map<long, CameraGyroError> blocks;
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      const long block = std::lround((pairs_[k].t_i_s - pairs_.front().t_i_s) / block_s - 0.5);
-      blocks.try_emplace(block, CameraGyroError::Zero()).first->second += gradients[k];
-    }
-    if (blocks.size() < kLeastBlocks) {
-      return std::nullopt;
-    }
-    CameraGyroError squares = CameraGyroError::Zero();
-    for (auto& [block, of_block] : blocks) {
-      for (int c = 0; c < Coordinate::kCount; ++c) {
-        of_block[c] = options_.prior[c] > 0 ? of_block[c] : 0;
-      }
-      squares += (covariance * of_block).cwiseAbs2();
-    }
-    // The blocks' gradients sum to about zero at the estimate, and the scatter of a few blocks is uncertain.
-    const auto count = static_cast<double>(blocks.size());
-    return squares * ((count + 2) / (count - 1));
   }
 
   const std::vector<FramePair>& pairs_;

@@ -72,39 +72,37 @@ class PlanParser {
  private:
   using Node = YAML::Node;
 
-  Status AddEstimator(const Node& node) {
-    PlanEstimator estimator;
-    if (node.IsScalar()) {
-      ALIDADE_RETURN_IF_ERROR(reader_.ExistingPath(node, "estimators", false, &estimator.config));
-    } else {
-      ALIDADE_RETURN_IF_ERROR(reader_.Map(
-          node, "estimators",
-          {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &estimator.name); }},
-           {"config",
-            [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &estimator.config); }},
-           {"set", [&](const Node& n) { return reader_.Settings(n, "set", &estimator.settings); }},
-           {"trajectories", [&](const Node& n) { return ReadTrajectories(n, &estimator.trajectories); }},
-           {"command", [&](const Node& n) { return reader_.Text(n, "command", &estimator.command.text); }},
-           {"program", [&](const Node& n) { return reader_.Path(n, "program", &estimator.command.program); }},
-           {"result", [&](const Node& n) { return reader_.Text(n, "result", &estimator.command.result); }},
-           {"timeout",
-            [&](const Node& n) {
-              return reader_.Real(n, "timeout", 1, kMaxTimeoutS, &estimator.command.timeout_s);
-            }},
-           {"frame",
-            [&](const Node& n) {
-              return reader_.Either(n, "frame", "body", "camera", &estimator.camera_frame);
-            }},
-           {"mode",
-            [&](const Node& n) {
-              return reader_.Either(n, "mode", "causal", "smoothed", &estimator.smoothed);
-            }},
-           {"sequences", [&](const Node& n) { return ReadNames(n, &estimator.sequences); }},
-           {"align",
-            [&](const Node& n) { return ReadAlignment(reader_, n, &estimator.alignment.emplace()); }},
-           {"align_share",
-            [&](const Node& n) { return ReadAlignShare(reader_, n, &estimator.align_share.emplace()); }}}));
-    }
+  Status ReadEstimatorFields(const Node& node, PlanEstimator* estimator) {
+    return reader_.Map(
+        node, "estimators",
+        {{"name", [&](const Node& n) { return reader_.FolderName(n, "name", &estimator->name); }},
+         {"config",
+          [&](const Node& n) { return reader_.ExistingPath(n, "config", false, &estimator->config); }},
+         {"set", [&](const Node& n) { return reader_.Settings(n, "set", &estimator->settings); }},
+         {"trajectories", [&](const Node& n) { return ReadTrajectories(n, &estimator->trajectories); }},
+         {"command", [&](const Node& n) { return reader_.Text(n, "command", &estimator->command.text); }},
+         {"program", [&](const Node& n) { return reader_.Path(n, "program", &estimator->command.program); }},
+         {"result", [&](const Node& n) { return reader_.Text(n, "result", &estimator->command.result); }},
+         {"timeout",
+          [&](const Node& n) {
+            return reader_.Real(n, "timeout", 1, kMaxTimeoutS, &estimator->command.timeout_s);
+          }},
+         {"frame",
+          [&](const Node& n) {
+            return reader_.Either(n, "frame", "body", "camera", &estimator->camera_frame);
+          }},
+         {"mode",
+          [&](const Node& n) {
+            return reader_.Either(n, "mode", "causal", "smoothed", &estimator->smoothed);
+          }},
+         {"sequences", [&](const Node& n) { return ReadNames(n, &estimator->sequences); }},
+         {"align", [&](const Node& n) { return ReadAlignment(reader_, n, &estimator->alignment.emplace()); }},
+         {"align_share",
+          [&](const Node& n) { return ReadAlignShare(reader_, n, &estimator->align_share.emplace()); }}});
+  }
+
+  /// One source of estimates, and no entry that it does not take.
+  [[nodiscard]] Status CheckEstimator(const Node& node, const PlanEstimator& estimator) const {
     const int sources = (estimator.config.empty() ? 0 : 1) + (estimator.trajectories.empty() ? 0 : 1) +
                         (estimator.command.text.empty() ? 0 : 1);
     if (sources != 1) {
@@ -121,6 +119,17 @@ class PlanParser {
     if (estimator.command.text.empty() && !estimator.command.program.empty()) {
       return reader_.Fault(node, "estimators", "`program` only with `command`");
     }
+    return Status::Ok();
+  }
+
+  Status AddEstimator(const Node& node) {
+    PlanEstimator estimator;
+    if (node.IsScalar()) {
+      ALIDADE_RETURN_IF_ERROR(reader_.ExistingPath(node, "estimators", false, &estimator.config));
+    } else {
+      ALIDADE_RETURN_IF_ERROR(ReadEstimatorFields(node, &estimator));
+    }
+    ALIDADE_RETURN_IF_ERROR(CheckEstimator(node, estimator));
     if (estimator.name.empty()) {
       estimator.name = Stem(estimator.config);
       ALIDADE_RETURN_IF_ERROR(reader_.CheckFolderName(node, "estimators", estimator.name));

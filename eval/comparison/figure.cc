@@ -66,6 +66,35 @@ void AppendRpeFigures(const Comparison& comparison, std::vector<Figure>* figures
   }
 }
 
+/// Those that need what only some runs have.
+void AppendFiguresOfSome(const Comparison& comparison, std::vector<Figure>* figures) {
+  const auto known = [&comparison](std::optional<double> CellResult::*member) {
+    return std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                       [member](const CellResult& cell) { return (cell.*member).has_value(); });
+  };
+  for (const auto& [key, label, member] :
+       {std::tuple("nees_vel", "NEES vel.", &CellResult::nees_vel),
+        std::tuple("nees_gyro_bias", "NEES gyro bias", &CellResult::nees_gyro_bias),
+        std::tuple("nees_accel_bias", "NEES accel. bias", &CellResult::nees_accel_bias)}) {
+    if (known(member)) {
+      figures->push_back({key, label, "", Ideal::kTarget, 3, 2, OfTrajectory(member)});
+    }
+  }
+  if (known(&CellResult::calibration_rotation_deg)) {
+    figures->push_back({"calibration_rotation_deg", "camera rotation", "deg", Ideal::kLow, 0, 3,
+                        OfRun(&CellResult::calibration_rotation_deg)});
+    figures->push_back({"calibration_translation_m", "camera position", "m", Ideal::kLow, 0, 4,
+                        OfRun(&CellResult::calibration_translation_m)});
+    figures->push_back({"calibration_time_ms", "time offset", "ms", Ideal::kLow, 0, 3,
+                        OfRun(&CellResult::calibration_time_ms)});
+  }
+  if (std::any_of(comparison.cells.begin(), comparison.cells.end(),
+                  [](const CellResult& cell) { return cell.restarts > 0; })) {
+    figures->push_back({"restarts", "restarts", "", Ideal::kLow, 0, 1,
+                        [](const CellResult& cell) { return static_cast<double>(cell.restarts); }});
+  }
+}
+
 }  // namespace
 
 std::vector<Figure> ListFigures(const Comparison& comparison) {
@@ -91,31 +120,7 @@ std::vector<Figure> ListFigures(const Comparison& comparison) {
       {"alarm_inside_share", "alarms inside 3\u03c3", "", Ideal::kLow, 0, 3,
        OfTrajectory(&CellResult::alarm_inside_share)}};
   figures.insert(figures.end(), rest.begin(), rest.end());
-  const auto known = [&comparison](std::optional<double> CellResult::*member) {
-    return std::any_of(comparison.cells.begin(), comparison.cells.end(),
-                       [member](const CellResult& cell) { return (cell.*member).has_value(); });
-  };
-  for (const auto& [key, label, member] :
-       {std::tuple("nees_vel", "NEES vel.", &CellResult::nees_vel),
-        std::tuple("nees_gyro_bias", "NEES gyro bias", &CellResult::nees_gyro_bias),
-        std::tuple("nees_accel_bias", "NEES accel. bias", &CellResult::nees_accel_bias)}) {
-    if (known(member)) {
-      figures.push_back({key, label, "", Ideal::kTarget, 3, 2, OfTrajectory(member)});
-    }
-  }
-  if (known(&CellResult::calibration_rotation_deg)) {
-    figures.push_back({"calibration_rotation_deg", "camera rotation", "deg", Ideal::kLow, 0, 3,
-                       OfRun(&CellResult::calibration_rotation_deg)});
-    figures.push_back({"calibration_translation_m", "camera position", "m", Ideal::kLow, 0, 4,
-                       OfRun(&CellResult::calibration_translation_m)});
-    figures.push_back({"calibration_time_ms", "time offset", "ms", Ideal::kLow, 0, 3,
-                       OfRun(&CellResult::calibration_time_ms)});
-  }
-  if (std::any_of(comparison.cells.begin(), comparison.cells.end(),
-                  [](const CellResult& cell) { return cell.restarts > 0; })) {
-    figures.push_back({"restarts", "restarts", "", Ideal::kLow, 0, 1,
-                       [](const CellResult& cell) { return static_cast<double>(cell.restarts); }});
-  }
+  AppendFiguresOfSome(comparison, &figures);
   figures.push_back({"completion", "completed", "", Ideal::kTarget, 1, 3, CompletionOf, true});
   figures.push_back({"realtime_factor", "x real time", "s/s", Ideal::kNone, 0, 1,
                      OfTrajectory(&CellResult::realtime_factor)});

@@ -198,6 +198,61 @@ Status ReadSatellites(const std::string& path, RunResult* result) {
   return Status::Ok();
 }
 
+/// What run.json holds.
+RunResult ReadSummary(const Json& json) {
+  RunResult result;
+  const std::string word = JsonMember(json, "status", std::string("failed"));
+  result.status = StatusFromWord(word, JsonMember(json, "message", std::string()));
+  result.interrupted = word == "interrupted";
+  const Json initialization = JsonMember(json, "initialization", Json::object());
+  result.init_method = JsonMember(initialization, "method", std::string());
+  result.init_report = JsonMember(initialization, "report", std::string());
+  result.init_stamp_ns = JsonMember(initialization, "stamp_ns", TimeNs{0});
+  result.skip_report = JsonMember(json, "skip_report", std::string());
+  ForEachSensorEntry([&](auto entry, Sensor sensor) {
+    result.skipped[sensor] = JsonMember(JsonMember(json, entry.kKey, Json::object()), "skipped", 0);
+  });
+  const Json counts = JsonMember(json, "counts", Json::object());
+  result.frames_skipped = JsonMember(counts, "frames_skipped", 0);
+  result.imu_rejected = JsonMember(counts, "imu_rejected", 0);
+  result.global = ReadGlobalFrame(json);
+  for (const Json& restart : JsonMember(json, "restarts", Json::array())) {
+    result.restarts.push_back(
+        {JsonMember(restart, "lost_ns", TimeNs{0}), JsonMember(restart, "reason", std::string()),
+         JsonMember(restart, "restarted_ns", TimeNs{0}), JsonMember(restart, "report", std::string())});
+  }
+  if (const Json error = JsonMember(json, "calibration_error", Json()); error.is_object()) {
+    result.calibration_error = {JsonMember(error, "rotation_rad", 0.0),
+                                JsonMember(error, "translation_m", 0.0),
+                                JsonMember(error, "time_offset_s", 0.0), JsonMember(error, "focal_px", 0.0)};
+  }
+  const Json times = JsonMember(json, "times", Json::object());
+  result.wall_s = JsonMember(times, "wall_s", 0.0);
+  result.cpu_s = JsonMember(times, "cpu_s", 0.0);
+  return result;
+}
+
+/// The records and residuals; `json`: run.json.
+Status ReadTables(const std::string& folder, const Json& json, RunResult* result) {
+  ALIDADE_RETURN_IF_ERROR(ReadStates(folder, result));
+  if (MayExist(In(folder, "covariance.csv"))) {
+    ALIDADE_RETURN_IF_ERROR(
+        ReadRows(In(folder, "covariance.csv"), kMotionCovarianceColumns, result, ReadMotionCovarianceRow));
+  }
+  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, result, ReadTimingRow));
+  ALIDADE_RETURN_IF_ERROR(ReadStatusTable(folder, json, result));
+  if (JsonMember(json, "audited", false)) {
+    ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, result, ReadObservabilityRow));
+  }
+  if (MayExist(In(folder, "gnss.csv"))) {
+    ALIDADE_RETURN_IF_ERROR(ReadSatellites(In(folder, "gnss.csv"), result));
+  }
+  if (MayExist(In(folder, "bound.csv"))) {
+    ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "bound.csv"), 22, result, ReadBoundRow));
+  }
+  return Status::Ok();
+}
+
 }  // namespace
 
 Result<RunResult> ReadRun(const std::string& folder) {
@@ -205,53 +260,10 @@ Result<RunResult> ReadRun(const std::string& folder) {
   if (!json.ok()) {
     return json.status();
   }
-  RunResult result;
-  const std::string word = JsonMember(*json, "status", std::string("failed"));
-  result.status = StatusFromWord(word, JsonMember(*json, "message", std::string()));
-  result.interrupted = word == "interrupted";
-  const Json initialization = JsonMember(*json, "initialization", Json::object());
-  result.init_method = JsonMember(initialization, "method", std::string());
-  result.init_report = JsonMember(initialization, "report", std::string());
-  result.init_stamp_ns = JsonMember(initialization, "stamp_ns", TimeNs{0});
-  result.skip_report = JsonMember(*json, "skip_report", std::string());
-  ForEachSensorEntry([&](auto entry, Sensor sensor) {
-    result.skipped[sensor] = JsonMember(JsonMember(*json, entry.kKey, Json::object()), "skipped", 0);
-  });
-  const Json counts = JsonMember(*json, "counts", Json::object());
-  result.frames_skipped = JsonMember(counts, "frames_skipped", 0);
-  result.imu_rejected = JsonMember(counts, "imu_rejected", 0);
-  result.global = ReadGlobalFrame(*json);
-  for (const Json& restart : JsonMember(*json, "restarts", Json::array())) {
-    result.restarts.push_back(
-        {JsonMember(restart, "lost_ns", TimeNs{0}), JsonMember(restart, "reason", std::string()),
-         JsonMember(restart, "restarted_ns", TimeNs{0}), JsonMember(restart, "report", std::string())});
-  }
-  if (const Json error = JsonMember(*json, "calibration_error", Json()); error.is_object()) {
-    result.calibration_error = {JsonMember(error, "rotation_rad", 0.0),
-                                JsonMember(error, "translation_m", 0.0),
-                                JsonMember(error, "time_offset_s", 0.0), JsonMember(error, "focal_px", 0.0)};
-  }
-  const Json times = JsonMember(*json, "times", Json::object());
-  result.wall_s = JsonMember(times, "wall_s", 0.0);
-  result.cpu_s = JsonMember(times, "cpu_s", 0.0);
-  if (JsonMember(counts, "frames_processed", 0) == 0) {
-    return result;  // tables of a header alone
-  }
-  ALIDADE_RETURN_IF_ERROR(ReadStates(folder, &result));
-  if (MayExist(In(folder, "covariance.csv"))) {
-    ALIDADE_RETURN_IF_ERROR(
-        ReadRows(In(folder, "covariance.csv"), kMotionCovarianceColumns, &result, ReadMotionCovarianceRow));
-  }
-  ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "timing.csv"), 6, &result, ReadTimingRow));
-  ALIDADE_RETURN_IF_ERROR(ReadStatusTable(folder, *json, &result));
-  if (JsonMember(*json, "audited", false)) {
-    ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "observability.csv"), 6, &result, ReadObservabilityRow));
-  }
-  if (MayExist(In(folder, "gnss.csv"))) {
-    ALIDADE_RETURN_IF_ERROR(ReadSatellites(In(folder, "gnss.csv"), &result));
-  }
-  if (MayExist(In(folder, "bound.csv"))) {
-    ALIDADE_RETURN_IF_ERROR(ReadRows(In(folder, "bound.csv"), 22, &result, ReadBoundRow));
+  RunResult result = ReadSummary(*json);
+  // Without a frame the tables have a header alone.
+  if (JsonMember(JsonMember(*json, "counts", Json::object()), "frames_processed", 0) != 0) {
+    ALIDADE_RETURN_IF_ERROR(ReadTables(folder, *json, &result));
   }
   return result;
 }

@@ -1,6 +1,7 @@
 #include "eval/rosbag/gnss_navigation_messages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/format.h"
@@ -19,6 +20,49 @@ TimeScale ScaleOf(GnssSystem system) {
 
 double SecondsOfWeek(TimeScale scale, TimeNs gpst_ns) {
   return static_cast<double>((gpst_ns - GpsTimeFromWeek(scale, 0, 0)) % kWeekNs) / 1e9;
+}
+
+/// What the bytes hold beside the satellite.
+struct KeplerMessage {
+  TimeNs sent_ns = 0, toe_ns = 0, toc_ns = 0;
+  std::uint32_t issue = 0, health = 0, code = 0;
+  std::array<double, 21> values{};
+};
+
+/// The numbers in the order of a RINEX message, whose reader checks them against the bounds of the messages.
+RawNavMessage RawMessage(const KeplerMessage& message, SatelliteId satellite) {
+  const TimeScale scale = ScaleOf(satellite.system);
+  const auto& v = message.values;
+  RawNavMessage raw{satellite, CalendarFromGpsTime(scale, message.toc_ns), {}};
+  raw.numbers = {v[16],
+                 v[17],
+                 v[18],
+                 message.issue,
+                 v[13],
+                 v[7],
+                 v[6],
+                 v[10],
+                 v[2],
+                 v[11],
+                 std::sqrt(v[1]),
+                 SecondsOfWeek(scale, message.toe_ns),
+                 v[14],
+                 v[5],
+                 v[15],
+                 v[3],
+                 v[12],
+                 v[4],
+                 v[8],
+                 v[9],
+                 message.code,
+                 0,
+                 0,
+                 v[0],
+                 message.health,
+                 v[19],
+                 v[20],
+                 SecondsOfWeek(scale, message.sent_ns)};
+  return raw;
 }
 
 }  // namespace
@@ -72,14 +116,14 @@ Result<KeplerEphemeris> DecodeKeplerEphemeris(std::string_view bytes) {
   const Result<TimeNs> sent = TakeGnssTime(&in);
   const Result<TimeNs> toe = TakeGnssTime(&in);
   const Result<TimeNs> toc = TakeGnssTime(&in);
+  KeplerMessage message;
   // toe_tow and week: the same as toe, in a scale on which writers do not agree.
   static_cast<void>(in.Take(sizeof(double) + sizeof(std::uint32_t)));
-  const auto issue = in.Read<std::uint32_t>();
+  message.issue = in.Read<std::uint32_t>();
   static_cast<void>(in.Read<std::uint32_t>());
-  const auto health = in.Read<std::uint32_t>();
-  const auto code = in.Read<std::uint32_t>();
-  double v[21];
-  for (double& value : v) {
+  message.health = in.Read<std::uint32_t>();
+  message.code = in.Read<std::uint32_t>();
+  for (double& value : message.values) {
     value = in.Read<double>();
   }
   static_cast<void>(in.Take(2 * sizeof(double)));
@@ -90,38 +134,10 @@ Result<KeplerEphemeris> DecodeKeplerEphemeris(std::string_view bytes) {
   if (!satellite || satellite->system == GnssSystem::kGlonass) {
     return Status::Input("a satellite number outside GPS, Galileo and BeiDou");
   }
-  // The numbers in the order of a RINEX message, whose reader checks them against the bounds of the messages.
-  const TimeScale scale = ScaleOf(satellite->system);
-  RawNavMessage raw{*satellite, CalendarFromGpsTime(scale, *toc), {}};
-  raw.numbers = {v[16],
-                 v[17],
-                 v[18],
-                 issue,
-                 v[13],
-                 v[7],
-                 v[6],
-                 v[10],
-                 v[2],
-                 v[11],
-                 std::sqrt(v[1]),
-                 SecondsOfWeek(scale, *toe),
-                 v[14],
-                 v[5],
-                 v[15],
-                 v[3],
-                 v[12],
-                 v[4],
-                 v[8],
-                 v[9],
-                 code,
-                 0,
-                 0,
-                 v[0],
-                 health,
-                 v[19],
-                 v[20],
-                 SecondsOfWeek(scale, *sent)};
-  return MakeKeplerEphemeris(raw, std::nullopt);
+  message.sent_ns = *sent;
+  message.toe_ns = *toe;
+  message.toc_ns = *toc;
+  return MakeKeplerEphemeris(RawMessage(message, *satellite), std::nullopt);
 }
 
 std::optional<std::string> EncodeEphemeris(const GlonassEphemeris& e) {

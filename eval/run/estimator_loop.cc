@@ -18,27 +18,11 @@ EstimatorLoop::EstimatorLoop(const EstimatorConfig& config, const RigCalibration
       events_(*events),
       implied_(config.imu.gravity_mps2),
       imu_(config.imu.guard, &implied_),
-      recovery_(config, rig, options.camera) {
+      recovery_(config, rig, options.camera),
+      sensors_(config, rig, options, estimator, events) {
   if (options.camera && config.init.method != InitMethod::kTruth) {
     initializer_ = std::make_unique<Initializer>(config, rig);
   }
-  if (config.gnss.enabled && options.gnss) {
-    gnss_.emplace(config, rig, *options.gnss, options.lateness.gnss_s, estimator, events);
-    sensors_.push_back(&*gnss_);
-  }
-  measurements_ = MakeMeasurementRuns(config, rig, options, gnss_.has_value(), estimator, events);
-  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
-    sensors_.push_back(run.get());
-  }
-}
-
-MeasurementRun* EstimatorLoop::measurements(Sensor sensor) {
-  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
-    if (run->sensor() == sensor) {
-      return run.get();
-    }
-  }
-  return nullptr;
 }
 
 TimeNs EstimatorLoop::ImuTime(TimeNs camera_ns) const {
@@ -79,7 +63,7 @@ void EstimatorLoop::ProcessTracks(const TrackFrame& frame, const Stopwatch& stop
 
 void EstimatorLoop::ProcessEpoch() {
   if (options_.camera) {
-    ProcessMessage(&*gnss_);
+    ProcessMessage(gnss());
   } else {
     ProcessEpochAlone();
     TrimImu();
@@ -88,18 +72,18 @@ void EstimatorLoop::ProcessEpoch() {
 
 void EstimatorLoop::ProcessEpochAlone() {
   const Stopwatch stopwatch;
-  const TimeNs stamp_ns = gnss_->feed().Next()->stamp_ns;
+  const TimeNs stamp_ns = gnss()->feed().Next()->stamp_ns;
   DeliverImu(stamp_ns + EpochLead());
   if (!running()) {
     StartWithEpoch();
     return;
   }
-  const Result<bool> taken = gnss_->Take(true);
+  const Result<bool> taken = gnss()->Take(true);
   if (!taken.ok()) {
     Fail(stamp_ns, taken.status());
   } else if (*taken) {
     ReportState(Sensor::kGnss, stamp_ns, 0, stopwatch);
-    WatchSensor(*gnss_);
+    WatchSensor(*gnss());
     if (const std::string reason = degradation_.AgainstSensors("the IMU"); !reason.empty() && running()) {
       events_.emplace_back(DegradedEvent{state_ns_, reason, DegradationKind::kData});
     }
@@ -137,8 +121,8 @@ void EstimatorLoop::DeliverImu(TimeNs stamp_ns) {
       recovery_.AddImu(*sample);
     } else if (initializer_ != nullptr) {
       initializer_->AddImu(*sample);
-    } else if (gnss_ && !options_.camera) {
-      gnss_->AddImuBeforeStart(*sample);
+    } else if (gnss() != nullptr && !options_.camera) {
+      gnss()->AddImuBeforeStart(*sample);
     }
   }
 }
@@ -185,41 +169,12 @@ void EstimatorLoop::ReportDegraded(TimeNs imu_ns) {
   }
 }
 
-Result<std::optional<GnssAlignment>> EstimatorLoop::FindAlignment(TimeNs stamp_ns) {
-  if (gnss_) {
-    Result<std::optional<GnssAlignment>> alignment = gnss_->Align(stamp_ns, gyro_radps_);
-    if (alignment.ok() && *alignment) {
-      PassAlignment(gnss_->enu(), nullptr);
-    }
-    return alignment;
-  }
-  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
-    Result<std::optional<GnssAlignment>> alignment = run->Align(stamp_ns);
-    if (!alignment.ok()) {
-      return alignment;
-    }
-    if (*alignment) {
-      PassAlignment((*alignment)->enu, run.get());
-      return alignment;
-    }
-  }
-  return std::optional<GnssAlignment>();
-}
-
-void EstimatorLoop::PassAlignment(const std::optional<EnuFrame>& enu, const MeasurementRun* by) {
-  implied_.Forget();
-  for (const std::unique_ptr<MeasurementRun>& run : measurements_) {
-    if (run.get() != by) {
-      run->AlignedByAnother(enu);
-    }
-  }
-}
-
 void EstimatorLoop::AlignAfterFrame(TimeNs stamp_ns) {
-  const Result<std::optional<GnssAlignment>> alignment = FindAlignment(stamp_ns);
+  const Result<std::optional<GnssAlignment>> alignment = sensors_.Align(stamp_ns, gyro_radps_);
   if (!alignment.ok()) {
     Fail(stamp_ns, alignment.status());
   } else if (*alignment) {
+    implied_.Forget();
     recovery_.Turn(**alignment);
   }
 }
@@ -249,9 +204,9 @@ void EstimatorLoop::ReportState(Sensor source, TimeNs message_ns, double fronten
   event.frontend_ms = frontend_ms;
   event.backend_ms = stopwatch.ElapsedMs();
   const bool suspect = event.statistics.suspect;
-  if (gnss_ && is_frame) {
-    gnss_->CollectResiduals();  // the smoother gates an epoch with the frame after it
-    gnss_->Remember(state_ns_, event.clock);
+  if (gnss() != nullptr && is_frame) {
+    gnss()->CollectResiduals();  // the smoother gates an epoch with the frame after it
+    gnss()->Remember(state_ns_, event.clock);
   }
   events_.emplace_back(std::move(event));
   if (suspect) {

@@ -7,10 +7,9 @@
 
 #include "core/stopwatch.h"
 #include "eval/run/degradation.h"
-#include "eval/run/gnss_run.h"
 #include "eval/run/imu_stream.h"
-#include "eval/run/measurement_runs.h"
 #include "eval/run/recovery.h"
+#include "eval/run/sensor_runs.h"
 #include "eval/run/session_options.h"
 
 namespace alidade {
@@ -27,12 +26,10 @@ class EstimatorLoop {
   EstimatorLoop& operator=(const EstimatorLoop&) = delete;
 
   [[nodiscard]] ImuStream& imu() { return imu_; }
-  /// Null without GNSS.
-  [[nodiscard]] GnssRun* gnss() { return gnss_ ? &*gnss_ : nullptr; }
-  /// Of one of SensorEntries; null where it is not in use.
-  [[nodiscard]] MeasurementRun* measurements(Sensor sensor);
-  /// All that is in use: GNSS, then SensorEntries.
-  [[nodiscard]] const std::vector<SensorRun*>& sensors() const { return sensors_; }
+  // As in SensorRuns.
+  [[nodiscard]] GnssRun* gnss() { return sensors_.gnss(); }
+  [[nodiscard]] MeasurementRun* measurements(Sensor sensor) { return sensors_.measurements(sensor); }
+  [[nodiscard]] const std::vector<SensorRun*>& sensors() const { return sensors_.all(); }
 
   /// IMU time of a camera stamp, as far as the time offset is known now.
   [[nodiscard]] TimeNs ImuTime(TimeNs camera_ns) const;
@@ -82,10 +79,6 @@ class EstimatorLoop {
   void AddFrame(const TrackFrame& frame, const Stopwatch& stopwatch);
   void ReportDegraded(TimeNs imu_ns);
   void AlignAfterFrame(TimeNs stamp_ns);
-  Result<std::optional<GnssAlignment>> FindAlignment(TimeNs stamp_ns);
-  /// Passes the alignment to the measurements of sensors other than `by`, which aligned the run; null: GNSS
-  /// did.
-  void PassAlignment(const std::optional<EnuFrame>& enu, const MeasurementRun* by);
   void ReportState(Sensor source, TimeNs message_ns, double frontend_ms, const Stopwatch& stopwatch);
   void GiveUp(TimeNs stamp_ns, const Status& status);
   void Fail(TimeNs stamp_ns, Status status);
@@ -102,9 +95,7 @@ class EstimatorLoop {
   std::unique_ptr<Initializer> initializer_;  ///< until the first start
   Recovery recovery_;
   Degradation degradation_;
-  std::optional<GnssRun> gnss_;
-  std::vector<std::unique_ptr<MeasurementRun>> measurements_;
-  std::vector<SensorRun*> sensors_;  ///< of the two above
+  SensorRuns sensors_;
   Phase phase_ = Phase::kSeeking;
   Eigen::Vector3d gyro_radps_ = Eigen::Vector3d::Zero();  ///< of the last delivered sample
   TimeNs state_ns_ = 0;                                   ///< of the newest state

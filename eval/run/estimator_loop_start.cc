@@ -49,30 +49,26 @@ void EstimatorLoop::TryRestart(const TrackFrame& frame) {
   }
   events_.emplace_back(RestartedEvent{recovery_.lost_ns(), *start, recovery_.method(), recovery_.report()});
   recovery_.Started(*start);
-  Status status = gnss_ ? gnss_->Realign() : Status::Ok();
-  for (size_t i = 0; i < measurements_.size() && status.ok(); ++i) {
-    status = measurements_[i]->Realign();
-  }
-  if (!status.ok()) {
+  if (Status status = sensors_.Realign(); !status.ok()) {
     Fail(start->stamp_ns, std::move(status));
   }
 }
 
 void EstimatorLoop::StartWithEpoch() {
-  const TimeNs tag_ns = gnss_->feed().Next()->measurements.tag_ns;
-  const std::optional<GnssInertialStart::Start> start = gnss_->TryStart();
+  const TimeNs tag_ns = gnss()->feed().Next()->measurements.tag_ns;
+  const std::optional<GnssInertialStart::Start> start = gnss()->TryStart();
   if (!start) {
-    events_.emplace_back(WaitingEvent{Sought::kStart, tag_ns, gnss_->start_report()});
+    events_.emplace_back(WaitingEvent{Sought::kStart, tag_ns, gnss()->start_report()});
     return;
   }
   if (!Begin(start->estimate)) {
     return;
   }
-  events_.emplace_back(StartedEvent{start->estimate, "gnss", gnss_->start_report()});
-  if (Status status = gnss_->AlignAtStart(*start); !status.ok()) {
+  events_.emplace_back(StartedEvent{start->estimate, "gnss", gnss()->start_report()});
+  if (Status status = sensors_.AlignAtStart(*start); !status.ok()) {
     Fail(start->estimate.stamp_ns, std::move(status));
   } else {
-    PassAlignment(gnss_->enu(), nullptr);
+    implied_.Forget();
   }
 }
 

@@ -32,6 +32,18 @@ void ImuAxisWatch::CountShare(bool changed, Axis* axis) {
   axis->changed = kKept * kept * axis->changed + (changed ? 1 : 0);
 }
 
+void ImuAxisWatch::CheckLimit(double value, TimeNs stamp_ns, Axis* axis) {
+  if (axis->limit > 0 ? value > axis->limit : value < axis->limit) {
+    axis->limit = 0;
+  }
+  if (axis->limit == 0 || std::abs(value - axis->limit) >= kSteps * axis->resolution) {
+    axis->near_limit_since_ns = stamp_ns;
+  } else if (SecondsBetween(axis->near_limit_since_ns, stamp_ns) > kConstantS) {
+    axis->limit = 0;
+    axis->came_from = value;
+  }
+}
+
 void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                          Axis* axis) {
   const Eigen::Vector3d& before = last.*signal.value;
@@ -64,15 +76,7 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
     axis->low[k] = starts ? other : std::min(axis->low[k], other);
     axis->high[k] = starts ? other : std::max(axis->high[k], other);
   }
-  if (axis->limit > 0 ? value > axis->limit : value < axis->limit) {
-    axis->limit = 0;
-  }
-  if (axis->limit == 0 || std::abs(value - axis->limit) >= kSteps * axis->resolution) {
-    axis->near_limit_since_ns = sample.stamp_ns;
-  } else if (SecondsBetween(axis->near_limit_since_ns, sample.stamp_ns) > kConstantS) {
-    axis->limit = 0;
-    axis->came_from = value;
-  }
+  CheckLimit(value, sample.stamp_ns, axis);
   axis->recent.emplace_back(sample.stamp_ns, value);
   if (axis->recent.size() > kSaturated) {
     axis->recent.pop_front();
@@ -124,8 +128,7 @@ double ImuAxisWatch::Reading(Fault fault, double value, const Axis& axis,
   if (fault == Fault::kStuck) {
     return implied.value_or(axis.mean);
   }
-  const double beyond = implied ? *implied / value : 0;
-  return value * std::clamp(beyond, 1.0, 1.0 + kBeyondRange);
+  return value * std::max(1.0, implied.value_or(value) / value);
 }
 
 std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,

@@ -95,6 +95,8 @@ class ImuAxisWatch {
 
   /// Adds the repetitions of the last value and the first measurement of the next one to what came before.
   static void CountShare(bool changed, Axis* axis);
+  /// Lets go of a limit that the values exceed, or stay close to for too long without a change.
+  static void CheckLimit(double value, TimeNs stamp_ns, Axis* axis);
   static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,
                     Axis* axis);
   /// Of all measurements so far.

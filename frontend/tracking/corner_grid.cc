@@ -70,6 +70,14 @@ bool IsSaturated(const cv::Mat& image, const cv::Point& centre) {
   return saturated > kMaxSaturatedShare * kSide * kSide;
 }
 
+void RefineToSubPixels(const cv::Mat& image, std::vector<cv::Point2f>* corners) {
+  if (!corners->empty()) {
+    const cv::TermCriteria criteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 10, 0.02);
+    cv::cornerSubPix(image, *corners, cv::Size(kSubPixelRadiusPx, kSubPixelRadiusPx), cv::Size(-1, -1),
+                     criteria);
+  }
+}
+
 }  // namespace
 
 CornerGrid::CornerGrid(const FrontendConfig& config, int width_px, int height_px, int border_px)
@@ -203,11 +211,7 @@ std::vector<cv::Point2f> CornerGrid::Detect(const cv::Mat& image, const cv::Mat&
     queue.pop_back();
     ++counts[cell];
   }
-  if (!found.empty()) {
-    const cv::TermCriteria criteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 10, 0.02);
-    cv::cornerSubPix(image, found, cv::Size(kSubPixelRadiusPx, kSubPixelRadiusPx), cv::Size(-1, -1),
-                     criteria);
-  }
+  RefineToSubPixels(image, &found);
   return found;
 }
 

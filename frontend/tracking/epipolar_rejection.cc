@@ -16,7 +16,6 @@ namespace alidade {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMaxHypotheses = 100;
@@ -24,12 +23,6 @@ constexpr double kConfidence = 0.999;
 constexpr int kRefinementSteps = 5;
 // A rolling shutter and a poor calibration leave more than noise; beyond this it is another motion.
 constexpr double kMaxThresholdGrowth = 3;
-
-/// Relative motion of the camera, p_2 = R_21 p_1 + t with |t| = 1.
-struct Motion {
-  Matrix3d R_21 = Matrix3d::Identity();
-  Vector3d t = Vector3d::UnitZ();
-};
 
 struct Consensus {
   std::vector<bool> inliers;
@@ -57,62 +50,21 @@ Consensus Count(std::vector<bool> inliers) {
   return consensus;
 }
 
-/// The information of one pair on a motion: the signed distance of x_2 to the epipolar line of x_1 is `error
-/// * scale` [px].
-struct EpipolarTerm {
-  Vector3d g;  // R_21 x_1
-  Vector3d x_2;
-  double error;     // t . (g x x_2)
-  double scale;     // px per unit of error
-  bool at_epipole;  // x_1 lies on the epipole: its line is any line through it
-};
-
-EpipolarTerm Evaluate(const BearingPair& pair, const Motion& motion, const EpipolarOptions& options) {
-  EpipolarTerm term{.g = TurnedRay(motion.R_21, pair.first),
-                    .x_2 = pair.second,
-                    .error = 0,
-                    .scale = 0,
-                    .at_epipole = false};
-  const Vector3d line = motion.t.cross(term.g);
-  const double norm = options.on_sphere ? line.norm() : line.head<2>().norm();
-  // Within half a pixel of the epipole the line's direction is noise.
-  term.at_epipole = norm * options.focal_px < 0.5 * (options.on_sphere ? 1 : std::abs(term.g.z()));
-  term.error = term.x_2.dot(line);
-  term.scale = norm > 0 ? options.focal_px / norm : 0;
-  return term;
-}
-
-/// Between where a pair was seen and where the rotation alone takes it.
-double DisplacementPx(const EpipolarTerm& term, const EpipolarOptions& options) {
-  const double displacement =
-      options.on_sphere ? (term.x_2 - term.g).norm() : (term.x_2.head<2>() - term.g.hnormalized()).norm();
-  return displacement * options.focal_px;
-}
-
-bool IsInlier(const EpipolarTerm& term, const EpipolarOptions& options) {
-  if (!options.on_sphere && term.g.z() <= 0) {
-    return false;
-  }
-  if (term.at_epipole) {
-    return DisplacementPx(term, options) <= options.threshold_px;
-  }
-  return std::abs(term.error) * term.scale <= options.threshold_px;
-}
-
-Consensus Score(const std::vector<BearingPair>& pairs, const Motion& motion, const EpipolarOptions& options) {
+Consensus Score(const std::vector<BearingPair>& pairs, const CameraMotion& motion,
+                const EpipolarOptions& options) {
   std::vector<bool> inliers(pairs.size());
   for (size_t i = 0; i < pairs.size(); ++i) {
-    inliers[i] = IsInlier(Evaluate(pairs[i], motion, options), options);
+    inliers[i] = IsInlier(EvaluateEpipolar(pairs[i], motion, options), options);
   }
   return Count(std::move(inliers));
 }
 
 /// Best translation direction over two-pair hypotheses with the rotation held.
 Consensus SampleTranslation(const std::vector<BearingPair>& pairs, const EpipolarOptions& options,
-                            Motion* motion) {
+                            CameraMotion* motion) {
   Sampler sampler;
   Consensus best;
-  Motion candidate = *motion;
+  CameraMotion candidate = *motion;
   int hypotheses = kMaxHypotheses;
   for (int k = 0; k < hypotheses; ++k) {
     const size_t a = sampler.Below(pairs.size());
@@ -148,7 +100,8 @@ Eigen::Matrix<double, 3, 2> TangentBasis(const Vector3d& t) {
 /// Gauss-Newton on (delta, t) over the inliers, Huber weights at threshold_px, prior on the total rotation
 /// correction.
 void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inliers,
-            const Matrix3d& R_21_prior, double rotation_std, const EpipolarOptions& options, Motion* motion) {
+            const Matrix3d& R_21_prior, double rotation_std, const EpipolarOptions& options,
+            CameraMotion* motion) {
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
   using Vector5d = Eigen::Matrix<double, 5, 1>;
   const double sigma_px = 0.5 * options.threshold_px;
@@ -157,7 +110,7 @@ void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inli
     Matrix5d hessian = Matrix5d::Zero();
     Vector5d gradient = Vector5d::Zero();
     for (size_t i = 0; i < pairs.size(); ++i) {
-      const EpipolarTerm term = Evaluate(pairs[i], *motion, options);
+      const EpipolarTerm term = EvaluateEpipolar(pairs[i], *motion, options);
       if (!inliers[i] || term.at_epipole) {
         continue;
       }
@@ -190,14 +143,14 @@ void Refine(const std::vector<BearingPair>& pairs, const std::vector<bool>& inli
 /// Rejects inliers that moved along their epipolar line against the others: no point in front of both images
 /// does. x_2 ~ g + t / depth, so (g x x_2) . (g x t) has the sign of the depth; the sign of t is that of the
 /// majority.
-Consensus RejectNegativeDepth(const std::vector<BearingPair>& pairs, const Motion& motion,
+Consensus RejectNegativeDepth(const std::vector<BearingPair>& pairs, const CameraMotion& motion,
                               const EpipolarOptions& options, Consensus consensus) {
   // Twice the threshold: a displacement within noise has no sign.
   const double min_displacement_px = 2 * options.threshold_px;
   std::vector<int> signs(pairs.size(), 0);
   int balance = 0;
   for (size_t i = 0; i < pairs.size(); ++i) {
-    const EpipolarTerm term = Evaluate(pairs[i], motion, options);
+    const EpipolarTerm term = EvaluateEpipolar(pairs[i], motion, options);
     if (consensus.inliers[i] && !term.at_epipole && DisplacementPx(term, options) > min_displacement_px) {
       signs[i] = term.g.cross(term.x_2).dot(term.g.cross(motion.t)) > 0 ? 1 : -1;
       balance += signs[i];
@@ -214,10 +167,10 @@ Consensus RejectNegativeDepth(const std::vector<BearingPair>& pairs, const Motio
 /// Threshold that suits the scatter of the inliers: three robust standard deviations, at least that of the
 /// options and at most kMaxThresholdGrowth times it.
 double AdaptedThreshold(const std::vector<BearingPair>& pairs, const std::vector<bool>& inliers,
-                        const Motion& motion, const EpipolarOptions& options) {
+                        const CameraMotion& motion, const EpipolarOptions& options) {
   std::vector<double> distances_px;
   for (size_t i = 0; i < pairs.size(); ++i) {
-    const EpipolarTerm term = Evaluate(pairs[i], motion, options);
+    const EpipolarTerm term = EvaluateEpipolar(pairs[i], motion, options);
     if (inliers[i] && !term.at_epipole) {
       distances_px.push_back(std::abs(term.error) * term.scale);
     }
@@ -238,7 +191,7 @@ Consensus AgreeWithRotation(const std::vector<BearingPair>& pairs, const Matrix3
   const double rotation_std = std::max(1e-3, kGyroError * options.dt_s);
   EpipolarOptions loose = options;
   loose.threshold_px += 2 * rotation_std * options.focal_px;
-  Motion motion{.R_21 = R_21, .t = Vector3d::UnitZ()};
+  CameraMotion motion{.R_21 = R_21, .t = Vector3d::UnitZ()};
   Consensus consensus = SampleTranslation(pairs, loose, &motion);
   Refine(pairs, consensus.inliers, R_21, rotation_std, options, &motion);
   EpipolarOptions adapted = options;

@@ -4,23 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "frontend/tracking/epipolar_term.h"
+
 namespace alidade {
-
-/// One feature in two images, as directions in the camera: (x, y, 1) of the ideal normalised plane, or unit
-/// vectors.
-struct BearingPair {
-  Eigen::Vector3d first = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d second = Eigen::Vector3d::UnitZ();
-};
-
-struct EpipolarOptions {
-  double threshold_px = 1.0;  ///< distance to the epipolar line; grows with the scatter of the inliers
-  double focal_px = 460.0;    ///< pixels per unit of the normalised plane, or per radian
-  double dt_s = 0.05;         ///< between the images; bounds what an unknown gyroscope bias can do
-  /// The directions are unit vectors, in front of the camera or not: distances are angles to the epipolar
-  /// plane.
-  bool on_sphere = false;
-};
 
 /// Which pairs agree with one rigid motion of the camera: those within threshold_px of their epipolar line
 /// and, where the displacement decides, on the side of positive depth. Deterministic: the sampling sequence

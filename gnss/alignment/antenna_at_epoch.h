@@ -3,7 +3,7 @@
 #include "core/imu_propagation.h"
 #include "gnss/model/measurement_model.h"
 
-// The rows of GnssInertialStart's least squares.
+// The rows of InertialFitter's least squares.
 
 namespace alidade {
 

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/estimator_config.h"
-#include "core/preintegration.h"
 #include "core/rig_calibration.h"
 #include "gnss/alignment/alignment.h"
+#include "gnss/alignment/inertial_fit.h"
 
 namespace alidade {
 
@@ -36,34 +34,21 @@ class GnssInertialStart {
   [[nodiscard]] const std::string& report() const { return report_; }
 
  private:
-  /// An epoch's single point.
-  struct Fix {
-    TimeNs stamp_ns = 0;
-    Eigen::Vector3d position_E, velocity_E;
-    Eigen::Matrix3d position_root, velocity_root;  ///< of information, ECEF axes
-    Vector6d clock;
-  };
-  struct Fit;
-  struct Equations;
-
   /// What no start at or after this epoch needs.
   void ForgetOld(TimeNs newest_ns);
   /// Epochs before the first IMU sample, whatever the time offset.
   void ForgetUnreached();
-  [[nodiscard]] Fit Solve(double offset_s) const;
-  /// The IMU between the epochs, integrated with the fit's biases; false when it does not reach them.
-  bool Integrate(double offset_s, Fit* fit) const;
-  [[nodiscard]] NavState FirstGuess(const Fit& fit) const;
-  [[nodiscard]] Equations Linearize(const Fit& fit) const;
+  /// Of the heading [rad].
+  [[nodiscard]] double YawStd(const InertialFit& fit) const;
+  /// The time offset of the least cost over the grid of the prior, if below that of `best`, which is then
+  /// the fit there; else 0.
+  double SearchOffset(InertialFit* best) const;
+  [[nodiscard]] Start MakeStart(const InertialFit& fit, double offset_s) const;
 
   GnssConfig config_;
-  InitConfig init_;
   GnssReceiver receiver_;
-  ImuNoise noise_;
-  Eigen::Vector3d gravity_W_;
-  std::deque<ImuSample> imu_;
-  std::deque<Fix> fixes_;
-  std::optional<EnuFrame> enu_;
+  InertialFitter fitter_;
+  InertialWindow window_;
   MeasurementCounts left_out_;
   std::string report_;
 };

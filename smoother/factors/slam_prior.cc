@@ -180,6 +180,17 @@ bool SlamPrior::See(const Scene& scene, const VectorXd& landmarks, bool with_fra
   return true;
 }
 
+MatrixXd SlamPrior::LandmarkHessian(const Views& views, double damping) const {
+  const Index frames = gram_.cols() - 1 - origins_.size();
+  MatrixXd hessian = gram_.block(frames, frames, origins_.size(), origins_.size());
+  for (size_t i = 0; i < tracks_.size(); ++i) {
+    const Index row = 3 * static_cast<Index>(i);
+    hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
+  }
+  hessian.diagonal() *= 1 + kRegularization + damping;
+  return hessian;
+}
+
 bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landmarks, double* cost) const {
   const Index frames = xi.size();
   const Index size = landmarks->size();
@@ -200,17 +211,12 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
   *cost = total(*landmarks, pull, views);
   double damping = 0;
   for (int k = 0; k < kMaxPriorIterations; ++k) {
-    MatrixXd hessian = landmark_gram;
-    for (size_t i = 0; i < tracks_.size(); ++i) {
-      const Index row = 3 * static_cast<Index>(i);
-      hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
-    }
-    hessian.diagonal() *= 1 + kRegularization + damping;
     const VectorXd gradient = pull + views.landmark_gradient;
+    VectorXd step = -gradient;
+    MatrixXd hessian = LandmarkHessian(views, damping);
     if (!FactorLower(&hessian)) {
       return false;
     }
-    VectorXd step = -gradient;
     SolveCholesky(hessian, &step);
     if (!(-step.dot(gradient) > kDecrementTolerance * (1 + *cost))) {
       break;
@@ -259,12 +265,7 @@ bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, R
   reduced->hessian = ChainFrames(point, chained.topRows(frames).transpose()) + views.frame_hessian;
   reduced->gradient = ChainFrames(point, pull.head(frames).transpose()).transpose() + views.frame_gradient;
 
-  MatrixXd hessian = gram_.block(frames, frames, size, size);
-  for (size_t i = 0; i < tracks_.size(); ++i) {
-    const Index row = 3 * static_cast<Index>(i);
-    hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
-  }
-  hessian.diagonal() *= 1 + kRegularization;
+  MatrixXd hessian = LandmarkHessian(views, 0);
   if (!FactorLower(&hessian)) {
     return false;
   }

@@ -64,6 +64,8 @@ class SlamPrior {
   bool See(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
   [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point) const;
   [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Eigen::MatrixXd& columns) const;
+  /// Over the landmarks, of the prior and the views, made regular.
+  [[nodiscard]] Eigen::MatrixXd LandmarkHessian(const Views& views, double damping) const;
   bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,
                 double* cost) const;
 

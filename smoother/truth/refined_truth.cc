@@ -6,24 +6,18 @@
 
 #include "core/format.h"
 #include "core/imu_propagation.h"
-#include "core/imu_step.h"
 #include "smoother/truth/fixed_point.h"
-#include "smoother/truth/truth_terms.h"
+#include "smoother/truth/truth_unknowns.h"
 
 namespace alidade {
 namespace {
 
 constexpr size_t kMinPoses = 10;
-// Samples kept before the first and after the last pose: the time offset moves the poses.
-constexpr double kMarginSeconds = 0.1;
 constexpr int kRobustIterations = 4;
 constexpr int kGateIterations = 15;  // of the poses; afterwards they are held
 constexpr int kMaxIterations = 40;
 constexpr double kSettledSigma = 0.01;
 constexpr double kSettledNoise = 1e-4;  // relative
-constexpr double kImuGapSteps = 10;
-constexpr double kScaleSigma = 0.02;  // of an inertial sensor's sheet
-constexpr double kHeldSigma = 1e-8;   // of what is not estimated
 constexpr int kOrientationRow = 0;
 constexpr int kPositionRow = 3;
 
@@ -32,13 +26,13 @@ class Refinement {
   Refinement(std::span<const ImuSample> imu, std::span<const TruthPose> poses,
              const TruthRefinementOptions& options)
       : options_(options),
-        imu_model_{options.imu_noise, GravityInWorld(options.gravity_mps2)},
         imu_(imu),
+        unknowns_({options.imu_noise, GravityInWorld(options.gravity_mps2)}, options.imu_scale),
         poses_(poses, options.gate_probability, options.noise) {}
 
   Result<RefinedTruth> Execute() {
     ALIDADE_RETURN_IF_ERROR(Begin());
-    ArrowSystem system(states_.size());
+    ArrowSystem system(unknowns_.states().size());
     for (result_.iterations = 1; result_.iterations <= kMaxIterations; ++result_.iterations) {
       if (options_.stop != nullptr && options_.stop->load()) {
         return Status::Diverged("refine_truth: interrupted");
@@ -47,7 +41,7 @@ class Refinement {
       const bool robust = result_.iterations <= kRobustIterations;
       ALIDADE_RETURN_IF_ERROR(Linearize(robust, &system));
       Step(system);
-      poses_.Attach(imu_, constants_.time_offset_s);
+      poses_.Attach(unknowns_.imu(), unknowns_.constants().time_offset_s);
       UpdateWeights(robust);
       if (!robust && IsSettled(system, before)) {
         return Finish(&system);
@@ -79,49 +73,11 @@ class Refinement {
           Format("refine_truth: %zu poses of the truth lie within the IMU's time, expected at least %zu",
                  poses.size(), kMinPoses));
     }
-    TruthStart start = StartTruth(imu_, poses);
-    constants_ = first_constants_ = start.constants;
-    CutSamples(&start.states);
-    ApplyScale();
-    CountImuGaps();
-    poses_.Attach(imu_, constants_.time_offset_s);
+    unknowns_.Begin(imu_, StartTruth(imu_, poses), poses_.poses().front().pose.stamp_ns,
+                    poses_.poses().back().pose.stamp_ns);
+    result_.imu_gaps = unknowns_.CountImuGaps();
+    poses_.Attach(unknowns_.imu(), unknowns_.constants().time_offset_s);
     return Status::Ok();
-  }
-
-  /// To those that the poses reach.
-  void CutSamples(std::vector<TruthState>* states) {
-    const TimeNs offset_ns = SecondsToNs(constants_.time_offset_s);
-    const TimeNs first_ns = poses_.poses().front().pose.stamp_ns + offset_ns - SecondsToNs(kMarginSeconds);
-    const TimeNs last_ns = poses_.poses().back().pose.stamp_ns + offset_ns + SecondsToNs(kMarginSeconds);
-    size_t begin = 0;
-    while (begin + 2 < imu_.size() && imu_[begin + 1].stamp_ns <= first_ns) {
-      ++begin;
-    }
-    size_t end = imu_.size();
-    while (end > begin + 2 && imu_[end - 2].stamp_ns >= last_ns) {
-      --end;
-    }
-    imu_ = imu_.subspan(begin, end - begin);
-    states_.assign(states->begin() + static_cast<std::ptrdiff_t>(begin),
-                   states->begin() + static_cast<std::ptrdiff_t>(end));
-  }
-
-  void CountImuGaps() {
-    std::vector<TimeNs> steps;
-    for (size_t i = 1; i < imu_.size(); ++i) {
-      steps.push_back(imu_[i].stamp_ns - imu_[i - 1].stamp_ns);
-    }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    const double limit = kImuGapSteps * static_cast<double>(*middle);
-    result_.imu_gaps = static_cast<int>(std::count_if(
-        steps.begin(), steps.end(), [&](TimeNs step) { return static_cast<double>(step) > limit; }));
-  }
-
-  [[nodiscard]] TruthPoseTerm Term(const GatedPose& pose) const {
-    const size_t i = *pose.state;
-    return LinearizePose(pose.pose.T_TM, pose.pose.stamp_ns + SecondsToNs(constants_.time_offset_s),
-                         scaled_[i], scaled_[i + 1], states_[i], constants_, imu_model_);
   }
 
   /// Divides the rows by the deviations of the noise.
@@ -136,19 +92,18 @@ class Refinement {
 
   Status Linearize(bool robust, ArrowSystem* system) {
     system->Reset();
-    AddPriors(system);
-    for (size_t k = 0; k + 1 < states_.size(); ++k) {
-      const std::optional<TruthLink> link =
-          LinearizeLink(scaled_[k], scaled_[k + 1], states_[k], states_[k + 1], imu_model_);
+    unknowns_.AddPriors(system);
+    for (size_t k = 0; k + 1 < unknowns_.states().size(); ++k) {
+      const std::optional<TruthLink> link = unknowns_.Link(k);
       if (!link) {
-        return Status::Input("refine_truth: the IMU sample at " + FormatSeconds(imu_[k].stamp_ns) +
+        return Status::Input("refine_truth: the IMU sample at " + FormatSeconds(unknowns_.imu()[k].stamp_ns) +
                              " s is not finite or its noise is singular");
       }
       system->AddLink(k, link->residual, link->of_first, link->of_second, link->of_constants);
     }
     for (const GatedPose& pose : poses_.poses()) {
       if (pose.used()) {
-        TruthPoseTerm term = Term(pose);
+        TruthPoseTerm term = unknowns_.Term(pose);
         Whiten(robust ? poses_.RobustWeightOf(term.residual) : 1, &term);
         system->AddPose(*pose.state, term.residual, term.of_state, term.of_constants);
       }
@@ -156,27 +111,6 @@ class Refinement {
     return system->Factorize()
                ? Status::Ok()
                : Status::Diverged("refine_truth: the normal equations are not positive definite");
-  }
-
-  void AddPriors(ArrowSystem* system) const {
-    Vector15d state_root = Vector15d::Zero();
-    Vector15d state_error = Vector15d::Zero();
-    state_root.segment<3>(9).setConstant(1);
-    state_root.segment<3>(12).setConstant(0.1);
-    state_error << Vector9d::Zero(), states_.front().bias.gyro, 0.1 * states_.front().bias.accel;
-    system->AddPrior(0, state_error, state_root);
-    ArrowSystem::Border root = ArrowSystem::Border::Ones();
-    root.segment<3>(kLeverColumn).setConstant(0.1);
-    root.segment<kScales>(kScaleColumn).setConstant(1 / (options_.imu_scale ? kScaleSigma : kHeldSigma));
-    ArrowSystem::Border error = ArrowSystem::Border::Zero();
-    error.segment<kScales>(kScaleColumn) << scale_.gyro, scale_.accel;
-    error.segment<kScales>(kScaleColumn) *= root[kScaleColumn];
-    error.segment<2>(kTiltColumn) = so3::Log(first_constants_.R_TW.transpose() * constants_.R_TW).head<2>();
-    error.segment<3>(kMarkerColumn) =
-        so3::Log(first_constants_.T_BM.rotation.transpose() * constants_.T_BM.rotation);
-    error.segment<3>(kLeverColumn) = 0.1 * (constants_.T_BM.translation - first_constants_.T_BM.translation);
-    error[kTimeColumn] = constants_.time_offset_s - first_constants_.time_offset_s;
-    system->AddBorderPrior(error, root);
   }
 
   /// Moves states and constants to the minimum of the linearised problem and adds up the hat matrix.
@@ -189,30 +123,15 @@ class Refinement {
           AddToHat(solution, system.border_covariance(), *pose);
         }
       }
-      states_[solution.k] = Retract(states_[solution.k], solution.step);
+      unknowns_.MoveState(solution);
     });
-    constants_ = Retract(constants_, system.border_step().head<kTruthConstants>());
-    const Eigen::Vector3d one = Eigen::Vector3d::Ones();
-    const auto step = system.border_step().segment<kScales>(kScaleColumn);
-    if (options_.imu_scale) {
-      scale_.gyro = (one + scale_.gyro).cwiseProduct(one + step.head<3>()) - one;
-      scale_.accel = (one + scale_.accel).cwiseProduct(one + step.tail<3>()) - one;
-      ApplyScale();
-    }
-  }
-
-  void ApplyScale() {
-    scaled_.clear();
-    for (const ImuSample& sample : imu_) {
-      scaled_.push_back(scale_.Applied(sample));
-    }
-    SetCurvatures(scaled_);
+    unknowns_.MoveConstants(system.border_step());
   }
 
   /// Diagonal of J P J^T of a pose's rows, over orientation and position.
   void AddToHat(const ArrowSystem::Solution& solution, const ArrowSystem::BorderMatrix& border,
                 const GatedPose& pose) {
-    const TruthPoseTerm term = Term(pose);
+    const TruthPoseTerm term = unknowns_.Term(pose);
     const Matrix6d mixed = term.of_state * solution.with_border * term.of_constants.transpose();
     const Matrix6d covariance = term.of_state * solution.covariance * term.of_state.transpose() + mixed +
                                 mixed.transpose() +
@@ -225,7 +144,7 @@ class Refinement {
   void UpdateWeights(bool robust) {
     for (GatedPose& pose : poses_.poses()) {
       if (pose.state) {
-        pose.residual = Term(pose).residual;
+        pose.residual = unknowns_.Term(pose).residual;
       }
     }
     if (robust) {
@@ -252,24 +171,26 @@ class Refinement {
   /// Covariances and figures at the estimate.
   Result<RefinedTruth> Finish(ArrowSystem* system) {
     ALIDADE_RETURN_IF_ERROR(Linearize(false, system));
-    result_.constants = constants_;
+    result_.constants = unknowns_.constants();
     result_.constants_covariance =
         system->border_covariance().topLeftCorner<kTruthConstants, kTruthConstants>();
     if (options_.imu_scale) {
-      result_.imu_scale = scale_;
+      result_.imu_scale = unknowns_.scale();
       result_.imu_scale_std =
           system->border_covariance().diagonal().segment<kScales>(kScaleColumn).cwiseMax(0).cwiseSqrt();
     }
     result_.distance_sigma = std::sqrt(system->newton_decrement());
     DescribePoses();
-    const TruthSpan extent = poses_.Extent(constants_.time_offset_s);
+    const TruthSpan extent = poses_.Extent(unknowns_.constants().time_offset_s);
     system->Solve([&](const ArrowSystem::Solution& solution) {
       const size_t k = solution.k;
-      if (k + 1 < states_.size()) {
+      if (k + 1 < unknowns_.states().size()) {
         AddImuFit(solution, system->border_covariance());
       }
-      if (imu_[k].stamp_ns >= extent.from_ns && imu_[k].stamp_ns <= extent.to_ns) {
-        result_.states.push_back({imu_[k].stamp_ns, states_[k].nav, states_[k].bias, solution.covariance});
+      const TimeNs stamp_ns = unknowns_.imu()[k].stamp_ns;
+      if (stamp_ns >= extent.from_ns && stamp_ns <= extent.to_ns) {
+        const TruthState& state = unknowns_.states()[k];
+        result_.states.push_back({stamp_ns, state.nav, state.bias, solution.covariance});
       }
     });
     std::reverse(result_.states.begin(), result_.states.end());
@@ -277,9 +198,7 @@ class Refinement {
   }
 
   void AddImuFit(const ArrowSystem::Solution& solution, const ArrowSystem::BorderMatrix& border) {
-    const size_t k = solution.k;
-    const std::optional<TruthLink> link =
-        LinearizeLink(scaled_[k], scaled_[k + 1], states_[k], states_[k + 1], imu_model_);
+    const std::optional<TruthLink> link = unknowns_.Link(solution.k);
     const Matrix15d mixed =
         link->of_first * solution.with_next * link->of_second.transpose() +
         (link->of_first * solution.with_border + link->of_second * solution.next_with_border +
@@ -312,19 +231,15 @@ class Refinement {
                          result_.noise.position_m / std::sqrt(2 * result_.position.dof)};
     result_.orientation_correlation = poses_.OrientationCorrelation();
     result_.position_correlation = poses_.PositionCorrelation();
-    result_.spans = poses_.Gaps(options_.max_gap_s, constants_.time_offset_s);
+    result_.spans = poses_.Gaps(options_.max_gap_s, unknowns_.constants().time_offset_s);
   }
 
   static double Square(double x) { return x * x; }
 
   TruthRefinementOptions options_;
-  TruthImu imu_model_;
-  std::span<const ImuSample> imu_;
-  TruthImuScale scale_;
-  std::vector<ImuSample> scaled_;  ///< imu_ times the factors
+  std::span<const ImuSample> imu_;  ///< all samples
+  TruthUnknowns unknowns_;
   TruthPoses poses_;
-  std::vector<TruthState> states_;  ///< at the samples
-  TruthConstants constants_, first_constants_;
   FixedPoint orientation_noise_, position_noise_;
   TruthNoise hat_;      ///< sums of the diagonal of J P J^T [rad^2, m^2]
   size_t changed_ = 0;  ///< verdicts of the gate

@@ -5,10 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "core/visual_observation.h"
-#include "filter/feature_update.h"
-#include "tests/support/cloned_window.h"
-#include "tests/support/scenario.h"
+#include "tests/filter/track_memory_fixture.h"
 
 namespace alidade {
 namespace {
@@ -19,30 +16,9 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 using test::CloneEveryFrame;
+using test::Remembering;
+using test::SeenFromClones;
 constexpr int kFrames = test::kClonedFrames;
-
-/// The landmark seen by the estimated clones [first, last), without noise.
-Track SeenFromClones(const FilterState& state, const Vector3d& p_W, size_t first, size_t last) {
-  Track track;
-  for (size_t i = first; i < last; ++i) {
-    const Clone& clone = state.clones()[i];
-    TrackView view;
-    view.serial = clone.serial;
-    view.observation.z = (clone.T_WC.rotation.transpose() * (p_W - clone.T_WC.translation)).hnormalized();
-    view.observation.sqrt_information = 400 * Eigen::Matrix2d::Identity();
-    track.views.push_back(view);
-  }
-  track.last_serial = track.views.back().serial;
-  return track;
-}
-
-FilterConfig Remembering(ErrorConvention convention) {
-  FilterConfig config;
-  config.error = convention;
-  config.track_memory = TrackMemoryPolicy::kCarry;
-  config.memory_depth_deviation = 1;
-  return config;
-}
 
 /// All error rows, in the state's order, of a memory's clone rows.
 MatrixXd OverState(const FilterState& state, const Eigen::Ref<const MatrixXd>& over_slots) {
@@ -53,15 +29,8 @@ MatrixXd OverState(const FilterState& state, const Eigen::Ref<const MatrixXd>& o
   return rows;
 }
 
-class TrackMemoryTest : public ::testing::TestWithParam<ErrorConvention> {
+class TrackMemoryTest : public test::TrackMemoryFixture {
  protected:
-  TrackMemoryTest() : dataset_(test::SimulateOrDie(SimulatorConfig(), 1)) {}
-
-  /// A point some metres in front of the first camera.
-  [[nodiscard]] static Vector3d PointBefore(const FilterState& state) {
-    return state.clones().front().T_WC * Vector3d(0.5, -0.3, 4);
-  }
-
   /// The memory after views [0, 5) of the track.
   TrackMemory Begin(const FilterState& state, const Vector3d& p_W) {
     Track track = SeenFromClones(state, p_W, 0, 5);
@@ -72,14 +41,8 @@ class TrackMemoryTest : public ::testing::TestWithParam<ErrorConvention> {
     EXPECT_TRUE(track.memory.active);
     return track.memory;
   }
-
-  Dataset dataset_;
-  VisionConfig vision_{.max_relative_depth_deviation = 10};
 };
-INSTANTIATE_TEST_SUITE_P(Conventions, TrackMemoryTest,
-                         ::testing::Values(ErrorConvention::kRightInvariant, ErrorConvention::kLeftInvariant,
-                                           ErrorConvention::kSo3xRn),
-                         [](const auto& test_case) { return std::string(ToString(test_case.param)); });
+INSTANTIATE_TEST_SUITE_P(Conventions, TrackMemoryTest, test::AllMemoryConventions(), test::NameOfConvention);
 
 TEST_P(TrackMemoryTest, GivenAWindowThatStaysThenSequentialUpdatesAreTheJointUpdate) {
   FilterState joint = CloneEveryFrame(dataset_, GetParam());
@@ -243,48 +206,6 @@ TEST(TrackMemoryTest, RightInvariantRowsHoldNoInformationOnTheFrameWhateverHappe
     state.RemoveClone(state.clones().size() / 2 - 1);
     expect_blind("after a clone left");
   }
-}
-
-// A hundred views of one standard deviation each: to either side in turn, then all to the same side.
-TEST(TrackMemoryTest, InnovationsToOneSideAreADriftAndIndependentOnesAreNot) {
-  constexpr double kLimit = 15.6;
-  TrackMemory still;
-  TrackMemory sliding;
-  int caught_after = 0;
-  for (int view = 1; view <= 100; ++view) {
-    still.residual = Eigen::Vector2d(view % 2 == 0 ? 0.7 : -0.7, view % 3 == 0 ? 0.9 : -0.45);
-    still.AddInnovation(2);
-    EXPECT_FALSE(still.Drifts(kLimit)) << view;
-    sliding.residual = Eigen::Vector2d(0.3, -0.1);
-    sliding.AddInnovation(1);
-    caught_after = caught_after == 0 && sliding.Drifts(kLimit) ? view : caught_after;
-  }
-  EXPECT_EQ(caught_after, 16);  // n^2 / n > 15.6
-}
-
-// Each view is well inside the gate of 9.2.
-TEST_P(TrackMemoryTest, GivenFurtherViewsThatAllMissToOneSideThenTheMemoryEnds) {
-  const FilterState state = CloneEveryFrame(dataset_, GetParam());
-  const auto remembers = [&](double gate_probability, double side) {
-    VisionConfig vision = vision_;
-    vision.gate_probability = gate_probability;
-    Track track = SeenFromClones(state, PointBefore(state), 0, 5);
-    FeatureUpdate update(Remembering(GetParam()), vision, kFrames + 1);
-    update.Begin(state);
-    EXPECT_EQ(update.AppendToRemember(state, track), TrackOutcome::kReady);
-    update.Remember(state, 0, 1, 5, &track);
-    for (size_t seen = 5; seen < kFrames && track.memory.active; ++seen) {
-      track.views = SeenFromClones(state, PointBefore(state), seen, seen + 1).views;
-      track.views.back().observation.z.x() += (seen % 2 == 0 ? side : 1) * 5.0 / 400;
-      update.Begin(state);
-      EXPECT_EQ(update.AppendRemembered(state, track), TrackOutcome::kReady);
-      update.Remember(state, 0, 1, 8, &track);
-    }
-    return track.memory.active;
-  };
-  EXPECT_FALSE(remembers(0.99, 1));
-  EXPECT_TRUE(remembers(0.99, -1));
-  EXPECT_TRUE(remembers(1, 1));
 }
 
 TEST_P(TrackMemoryTest, GivenACorrectionThenTheLandmarkMovesWhereItsRowsPutIt) {

@@ -1,6 +1,5 @@
 #include "eval/rosbag/gnss_messages.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,71 +8,14 @@
 #include "eval/rosbag/gnss_message_time.h"
 #include "eval/rosbag/gnss_navigation_messages.h"
 #include "eval/rosbag/gnss_receiver_messages.h"
-#include "gnss/formats/rinex_writer.h"
+#include "tests/eval/rosbag/gnss_samples.h"
 
 namespace alidade {
 namespace {
 
-using testing::HasSubstr;
-
-const TimeNs kStamp = GpsTimeFromWeek(TimeScale::kGps, 2288, 252'801 * kSecondNs);
-
-KeplerEphemeris Ephemeris(SatelliteId satellite) {
-  KeplerEphemeris e;
-  e.satellite = satellite;
-  const bool beidou = satellite.system == GnssSystem::kBeidou;
-  e.message = beidou                                     ? NavMessage::kD1
-              : satellite.system == GnssSystem::kGalileo ? NavMessage::kInav
-                                                         : NavMessage::kLnav;
-  e.toc_ns = e.toe_ns = GpsTimeFromWeek(beidou ? TimeScale::kBeidou : TimeScale::kGps, beidou ? 932 : 2288,
-                                        252'000 * kSecondNs);
-  e.toe_of_week_s = 252'000;
-  e.transmission_ns = e.toe_ns - 30 * kSecondNs;
-  e.af0 = -1.01e-4;
-  e.af1 = -4e-12;
-  e.issue = 70;
-  e.sqrt_a = 5153.62008689;
-  e.eccentricity = 5e-4;
-  e.i0 = 0.955;
-  e.omega0 = 0.198;
-  e.omega = 1.0 / 3;
-  e.m0 = -0.94;
-  e.delta_n = 4e-9;
-  e.omega_dot = -8e-9;
-  e.i_dot = 1e-10;
-  e.cuc = -1e-6;
-  e.cus = 5e-6;
-  e.crc = 200;
-  e.crs = -30;
-  e.cic = 1e-8;
-  e.cis = -2e-8;
-  e.accuracy_m = 2.8;
-  e.data_source = satellite.system == GnssSystem::kGalileo ? 517 : 0;
-  e.group_delay_s = {-6e-9, satellite.system == GnssSystem::kGps ? 0 : 3e-9};
-  return e;
-}
-
-GlonassEphemeris Glonass() {
-  GlonassEphemeris e;
-  e.satellite = {GnssSystem::kGlonass, 7};
-  e.toe_ns = kStamp - kStamp % (900 * kSecondNs) + 18 * kSecondNs;
-  e.transmission_ns = e.toe_ns - 100 * kSecondNs;
-  e.clock_bias_s = 1.0 / 7e4;
-  e.clock_drift = 1e-12;
-  e.position_m = {1.2345678e7, -1.0e7, 1.9e7 + 1.0 / 3};
-  e.velocity_mps = {1000.1, -2000.2, 1.0 / 3};
-  e.acceleration_mps2 = {1e-6, 0, -9.3132e-7};
-  e.channel = -4;
-  e.l2_delay_s = 2.8e-9;
-  return e;
-}
-
-/// What RINEX prints of an ephemeris: every number it has.
-std::string Text(const KeplerEphemeris& e) {
-  NavigationData data;
-  data.kepler[e.satellite].push_back(e);
-  return FormatRinexNavigation(data);
-}
+using test::Ephemeris;
+using test::Glonass;
+using test::kStamp;
 
 TEST(GnssCommNumbers, GoBySystemAndNumber) {
   EXPECT_EQ(GnssCommNumber({GnssSystem::kGps, 1}), 1u);
@@ -186,63 +128,6 @@ TEST(GnssMeasurements, SignalsAreRecognisedByCodeOrFrequency) {
     EXPECT_FALSE(epoch->satellites[0].signals[0].phase_cycles.has_value())
         << "its status says it is not valid";
   }
-}
-
-TEST(GnssEphemerides, ComeBackEqual) {
-  for (const SatelliteId id :
-       {SatelliteId{GnssSystem::kGps, 9}, {GnssSystem::kGalileo, 36}, {GnssSystem::kBeidou, 20}}) {
-    const KeplerEphemeris e = Ephemeris(id);
-    const Result<KeplerEphemeris> back = DecodeKeplerEphemeris(*EncodeEphemeris(e));
-    ASSERT_TRUE(back.ok()) << back.message();
-    EXPECT_EQ(Text(*back), Text(e));
-    EXPECT_EQ(back->sqrt_a, e.sqrt_a);
-    EXPECT_EQ(back->omega, e.omega);
-    EXPECT_EQ(back->message, e.message);
-    EXPECT_EQ(back->toe_ns, e.toe_ns);
-    EXPECT_EQ(back->toe_of_week_s, e.toe_of_week_s);
-    EXPECT_EQ(back->transmission_ns, e.transmission_ns);
-  }
-  EXPECT_FALSE(EncodeEphemeris(Ephemeris({GnssSystem::kQzss, 1})).has_value());
-  const GlonassEphemeris e = Glonass();
-  const Result<GlonassEphemeris> back = DecodeGlonassEphemeris(*EncodeEphemeris(e));
-  ASSERT_TRUE(back.ok()) << back.message();
-  EXPECT_EQ(back->satellite, e.satellite);
-  EXPECT_EQ(back->toe_ns, e.toe_ns);
-  EXPECT_EQ(back->transmission_ns, e.transmission_ns);
-  EXPECT_EQ(back->clock_bias_s, e.clock_bias_s);
-  EXPECT_EQ(back->clock_drift, e.clock_drift);
-  EXPECT_EQ(back->position_m, e.position_m);
-  EXPECT_EQ(back->velocity_mps, e.velocity_mps);
-  EXPECT_EQ(back->acceleration_mps2, e.acceleration_mps2);
-  EXPECT_EQ(back->channel, e.channel);
-  EXPECT_EQ(back->l2_delay_s, e.l2_delay_s);
-}
-
-TEST(GnssEphemerides, HoldTheAccuracyInMetres) {
-  const KeplerEphemeris e = Ephemeris({GnssSystem::kGps, 9});
-  const std::string kepler = *EncodeEphemeris(e);
-  ByteReader in(kepler);
-  // Satellite, three times, time of week, week, issues, health, code.
-  static_cast<void>(in.Take(4 + 3 * 12 + 8 + 5 * 4));
-  EXPECT_EQ(in.Read<double>(), 2.8);
-  const std::string glonass = *EncodeEphemeris(Glonass());
-  ByteReader of_glonass(glonass);
-  // Satellite, two times, channel, issue, health, age.
-  static_cast<void>(of_glonass.Take(4 + 2 * 12 + 4 * 4));
-  EXPECT_EQ(of_glonass.Read<double>(), 4);
-}
-
-TEST(GnssEphemerides, NonsenseIsRefused) {
-  KeplerEphemeris e = Ephemeris({GnssSystem::kGps, 9});
-  e.sqrt_a = std::nan("");
-  EXPECT_THAT(DecodeKeplerEphemeris(*EncodeEphemeris(e)).message(), HasSubstr("semi-major axis"));
-  e = Ephemeris({GnssSystem::kGps, 9});
-  e.eccentricity = 0.9;
-  EXPECT_THAT(DecodeKeplerEphemeris(*EncodeEphemeris(e)).message(), HasSubstr("eccentricity"));
-  GlonassEphemeris g = Glonass();
-  g.position_m.setZero();
-  EXPECT_FALSE(DecodeGlonassEphemeris(*EncodeEphemeris(g)).ok());
-  EXPECT_FALSE(DecodeGlonassEphemeris(*EncodeEphemeris(Ephemeris({GnssSystem::kGps, 9}))).ok());
 }
 
 TEST(GnssMessages, TornOrScrambledBytesAreRefusedOrHarmless) {

@@ -12,6 +12,12 @@ inline constexpr int kWidthPx = 752;
 inline constexpr int kHeightPx = 480;
 inline constexpr TimeNs kFrameNs = 50'000'000;
 
+inline FrontendConfig WithoutImu() {
+  FrontendConfig config;
+  config.imu_prediction = false;
+  return config;
+}
+
 /// Tracks an image that must be accepted.
 inline TrackFrame MustTrack(KltTracker* tracker, TimeNs stamp_ns, const std::vector<unsigned char>& image,
                             int width_px = kWidthPx, int height_px = kHeightPx) {

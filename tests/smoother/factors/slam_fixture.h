@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "smoother/tracks/track_system.h"
@@ -192,6 +194,28 @@ struct DenseWindow {
   const SlamFixture& fixture;
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
+};
+
+/// Convention, with a calibration, where the camera looks.
+using SlamFixtureKind = std::tuple<ErrorConvention, bool, FixtureView>;
+
+/// In every convention; with and without a calibration; ahead of the camera and behind it.
+inline auto AllSlamFixtures() {
+  return testing::Combine(testing::ValuesIn(kAllConventions), testing::Bool(),
+                          testing::Values(FixtureView::kAhead, FixtureView::kBehind));
+}
+
+inline std::string NameOfSlamFixture(const testing::TestParamInfo<SlamFixtureKind>& item) {
+  return std::string(ToString(std::get<0>(item.param))) + (std::get<1>(item.param) ? "_calibrated" : "") +
+         (std::get<2>(item.param) == FixtureView::kBehind ? "_behind" : "");
+}
+
+class SlamFixtureTest : public testing::TestWithParam<SlamFixtureKind> {
+ protected:
+  [[nodiscard]] static ErrorConvention convention() { return std::get<0>(GetParam()); }
+  [[nodiscard]] static SlamFixture Fixture(unsigned seed, const std::vector<int>& anchors) {
+    return SlamFixture(seed, convention(), std::get<1>(GetParam()), anchors, std::get<2>(GetParam()));
+  }
 };
 
 }  // namespace alidade::test
