@@ -15,6 +15,8 @@
 namespace alidade {
 namespace {
 
+using Eigen::Vector3d;
+
 double Round(double value) {
   return std::round(value * 1e3) / 1e3;
 }
