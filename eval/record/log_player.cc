@@ -100,6 +100,8 @@ void LogPlayer::PlayFrames() {
   }
   if (result_.status.ok()) {
     session_.EndDoubt();
+    AddImuUntil(last_frame_ns_ + kImuAheadNs);  // after a jump of its clock that the last frame revealed
+    session_.AdvanceTo(last_frame_ns_);
     TakeEvents();
   }
 }
@@ -119,6 +121,7 @@ bool LogPlayer::PlayFrame(const TrackFrame& frame) {
   AddMeasurementsUntil(imu_ns + kImuAheadNs);
   session_.AddFrame(frame);
   session_.AdvanceTo(imu_ns);
+  last_frame_ns_ = imu_ns;
   TakeEvents();
   if (result_.status.ok() && !session_.running() && !builder_.lost() &&
       SecondsBetween(tables_.frames.front().stamp_ns, frame.stamp_ns) > config_.init.max_wait_s) {

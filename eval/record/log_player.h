@@ -54,7 +54,8 @@ class LogPlayer {
   RunBuilder builder_;
   RunResult& result_;
   Table<ImuSample>::Pass imu_;
-  TimeNs last_imu_ns_ = INT64_MIN;  ///< handed over
+  TimeNs last_frame_ns_ = INT64_MIN;  ///< IMU time of the last frame handed over
+  TimeNs last_imu_ns_ = INT64_MIN;    ///< handed over
   size_t next_epoch_ = 0;
   PerSensor<size_t> next_measurement_;
 };

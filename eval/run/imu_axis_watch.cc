@@ -32,13 +32,18 @@ void ImuAxisWatch::CountShare(bool changed, Axis* axis) {
   axis->changed = kKept * kept * axis->changed + (changed ? 1 : 0);
 }
 
+bool ImuAxisWatch::OthersMove(const Axis& axis) {
+  const double span = std::max(axis.high[0] - axis.low[0], axis.high[1] - axis.low[1]);
+  return span >= kSpan * axis.resolution;
+}
+
 void ImuAxisWatch::CheckLimit(double value, TimeNs stamp_ns, Axis* axis) {
   if (axis->limit > 0 ? value > axis->limit : value < axis->limit) {
     axis->limit = 0;
   }
   if (axis->limit == 0 || std::abs(value - axis->limit) >= kSteps * axis->resolution) {
     axis->near_limit_since_ns = stamp_ns;
-  } else if (SecondsBetween(axis->near_limit_since_ns, stamp_ns) > kConstantS) {
+  } else if (SecondsBetween(axis->near_limit_since_ns, stamp_ns) > kConstantS && !OthersMove(*axis)) {
     axis->limit = 0;
     axis->came_from = value;
   }
@@ -51,7 +56,7 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
   const double value = now[index];
   const double step = std::abs(value - before[index]);
   const bool others =
-      now[Other(index, 0)] != before[Other(index, 0)] && now[Other(index, 1)] != before[Other(index, 1)];
+      now[Other(index, 0)] != before[Other(index, 0)] || now[Other(index, 1)] != before[Other(index, 1)];
   if (step == 0 && !others) {
     return;
   }

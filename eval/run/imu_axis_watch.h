@@ -15,28 +15,28 @@ namespace alidade {
 /// Finds axes of an inertial sensor that do not measure: saturated at the end of their range, or stuck.
 ///
 /// Noise moves every axis, so a value that repeats itself exactly reveals a fault. What counts are
-/// measurements in which both other axes of the sensor changed: a row that a driver hands out twice is none.
-/// An axis is saturated when kSaturated measurements in a row have the value that is the largest or smallest
-/// of all so far, its magnitude is above the floor, and the axis came from kSteps of its resolution (smallest
-/// step so far) away within as many measurements before: the top of a smooth motion is flat over few steps
-/// only. Afterwards this value alone suffices, until it is exceeded, or until the axis has been within kSteps
-/// of it for kConstantS: a coarse accelerometer that is put down quickly comes to rest at such a value. A
-/// saturation that lasts longer is found as stuck while the others move, and not while they rest. An axis is
-/// stuck when kStuck measurements in a row are equal while both others span kSpan of its resolution: at rest
-/// a coarse sensor may repeat itself, and a constant value is no error there. An axis that has repeated
-/// itself more often than not in the last thousand measurements before does not count as stuck. In recordings
-/// of five kinds of sensors, faultless ones, no more than 7 in a row are equal.
+/// measurements in which another axis of the sensor changed: a row that a driver hands out twice is none.
+/// An axis is saturated when kSaturated measurements in a row have the value that is the largest or
+/// smallest of all so far, its magnitude is above the floor, and the axis came from kSteps of its
+/// resolution (smallest step so far) away within as many measurements before: the top of a smooth motion is
+/// flat over few steps only. Afterwards this value alone suffices, until it is exceeded, or until the axis
+/// has been within kSteps of it for kConstantS while no other one spans kSpan of its resolution: a coarse
+/// accelerometer that is put down quickly comes to rest at such a value. An axis is stuck when kStuck
+/// measurements in a row are equal while both others span kSpan of its resolution: at rest a coarse sensor
+/// may repeat itself, and a constant value is no error there. An axis that has repeated itself more often
+/// than not in the last thousand measurements before does not count as stuck. In recordings of five kinds
+/// of sensors, faultless ones, no more than 7 in a row are equal.
 ///
 /// A stuck axis reads what the motion implies (ImpliedImu), where that is not known its mean of the last
-/// thousand measurements before. A saturated one reads that where it is beyond the limit, at most by half of
-/// the range. The error of the axis is taken as constant with the deviation sigma for kConstantS, and as
-/// white noise of that correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t since the first
-/// equal sample; the step that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the
-/// variance about the mean, in the step that detects about the stuck value. Saturated: the motion goes on as
-/// it came, at most half beyond the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2
-/// rad/s and 1 m/s^2 (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a
-/// saturated one, or of one that is stuck at its largest or smallest value, is in all three: in a motion
-/// beyond the range the other axes may be clipped in samples that do not reveal it yet.
+/// thousand measurements before. A saturated one reads that where it is beyond the limit. The error of the
+/// axis is taken as constant with the deviation sigma for kConstantS, and as white noise of that
+/// correlation time afterwards: N^2 = 2 sigma^2 min(t, kConstantS), t since the first equal sample; the
+/// step that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the
+/// mean, in the step that detects about the stuck value. Saturated: the motion goes on as it came, at most
+/// half beyond the range: sigma = min(rate t, |value| / 2). Both at least the floor, 0.2 rad/s and 1 m/s^2
+/// (core/imu_gap.h). The noise of a stuck axis is in its direction alone. That of a saturated one, or of
+/// one that is stuck at its largest or smallest value, is in all three: in a motion beyond the range the
+/// other axes may be clipped in samples that do not reveal it yet.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; the first
 /// kLeastMeasurements.
@@ -95,6 +95,8 @@ class ImuAxisWatch {
 
   /// Adds the repetitions of the last value and the first measurement of the next one to what came before.
   static void CountShare(bool changed, Axis* axis);
+  /// While the axis has its newest value.
+  [[nodiscard]] static bool OthersMove(const Axis& axis);
   /// Lets go of a limit that the values exceed, or stay close to for too long without a change.
   static void CheckLimit(double value, TimeNs stamp_ns, Axis* axis);
   static void Count(const Signal& signal, int index, const ImuSample& last, const ImuSample& sample,

@@ -90,7 +90,8 @@ bool Session::IsReady(const Due& due) {
 void Session::Process() {
   while (!failed()) {
     const Due due = NextDue();
-    const bool ready = IsReady(due) && !IsInDoubt(due);
+    // A jump that was found leaves samples to be awaited.
+    const bool ready = IsReady(due) && !IsInDoubt(due) && IsReady(due);
     const TimeNs now_ns = std::min(ready ? due.imu_ns : Watermark(), loop_.imu().newest_ns());
     if (now_ns != INT64_MIN) {
       loop_.PassTime(now_ns);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "eval/run/session.h"
 
 // Silences of the IMU that may be jumps of its clock.
@@ -49,6 +51,7 @@ void Session::TakeBackImuJump() {
   const ImuSilence silence = *imu_clock_.silence();
   imu_jump_ns_ += silence.excess_ns;
   loop_.imu().TakeBack(silence);
+  advanced_ns_ = std::min(advanced_ns_, loop_.imu().newest_ns());
   camera_clock_.TakeBackImu(silence.end_ns, silence.excess_ns);
   loop_.OnClockJump("IMU", SecondsBetween(0, silence.excess_ns));
   imu_clock_.Settle();
