@@ -28,13 +28,13 @@ Matrix3d RotationBetween(const std::vector<Vector3d>& from, const std::vector<Ve
 
 }  // namespace
 
-/// Normal equations over the error of the state at the first fix, canonical chart.
+/// Normal equations over the error of the state at the first point, canonical chart.
 struct InertialFitter::Equations {
   Matrix15d hessian = Matrix15d::Zero();
   Vector15d gradient = Vector15d::Zero();
   double cost = 0;  ///< robust
 
-  /// `jacobian`: of the residual over the state at its fix; `chain`: of that state over the first.
+  /// `jacobian`: of the residual over the state at its point; `chain`: of that state over the first.
   void Add(const Vector3d& residual, const Eigen::Matrix<double, 3, 15>& jacobian, const Matrix15d& chain,
            const Matrix3d& root, const ObservationKernel& kernel) {
     const Vector3d r = root * residual;
@@ -68,11 +68,11 @@ bool InertialFitter::Integrate(const InertialWindow& window, double offset_s, In
   Preintegration sum(fit->bias, noise_);
   fit->intervals.clear();
   fit->gyro_radps.clear();
-  fit->first_ns = window.fixes.front().stamp_ns + SecondsToNs(offset_s);
+  fit->first_ns = window.points.front().stamp_ns + SecondsToNs(offset_s);
   TimeNs from = fit->first_ns;
   std::vector<ImuSample> samples;
-  for (std::size_t k = 1; k < window.fixes.size(); ++k) {
-    const TimeNs to = window.fixes[k].stamp_ns + SecondsToNs(offset_s);
+  for (std::size_t k = 1; k < window.points.size(); ++k) {
+    const TimeNs to = window.points[k].stamp_ns + SecondsToNs(offset_s);
     if (!buffer.Interval(from, to, &samples).ok()) {
       return false;
     }
@@ -89,12 +89,12 @@ bool InertialFitter::Integrate(const InertialWindow& window, double offset_s, In
 
 NavState InertialFitter::FirstGuess(const InertialWindow& window, const InertialFit& fit) const {
   const Matrix3d R_NE = window.enu->R_EN.transpose();
-  const InertialFix& first = window.fixes.front();
+  const InertialPoint& first = window.points.front();
   std::vector<Vector3d> sensed;
   std::vector<Vector3d> seen;
   for (std::size_t k = 0; k < fit.intervals.size(); ++k) {
     sensed.push_back(fit.intervals[k].motion().beta);
-    seen.push_back(R_NE * (window.fixes[k + 1].velocity_E - first.velocity_E) -
+    seen.push_back(R_NE * (window.points[k + 1].velocity_E - first.velocity_E) -
                    fit.intervals[k].duration_s() * gravity_W_);
   }
   NavState nav;
@@ -108,13 +108,13 @@ InertialFitter::Equations InertialFitter::Linearize(const InertialWindow& window
                                                     const InertialFit& fit) const {
   const AntennaMount mount{*window.enu, p_BA_};
   Equations equations;
-  for (std::size_t k = 0; k < window.fixes.size(); ++k) {
+  for (std::size_t k = 0; k < window.points.size(); ++k) {
     const AntennaAtEpoch at = PredictAntenna(mount, k > 0 ? &fit.intervals[k - 1] : nullptr, gravity_W_,
                                              fit.nav, fit.bias, fit.gyro_radps[k]);
-    equations.Add(at.position_E - window.fixes[k].position_E, at.position_jacobian, at.chain,
-                  window.fixes[k].position_root, kernel_);
-    equations.Add(at.velocity_E - window.fixes[k].velocity_E, at.velocity_jacobian, at.chain,
-                  window.fixes[k].velocity_root, kernel_);
+    equations.Add(at.position_E - window.points[k].position_E, at.position_jacobian, at.chain,
+                  window.points[k].position_root, kernel_);
+    equations.Add(at.velocity_E - window.points[k].velocity_E, at.velocity_jacobian, at.chain,
+                  window.points[k].velocity_root, kernel_);
   }
   equations.AddPrior(9, fit.bias.gyro, init_.gyro_bias_std_radps);
   equations.AddPrior(12, fit.bias.accel, init_.accel_bias_std_mps2);

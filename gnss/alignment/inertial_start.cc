@@ -58,29 +58,29 @@ void GnssInertialStart::AddEpoch(const GnssEpoch& epoch, const std::optional<Sin
   left_out_.Add(epoch.measurements.left_out);
   ForgetOld(epoch.stamp_ns);
   if (!solution || !solution->has_velocity ||
-      (!window_.fixes.empty() &&
-       SecondsBetween(window_.fixes.back().stamp_ns, epoch.stamp_ns) < kMinSpacingS)) {
+      (!window_.points.empty() &&
+       SecondsBetween(window_.points.back().stamp_ns, epoch.stamp_ns) < kMinSpacingS)) {
     return;
   }
   if (!window_.enu) {
     window_.enu = EnuFrame::At(receiver_.anchor_E.value_or(solution->position_E));
   }
-  InertialFix fix;
-  fix.stamp_ns = epoch.stamp_ns;
-  fix.position_E = solution->position_E;
-  fix.velocity_E = solution->velocity_E;
-  fix.position_root = InformationRoot(solution->position_covariance_E, kPositionFloorM);
-  fix.velocity_root = InformationRoot(solution->velocity_covariance_E, kVelocityFloorMps);
-  fix.clock = ClockOfGps(*solution);
-  window_.fixes.push_back(fix);
+  InertialPoint point;
+  point.stamp_ns = epoch.stamp_ns;
+  point.position_E = solution->position_E;
+  point.velocity_E = solution->velocity_E;
+  point.position_root = InformationRoot(solution->position_covariance_E, kPositionFloorM);
+  point.velocity_root = InformationRoot(solution->velocity_covariance_E, kVelocityFloorMps);
+  point.clock = ClockOfGps(*solution);
+  window_.points.push_back(point);
 }
 
 void GnssInertialStart::ForgetOld(TimeNs newest_ns) {
   const TimeNs oldest = newest_ns - SecondsToNs(config_.align_window_s);
-  while (!window_.fixes.empty() && window_.fixes.front().stamp_ns < oldest) {
-    window_.fixes.pop_front();
+  while (!window_.points.empty() && window_.points.front().stamp_ns < oldest) {
+    window_.points.pop_front();
   }
-  const TimeNs first = window_.fixes.empty() ? newest_ns : window_.fixes.front().stamp_ns;
+  const TimeNs first = window_.points.empty() ? newest_ns : window_.points.front().stamp_ns;
   const TimeNs needed = first - SecondsToNs(config_.max_time_offset_s) - kSecondNs;
   while (window_.imu.size() > 2 && window_.imu[1].stamp_ns < needed) {
     window_.imu.pop_front();
@@ -89,18 +89,18 @@ void GnssInertialStart::ForgetOld(TimeNs newest_ns) {
 
 void GnssInertialStart::ForgetUnreached() {
   const TimeNs reach = SecondsToNs(config_.estimate_time_offset ? config_.max_time_offset_s : 0);
-  while (!window_.fixes.empty() &&
-         (window_.imu.empty() || window_.fixes.front().stamp_ns - reach < window_.imu.front().stamp_ns)) {
-    window_.fixes.pop_front();
+  while (!window_.points.empty() &&
+         (window_.imu.empty() || window_.points.front().stamp_ns - reach < window_.imu.front().stamp_ns)) {
+    window_.points.pop_front();
   }
 }
 
 std::optional<GnssInertialStart::Start> GnssInertialStart::TryStart() {
   ForgetUnreached();
-  if (static_cast<int>(window_.fixes.size()) < config_.align_min_epochs) {
-    report_ = Format("%zu single points with velocity, expected %d", window_.fixes.size(),
+  if (static_cast<int>(window_.points.size()) < config_.align_min_epochs) {
+    report_ = Format("%zu single points with velocity, expected %d", window_.points.size(),
                      config_.align_min_epochs) +
-              (window_.fixes.empty() ? "; satellites left out: " + Describe(left_out_) : "");
+              (window_.points.empty() ? "; satellites left out: " + Describe(left_out_) : "");
     return std::nullopt;
   }
   InertialFit best = fitter_.Solve(window_, 0);
@@ -112,8 +112,8 @@ std::optional<GnssInertialStart::Start> GnssInertialStart::TryStart() {
   }
   const double offset_s = config_.estimate_time_offset ? SearchOffset(&best) : 0;
   report_ =
-      Format("%zu single points over %.1f s: heading to %.3f rad", window_.fixes.size(),
-             SecondsBetween(window_.fixes.front().stamp_ns, window_.fixes.back().stamp_ns), YawStd(best)) +
+      Format("%zu single points over %.1f s: heading to %.3f rad", window_.points.size(),
+             SecondsBetween(window_.points.front().stamp_ns, window_.points.back().stamp_ns), YawStd(best)) +
       (config_.estimate_time_offset ? Format(", time offset %.3f s", offset_s) : "");
   return MakeStart(best, offset_s);
 }
@@ -142,7 +142,7 @@ GnssInertialStart::Start GnssInertialStart::MakeStart(const InertialFit& fit, do
   Start start;
   start.estimate.nav = fitter_.LastState(fit, &chain);
   start.estimate.bias = fit.bias;
-  start.estimate.stamp_ns = window_.fixes.back().stamp_ns + SecondsToNs(offset_s);
+  start.estimate.stamp_ns = window_.points.back().stamp_ns + SecondsToNs(offset_s);
   const Matrix15d covariance =
       config_.align_inflation * config_.align_inflation * chain * fit.covariance * chain.transpose();
   start.estimate.covariance = 0.5 * (covariance + covariance.transpose());
@@ -150,7 +150,7 @@ GnssInertialStart::Start GnssInertialStart::MakeStart(const InertialFit& fit, do
   start.alignment.enu = *window_.enu;
   constexpr double kNothing = 1e-12;  // the uncertainty is in the state
   start.alignment.covariance = kNothing * Eigen::Matrix4d::Identity();
-  start.alignment.clock = window_.fixes.back().clock;
+  start.alignment.clock = window_.points.back().clock;
   start.alignment.time_offset_s = offset_s;
   start.alignment.report = report_;
   return start;
