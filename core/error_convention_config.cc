@@ -7,6 +7,7 @@ namespace alidade {
 
 void DescribeErrorConvention(ConfigVisitor& visitor, std::string_view what, ErrorConvention* convention) {
   std::vector<std::pair<std::string_view, ErrorConvention>> options;
+  options.reserve(kErrorConventions.size());
   for (const ErrorConvention option : kErrorConventions) {
     options.emplace_back(ToString(option), option);
   }

@@ -64,6 +64,7 @@ std::optional<Vector3d> RotationOf(const std::vector<RayChange>& rays) {
     }
     rotation = information.ldlt().solve(gradient);
     std::vector<double> residuals;
+    residuals.reserve(rays.size());
     for (const RayChange& ray : rays) {
       residuals.push_back((ray.difference - rotation.cross(ray.mean)).norm());
     }

@@ -17,6 +17,7 @@ int RunProbe(const std::vector<std::string>&) {
   const std::optional<ErrorConvention> convention = ParseErrorConvention(FLAGS_error);
   if (!convention) {
     std::vector<std::string> names;
+    names.reserve(kErrorConventions.size());
     for (const ErrorConvention known : kErrorConventions) {
       names.emplace_back(ToString(known));
     }

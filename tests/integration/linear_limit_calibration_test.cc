@@ -12,18 +12,8 @@
 
 // The linear limit (tests/integration/linear_limit_test.cc) with a camera that is calibrated online.
 
-namespace alidade {
+namespace alidade::test {
 namespace {
-
-using test::Ends;
-using test::FilterCase;
-using test::FilterCases;
-using test::kSmootherLandmarks;
-using test::MeanDifference;
-using test::Name;
-using test::OneWindow;
-using test::RelativeDifference;
-using test::TermSolution;
 
 struct Estimated {
   std::string name;
@@ -66,14 +56,14 @@ void ExpectAgreement(const Ends& a, const Ends& b, double correction) {
 TEST_P(LinearLimitCalibrationTest, FilterSmootherAndTermsAgree) {
   constexpr double kScale = 3e-7;
   const Estimated& estimated = std::get<1>(GetParam());
-  EstimatorConfig config = test::MakeConfig(std::get<0>(GetParam()));
+  EstimatorConfig config = MakeConfig(std::get<0>(GetParam()));
   config.smoother.solve_to_rounding = true;
   config.calibration.extrinsics = estimated.extrinsics;
   config.calibration.intrinsics = estimated.intrinsics;
   config.calibration.line_delay = estimated.line_delay;
   config.calibration.time_offset = estimated.time_offset;
   const OneWindow window =
-      test::MakeWindow(kScale, {.calibration = config.calibration, .staggered = !estimated.time_offset});
+      MakeWindow(kScale, {.calibration = config.calibration, .staggered = !estimated.time_offset});
   const CalibrationEstimate given =
       InitialCalibration(config.calibration, GivenCamera(window.rig, config.vision));
   for (const SmootherLandmark landmark : kSmootherLandmarks) {
@@ -87,7 +77,7 @@ TEST_P(LinearLimitCalibrationTest, FilterSmootherAndTermsAgree) {
     }
     if (!estimated.time_offset) {
       SCOPED_TRACE("smoother");
-      ExpectAgreement(test::Run(window, test::MakeSmoother(landmark, config, window.rig).get()), solved,
+      ExpectAgreement(test::Run(window, MakeSmoother(landmark, config, window.rig).get()), solved,
                       correction);
     }
     for (const FilterCase& filter : FilterCases()) {
@@ -95,14 +85,13 @@ TEST_P(LinearLimitCalibrationTest, FilterSmootherAndTermsAgree) {
         continue;
       }
       SCOPED_TRACE(Name(filter, landmark));
-      ExpectAgreement(test::Run(window, test::MakeFilter(filter, config, window.rig).get()), solved,
-                      correction);
+      ExpectAgreement(test::Run(window, MakeFilter(filter, config, window.rig).get()), solved, correction);
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Conventions, LinearLimitCalibrationTest,
-                         testing::Combine(testing::ValuesIn(test::kAllConventions),
+                         testing::Combine(testing::ValuesIn(kAllConventions),
                                           testing::Values(kExtrinsics, kIntrinsics, kLineDelay, kTimeOffset,
                                                           kAll)),
                          [](const auto& item) {
@@ -111,4 +100,4 @@ INSTANTIATE_TEST_SUITE_P(Conventions, LinearLimitCalibrationTest,
                          });
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::test

@@ -12,24 +12,14 @@
 // The linear limit (tests/integration/linear_limit_test.cc) with raw GNSS: pseudoranges, range rates and the
 // receiver's clock.
 
-namespace alidade {
+namespace alidade::test {
 namespace {
-
-using test::Ends;
-using test::FilterCase;
-using test::FilterCases;
-using test::kSmootherLandmarks;
-using test::MeanDifference;
-using test::Name;
-using test::OneWindow;
-using test::RelativeDifference;
-using test::TermSolution;
 
 constexpr double kWalk = 1;  // of clock, drift and biases, a root of a second
 
 /// No kernel; the gate passes all that the model explains.
 EstimatorConfig GnssConfigOf(ErrorConvention convention) {
-  EstimatorConfig config = test::MakeConfig(convention);
+  EstimatorConfig config = MakeConfig(convention);
   config.smoother.solve_to_rounding = true;
   config.gnss.enabled = true;
   config.gnss.corrections.ionosphere = IonosphereMode::kNone;
@@ -43,8 +33,8 @@ EstimatorConfig GnssConfigOf(ErrorConvention convention) {
 
 /// The start knows its position no better than a pseudorange does.
 OneWindow GnssWindowOf(const EstimatorConfig& config, double scale) {
-  OneWindow window = test::MakeWindow(scale, {.start_position_std_m = 5});
-  test::AddEpochs(config.gnss, scale, &window);
+  OneWindow window = MakeWindow(scale, {.start_position_std_m = 5});
+  AddEpochs(config.gnss, scale, &window);
   return window;
 }
 
@@ -71,12 +61,11 @@ void ExpectAllAgree(const OneWindow& window, const EstimatorConfig& config, Smoo
                     const Ends& solved, const Bounds& bounds) {
   {
     SCOPED_TRACE("smoother");
-    ExpectAgreement(test::Run(window, test::MakeSmoother(landmark, config, window.rig).get()), solved,
-                    bounds);
+    ExpectAgreement(test::Run(window, MakeSmoother(landmark, config, window.rig).get()), solved, bounds);
   }
   for (const FilterCase& filter : FilterCases()) {
     SCOPED_TRACE(Name(filter, landmark));
-    ExpectAgreement(test::Run(window, test::MakeFilter(filter, config, window.rig).get()), solved, bounds);
+    ExpectAgreement(test::Run(window, MakeFilter(filter, config, window.rig).get()), solved, bounds);
   }
 }
 
@@ -116,7 +105,7 @@ TEST_P(LinearLimitGnssTest, FilterSmootherAndTermsAgree) {
 // (ClockStep).
 TEST_P(LinearLimitGnssTest, WithoutErrorsTheCovariancesAreTheSame) {
   constexpr double kFloor = 1e-8;
-  constexpr double kFrameS = test::kSamplesPerFrame / test::kImuRateHz;
+  constexpr double kFrameS = kSamplesPerFrame / kImuRateHz;
   const EstimatorConfig config = GnssConfigOf(GetParam());
   const OneWindow window = GnssWindowOf(config, 0);
   for (const SmootherLandmark landmark : kSmootherLandmarks) {
@@ -141,8 +130,8 @@ TEST_P(LinearLimitGnssTest, PseudorangesAndRangeRatesAreInformative) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Conventions, LinearLimitGnssTest, testing::ValuesIn(test::kAllConventions),
+INSTANTIATE_TEST_SUITE_P(Conventions, LinearLimitGnssTest, testing::ValuesIn(kAllConventions),
                          [](const auto& item) { return std::string(ToString(item.param)); });
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::test

@@ -1,5 +1,3 @@
-#include "eval/run/imu_axis_watch.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,50 +5,13 @@
 #include <cmath>
 #include <vector>
 
-#include "core/lie.h"
-#include "core/random.h"
+#include "tests/eval/run/watched_axes.h"
 
-namespace alidade {
+namespace alidade::test {
 namespace {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
-
-constexpr double kRateHz = 200;
-
-/// Motion of some hertz with noise, measured with a resolution of `step`.
-std::vector<ImuSample> Motion(int count, double step, double amplitude = 1) {
-  RandomStream random(7, "imu");
-  const auto rounded = [&](const Vector3d& value) { return Vector3d(step * (value / step).array().round()); };
-  std::vector<ImuSample> samples;
-  for (int k = 0; k < count; ++k) {
-    const double t = k / kRateHz;
-    const Vector3d gyro(std::sin(5 * t), std::cos(4 * t), std::sin(3 * t + 1));
-    const Vector3d accel(3 * std::sin(4 * t), 2 * std::cos(5 * t), 3 * std::sin(6 * t));
-    samples.push_back({SecondsToNs(t), rounded(amplitude * gyro + 1e-3 * random.Normal3()),
-                       rounded(Vector3d(0, 0, 9.81) + amplitude * accel + 1e-2 * random.Normal3())});
-  }
-  return samples;
-}
-
-struct Watched {
-  std::vector<std::string> reported;
-  std::vector<bool> faulty;
-  std::vector<ImuSample> samples;
-};
-
-Watched Watch(std::vector<ImuSample> samples, const ImpliedImu* implied = nullptr) {
-  ImuAxisWatch watch(implied);
-  Watched watched;
-  for (ImuSample& sample : samples) {
-    if (const std::string reported = watch.Add(&sample); !reported.empty()) {
-      watched.reported.push_back(reported);
-    }
-    watched.faulty.push_back(!watch.reason().empty());
-  }
-  watched.samples = std::move(samples);
-  return watched;
-}
 
 TEST(ImuAxisWatchTest, MotionPassesUntouchedHoweverCoarseTheSensor) {
   for (const double step : {1e-9, 1e-3, 4e-3}) {
@@ -163,59 +124,6 @@ TEST(ImuAxisWatchTest, RowsThatAreHandedOutTwiceAreNoFault) {
   EXPECT_TRUE(Watch(std::move(samples)).reported.empty());
 }
 
-/// Estimates 0.1 s apart that imply this rate [rad/s] of the y axis from `end_s` on for a second.
-ImpliedImu Implying(double rate, double end_s) {
-  ImpliedImu implied(9.81);
-  NavEstimate estimate;
-  estimate.stamp_ns = SecondsToNs(end_s - 0.1);
-  implied.Add(estimate);
-  estimate.stamp_ns = SecondsToNs(end_s);
-  estimate.nav.R_WB = so3::Exp(Vector3d(0, 0.1 * rate, 0));
-  implied.Add(estimate);
-  return implied;
-}
-
-// GIVEN what the motion implies for an axis that sticks THEN the axis reads that while it counts, afterwards
-// its mean.
-TEST(ImuAxisWatchTest, AStuckAxisReadsWhatTheMotionImplies) {
-  std::vector<ImuSample> samples = Motion(4000, 1e-9);
-  for (std::size_t k = 2000; k < 3000; ++k) {
-    samples[k].gyro.y() = samples[1999].gyro.y();
-  }
-  const ImpliedImu implied = Implying(0.7, 11);
-  const Watched watched = Watch(samples, &implied);
-  for (const std::size_t k : {2018u, 2200u, 2400u}) {
-    EXPECT_NEAR(watched.samples[k].gyro.y(), 0.7, 1e-9) << k;
-  }
-  EXPECT_LT(std::abs(watched.samples[2402].gyro.y()), 0.25);
-  EXPECT_EQ(watched.samples[3000].gyro.y(), samples[3000].gyro.y());
-}
-
-// GIVEN a clipped axis THEN it reads what the motion implies beyond the limit, and its own value where that
-// is less.
-TEST(ImuAxisWatchTest, ASaturatedAxisReadsWhatTheMotionImpliesBeyondItsRange) {
-  std::vector<ImuSample> samples = Motion(4000, 1e-9);
-  for (ImuSample& sample : samples) {
-    sample.gyro.y() = std::clamp(sample.gyro.y(), -0.6, 0.6);
-  }
-  for (const double rate : {0.8, 2.0, 0.3, -0.8}) {
-    const ImpliedImu implied = Implying(rate, 3600);
-    const Watched watched = Watch(samples, &implied);
-    const double above = std::max(rate, 0.6);
-    const double below = std::min(rate, -0.6);
-    int saturated = 0;
-    for (std::size_t k = 2000; k < samples.size(); ++k) {
-      if (watched.faulty[k]) {
-        ++saturated;
-        ASSERT_NEAR(watched.samples[k].gyro.y(), samples[k].gyro.y() > 0 ? above : below, 1e-9) << k;
-      } else {
-        ASSERT_EQ(watched.samples[k].gyro.y(), samples[k].gyro.y()) << k;
-      }
-    }
-    EXPECT_GT(saturated, 500);
-  }
-}
-
 // GIVEN two axes that are clipped at once, for longer than a second, while the third one moves, THEN both are
 // saturated throughout.
 TEST(ImuAxisWatchTest, AxesThatAreClippedTogetherAreSaturatedThroughout) {
@@ -301,4 +209,4 @@ TEST(ImuAxisWatchTest, AFaultThatReturnsLaterIsReportedAgain) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::test
