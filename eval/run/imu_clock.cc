@@ -25,7 +25,7 @@ bool ImuClock::FindJump(const TrackFrame& frame, TimeNs imu_ns, const GyroRotati
           gyro.Between(first_->imu_ns + shift_ns, imu_ns + shift_ns, gyro_bias);
       return turn ? TurnMisfit(rig_, pixel_noise_px_, first_->frame, frame, *turn) : std::nullopt;
     };
-    verdict = CompareTurns(misfit(0), misfit(silence_->excess_ns));
+    verdict = votes_.Add(misfit(0), misfit(silence_->excess_ns));
   }
   if (verdict == ClockVerdict::kUnknown) {
     first_ = Seen{frame, imu_ns};

@@ -17,7 +17,7 @@ namespace alidade {
 /// after the silence decide: the rig has turned between them by the gyroscope over their stamps as they are,
 /// or over later ones, later by the length of the silence less the usual step. Both turns are measured, so
 /// that a silence cannot be taken for a jump because the motion in it is not known. The tracks of both frames
-/// decide (TurnMisfit).
+/// decide (TurnMisfit, ClockVotes).
 ///
 /// Neglected: jumps with a loss of samples at the same time. Without a turn whose rate changes, or without
 /// enough common tracks for kDoubtS, the stamps stay as they are.
@@ -32,6 +32,7 @@ class ImuClock {
   [[nodiscard]] const std::optional<ImuSilence>& silence() const { return silence_; }
   void Question(const ImuSilence& silence) {
     silence_ = silence;
+    votes_ = {};
     compared_ns_ = INT64_MIN;
   }
   /// Ends the question. Silences that end by then are not to be questioned again.
@@ -56,6 +57,7 @@ class ImuClock {
   const double pixel_noise_px_;
   std::optional<ImuSilence> silence_;
   std::optional<Seen> first_;  ///< frame after it, of those with common tracks
+  ClockVotes votes_;
   TimeNs settled_ns_ = INT64_MIN;
   TimeNs compared_ns_ = INT64_MIN;
 };

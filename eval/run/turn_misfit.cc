@@ -51,20 +51,30 @@ std::optional<double> TurnMisfit(const RigCalibration& rig, double pixel_noise_p
   return Median(std::move(squares)) / kMedianOfChiSquare;
 }
 
-ClockVerdict CompareTurns(const std::optional<double>& as_is, const std::optional<double>& jumped) {
-  // Largest squared distance of an explanation that holds, and how much larger that of the other must be.
-  constexpr double kFits = 4;
-  constexpr double kContrast = 10;
+ClockVerdict CompareTurns(const std::optional<double>& as_is, const std::optional<double>& jumped,
+                          double contrast) {
+  constexpr double kFits = 4;  // largest squared distance of an explanation that holds
   if (!as_is) {
     return ClockVerdict::kUnknown;
   }
   if (!jumped) {
     return ClockVerdict::kOpen;
   }
-  if (*as_is > kContrast * std::max(1.0, *jumped) && *jumped < kFits) {
+  if (*as_is > contrast * std::max(1.0, *jumped) && *jumped < kFits) {
     return ClockVerdict::kJumped;
   }
-  return *jumped > kContrast * *as_is && *as_is < kFits ? ClockVerdict::kHolds : ClockVerdict::kOpen;
+  return *jumped > contrast * *as_is && *as_is < kFits ? ClockVerdict::kHolds : ClockVerdict::kOpen;
+}
+
+ClockVerdict ClockVotes::Add(const std::optional<double>& as_is, const std::optional<double>& jumped) {
+  const ClockVerdict alone = CompareTurns(as_is, jumped);
+  if (alone != ClockVerdict::kOpen) {
+    return alone;
+  }
+  const ClockVerdict vote = CompareTurns(as_is, jumped, kContrast);
+  in_a_row_ = vote == last_ ? in_a_row_ + 1 : 1;
+  last_ = vote;
+  return in_a_row_ < kFrames ? ClockVerdict::kOpen : vote;
 }
 
 }  // namespace alidade

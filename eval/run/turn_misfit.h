@@ -23,7 +23,22 @@ enum class ClockVerdict {
   kHolds,    ///< the stamps are right
   kJumped,
 };
+/// `contrast`: how much larger the misfit of the explanation that is rejected must be; the default is for one
+/// pair of frames that decides alone.
 [[nodiscard]] ClockVerdict CompareTurns(const std::optional<double>& as_is,
-                                        const std::optional<double>& jumped);
+                                        const std::optional<double>& jumped, double contrast = 10);
+
+/// The verdict of frames in a row: one of high contrast decides alone, kFrames that agree decide with less.
+class ClockVotes {
+ public:
+  static constexpr int kFrames = 4;
+  static constexpr double kContrast = 2;  ///< CompareTurns
+
+  [[nodiscard]] ClockVerdict Add(const std::optional<double>& as_is, const std::optional<double>& jumped);
+
+ private:
+  ClockVerdict last_ = ClockVerdict::kOpen;
+  int in_a_row_ = 0;
+};
 
 }  // namespace alidade
