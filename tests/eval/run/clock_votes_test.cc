@@ -25,7 +25,7 @@ TEST(ClockVotes, AFrameThatLeansToNeitherOrTheOtherBeginsAgain) {
   for (const double as_is : {1.0, 0.2}) {
     ClockVotes votes;
     for (int i = 1; i < ClockVotes::kFrames; ++i) {
-      votes.Add(4.2, 0.9);
+      EXPECT_EQ(votes.Add(4.2, 0.9), ClockVerdict::kOpen) << i;
     }
     EXPECT_EQ(votes.Add(as_is, 0.9), ClockVerdict::kOpen);
     for (int i = 1; i < ClockVotes::kFrames; ++i) {
