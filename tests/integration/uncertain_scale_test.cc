@@ -26,20 +26,5 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   }
 }
 
-// GIVEN an accelerometer that is clipped, so that it says little about the scale, THEN likewise: the scale is
-// never uncertain by a tenth there, but corrections would reveal it over a minute.
-TEST(UncertainScale, CorrectionsDoNotRevealItWhereTheAccelerometerIsClipped) {
-  SimulatorConfig sim;
-  sim.duration_s = 40;
-  sim.path_m = 52;
-  sim.fault = SimFaultKind::kAccelSaturation;
-  sim.fault_start_s = 0;
-  sim.fault_duration_s = sim.duration_s;
-  for (const unsigned seed : {921U, 922U, 923U}) {
-    const Dataset dataset = test::SimulateOrDie(sim, seed);
-    EXPECT_LT(test::RunPreset("alidade_filter", {}, dataset, seed).nees_pose, 15) << "seed " << seed;
-  }
-}
-
 }  // namespace
 }  // namespace alidade
