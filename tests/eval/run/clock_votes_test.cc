@@ -37,10 +37,11 @@ TEST(ClockVotes, AFrameThatLeansToNeitherOrTheOtherBeginsAgain) {
 
 // Neither explanation fits: a wrong rotation of the camera, say.
 TEST(ClockVotes, FramesThatNothingExplainsDecideNothing) {
-  ClockVotes votes;
+  ClockVotes jumped;
+  ClockVotes holds;
   for (int i = 0; i < 2 * ClockVotes::kFrames; ++i) {
-    EXPECT_EQ(votes.Add(40, 5), ClockVerdict::kOpen) << i;
-    EXPECT_EQ(votes.Add(5, 40), ClockVerdict::kOpen) << i;
+    EXPECT_EQ(jumped.Add(40, 5), ClockVerdict::kOpen) << i;
+    EXPECT_EQ(holds.Add(5, 40), ClockVerdict::kOpen) << i;
   }
 }
 
