@@ -16,9 +16,6 @@ constexpr double kNegligible = 1e-3;
 constexpr double kNegligibleUncertain = 0.1;
 // Largest relative deviation of a window of known shape.
 constexpr double kKnownShape = 0.1;
-// Relative deviation of the scale below which the spurious information about it, one unit for each corrected
-// direction, is small beside what is known.
-constexpr double kKnownScale = 0.03;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
 // Of the deviation across the line between the cameras that is allowed, what may be along it.
@@ -116,7 +113,7 @@ void FilterEstimator::CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors) {
 bool FilterEstimator::ScaleIsUncertain() const {
   // While the direction of the motion is not known either, the covariance holds little of tracks yet.
   const double limit = config_.filter.max_direction_deviation;
-  return limit > 0 && baseline_.along > kKnownScale && baseline_.across < limit && state_.landmarks().empty();
+  return limit > 0 && baseline_.along > kKnownShape && baseline_.across < limit && state_.landmarks().empty();
 }
 
 bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
