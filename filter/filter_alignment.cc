@@ -41,6 +41,7 @@ void FilterState::Align(const YawShift& transform, const Eigen::Matrix4d& covari
     clone.T_WB_first = transform * clone.T_WB_first;
     RefreshClone(&clone);
   }
+  strain_.Turn(transform.Rotation());
   nav_ = moved;
   nav_first_ = transform * nav_first_;
   const Eigen::LLT<Eigen::Matrix4d> root(covariance);

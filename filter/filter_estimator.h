@@ -106,6 +106,9 @@ class FilterEstimator : public Estimator {
   bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
   /// Correct(), and what it does to the covariance while the scale is uncertain, and to `errors` likewise.
   void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);
+  /// After the last CorrectByTracks: makes up for what carrying the scale's direction did to the IMU's share
+  /// of the information on it.
+  void CorrectScale();
   /// What the memories become when a clone leaves.
   void LeaveMemories(size_t leaving);
   /// What a track keeps after its views were used (base re-use) or refused.

@@ -21,7 +21,8 @@ FilterState::FilterState(ErrorConvention convention, bool first_estimates, Calib
       calibration_error_(given_.error),
       covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks +
                       (limits.clock ? kClockSize : 0) + given_.layout.size(),
-                  3 * limits.landmarks + (limits.clock ? kClockSize : 0)) {
+                  3 * limits.landmarks + (limits.clock ? kClockSize : 0)),
+      strain_(limits.imu_strain ? limits.clones : 0) {
   clones_.reserve(static_cast<size_t>(limits.clones));
   landmarks_.reserve(static_cast<size_t>(limits.landmarks));
   for (int slot = limits.clones; slot-- > 0;) {
@@ -47,6 +48,7 @@ Status FilterState::Reset(const NavEstimate& initial) {
     clones_.pop_back();
   }
   landmarks_.clear();
+  strain_.Reset();
   if (observer_ != nullptr) {
     observer_->OnReset(*this);
   }
@@ -74,6 +76,7 @@ Status FilterState::Propagate(std::span<const ImuSample> samples, const ImuNoise
   const Matrix15d phi = to_error * transition.phi * from_error;
   const Matrix15d noise_root = to_error * transition.noise_root;
   covariance_.Propagate(phi, noise_root);
+  strain_.Propagate(preintegration);
   if (observer_ != nullptr) {
     observer_->OnPropagate(phi, noise_root * noise_root.transpose());
   }
@@ -99,6 +102,7 @@ void FilterState::AddClone(int serial, const MeasuredTurn& turn) {
   clone.motion = MotionOf(turn, bias_.gyro, nav_.R_WB, nav_.v_WB);
   RefreshClone(&clone);
   clones_.push_back(clone);
+  strain_.AddClone();
   if (layout().time_offset() >= 0) {
     const Vector6d rates = BodyRates(clone.motion.omega_B, nav_.v_WB);
     const Vector6d gain = InverseChartJacobian(convention_, clone.T_WB) * rates;
@@ -115,6 +119,7 @@ void FilterState::RemoveClone(size_t index) {
   RemoveRows(CloneOffset(index), 6);
   free_slots_.push_back(clones_[index].slot);
   clones_.erase(clones_.begin() + static_cast<std::ptrdiff_t>(index));
+  strain_.RemoveClone(index);
 }
 
 void FilterState::RemoveRows(int first, int size) {
@@ -176,36 +181,6 @@ void FilterState::Shear(const Eigen::Ref<const Eigen::VectorXd>& column,
   covariance_.Shear(column, row);
   if (observer_ != nullptr) {
     observer_->OnShear(column, row);
-  }
-}
-
-void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
-  CHECK_EQ(correction.size(), covariance_.dimension());
-  const int core = CoreOffset();
-  nav_ = Retract(convention_, nav_, Vector9d(correction.segment<9>(core)));
-  nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
-  bias_.gyro += correction.segment<3>(core + 9);
-  bias_.accel += correction.segment<3>(core + 12);
-  if (given_.watched) {
-    calibration_error_ += correction.segment(CalibrationOffset(), layout().size());
-  } else {
-    calibration_is_sound_ =
-        Retract(layout(), correction.segment(CalibrationOffset(), layout().size()), &calibration_) &&
-        calibration_is_sound_;
-  }
-  for (size_t i = 0; i < clones_.size(); ++i) {
-    Clone& clone = clones_[i];
-    clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(correction.segment<6>(CloneOffset(i))));
-    clone.T_WB.rotation = Eigen::Quaterniond(clone.T_WB.rotation).normalized().toRotationMatrix();
-    RefreshClone(&clone);
-  }
-  for (size_t i = 0; i < landmarks_.size(); ++i) {
-    Landmark& landmark = landmarks_[i];
-    if (landmark_error().anchored()) {
-      const auto anchor = static_cast<size_t>(FindClone(landmark.anchor_serial));
-      landmark.p_W = LandmarkError::Turned(correction.segment<3>(CloneOffset(anchor)), landmark.p_W);
-    }
-    landmark.p_W += correction.segment<3>(LandmarkOffset(i));
   }
 }
 

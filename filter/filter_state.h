@@ -11,6 +11,7 @@
 #include "core/imu_propagation.h"
 #include "core/yaw_shift.h"
 #include "filter/filter_observer.h"
+#include "filter/imu_strain.h"
 #include "filter/landmark_error.h"
 #include "filter/square_root_covariance.h"
 
@@ -76,6 +77,7 @@ class FilterState {
     int clones = 0;
     int landmarks = 0;
     bool clock = false;
+    bool imu_strain = false;  ///< whether strain() is followed
   };
 
   FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits);
@@ -164,10 +166,13 @@ class FilterState {
   [[nodiscard]] SquareRootCovariance& covariance() { return covariance_; }
   [[nodiscard]] const SquareRootCovariance& covariance() const { return covariance_; }
   [[nodiscard]] ErrorConvention convention() const { return convention_; }
+  /// Of the clones against the IMU between them.
+  [[nodiscard]] ImuStrain& strain() { return strain_; }
   [[nodiscard]] bool AllFinite() const;
 
  private:
   void RefreshClone(Clone* clone) const;
+  void CorrectStrain(const Eigen::Ref<const Eigen::VectorXd>& correction);
   void Reanchor(int leaving_serial);
   // Covariance and observer alike.
   void RemoveRows(int first, int size);
@@ -187,6 +192,7 @@ class FilterState {
   std::vector<int> free_slots_;
   std::vector<Landmark> landmarks_;
   SquareRootCovariance covariance_;
+  ImuStrain strain_;
   FilterObserver* observer_ = nullptr;
   Eigen::Matrix<double, 3, Eigen::Dynamic> gain_;  // scratch of AddLandmark
 };

@@ -16,6 +16,8 @@ constexpr double kNegligible = 1e-3;
 constexpr double kNegligibleUncertain = 0.1;
 // Largest relative deviation of a window of known shape.
 constexpr double kKnownShape = 0.1;
+// Relative deviation of the scale below which the IMU determines it too well for its direction to be carried.
+constexpr double kKnownScale = 0.03;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
 // Of the deviation across the line between the cameras that is allowed, what may be along it.
@@ -113,7 +115,16 @@ void FilterEstimator::CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors) {
 bool FilterEstimator::ScaleIsUncertain() const {
   // While the direction of the motion is not known either, the covariance holds little of tracks yet.
   const double limit = config_.filter.max_direction_deviation;
-  return limit > 0 && baseline_.along > kKnownShape && baseline_.across < limit && state_.landmarks().empty();
+  return limit > 0 && baseline_.along > kKnownScale && baseline_.across < limit && state_.landmarks().empty();
+}
+
+void FilterEstimator::CorrectScale() {
+  // The prior of the start is no part of the strain: its clones must have left.
+  if (!carry_scale_ || !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
+    return;
+  }
+  scale_direction_.Descend(state_.covariance(), state_.strain().ScaleGradient(), Correction());
+  Correct();
 }
 
 bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
@@ -137,6 +148,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   corrected.setZero();
   auto moved = moved_.head(covariance.dimension());
   moved.setZero();
+  state_.strain().Mark();
   carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
   for (int pass = 1;; ++pass) {
     const int landmark_rows =
@@ -198,8 +210,10 @@ bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
     }
   }
   const auto correction = Correction();  // of the dimension before landmarks enter
+  state_.strain().MarkNewest();
   CorrectByTracks(corrected_.head(0));
   slam_.Enter(correction, weights_, &state_, &tracks_);
+  CorrectScale();
   for (size_t block = 0; block < appended_.size(); ++block) {
     RetireViews(&tracks[appended_[block]], accepted_[block]);
   }

@@ -46,6 +46,7 @@ bool ScaleDirection::Take(const FilterState& state, int last_serial) {
     row.segment<3>(state.CloneOffset(0) + 3) -= OverPosition(clones.front()).transpose() * place;
   }
   row /= extent;
+  scale_ = 1;
   return extent > 0;
 }
 
@@ -81,12 +82,22 @@ void ScaleDirection::Carry(FilterState* state, Eigen::Ref<VectorXd> errors) {
   if (!(scale > kLeastScale)) {
     return;
   }
-  change /= scale;
   const auto row = row_.head(change.size());
+  scale_ = scale + row.dot(change);
+  change /= scale;
   state->Shear(change, row);
   if (errors.size() > 0) {
     errors += row.dot(errors) * change;
   }
+}
+
+void ScaleDirection::Descend(const SquareRootCovariance& covariance, double gradient,
+                             Eigen::Ref<VectorXd> correction) {
+  const auto factor = covariance.factor().triangularView<Eigen::Upper>();
+  auto whitened = change_.head(correction.size());
+  whitened.noalias() = factor.transpose() * row_.head(correction.size());
+  correction.noalias() = factor * whitened;
+  correction *= -gradient / scale_;
 }
 
 }  // namespace alidade

@@ -24,10 +24,14 @@ class ScaleDirection {
   /// follows with their velocity. Applied to the covariance and to `errors` (of the whole error's size, or
   /// empty).
   void Carry(FilterState* state, Eigen::Ref<Eigen::VectorXd> errors);
+  /// The correction that takes away a gradient of the cost along the direction, -P l gradient, l.n' = 1.
+  void Descend(const SquareRootCovariance& covariance, double gradient,
+               Eigen::Ref<Eigen::VectorXd> correction);
 
  private:
   size_t determined_ = 0;    ///< number of clones that `last_serial` closes
   Eigen::VectorXd row_;      ///< l
+  double scale_ = 1;         ///< l.n of the direction now
   Eigen::MatrixX3d places_;  ///< of these cameras, seen from the oldest one
   Eigen::VectorXd change_;
 };

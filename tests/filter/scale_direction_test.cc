@@ -23,6 +23,23 @@ class ScaleDirectionTest : public test::ClonedWindow {
            kStep;
   }
 
+  /// Over an error, the mean change of those distances in proportion to them.
+  [[nodiscard]] VectorXd RowOfScale() const {
+    VectorXd row = VectorXd::Zero(state_.covariance().dimension());
+    const auto add = [&](size_t clone, const Vector3d& place) {
+      row.segment<3>(state_.CloneOffset(clone) + 3) +=
+          state_.clones()[clone].camera_from_error.bottomRightCorner<3, 3>().transpose() * place;
+    };
+    double extent = 0;
+    for (size_t i = 0; i < state_.clones().size(); ++i) {
+      const Vector3d place = state_.clones()[i].T_WC.translation - state_.clones().front().T_WC.translation;
+      extent += place.squaredNorm();
+      add(i, place);
+      add(0, -place);
+    }
+    return row / extent;
+  }
+
   /// Moves every clone, as another velocity from the oldest one on would have.
   void ChangeShape(FilterState* state) const {
     const TimeNs start_ns = state->clones().front().stamp_ns;
@@ -83,6 +100,24 @@ TEST_P(ScaleDirectionTest, TheCovarianceIsCarriedAsErrorsAre) {
   direction.Carry(&state_, none);
   EXPECT_LT((state_.covariance().Covariance() - expected).norm(), 1e-9 * expected.norm());
   EXPECT_GT((map - Eigen::MatrixXd::Identity(size, size)).norm(), 0.1);
+}
+
+// GIVEN a gradient along the direction THEN the correction is P l times it, l n = 1, with the l of the state
+// where the direction was taken and the n of now.
+TEST_P(ScaleDirectionTest, TheCorrectionForAGradientFollowsTheCovariance) {
+  constexpr double kGradient = 0.7;
+  ScaleDirection direction(state_.covariance().capacity());
+  ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
+  const VectorXd row = RowOfScale();
+  VectorXd correction(row.size());
+  for (int carried = 0; carried <= 1; ++carried) {
+    direction.Descend(state_.covariance(), kGradient, correction);
+    const VectorXd expected = -kGradient / row.dot(ErrorOfScale()) * (state_.covariance().Covariance() * row);
+    EXPECT_LT((correction - expected).norm(), 1e-5 * expected.norm()) << carried;
+    ChangeShape(&state_);
+    VectorXd none;
+    direction.Carry(&state_, none);
+  }
 }
 
 TEST_P(ScaleDirectionTest, AShapeThatNoTrackHasDeterminedIsNotCarried) {

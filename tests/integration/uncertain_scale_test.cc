@@ -26,5 +26,25 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   }
 }
 
+// GIVEN an accelerometer so poor that vision determines the window's shape better, and the IMU its scale WHEN
+// the scale's direction is carried from correction to correction THEN the IMU's noise is not taken for
+// motion, which would make the scale grow.
+TEST(UncertainScale, TheNoiseOfAPoorAccelerometerDoesNotEnlargeIt) {
+  SimulatorConfig sim;
+  sim.duration_s = 60;
+  sim.path_m = 78;
+  sim.imu_noise.accel_noise_density_mps2_sqrthz = 0.1;
+  double nees = 0;
+  double scale = 0;
+  for (const unsigned seed : {61U, 62U, 63U, 64U}) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    const test::ScenarioResult result = test::RunPreset("alidade_filter", {}, dataset, seed, 5);
+    nees += result.nees_pose / 4;
+    scale += result.scale / 4;
+  }
+  EXPECT_LT(nees, 14);
+  EXPECT_NEAR(scale, 1, 0.06);
+}
+
 }  // namespace
 }  // namespace alidade

@@ -15,7 +15,7 @@ constexpr int kClonedFrames = 9;
 /// A filter state with a clone for each of the first `frames` frames of a simulation; nothing updated yet.
 inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention,
                                    const NavEstimate& initial, int frames = kClonedFrames) {
-  FilterState state(convention, false, dataset.rig.T_BC, {frames + 1, 0});
+  FilterState state(convention, false, dataset.rig.T_BC, {frames + 1, 0, false, true});
   EXPECT_TRUE(state.Reset(initial).ok());
   ImuBuffer imu(1.0);
   for (const ImuSample& sample : dataset.imu) {

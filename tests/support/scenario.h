@@ -26,6 +26,7 @@ struct ScenarioResult {
   double rmse_orientation_rad = 0;
   double max_position_m = 0;
   double nees_pose = 0;           ///< mean over frames; 6 is ideal
+  double scale = 0;               ///< of the estimated velocities to the true ones, in the least squares
   double max_pixel_noise_px = 0;  ///< that a frame's observations were given
   NavEstimate last;
 };
@@ -93,6 +94,7 @@ inline ScenarioResult RunScenario(const Dataset& dataset, const NavEstimate& ini
   const RunResult run = RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames}, options, &forward);
   EXPECT_EQ(run.imu_rejected, 0);
   ScenarioResult result;
+  double speeds = 0;
   result.status = run.status.ok() && run.frames_skipped > 0 ? Status::Input(run.skip_report) : run.status;
   for (const RunRecord& record : run.records) {
     result.last = record.estimate;
@@ -104,9 +106,12 @@ inline ScenarioResult RunScenario(const Dataset& dataset, const NavEstimate& ini
     result.rmse_orientation_rad += error.head<3>().squaredNorm();
     result.rmse_position_m += error.tail<3>().squaredNorm();
     result.max_position_m = std::max(result.max_position_m, error.tail<3>().norm());
+    result.scale += result.last.nav.v_WB.dot(truth.v_WB);
+    speeds += truth.v_WB.squaredNorm();
     ++result.frames;
   }
   const double frames = std::max(result.frames, 1);
+  result.scale /= speeds;
   result.nees_pose /= frames;
   result.rmse_orientation_rad = std::sqrt(result.rmse_orientation_rad / frames);
   result.rmse_position_m = std::sqrt(result.rmse_position_m / frames);
