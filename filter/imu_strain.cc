@@ -88,13 +88,12 @@ Vector6d ImuStrain::MotionChange(size_t index, const Vector6d& bias) const {
 }
 
 void ImuStrain::Correct(const Vector3d& velocity, const Vector6d& bias) {
-  // Mean velocity over the interval before the node at hand, and at that interval's end.
-  Vector3d mean = Vector3d::Zero();
-  Vector3d end = Vector3d::Zero();
+  Vector3d end = Vector3d::Zero();  // of the interval before the node: its velocity there by the IMU
   for (size_t k = 1; k < nodes_.size(); ++k) {
     const Vector6d change = MotionChange(k, bias);
-    mean = (nodes_[k].correction.tail<3>() - nodes_[k - 1].correction.tail<3>() - change.head<3>()) /
-           nodes_[k].since.motion.duration_s;
+    const Vector3d mean =
+        (nodes_[k].correction.tail<3>() - nodes_[k - 1].correction.tail<3>() - change.head<3>()) /
+        nodes_[k].since.motion.duration_s;
     if (k > 1) {
       nodes_[k - 1].strain += mean - end;
     }
