@@ -27,7 +27,7 @@ inline ScenarioResult RunPreset(const std::string& preset, const std::vector<std
   const std::unique_ptr<Estimator> estimator = MakeEstimator(*config, dataset.rig);
   NavEstimate initial = DrawInitialState(dataset, seed, scale);
   initial.covariance *= scale * scale;
-  const ScenarioResult result = RunScenario(dataset, initial, estimator.get());
+  ScenarioResult result = RunScenario(dataset, initial, estimator.get());
   EXPECT_TRUE(result.status.ok()) << preset << ": " << result.status.message();
   return result;
 }
