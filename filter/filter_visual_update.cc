@@ -17,7 +17,7 @@ constexpr double kNegligibleUncertain = 0.1;
 // Largest relative deviation of a window of known shape.
 constexpr double kKnownShape = 0.1;
 // Relative deviation of the scale below which the IMU determines it too well for its direction to be carried.
-constexpr double kKnownScale = 0.03;
+constexpr double kKnownScale = 0.02;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
 // Of the deviation across the line between the cameras that is allowed, what may be along it.
