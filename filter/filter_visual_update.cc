@@ -16,7 +16,7 @@ constexpr double kNegligible = 1e-3;
 constexpr double kNegligibleUncertain = 0.1;
 // Largest relative deviation of a window of known shape.
 constexpr double kKnownShape = 0.1;
-// Relative deviation of the scale below which the IMU determines it too well for its direction to be carried.
+// Relative deviation of the scale above which its direction is carried.
 constexpr double kKnownScale = 0.02;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
@@ -123,7 +123,11 @@ void FilterEstimator::CorrectScale() {
   if (!carry_scale_ || !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
     return;
   }
-  scale_direction_.Descend(state_.covariance(), state_.strain().ScaleGradient(), Correction());
+  const double gradient = state_.strain().ScaleGradient();
+  if (gradient == 0) {
+    return;
+  }
+  scale_direction_.Descend(state_.covariance(), gradient, Correction());
   Correct();
 }
 

@@ -7,8 +7,8 @@
 
 namespace alidade {
 
-/// What corrections have bent the window of clones away from the IMU between them: for a clone k between two
-/// others, the change of velocity there that the IMU does not explain,
+/// How far corrections have moved the window of clones away from the IMU between them: for a clone k between
+/// two others, the change of velocity there that the IMU does not explain,
 ///
 ///   e_k = (p_{k+1} - p_k - R_k alpha_b) / T_b - (p_k - p_{k-1} - R_{k-1} alpha_a) / T_a - R_{k-1} beta_a
 ///         - g (T_a + T_b) / 2      [m/s, in W]
@@ -37,7 +37,7 @@ class ImuStrain {
   /// W turns by R.
   void Turn(const Eigen::Matrix3d& R);
 
-  /// Gradient() counts what comes after; the second of the newest interval alone.
+  /// ScaleGradient() counts what comes after; the second of the newest interval alone.
   void Mark();
   void MarkNewest();
   /// The cost's gradient along the scale of the window that corrections since the marks have caused: the sum

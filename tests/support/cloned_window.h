@@ -12,10 +12,18 @@ namespace alidade::test {
 
 constexpr int kClonedFrames = 9;
 
+/// The simulation of two seconds to which the clones belong.
+inline SimulatorConfig ClonedFlight() {
+  SimulatorConfig config;
+  config.duration_s = 2;
+  config.path_m = 2.62;
+  return config;
+}
+
 /// A filter state with a clone for each of the first `frames` frames of a simulation; nothing updated yet.
 inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention convention,
                                    const NavEstimate& initial, int frames = kClonedFrames) {
-  FilterState state(convention, false, dataset.rig.T_BC, {frames + 1, 0, false, true});
+  FilterState state(convention, false, dataset.rig.T_BC, {.clones = frames + 1, .imu_strain = true});
   EXPECT_TRUE(state.Reset(initial).ok());
   ImuBuffer imu(1.0);
   for (const ImuSample& sample : dataset.imu) {
@@ -40,7 +48,7 @@ inline FilterState CloneEveryFrame(const Dataset& dataset, ErrorConvention conve
 /// Such a state in the convention that is the test's parameter.
 class ClonedWindow : public ::testing::TestWithParam<ErrorConvention> {
  protected:
-  ClonedWindow() : ClonedWindow(SimulateOrDie(SimulatorConfig(), 1)) {}
+  ClonedWindow() : ClonedWindow(SimulateOrDie(ClonedFlight(), 1)) {}
 
   /// The correction that takes every body of `state` to where `move` puts its clone.
   template <typename Move>
