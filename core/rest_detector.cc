@@ -23,7 +23,7 @@ constexpr int kMinCommonTracks = 12;
 constexpr double kBiasDeviations = 3;
 // Rest that contradicts the estimate must last for so many windows.
 constexpr double kWindowsInDoubt = 4;
-constexpr double kDoubtProbability = 0.95;
+constexpr double kDoubtProbability = 0.999;
 // Of the deviation of the velocity at rest: what no estimate can contradict.
 constexpr double kLeastDeviation = 0.5;
 constexpr int kVelocityDof = 3;

@@ -24,6 +24,22 @@ TEST(RestStart, AnUncertainBiasDoesNotHideRest) {
   }
 }
 
+// GIVEN many draws of the start, some of whose velocities contradict rest by chance, THEN rest is found all
+// the same: without it the estimate moves on by its bias until the rig moves.
+TEST(RestStart, NoDrawOfTheStartHidesRest) {
+  SimulatorConfig sim;
+  sim.rest_s = 2;
+  sim.duration_s = 5;
+  sim.path_m = 3;
+  sim.imu_rate_hz = 200;
+  sim.camera_rate_hz = 20;
+  for (unsigned seed = 421; seed < 471; ++seed) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    EXPECT_LT(test::RunPreset("alidade_filter", {}, dataset, seed, 5).max_position_m, 0.15)
+        << "seed " << seed;
+  }
+}
+
 // GIVEN a rig that moves off from rest before scenery so far that the images show it half a second later THEN
 // no zero velocity is measured meanwhile.
 TEST(RestStart, FarSceneryDoesNotHideTheBeginningOfMotion) {
