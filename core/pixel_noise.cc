@@ -14,7 +14,9 @@ constexpr int kMinRows = 10;
 }  // namespace
 
 PixelNoise::PixelNoise(const VisionConfig& config)
-    : given_px_(config.pixel_noise_px), adaptive_(config.noise == PixelNoiseModel::kAdaptive) {}
+    : given_px_(config.pixel_noise_px),
+      adaptive_(config.noise == PixelNoiseModel::kAdaptive),
+      ratios_(config.noise_ratios) {}
 
 void PixelNoise::Reset() {
   scale_ = mean_ = 1;

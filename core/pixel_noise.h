@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/time.h"
+#include "core/track_frame.h"
 #include "core/vision_config.h"
 
 namespace alidade {
@@ -21,6 +22,12 @@ class PixelNoise {
 
   /// Standard deviation of one image coordinate [px].
   [[nodiscard]] double px() const { return scale_ * given_px_; }
+  /// The same over that of an observation of ratio 1 (vision.noise_ratios).
+  [[nodiscard]] double Ratio(const TrackObservation& observation) const {
+    return ratios_ ? observation.noise_ratio : 1;
+  }
+  /// That of one observation [px].
+  [[nodiscard]] double Of(const TrackObservation& observation) const { return Ratio(observation) * px(); }
   /// Back to what is given.
   void Reset();
   /// A track of the present frame that passed the gate.
@@ -31,6 +38,7 @@ class PixelNoise {
  private:
   double given_px_;
   bool adaptive_;
+  bool ratios_;
   double scale_ = 1;
   double mean_ = 1;  ///< of v
   double nis_ = 0;   ///< of the present frame

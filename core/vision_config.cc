@@ -9,6 +9,11 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
                        "noise of the tracks: pixel_noise_px as given, or `adaptive`, which raises it slowly "
                        "while the innovations are larger than predicted"},
                       &noise, {{"given", PixelNoiseModel::kGiven}, {"adaptive", PixelNoiseModel::kAdaptive}});
+  visitor.Boolean(
+      {"noise_ratios", "-",
+       "every observation has pixel_noise_px times its own ratio, which the front end or the column "
+       "noise_ratio of tracks.csv gives; false: all have the same noise"},
+      &noise_ratios);
   visitor.Enumeration(
       {"observation_plane", "-",
        "plane of the visual residual: the normalised plane z = 1, the tangent plane of the unit "

@@ -29,6 +29,7 @@ enum class PlaneChoice {
 struct VisionConfig {
   double pixel_noise_px = 1.0;
   PixelNoiseModel noise = PixelNoiseModel::kGiven;
+  bool noise_ratios = false;
   PlaneChoice observation_plane = PlaneChoice::kLens;
   bool rolling_shutter = true;
   double gate_probability = 0.99;

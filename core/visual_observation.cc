@@ -12,6 +12,9 @@ double NormalizedObservation::deviation() const {
 
 bool NormalizeObservation(const CameraModel& camera, const Eigen::Vector2d& pixel, double pixel_noise_px,
                           NormalizedObservation* observation) {
+  if (!(pixel_noise_px > 0) || !std::isfinite(pixel_noise_px)) {
+    return false;
+  }
   Eigen::Matrix2d pixel_jacobian;
   if (camera.plane() == ObservationPlane::kNormalized) {
     if (!camera.Unproject(pixel, &observation->z, &pixel_jacobian)) {

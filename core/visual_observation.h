@@ -25,7 +25,7 @@ struct NormalizedObservation {
 
 /// Pixel -> observation on the camera's plane (CameraModel::plane): the normalised one, or the tangent plane
 /// at the pixel's own ray, where z = 0. Pixel noise is carried through the lens model. False outside its
-/// domain.
+/// domain, or where the noise is not positive and finite.
 bool NormalizeObservation(const CameraModel& camera, const Eigen::Vector2d& pixel, double pixel_noise_px,
                           NormalizedObservation* observation);
 

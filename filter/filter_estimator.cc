@@ -115,7 +115,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
   statistics_.propagate_ms = stopwatch.ElapsedMs();
   stopwatch.Restart();
   statistics_.observations_invalid =
-      tracks_.AddFrame(state_.calibration().camera, pixel_noise_.px(), serial_, frame.observations);
+      tracks_.AddFrame(state_.calibration().camera, pixel_noise_, serial_, frame.observations);
   bool finite = true;
   if (config_.vision.rest_updates) {
     const RestVerdict rest =

@@ -39,7 +39,7 @@ Track TrackStore::TakeSpare(std::int64_t id) {
   return track;
 }
 
-int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
+int TrackStore::AddFrame(const CameraModel& camera, const PixelNoise& noise, int serial,
                          const std::vector<TrackObservation>& observations) {
   int invalid = 0;
   merged_.clear();
@@ -52,7 +52,8 @@ int TrackStore::AddFrame(const CameraModel& camera, double pixel_noise_px, int s
     TrackView view;
     view.serial = serial;
     view.pixel = seen.pixel;
-    if (!NormalizeObservation(camera, seen.pixel, pixel_noise_px, &view.observation)) {
+    view.noise_ratio = noise.Ratio(seen);
+    if (!NormalizeObservation(camera, seen.pixel, noise.Of(seen), &view.observation)) {
       ++invalid;
       continue;
     }
@@ -75,7 +76,8 @@ void TrackStore::Renormalize(const CalibrationLayout& layout, const CameraModel&
   }
   for (Track& track : tracks_) {
     for (TrackView& view : track.views) {
-      static_cast<void>(RenormalizeObservation(camera, view.pixel, pixel_noise_px, &view.observation));
+      static_cast<void>(
+          RenormalizeObservation(camera, view.pixel, pixel_noise_px * view.noise_ratio, &view.observation));
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/calibration.h"
+#include "core/pixel_noise.h"
 #include "core/track_frame.h"
 #include "core/visual_observation.h"
 #include "filter/track_memory.h"
@@ -19,6 +20,7 @@ struct TrackView {
   int serial = 0;  ///< of the clone that saw it
   NormalizedObservation observation;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< what was seen, whatever the intrinsics are
+  double noise_ratio = 1;                           ///< PixelNoise::Ratio
 };
 
 /// A feature track and what the filter has done with it. views.front() is the base.
@@ -42,7 +44,7 @@ class TrackStore {
 
   /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's
   /// domain.
-  int AddFrame(const CameraModel& camera, double pixel_noise_px, int serial,
+  int AddFrame(const CameraModel& camera, const PixelNoise& noise, int serial,
                const std::vector<TrackObservation>& observations);
   /// Observations of all views anew, after the camera's intrinsics have changed. A view that the camera's
   /// domain no longer holds stays as it is. Nothing where the layout has no intrinsics.

@@ -28,11 +28,31 @@ Status CloseFrame(TrackFrame* frame, const std::string& place) {
   return Status::Ok();
 }
 
+Status ReadNoiseRatio(const CsvReader& csv, double* ratio) {
+  constexpr int kColumn = 4;
+  ALIDADE_RETURN_IF_ERROR(csv.ReadReal(kColumn, "noise_ratio", ratio));
+  return *ratio >= 1e-3 && *ratio <= 1e3 ? Status::Ok()
+                                         : csv.Fault(kColumn, "noise_ratio", "a number from 0.001 to 1000");
+}
+
+bool HasNoiseRatios(const std::vector<TrackFrame>& frames) {
+  return std::any_of(frames.begin(), frames.end(), [](const TrackFrame& frame) {
+    return std::any_of(frame.observations.begin(), frame.observations.end(),
+                       [](const TrackObservation& observation) { return observation.noise_ratio != 1; });
+  });
+}
+
 /// Hands every frame of a file to `take`.
 Status ReadFrames(const std::string& path, const std::function<Status(TrackFrame*)>& take) {
-  const std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
-  Result<CsvReader> csv = OpenTable(path, header);
+  std::vector<CsvColumn> header = {{"timestamp", "ns"}, {"track_id", ""}, {"u", "px"}, {"v", "px"}};
+  Result<CsvReader> csv = CsvReader::Open(path);
   ALIDADE_RETURN_IF_ERROR(csv.status());
+  csv->NextRow();
+  const bool with_ratio = csv->columns() > header.size();
+  if (with_ratio) {
+    header.push_back({"noise_ratio"});
+  }
+  ALIDADE_RETURN_IF_ERROR(csv->ExpectHeader(header));
   std::optional<TrackFrame> frame;
   std::string place;
   while (csv->NextRow()) {
@@ -55,6 +75,9 @@ Status ReadFrames(const std::string& path, const std::function<Status(TrackFrame
     }
     ALIDADE_RETURN_IF_ERROR(csv->ReadReal(2, "u", &observation.pixel.x()));
     ALIDADE_RETURN_IF_ERROR(csv->ReadReal(3, "v", &observation.pixel.y()));
+    if (with_ratio) {
+      ALIDADE_RETURN_IF_ERROR(ReadNoiseRatio(*csv, &observation.noise_ratio));
+    }
     frame->observations.push_back(observation);
   }
   if (!frame) {
@@ -101,7 +124,9 @@ Status AddEmptyFrames(const std::string& tracks_path, const std::vector<TimeNs>&
 }
 
 Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv_path) {
-  std::string text = "#timestamp [ns],track_id,u [px],v [px]\n";
+  const bool with_ratio = HasNoiseRatios(tracks);
+  std::string text = "#timestamp [ns],track_id,u [px],v [px]";
+  text += with_ratio ? ",noise_ratio\n" : "\n";
   for (const TrackFrame& frame : tracks) {
     const std::string stamp = std::to_string(frame.stamp_ns) + ",";
     for (const TrackObservation& observation : frame.observations) {
@@ -109,6 +134,9 @@ Status WriteTracks(const std::vector<TrackFrame>& tracks, const std::string& csv
       text += std::to_string(observation.track_id);
       AppendField(observation.pixel.x(), &text);
       AppendField(observation.pixel.y(), &text);
+      if (with_ratio) {
+        AppendField(observation.noise_ratio, &text);
+      }
       text.push_back('\n');
     }
   }

@@ -48,6 +48,7 @@ void Encode(const TrackFrame& frame, ByteWriter* bytes) {
     bytes->Write(observation.track_id);
     bytes->Write(observation.pixel.x());
     bytes->Write(observation.pixel.y());
+    bytes->Write(observation.noise_ratio);
   }
 }
 
@@ -59,6 +60,7 @@ void Decode(ByteReader* bytes, TrackFrame* frame) {
     observation.track_id = bytes->Read<std::int64_t>();
     observation.pixel.x() = bytes->Read<double>();
     observation.pixel.y() = bytes->Read<double>();
+    observation.noise_ratio = bytes->Read<double>();
   }
 }
 

@@ -17,6 +17,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr std::array<int, 8> kAges = {1, 2, 5, 10, 20, 30, 50, 100};
+constexpr std::array<double, 7> kRatios = {0, 1.25, 1.5, 2, 3, 5, 10};
+
+/// Which span of noise_ratio holds it.
+std::size_t RatioSpan(double ratio) {
+  const auto next = std::upper_bound(kRatios.begin(), kRatios.end(), ratio);
+  return static_cast<std::size_t>(std::max(next - kRatios.begin(), std::ptrdiff_t{1}) - 1);
+}
 
 /// Middle of the sorted values at `share`, the lower of two; NaN of none.
 double SortedAt(std::vector<double>* values, double share) {
@@ -55,16 +62,18 @@ double SampsonDistance(const Vector2d& first, const Vector2d& second, const Pose
   return square > 0 ? std::abs(second.homogeneous().dot(line_2)) / std::sqrt(square) : 0;
 }
 
-/// Errors of the observations, together and by age.
+/// Errors of the observations, together, by age and by ratio.
 class ErrorBook {
  public:
-  void Add(int age, double error_px) {
+  void Add(int age, double ratio, double error_px) {
     all_.push_back(error_px);
+    by_ratio_[RatioSpan(ratio)].push_back(error_px);
     if (std::find(kAges.begin(), kAges.end(), age) != kAges.end()) {
       by_age_[age].push_back(error_px);
     }
   }
   [[nodiscard]] ErrorSpread All() const { return SpreadOf(all_); }
+  [[nodiscard]] ErrorSpread InSpan(std::size_t span) const { return SpreadOf(by_ratio_[span]); }
   [[nodiscard]] ErrorSpread At(int age) const {
     const auto found = by_age_.find(age);
     return SpreadOf(found == by_age_.end() ? std::vector<double>() : found->second);
@@ -73,6 +82,7 @@ class ErrorBook {
  private:
   std::vector<double> all_;
   std::map<int, std::vector<double>> by_age_;
+  std::array<std::vector<double>, kRatios.size()> by_ratio_;
 };
 
 /// Walks the frames in their order.
@@ -88,7 +98,7 @@ class Scorer {
       if (began) {
         life.beginning = Begin({index, observation.pixel.y()}, observation.pixel);
       } else {
-        Compare({index, observation.pixel.y()}, life.beginning, observation.pixel);
+        Compare({index, observation.pixel.y()}, life.beginning, observation);
       }
       moving_ += life.beginning.point.has_value() && life.beginning.point->moving >= 0 ? 1 : 0;
       life.last_frame = index;
@@ -156,12 +166,15 @@ class Scorer {
     return true;
   }
 
-  void Compare(const ExposureTime& time, const Beginning& beginning, const Vector2d& pixel) {
+  void Compare(const ExposureTime& time, const Beginning& beginning, const TrackObservation& observation) {
+    const Vector2d& pixel = observation.pixel;
+    const double ratio = observation.noise_ratio;
     const int age = static_cast<int>(time.frame - beginning.time.frame);
     ++observations_[age];
+    ++in_span_[RatioSpan(ratio)];
     Vector2d expected;
     if (beginning.point.has_value() && Expect(beginning, time, &expected)) {
-      corner_.Add(age, (pixel - expected).norm());
+      corner_.Add(age, ratio, (pixel - expected).norm());
     }
     const std::optional<Pose> T_WC = PoseAt(time);
     Vector2d normalized;
@@ -170,7 +183,8 @@ class Scorer {
     }
     const Pose T_21 = T_WC->Inverse() * *beginning.T_WC;
     if (T_21.translation.norm() >= TrackScore::kMinBaselineM) {
-      epipolar_.Add(age, camera_.mean_focal_px() * SampsonDistance(*beginning.normalized, normalized, T_21));
+      epipolar_.Add(age, ratio,
+                    camera_.mean_focal_px() * SampsonDistance(*beginning.normalized, normalized, T_21));
     }
   }
 
@@ -178,6 +192,7 @@ class Scorer {
   const TrackTruth& truth_;
   std::map<std::int64_t, Life> lives_;
   std::map<int, std::size_t> observations_;  ///< by age
+  std::array<std::size_t, kRatios.size()> in_span_{};
   double coverage_ = 0;
   std::size_t moving_ = 0;  ///< observations of what moves
   ErrorBook epipolar_, corner_;
@@ -210,6 +225,9 @@ TrackScore Scorer::Summarize(const std::vector<TrackFrame>& frames) const {
     const auto found = observations_.find(age);
     score.ages.push_back(
         {age, found == observations_.end() ? 0 : found->second, epipolar_.At(age), corner_.At(age)});
+  }
+  for (std::size_t span = 0; span < kRatios.size(); ++span) {
+    score.ratios.push_back({kRatios[span], in_span_[span], epipolar_.InSpan(span), corner_.InSpan(span)});
   }
   return score;
 }

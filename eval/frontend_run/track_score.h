@@ -26,6 +26,14 @@ struct AgeScore {
   ErrorSpread corner;
 };
 
+/// Observations of one span of noise_ratio, up to that of the next.
+struct RatioScore {
+  double from = 0;
+  std::size_t observations = 0;
+  ErrorSpread epipolar;
+  ErrorSpread corner;
+};
+
 /// Quality of the tracks of one sequence.
 ///
 /// life: the number of frames in which a track was observed. Every track that started counts; one that is
@@ -61,9 +69,10 @@ struct TrackScore {
   bool has_poses = false;    ///< epipolar is meaningful
   bool has_surface = false;  ///< corner and moving_share are meaningful
   double moving_share = 0;
-  ErrorSpread epipolar;        ///< at every age above zero
-  ErrorSpread corner;          ///< likewise
-  std::vector<AgeScore> ages;  ///< 1, 2, 5, 10, 20, 30, 50, 100
+  ErrorSpread epipolar;            ///< at every age above zero
+  ErrorSpread corner;              ///< likewise
+  std::vector<AgeScore> ages;      ///< 1, 2, 5, 10, 20, 30, 50, 100
+  std::vector<RatioScore> ratios;  ///< from 0, 1.25, 1.5, 2, 3, 5, 10; at every age above zero
 };
 
 /// A point of a surface.

@@ -40,12 +40,19 @@ std::string ScoreJson(const TrackScore& score) {
                {"epipolar", score.has_poses ? SpreadJson(score.epipolar) : Json(nullptr)},
                {"corner", score.has_surface ? SpreadJson(score.corner) : Json(nullptr)},
                {"moving_share", score.has_surface ? NumberJson(score.moving_share) : Json(nullptr)},
-               {"ages", Json::array()}};
+               {"ages", Json::array()},
+               {"noise_ratios", Json::array()}};
+  const auto add = [&](const char* name, Json row, const auto& part) {
+    row["observations"] = part.observations;
+    row["epipolar"] = score.has_poses ? SpreadJson(part.epipolar) : Json(nullptr);
+    row["corner"] = score.has_surface ? SpreadJson(part.corner) : Json(nullptr);
+    json[name].push_back(std::move(row));
+  };
   for (const AgeScore& age : score.ages) {
-    Json row = {{"age", age.age}, {"observations", age.observations}};
-    row["epipolar"] = score.has_poses ? SpreadJson(age.epipolar) : Json(nullptr);
-    row["corner"] = score.has_surface ? SpreadJson(age.corner) : Json(nullptr);
-    json["ages"].push_back(std::move(row));
+    add("ages", {{"age", age.age}}, age);
+  }
+  for (const RatioScore& ratio : score.ratios) {
+    add("noise_ratios", {{"from", ratio.from}}, ratio);
   }
   return json.dump(2) + "\n";
 }
@@ -75,10 +82,16 @@ std::string DescribeScore(const TrackScore& score) {
             (score.has_surface ? SpreadText("corner", score.corner) : "") +
             (score.moving_share > 0 ? Format("; %.1f %% on what moves", 100 * score.moving_share) : "") +
             "\n";
+    const auto add = [&](const std::string& name, const auto& part) {
+      text += name + Format(": %6zu observations", part.observations) +
+              SpreadText("epipolar", part.epipolar) +
+              (score.has_surface ? SpreadText("corner", part.corner) : "") + "\n";
+    };
     for (const AgeScore& age : score.ages) {
-      text += Format("  age %3d: %6zu observations", age.age, age.observations) +
-              SpreadText("epipolar", age.epipolar) +
-              (score.has_surface ? SpreadText("corner", age.corner) : "") + "\n";
+      add(Format("  age %3d", age.age), age);
+    }
+    for (const RatioScore& ratio : score.ratios) {
+      add(Format("  noise_ratio from %5.2f", ratio.from), ratio);
     }
   }
   return text;

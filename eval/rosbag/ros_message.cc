@@ -80,7 +80,9 @@ const std::map<std::string, std::string>& Fields() {
       {"gvins/LocalSensorExternalTrigger",
        "std_msgs/Header header\nuint32 trigger_id\nuint32 event_id\ntime timestamp_host\n"},
       // Ours: what a folder holds and no standard message does.
-      {"alidade/Tracks", "std_msgs/Header header\nint64[] track_id\nfloat64[] u_px\nfloat64[] v_px\n"},
+      {"alidade/Tracks",
+       "std_msgs/Header header\nint64[] track_id\nfloat64[] u_px\nfloat64[] v_px\n"
+       "float64[] noise_ratio\n"},
       {"alidade/Position", "std_msgs/Header header\ngeometry_msgs/Vector3 position\nfloat64[9] covariance\n"},
       {"alidade/State",
        // Row-major: a quaternion would round the rotation.

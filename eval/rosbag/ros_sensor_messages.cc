@@ -147,15 +147,17 @@ std::string EncodeTracks(const TrackFrame& frame) {
   ByteWriter out;
   PutRosHeader(frame.stamp_ns, &out);
   std::vector<std::int64_t> ids;
-  std::vector<double> u, v;
+  std::vector<double> u, v, noise_ratios;
   for (const TrackObservation& observation : frame.observations) {
     ids.push_back(observation.track_id);
     u.push_back(observation.pixel.x());
     v.push_back(observation.pixel.y());
+    noise_ratios.push_back(observation.noise_ratio);
   }
   out.Array(ids);
   out.Array(u);
   out.Array(v);
+  out.Array(noise_ratios);
   return std::move(out.bytes());
 }
 
@@ -166,15 +168,19 @@ std::optional<TrackFrame> DecodeTracks(std::string_view bytes) {
   const std::vector<std::int64_t> ids = in.Array<std::int64_t>();
   const std::vector<double> u = in.Array<double>();
   const std::vector<double> v = in.Array<double>();
-  if (!in.ok() || u.size() != ids.size() || v.size() != ids.size()) {
+  // Bags of earlier versions have none.
+  const std::vector<double> noise_ratios =
+      in.left() > 0 ? in.Array<double>() : std::vector<double>(ids.size(), 1);
+  if (!in.ok() || u.size() != ids.size() || v.size() != ids.size() || noise_ratios.size() != ids.size()) {
     return std::nullopt;
   }
   for (std::size_t i = 0; i < ids.size(); ++i) {
     // Sorted by id, each once: what a frame promises.
-    if (ids[i] < 0 || (i > 0 && ids[i] <= ids[i - 1]) || !std::isfinite(u[i]) || !std::isfinite(v[i])) {
+    if (ids[i] < 0 || (i > 0 && ids[i] <= ids[i - 1]) || !std::isfinite(u[i]) || !std::isfinite(v[i]) ||
+        !(noise_ratios[i] > 0) || !std::isfinite(noise_ratios[i])) {
       return std::nullopt;
     }
-    frame.observations.push_back({ids[i], {u[i], v[i]}});
+    frame.observations.push_back({ids[i], {u[i], v[i]}, noise_ratios[i]});
   }
   return frame;
 }

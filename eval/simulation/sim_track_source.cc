@@ -1,6 +1,7 @@
 #include "eval/simulation/sim_track_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace alidade {
@@ -20,10 +21,12 @@ TrackSource::TrackSource(const SimulatorConfig& config, const CameraModel& camer
       loss_(seed, camera_name + ".track_loss"),
       selection_(seed, camera_name + ".selection"),
       noise_(seed, camera_name + ".pixel_noise"),
+      ratio_(seed, camera_name + ".noise_ratio"),
       faults_(config, seed, camera_name),
       loss_draw_(landmarks.size()),
       priority_(landmarks.size()),
-      noise_px_(landmarks.size()) {}
+      noise_px_(landmarks.size()),
+      noise_ratio_(landmarks.size(), 1) {}
 
 TrackFrame TrackSource::Observe(TimeNs stamp_ns, const ImageExposure& exposure,
                                 const std::vector<TrackedPoint>& elsewhere) {
@@ -56,8 +59,12 @@ void TrackSource::Deal() {
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     loss_draw_[i] = loss_.Uniform();
     priority_[i] = selection_.Uniform();
-    noise_px_[i].x() = config_.pixel_noise_px * noise_.Normal();
-    noise_px_[i].y() = config_.pixel_noise_px * noise_.Normal();
+    if (config_.noise_ratio_spread > 0) {
+      noise_ratio_[i] = std::exp(config_.noise_ratio_spread * ratio_.Normal());
+    }
+    const double deviation_px = config_.pixel_noise_px * noise_ratio_[i];
+    noise_px_[i].x() = deviation_px * noise_.Normal();
+    noise_px_[i].y() = deviation_px * noise_.Normal();
   }
 }
 
@@ -89,7 +96,7 @@ void TrackSource::TakeOver(const std::vector<TrackedPoint>& elsewhere, TrackFram
     const std::optional<Eigen::Vector2d> pixel = See(point.p_W);
     is_tracked_[landmark] = true;
     if (pixel.has_value()) {
-      frame->observations.push_back({point.id, *pixel + noise_px_[landmark]});
+      frame->observations.push_back({point.id, *pixel + noise_px_[landmark], noise_ratio_[landmark]});
     }
   }
 }
@@ -217,7 +224,7 @@ void TrackSource::MeasureTracks(TrackFrame* frame) {
                     : faults_.AnyPixel(track.landmark, frame_, camera_.width_px(), camera_.height_px());
       }
     }
-    frame->observations.push_back({track.id, pixel});
+    frame->observations.push_back({track.id, pixel, noise_ratio_[static_cast<std::size_t>(track.landmark)]});
   }
   if (to_swap.size() > 1) {
     for (const std::size_t i : to_swap) {

@@ -78,6 +78,7 @@ class TrackSource {
   RandomStream loss_;
   RandomStream selection_;
   RandomStream noise_;
+  RandomStream ratio_;
   FaultSource faults_;
   // Of the frame at hand.
   int frame_ = -1;
@@ -86,6 +87,7 @@ class TrackSource {
   Pose T_CW_;  ///< when the middle row is exposed
   std::vector<double> loss_draw_, priority_;
   std::vector<Eigen::Vector2d> noise_px_;
+  std::vector<double> noise_ratio_;
   std::vector<std::optional<Eigen::Vector2d>> pixels_;  ///< noise-free; empty for a landmark out of view
   std::vector<bool> is_tracked_;
   std::vector<LiveTrack> live_;  ///< by id

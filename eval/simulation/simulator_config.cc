@@ -90,6 +90,11 @@ void DescribeMoreCameras(SimulatorConfig* config, ConfigVisitor& visitor) {
 void DescribeTracks(SimulatorConfig* config, ConfigVisitor& visitor) {
   visitor.Real({"pixel_noise_px", "px", "standard deviation of each image coordinate of an observation"},
                &config->pixel_noise_px, 0, 100);
+  visitor.Real(
+      {"noise_ratio_spread", "-",
+       "the noise of each observation is pixel_noise_px times a ratio of its own, whose logarithm has "
+       "this standard deviation; the ratios are in the tracks"},
+      &config->noise_ratio_spread, 0, 2);
   visitor.Integer({"max_features", "-", "largest number of tracks in a frame"}, &config->max_features, 1,
                   10000);
   visitor.Real({"mean_track_loss", "-",

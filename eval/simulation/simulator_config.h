@@ -89,6 +89,7 @@ struct SimulatorConfig : SimMotionConfig, SimSensorConfig {
   double camera_turn_rad = 0;  ///< and turned to the right by this much
 
   double pixel_noise_px = 1;
+  double noise_ratio_spread = 0;
   int max_features = 150;
   /// Probability that a visible track is lost from one frame to the next. Sets the mean length of tracks: p
   /// alone ends a track after 1 / p frames on average (0.125: 8 frames), leaving the view ends it earlier.

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/format.h"
+#include "core/pixel_noise.h"
 
 namespace alidade {
 namespace {
@@ -35,11 +36,11 @@ std::vector<SharedTrack> CollectTracks(const EstimatorConfig& config, const Came
                                        const std::deque<TrackFrame>& frames,
                                        const std::vector<size_t>& selected) {
   std::map<std::int64_t, SharedTrack> by_id;
+  const PixelNoise noise(config.vision);
   for (size_t k = 0; k < selected.size(); ++k) {
     for (const TrackObservation& seen : frames[selected[k]].observations) {
       NormalizedObservation observation;
-      if (seen.pixel.allFinite() &&
-          NormalizeObservation(camera, seen.pixel, config.vision.pixel_noise_px, &observation)) {
+      if (seen.pixel.allFinite() && NormalizeObservation(camera, seen.pixel, noise.Of(seen), &observation)) {
         SharedTrack& track = by_id[seen.track_id];
         track.track_id = seen.track_id;
         track.frames.push_back(static_cast<int>(k));

@@ -1,12 +1,36 @@
 #include "frontend/tracking/feature_track.h"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <utility>
 
 #include "core/bearing_plane.h"
 #include "core/turned_ray.h"
 
 namespace alidade {
+namespace {
+
+// Smaller errors count little beside those of lens and calibration.
+constexpr double kUsualErrorPx = 0.1;
+// Of Lucas-Kanade alone, after a backward pass.
+constexpr double kUnconfirmedErrorPx = 0.5;
+// Such an observation says nothing.
+constexpr double kMostNoiseRatio = 100;
+
+/// What makes two patches differ is not white noise but other depths, blur and light, and the more they
+/// differ, the more of it shifts the match.
+double MatchErrorPx(double deviation_px) {
+  constexpr double kFactor = 4;
+  constexpr double kGrowthPerPx = 25;
+  return kFactor * deviation_px * (1 + kGrowthPerPx * deviation_px);
+}
+
+}  // namespace
+
+double FeatureTrack::NoiseRatio() const {
+  const double ratio = std::hypot(1, match_error_px / kUsualErrorPx, template_error_px / kUsualErrorPx);
+  return ratio < kMostNoiseRatio ? ratio : kMostNoiseRatio;
+}
 
 std::vector<cv::Point2f> Pixels(const std::vector<FeatureTrack>& tracks) {
   std::vector<cv::Point2f> pixels;
@@ -22,7 +46,7 @@ TrackFrame ToFrame(TimeNs stamp_ns, const std::vector<FeatureTrack>& tracks) {
   frame.stamp_ns = stamp_ns;
   frame.observations.reserve(tracks.size());
   for (const FeatureTrack& track : tracks) {
-    frame.observations.push_back({track.id, ToVector(track.pixel)});
+    frame.observations.push_back({track.id, ToVector(track.pixel), track.NoiseRatio()});
   }
   return frame;
 }
@@ -85,6 +109,8 @@ void BeginTemplate(const cv::Mat& image, const FrontendConfig& config, const cv:
                      ? PatchTemplate(image, centre, config.template_px)
                      : PatchTemplate();
   track->affine = Eigen::Matrix2f::Identity();
+  track->template_error_px = std::hypot(track->template_error_px, track->match_error_px);
+  track->match_error_px = 0;
 }
 
 bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eigen::Matrix2f& deformation,
@@ -92,8 +118,10 @@ bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eig
   TemplateMatch match{
       .centre = {pixel->x, pixel->y}, .affine = deformation * track->affine, .correlation = 0};
   if (!track->patch.Align(image, &match) || static_cast<double>(match.correlation) < config.min_correlation) {
+    track->match_error_px = kUnconfirmedErrorPx;
     return false;
   }
+  track->match_error_px = MatchErrorPx(match.deviation_px);
   *pixel = {match.centre.x(), match.centre.y()};
   track->affine = match.affine;
   if (PatchTemplate::IsWornOut(match.affine) &&

@@ -21,6 +21,12 @@ struct FeatureTrack {
   int length = 1;                                        ///< images it was seen in
   PatchTemplate patch;                                   ///< what it looked like when it began
   Eigen::Matrix2f affine = Eigen::Matrix2f::Identity();  ///< how that lies in the last image
+  // Expected errors of a coordinate, as root mean squares [px]; 0 without templates.
+  double match_error_px = 0;     ///< in the last image, from where the patch began
+  double template_error_px = 0;  ///< of that place, from where the track began
+
+  /// TrackObservation's, in the last image: sqrt(1 + (error / kUsualErrorPx)^2), at most 100.
+  [[nodiscard]] double NoiseRatio() const;
 };
 
 [[nodiscard]] inline cv::Point2f ToPoint(const Eigen::Vector2d& pixel) {
@@ -48,13 +54,15 @@ int Keep(const std::vector<bool>& marked, std::vector<FeatureTrack>* tracks);
 [[nodiscard]] Eigen::Matrix2f DeformationBy(const std::optional<Eigen::Matrix3d>& R_C1C0,
                                             const CameraModel& camera, const FeatureTrack& track);
 
-/// Takes the patch around `pixel` as the track's template; none where the image ends too near.
+/// Takes the patch around `pixel` as the track's template; none where the image ends too near. The track's
+/// error there becomes one of the template.
 void BeginTemplate(const cv::Mat& image, const FrontendConfig& config, const cv::Point2f& pixel,
                    FeatureTrack* track);
 
 /// Matches a track that went to `pixel` of `image` with its template, deformed by `deformation` since the
 /// last image: improves pixel and affine, and begins a new template where the old one is worn out. False when
-/// the image does not look like the template (frontend.min_correlation) or there is none; pixel then stays.
+/// the image does not look like the template (frontend.min_correlation) or there is none; pixel then stays,
+/// as Lucas-Kanade alone found it.
 bool MatchTemplate(const cv::Mat& image, const FrontendConfig& config, const Eigen::Matrix2f& deformation,
                    FeatureTrack* track, cv::Point2f* pixel);
 

@@ -170,11 +170,11 @@ void KltTracker::Implementation::Follow(const std::optional<Matrix3d>& R_C1C0, d
     alive = Confirm(R_C1C0, std::move(alive), &pixels);
   }
   std::vector<BearingPair> pairs;
+  const int reach_px = config.window_px / 2;
   for (size_t i = 0; i < tracks.size(); ++i) {
     BearingPair pair{.first = tracks[i].ray, .second = Vector3d::UnitZ()};
     const Vector2d pixel = ToVector(pixels[i]);
-    alive[i] = alive[i] && rig.camera.InImage(pixel, config.window_px / 2) &&
-               PixelRay(rig.camera, pixel, &pair.second);
+    alive[i] = alive[i] && rig.camera.InImage(pixel, reach_px) && PixelRay(rig.camera, pixel, &pair.second);
     if (alive[i]) {
       tracks[i].pixel = pixels[i];
       tracks[i].ray = pair.second;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace alidade {
@@ -162,6 +163,9 @@ bool PatchTemplate::Align(const cv::Mat& image, TemplateMatch* match) const {
       break;
     }
   }
+  // Mean square of the difference of two patches of unit variance, over both coordinates of the centre.
+  const float difference = 2 * std::max(0.0F, 1 - now.correlation);
+  now.deviation_px = std::sqrt(difference * 0.5F * inverse_.topLeftCorner<2, 2>().trace());
   *match = now;
   return true;
 }

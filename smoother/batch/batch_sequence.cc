@@ -6,6 +6,7 @@
 
 #include "core/imu_propagation.h"
 #include "core/observation_plane.h"
+#include "core/pixel_noise.h"
 #include "smoother/factors/imu_factor.h"
 #include "smoother/factors/measurement_factor.h"
 #include "smoother/tracks/track_landmark.h"
@@ -136,9 +137,10 @@ void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& fra
 }
 
 void BatchSequence::AddObservations(const TrackFrame& frame, const WindowFrame& node) {
+  const PixelNoise noise(config_.vision);
   for (const TrackObservation& measured : frame.observations) {
     NormalizedObservation observation;
-    if (!NormalizeObservation(rig_.camera, measured.pixel, config_.vision.pixel_noise_px, &observation)) {
+    if (!NormalizeObservation(rig_.camera, measured.pixel, noise.Of(measured), &observation)) {
       ++invalid_.back();
       continue;
     }

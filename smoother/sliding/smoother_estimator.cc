@@ -107,7 +107,7 @@ Status SmootherEstimator::AddFrame(const TrackFrame& frame) {
   window_.newest().repeated = frame.repeated;
   if (!frame.repeated) {
     statistics_.observations_invalid =
-        window_.AddObservations(camera().camera, pixel_noise_.px(), frame.observations);
+        window_.AddObservations(camera().camera, pixel_noise_, frame.observations);
     window_.Prune();
     DetectRest(frame);
   }

@@ -41,7 +41,7 @@ WindowFrame& Window::AddFrame(std::unique_ptr<WindowFrame> frame) {
   return *frames_.back();
 }
 
-int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
+int Window::AddObservations(const CameraModel& camera, const PixelNoise& noise,
                             const std::vector<TrackObservation>& observations) {
   int invalid = 0;
   for (auto& [id, track] : tracks_) {
@@ -49,7 +49,8 @@ int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
   }
   for (const TrackObservation& measured : observations) {
     NormalizedObservation observation;
-    if (!NormalizeObservation(camera, measured.pixel, pixel_noise_px, &observation)) {
+    const double noise_px = noise.Of(measured);
+    if (!NormalizeObservation(camera, measured.pixel, noise_px, &observation)) {
       ++invalid;
       continue;
     }
@@ -60,7 +61,7 @@ int Window::AddObservations(const CameraModel& camera, double pixel_noise_px,
     }
     track.id = measured.track_id;
     track.alive = true;
-    track.views.push_back({frames_.back().get(), observation, measured.pixel, 1 / pixel_noise_px});
+    track.views.push_back({frames_.back().get(), observation, measured.pixel, 1 / noise_px});
   }
   return invalid;
 }

@@ -10,6 +10,7 @@
 #include "core/body_motion.h"
 #include "core/clock_state.h"
 #include "core/landmark_solver.h"
+#include "core/pixel_noise.h"
 #include "core/preintegration.h"
 #include "core/rest_model.h"
 #include "core/track_frame.h"
@@ -111,7 +112,7 @@ class Window {
   /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's
   /// domain. Not for a frame without an image of its own, as that of a measurement: it neither ends nor
   /// extends tracks.
-  int AddObservations(const CameraModel& camera, double pixel_noise_px,
+  int AddObservations(const CameraModel& camera, const PixelNoise& noise,
                       const std::vector<TrackObservation>& observations);
   /// UpdateRates of every frame.
   void UpdateRates();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace alidade {
 namespace {
 
@@ -16,12 +18,13 @@ std::vector<TrackObservation> Seen(std::initializer_list<std::int64_t> ids) {
 class TrackStoreTest : public ::testing::Test {
  protected:
   CameraModel camera_;
+  PixelNoise noise_{{.noise_ratios = true}};
   TrackStore store_;
 };
 
 TEST_F(TrackStoreTest, MergesById) {
-  EXPECT_EQ(store_.AddFrame(camera_, 1, 0, Seen({3, 7})), 0);
-  EXPECT_EQ(store_.AddFrame(camera_, 1, 1, Seen({1, 3, 9})), 0);
+  EXPECT_EQ(store_.AddFrame(camera_, noise_, 0, Seen({3, 7})), 0);
+  EXPECT_EQ(store_.AddFrame(camera_, noise_, 1, Seen({1, 3, 9})), 0);
   ASSERT_EQ(store_.tracks().size(), 4u);
   EXPECT_EQ(store_.tracks()[0].id, 1);
   EXPECT_EQ(store_.tracks()[1].id, 3);
@@ -30,18 +33,18 @@ TEST_F(TrackStoreTest, MergesById) {
 }
 
 TEST_F(TrackStoreTest, EndedTracksLeave) {
-  store_.AddFrame(camera_, 1, 0, Seen({3, 7}));
-  store_.AddFrame(camera_, 1, 1, Seen({7}));
+  store_.AddFrame(camera_, noise_, 0, Seen({3, 7}));
+  store_.AddFrame(camera_, noise_, 1, Seen({7}));
   store_.RemoveEnded(1);
   ASSERT_EQ(store_.tracks().size(), 1u);
   EXPECT_EQ(store_.tracks()[0].id, 7);
-  store_.AddFrame(camera_, 1, 2, Seen({8}));
+  store_.AddFrame(camera_, noise_, 2, Seen({8}));
   EXPECT_EQ(store_.tracks().back().views.size(), 1u) << "re-used storage starts empty";
 }
 
 TEST_F(TrackStoreTest, ARemovedBaseTakesItsRoundsAlong) {
-  store_.AddFrame(camera_, 1, 0, Seen({3}));
-  store_.AddFrame(camera_, 1, 1, Seen({3}));
+  store_.AddFrame(camera_, noise_, 0, Seen({3}));
+  store_.AddFrame(camera_, noise_, 1, Seen({3}));
   store_.tracks()[0].base_rounds = 2;
   store_.RemoveClone(1);
   EXPECT_EQ(store_.tracks()[0].base_rounds, 2);
@@ -52,8 +55,26 @@ TEST_F(TrackStoreTest, ARemovedBaseTakesItsRoundsAlong) {
 
 TEST_F(TrackStoreTest, CountsWhatTheLensCannotSee) {
   const std::vector<TrackObservation> far = {{1, Eigen::Vector2d(1e6, 0)}, {2, Eigen::Vector2d(0, 0)}};
-  EXPECT_EQ(store_.AddFrame(camera_, 1, 0, far), 1);
+  EXPECT_EQ(store_.AddFrame(camera_, noise_, 0, far), 1);
   ASSERT_EQ(store_.tracks().size(), 1u);
+}
+
+TEST_F(TrackStoreTest, ANoiseRatioDividesTheWeights) {
+  const std::vector<TrackObservation> seen = {{1, Eigen::Vector2d(3, 4), 1}, {2, Eigen::Vector2d(3, 4), 2.5}};
+  store_.AddFrame(camera_, noise_, 0, seen);
+  ASSERT_EQ(store_.tracks().size(), 2u);
+  const Eigen::Matrix2d plain = store_.tracks()[0].views[0].observation.sqrt_information;
+  EXPECT_EQ(2.5 * store_.tracks()[1].views[0].observation.sqrt_information, plain);
+  store_.Clear();
+  store_.AddFrame(camera_, PixelNoise(VisionConfig()), 1, seen);
+  EXPECT_EQ(store_.tracks()[1].views[0].observation.sqrt_information, plain);
+}
+
+TEST_F(TrackStoreTest, ANoiseRatioThatIsNoneCountsAsInvalid) {
+  const Eigen::Vector2d pixel(3, 4);
+  EXPECT_EQ(
+      store_.AddFrame(camera_, noise_, 0, {{1, pixel, 0}, {2, pixel, -1}, {3, pixel, NAN}, {4, pixel, 1}}),
+      3);
 }
 
 }  // namespace

@@ -30,8 +30,7 @@ class TermSolution {
       if (window_.size() == 1) {
         MakePrior(data, config);
       }
-      EXPECT_EQ(window_.AddObservations(data.rig.camera, config.vision.pixel_noise_px, frame.observations),
-                0);
+      EXPECT_EQ(window_.AddObservations(data.rig.camera, PixelNoise(config.vision), frame.observations), 0);
       AttachMeasurements(data, config.fix, &window_.newest());
     }
     window_.UpdateRates();

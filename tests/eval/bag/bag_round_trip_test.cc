@@ -75,8 +75,8 @@ TEST_F(BagRoundTrip, KeepsTracksTruthAndGnss) {
 
 // The measurements of a log alone, as an external program gets them.
 TEST_F(BagRoundTrip, KeepsADatasetThatWasALog) {
-  const Dataset before =
-      Simulated("figure8_short", {"duration_s=2", "path_m=2.6", "max_features=20", "camera_count=2"});
+  const Dataset before = Simulated("figure8_short", {"duration_s=2", "path_m=2.6", "max_features=20",
+                                                     "camera_count=2", "noise_ratio_spread=0.5"});
   ASSERT_EQ(before.extra_cameras.size(), 1u);
   Dataset of_log = DatasetOf(MeasurementsOf(before));
   of_log.truth = before.truth;

@@ -95,6 +95,30 @@ TEST(TrackScore, GIVEN_a_drift_THEN_errors_grow_with_age_as_it_does) {
   EXPECT_LT(AtAge(score, 10).epipolar.median_px, 0.5);
 }
 
+TEST(TrackScore, GIVEN_noise_ratios_THEN_errors_are_told_by_their_spans) {
+  std::vector<TrackFrame> frames = WallTracks(12, Vector2d::Zero());
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    for (TrackObservation& observation : frames[k].observations) {
+      if (observation.track_id < 4) {
+        observation.noise_ratio = 2.5;
+        observation.pixel.x() += 0.3;
+      } else if (observation.track_id == 4) {
+        observation.noise_ratio = 0.5;
+      }
+    }
+  }
+  const TrackScore score = ScoreTracks(frames, Camera(), WallTruth(), {});
+  const auto span = [&](double from) {
+    return *std::find_if(score.ratios.begin(), score.ratios.end(),
+                         [from](const RatioScore& ratio) { return ratio.from == from; });
+  };
+  EXPECT_EQ(span(2).observations, 4U * 11);
+  EXPECT_NEAR(span(2).corner.median_px, 0.3, 1e-6);
+  EXPECT_EQ(span(0).observations, 8U * 11) << "with those below 1.25, and those below 1";
+  EXPECT_LT(span(0).corner.p95_px, 1e-6);
+  EXPECT_EQ(span(5).observations, 0U);
+}
+
 TEST(TrackScore, GIVEN_a_rolling_shutter_THEN_each_row_is_judged_at_its_own_time) {
   // A row is exposed 0.4 / 480 of a frame after the one above it.
   constexpr double kDelay = 0.4 / 480;

@@ -48,6 +48,26 @@ TEST(SimCameraTest, LandmarksReprojectWithThePixelNoise) {
   ExpectReprojectionStd(Scene(config), 2.0);
 }
 
+TEST(SimCameraTest, AnObservationHasItsOwnNoiseRatio) {
+  SimulatorConfig config;
+  config.duration_s = 60;
+  config.path_m = 78;
+  config.noise_ratio_spread = 0.7;
+  const Scene scene(config);
+  double squares = 0, logs = 0, square_logs = 0, count = 0;
+  for (const TrackFrame& frame : scene.tracks.frames) {
+    for (const TrackObservation& observation : frame.observations) {
+      squares += (scene.ErrorOf(frame, observation) / observation.noise_ratio).squaredNorm();
+      logs += std::log(observation.noise_ratio);
+      square_logs += std::pow(std::log(observation.noise_ratio), 2);
+      count += 1;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares / (2 * count)) / config.pixel_noise_px, 1, 3 / std::sqrt(4 * count));
+  EXPECT_NEAR(logs / count, 0, 4 * 0.7 / std::sqrt(count));
+  EXPECT_NEAR(std::sqrt(square_logs / count), 0.7, 0.01);
+}
+
 TEST(SimCameraTest, TracksHaveTheLengthAndNumberTheBenchWasTunedFor) {
   const Scene scene{SimulatorConfig()};
   std::map<std::int64_t, int> lengths;

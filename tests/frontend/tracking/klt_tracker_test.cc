@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <utility>
@@ -62,6 +63,51 @@ TEST(KltTracker, FollowsATranslatedImageToATenthOfAPixel) {
   EXPECT_GE(errors.size(), 120U);
   EXPECT_LT(Median(errors), 0.1);
   EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.7);
+}
+
+// GIVEN a near surface that moves in front of a far one at rest, WHEN a patch shows both THEN its observation
+// gets a larger noise ratio, and has a larger error.
+TEST(KltTracker, ObservationsOfTwoSurfacesHaveALargerNoiseRatio) {
+  KltTracker tracker(WithoutImu(), TestRig());
+  const double edge_px = kWidthPx / 2;
+  const Vector2d step(0.8, 0.3);
+  std::map<std::int64_t, Vector2d> began;
+  double sure_px = 0, unsure_px = 0, sure = 0, unsure = 0;
+  for (int k = 0; k < 8; ++k) {
+    const double shift = k * step.x();
+    const TrackFrame frame =
+        MustTrack(&tracker, k * kFrameNs, Render(kWidthPx, kHeightPx, [&](const Vector2d& u) -> Vector2d {
+          return u.x() < edge_px + shift ? u - k * step : Vector2d(u.x() + 5000, u.y());
+        }));
+    for (const TrackObservation& seen : frame.observations) {
+      const auto [place, is_new] = began.try_emplace(seen.track_id, seen.pixel - k * step);
+      if (is_new) {
+        EXPECT_EQ(seen.noise_ratio, 1);
+      } else if (place->second.x() < edge_px) {
+        const bool is_sure = seen.noise_ratio < 1.5;
+        (is_sure ? sure_px : unsure_px) += (seen.pixel - k * step - place->second).squaredNorm();
+        (is_sure ? sure : unsure) += 1;
+      }
+    }
+  }
+  ASSERT_GT(sure, 300);
+  ASSERT_GT(unsure, 5);
+  EXPECT_GT(sure, 10 * unsure);
+  EXPECT_GT(std::sqrt(unsure_px / unsure), 3 * std::sqrt(sure_px / sure));
+}
+
+TEST(KltTracker, WithoutTemplatesAllNoiseRatiosAreOne) {
+  FrontendConfig config = WithoutImu();
+  config.template_px = 0;
+  KltTracker tracker(config, TestRig());
+  for (int k = 0; k < 4; ++k) {
+    const TrackFrame frame = MustTrack(
+        &tracker, k * kFrameNs,
+        Render(kWidthPx, kHeightPx, [k](const Vector2d& u) -> Vector2d { return u - k * Vector2d(2, 1); }));
+    for (const TrackObservation& seen : frame.observations) {
+      EXPECT_EQ(seen.noise_ratio, 1);
+    }
+  }
 }
 
 TEST(KltTracker, FollowsAHomographyOverTenFrames) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/frontend_config.h"
+#include "frontend/tracking/feature_track.h"
 #include "tests/frontend/tracking/synthetic_scene.h"
 
 namespace alidade {
@@ -79,6 +80,34 @@ TEST(PatchTemplate, WhatLiesFarFromTheCornerCountsLittle) {
     sum += (match.centre - corner).norm();
   }
   EXPECT_LT(sum / 16, 0.32F);  // 0.40 without weights
+}
+
+// GIVEN a far surface that moves on behind the corner's own THEN the deviation tells.
+TEST(PatchTemplate, ADifferenceOfThePatchesIsSeenInTheDeviation) {
+  const PatchTemplate patch(ImageOf(kAsItIs), kCorner, kSidePx);
+  TemplateMatch same{.centre = kCorner, .affine = Matrix2f::Identity(), .correlation = 0};
+  ASSERT_TRUE(patch.Align(ImageOf(kAsItIs), &same));
+  float before_px = same.deviation_px;
+  EXPECT_LT(before_px, 1e-3F);
+  for (const double step_px : {0.3, 0.6, 1.2}) {
+    const cv::Mat parted = ImageOf([&](const Vector2d& u) -> Vector2d {
+      return u.x() < static_cast<double>(kCorner.x()) + 4 ? u : Vector2d(u.x() + step_px, u.y() + step_px);
+    });
+    TemplateMatch match{.centre = kCorner, .affine = Matrix2f::Identity(), .correlation = 0};
+    ASSERT_TRUE(patch.Align(parted, &match));
+    EXPECT_GT(match.deviation_px, 1.2F * before_px) << step_px;
+    before_px = match.deviation_px;
+  }
+  EXPECT_GT(before_px, 0.01F);
+}
+
+TEST(FeatureTrack, HasABoundedNoiseRatio) {
+  FeatureTrack track;
+  EXPECT_EQ(track.NoiseRatio(), 1);
+  track.match_error_px = 1e6;  // of an edge
+  EXPECT_EQ(track.NoiseRatio(), 100);
+  track.match_error_px = NAN;
+  EXPECT_EQ(track.NoiseRatio(), 100);
 }
 
 TEST(PatchTemplate, WhatLooksDifferentSeldomCorrelates) {
