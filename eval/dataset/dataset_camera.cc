@@ -205,6 +205,9 @@ Status AddFrames(const Table<TrackFrame>& frames, LogHasher* hasher) {
     for (const TrackObservation& observation : frame.observations) {
       hasher->Add(observation.track_id);
       hasher->Add(observation.pixel);
+      if (observation.noise_ratio != 1) {
+        hasher->Add(observation.noise_ratio);
+      }
     }
   });
 }

@@ -162,7 +162,7 @@ TEST(Dataset, WhenOneBitOfTheLogChangesThenItsDigestChanges) {
   const MeasurementLog log = LogOf(SmallDataset());
   const std::string digest = DigestOf(log);
   EXPECT_EQ(digest.size(), 64u);
-  std::vector<MeasurementLog> changed(8, log);
+  std::vector<MeasurementLog> changed(9, log);
   changed[0].imu[3].gyro[1] = std::nextafter(changed[0].imu[3].gyro[1], 1e9);
   changed[1].imu.back().stamp_ns += 1;
   changed[2].frames[1].observations[2].track_id += 1;
@@ -171,6 +171,7 @@ TEST(Dataset, WhenOneBitOfTheLogChangesThenItsDigestChanges) {
   changed[5].rig.imu_noise.accel_random_walk_mps3_sqrthz *= 2;
   changed[6].frames.pop_back();
   changed[7].rig.line_delay_s = 0;
+  changed[8].frames[1].observations[2].noise_ratio = 2;
   for (size_t i = 0; i < changed.size(); ++i) {
     EXPECT_NE(DigestOf(changed[i]), digest) << "change " << i;
   }

@@ -28,7 +28,8 @@ std::string DigestOfTables(const Dataset& dataset) {
 /// Hz.
 void WriteSequence(const test::TemporaryFolder& folder) {
   test::WriteGoodSequence(folder);
-  std::string imu = test::kImuHeader, tracks = test::kTracksHeader, stamps = "#timestamp [ns]\n";
+  std::string imu = test::kImuHeader, tracks = "#timestamp [ns],track_id,u [px],v [px],noise_ratio\n",
+              stamps = "#timestamp [ns]\n";
   std::string truth = test::kTruthHeader;
   const auto sample = [](long long ns, int value) {
     return std::to_string(ns) + ",0.1,0,0.3," + std::to_string(value % 7) + ",0,9.81\n";
@@ -42,7 +43,8 @@ void WriteSequence(const test::TemporaryFolder& folder) {
     const std::string stamp = std::to_string(1000 + 100'000'000LL * i);
     stamps += stamp + "\n";
     for (int k = 0; k < 40 && i % 10 != 5; ++k) {
-      tracks += stamp + "," + std::to_string(i / 5 + k) + "," + std::to_string(10 + k) + ".25,20\n";
+      tracks += stamp + "," + std::to_string(i / 5 + k) + "," + std::to_string(10 + k) + ".25,20," +
+                std::to_string(1 + k % 3) + "\n";
     }
     truth += stamp + "," + std::to_string(0.01 * i) + ",0,0,1,0,0,0\n";
   }
