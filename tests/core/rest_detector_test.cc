@@ -182,7 +182,7 @@ TEST_F(RestDetectorTest, FarSceneryHidesNoMotionOfTheEstimate) {
 }
 
 // GIVEN a rig that stands still, and an estimate whose velocity is 3.5 of its deviations off, as an error of
-// the accelerometer's bias makes it in one start of a hundred, THEN that is rest.
+// the accelerometer's bias makes it in one start of a hundred, THEN rest is found.
 TEST_F(RestDetectorTest, AnErrorOfTheVelocityHidesNoRest) {
   SetVelocity(Vector3d(0.05, 0, 0), 0.01);  // and 0.01 that no estimate can contradict
   EXPECT_TRUE(AfterOneSecond(Vector3d::Zero(), 0, 0.1).no_translation);

@@ -102,7 +102,7 @@ TEST(FilterCalibrationTest, ViewsKeepTheirPixelsWhenTheIntrinsicsMove) {
     return *CameraModel::Create(DistortionModel::kNone, {focal, focal, 320, 240}, {}, 640, 480);
   };
   TrackStore tracks(4, false);
-  tracks.AddFrame(make(400), PixelNoise(VisionConfig()), 1, {{7, {420, 240}}});
+  tracks.AddFrame(make(400), PixelNoise({.noise_ratios = true}), 1, {{7, {420, 240}}, {8, {420, 240}, 2}});
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.z.x(), 0.25, 1e-12);
   tracks.Renormalize(CalibrationLayout(), make(500), 1.0);
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.z.x(), 0.25, 1e-12) << "no intrinsics that could move";
@@ -111,6 +111,7 @@ TEST(FilterCalibrationTest, ViewsKeepTheirPixelsWhenTheIntrinsicsMove) {
   tracks.Renormalize(CalibrationLayout(config, make(500)), make(500), 1.0);
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.z.x(), 0.2, 1e-12);
   EXPECT_NEAR(tracks.tracks()[0].views[0].observation.sqrt_information(0, 0), 500, 1e-9);
+  EXPECT_NEAR(tracks.tracks()[1].views[0].observation.sqrt_information(0, 0), 250, 1e-9);
 }
 
 }  // namespace

@@ -228,5 +228,28 @@ TEST(WindowCalibrationTest, RaysMoveOnlyWithIntrinsicsThatAreEstimated) {
   EXPECT_EQ(fixture.tracks().front()->views.front().observation.z, scratch.front().observation.z);
 }
 
+// GIVEN observations of different noise ratios, THEN their weights have the ratio, also with other
+// intrinsics.
+TEST(WindowCalibrationTest, ANoiseRatioDividesTheWeights) {
+  CalibratedWindow fixture(1);
+  const Eigen::Vector2d pixel(300, 200);
+  ASSERT_EQ(
+      fixture.window.AddObservations(fixture.calibration.mean.camera, PixelNoise({.noise_ratios = true}),
+                                     {{901, pixel, 1}, {902, pixel, 2}}),
+      0);
+  const auto expect_half = [&] {
+    const WindowView& one = fixture.window.tracks().at(901).views.back();
+    const WindowView& two = fixture.window.tracks().at(902).views.back();
+    EXPECT_EQ(2 * two.observation.sqrt_information, one.observation.sqrt_information);
+    EXPECT_EQ(2 * two.root_weight_per_px, one.root_weight_per_px);
+  };
+  expect_half();
+  VectorXd error = VectorXd::Zero(fixture.calibration.size());
+  error.segment<2>(fixture.calibration.layout.intrinsics()).setConstant(20);
+  ASSERT_TRUE(Retract(fixture.calibration.layout, error, &fixture.calibration.mean));
+  fixture.window.Renormalize(fixture.calibration);
+  expect_half();
+}
+
 }  // namespace
 }  // namespace alidade
