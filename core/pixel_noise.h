@@ -22,11 +22,11 @@ class PixelNoise {
 
   /// Standard deviation of one image coordinate [px].
   [[nodiscard]] double px() const { return scale_ * given_px_; }
-  /// The same over that of an observation of ratio 1 (vision.noise_ratios).
+  /// TrackObservation::noise_ratio where vision.noise_ratios is true; else 1.
   [[nodiscard]] double Ratio(const TrackObservation& observation) const {
     return ratios_ ? observation.noise_ratio : 1;
   }
-  /// That of one observation [px].
+  /// px() times the ratio of one observation [px].
   [[nodiscard]] double Of(const TrackObservation& observation) const { return Ratio(observation) * px(); }
   /// Back to what is given.
   void Reset();

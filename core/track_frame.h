@@ -13,7 +13,7 @@ namespace alidade {
 struct TrackObservation {
   std::int64_t track_id = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< raw (distorted) image coordinates [px]
-  /// Standard deviation of either coordinate over that of the other observations, vision.pixel_noise_px.
+  /// Standard deviation of either coordinate, divided by vision.pixel_noise_px.
   double noise_ratio = 1;
 };
 

@@ -11,8 +11,8 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
                       &noise, {{"given", PixelNoiseModel::kGiven}, {"adaptive", PixelNoiseModel::kAdaptive}});
   visitor.Boolean(
       {"noise_ratios", "-",
-       "every observation has pixel_noise_px times its own ratio, which the front end or the column "
-       "noise_ratio of tracks.csv gives; false: all have the same noise"},
+       "the noise of each observation is pixel_noise_px times its noise_ratio, from the front end or "
+       "tracks.csv; false: all have the same noise"},
       &noise_ratios);
   visitor.Enumeration(
       {"observation_plane", "-",

@@ -43,7 +43,7 @@ class TrackStore {
   TrackStore(int max_views, bool with_memory, int calibration_size = 0);
 
   /// Merges a frame's observations (sorted by id) into the tracks; returns how many lay outside the camera's
-  /// domain.
+  /// domain or had no valid noise.
   int AddFrame(const CameraModel& camera, const PixelNoise& noise, int serial,
                const std::vector<TrackObservation>& observations);
   /// Observations of all views anew, after the camera's intrinsics have changed. A view that the camera's

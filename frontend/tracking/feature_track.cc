@@ -14,7 +14,7 @@ namespace {
 constexpr double kUsualErrorPx = 0.1;
 // Of Lucas-Kanade alone, after a backward pass.
 constexpr double kUnconfirmedErrorPx = 0.5;
-// Such an observation says nothing.
+// With a ten-thousandth of the weight an observation has no effect.
 constexpr double kMostNoiseRatio = 100;
 
 /// What makes two patches differ is not white noise but other depths, blur and light, and the more they

@@ -10,7 +10,7 @@ struct TemplateMatch {
   Eigen::Vector2f centre = Eigen::Vector2f::Zero();      ///< pixel of the corner
   Eigen::Matrix2f affine = Eigen::Matrix2f::Identity();  ///< deformation of its surroundings
   float correlation = 0;                                 ///< of the two patches, at most 1
-  float deviation_px = 0;                                ///< of the centre, were their difference white noise
+  float deviation_px = 0;  ///< of the centre, if their difference is white noise
 };
 
 /// The patch around a corner in the image where its track began. Going from frame to frame, a track slides: a

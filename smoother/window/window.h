@@ -110,8 +110,8 @@ class Window {
   void Clear();
   WindowFrame& AddFrame(std::unique_ptr<WindowFrame> frame);
   /// Adds the newest frame's observations to its tracks. Returns how many lay outside the camera model's
-  /// domain. Not for a frame without an image of its own, as that of a measurement: it neither ends nor
-  /// extends tracks.
+  /// domain or had no valid noise. Not for a frame without an image of its own, as that of a measurement: it
+  /// neither ends nor extends tracks.
   int AddObservations(const CameraModel& camera, const PixelNoise& noise,
                       const std::vector<TrackObservation>& observations);
   /// UpdateRates of every frame.
