@@ -19,7 +19,6 @@ using Eigen::VectorXd;
 
 using test::Flight;
 using test::kFlightGravity;
-using test::kFlightPoint;
 using test::kFlightSigma;
 
 VectorXd RandomError(RandomStream* random, Index size, double scale) {

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string SimulateFigureEight(const TemporaryFolder& folder, const std::string& settings) {
-  const std::string sequence = folder.File("seq");
+  std::string sequence = folder.File("seq");
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8.yaml") +
                                      " --seed=31 --set=" + "duration_s=30,path_m=39" + settings +
                                      " --output=" + sequence + " --quiet");

@@ -10,7 +10,6 @@ namespace alidade::test {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 const std::string kShort = "{config: " + Source("configs/datasets/figure8_short.yaml") +
                            ", name: short, set: {duration_s: 5, path_m: 6.5}";

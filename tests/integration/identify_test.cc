@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string Simulate(const TemporaryFolder& folder, const std::string& settings) {
-  const std::string sequence = folder.File("seq");
+  std::string sequence = folder.File("seq");
   const CommandResult made = Alidade("simulate --config=" + Source("configs/datasets/figure8_short.yaml") +
                                      " --set=" + settings + " --output=" + sequence + " --quiet");
   EXPECT_EQ(made.code, 0) << made.output;

@@ -17,6 +17,13 @@ double RelativeDifference(const Eigen::MatrixBase<A>& a, const Eigen::Matrix<dou
   return factor.matrixL().solve(half.transpose()).cwiseAbs().maxCoeff();
 }
 
+/// Whether all numbers are the same.
+inline bool AreSame(const NavEstimate& a, const NavEstimate& b) {
+  return a.stamp_ns == b.stamp_ns && a.nav.R_WB == b.nav.R_WB && a.nav.p_WB == b.nav.p_WB &&
+         a.nav.v_WB == b.nav.v_WB && a.bias.gyro == b.bias.gyro && a.bias.accel == b.bias.accel &&
+         a.covariance == b.covariance;
+}
+
 /// Distance of the means in standard deviations of b.
 inline double MeanDifference(const NavEstimate& a, const NavEstimate& b) {
   Vector15d difference;

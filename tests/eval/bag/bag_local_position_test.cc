@@ -66,7 +66,7 @@ class BagLocalPosition : public testing::TestWithParam<MessageType> {
 
   /// A bag with IMU samples and positions on kTopic.
   std::string Recorded(const Vector3d& variances) const {
-    const std::string path = folder_.File("capture.bag");
+    std::string path = folder_.File("capture.bag");
     Result<RosbagWriter> bag = RosbagWriter::Create(path, BagCompression::kNone);
     EXPECT_TRUE(bag.ok()) << bag.message();
     const std::uint32_t imu = bag->AddTopic("/imu0", "sensor_msgs/Imu");

@@ -65,6 +65,7 @@ TEST(PairedT, GivenDifferencesWithoutMeanThenOneStudyInTwentyLooksSignificant) {
   constexpr int kStudies = 4000;
   for (int study = 0; study < kStudies; ++study) {
     std::vector<double> differences;
+    differences.reserve(30);
     for (int i = 0; i < 30; ++i) {
       differences.push_back(skewed(random) - skewed(random));
     }
@@ -112,6 +113,7 @@ TEST(HolmCorrect, KeepsTheChanceOfAnyFalseDifference) {
     std::vector<double> p_values;
     for (int test = 0; test < 45; ++test) {
       std::vector<double> differences;
+      differences.reserve(8);
       for (int i = 0; i < 8; ++i) {
         differences.push_back(normal(random));
       }

@@ -25,6 +25,7 @@ using testing::HasSubstr;
 /// Rows of a still IMU at 200 Hz from stamp 1000.
 std::vector<std::string> StillRows(int count) {
   std::vector<std::string> rows;
+  rows.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     rows.push_back(std::to_string(1000 + 5'000'000LL * i) + ",0,0,0,0,0," + std::to_string(9 + i % 2) + "\n");
   }

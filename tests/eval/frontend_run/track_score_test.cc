@@ -34,7 +34,8 @@ std::vector<TrackFrame> WallTracks(std::size_t count, const Vector2d& drift) {
   for (std::size_t k = 0; k < count; ++k) {
     frames[k].stamp_ns = static_cast<TimeNs>(k);
     for (int id = 0; id < 12; ++id) {
-      const Vector3d p_W(-1.2 + 0.8 * (id % 4), -0.8 + 0.8 * (id / 4), kWallM);
+      const int row = id / 4;
+      const Vector3d p_W(-1.2 + 0.8 * (id % 4), -0.8 + 0.8 * row, kWallM);
       Vector2d pixel;
       EXPECT_TRUE(Camera().Project(PoseAt(k).Inverse() * p_W, &pixel));
       frames[k].observations.push_back({id, pixel + static_cast<double>(k) * drift});
@@ -130,7 +131,8 @@ TEST(TrackScore, GIVEN_a_rolling_shutter_THEN_each_row_is_judged_at_its_own_time
   for (std::size_t k = 0; k < frames.size(); ++k) {
     for (TrackObservation& observation : frames[k].observations) {
       const int id = static_cast<int>(observation.track_id);
-      const Vector3d p_W(-1.2 + 0.8 * (id % 4), -0.8 + 0.8 * (id / 4), kWallM);
+      const int row = id / 4;
+      const Vector3d p_W(-1.2 + 0.8 * (id % 4), -0.8 + 0.8 * row, kWallM);
       for (int round = 0; round < 30; ++round) {
         const Pose T_WC = pose_at({k, observation.pixel.y()});
         ASSERT_TRUE(Camera().Project(T_WC.Inverse() * p_W, &observation.pixel));

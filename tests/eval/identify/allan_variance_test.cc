@@ -64,6 +64,7 @@ NoiseFit Fit(const std::vector<double>& rates) {
 
 TEST(AllanVariance, GivenARampThenItIsHalfTheSquareOfTheStep) {
   std::vector<double> rates;
+  rates.reserve(64);
   for (int k = 0; k < 64; ++k) {
     rates.push_back(3.0 * k);
   }

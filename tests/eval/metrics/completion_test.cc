@@ -7,6 +7,7 @@ namespace {
 
 std::vector<TimeNs> Milliseconds(const std::vector<TimeNs>& stamps_ms) {
   std::vector<TimeNs> stamps_ns;
+  stamps_ns.reserve(stamps_ms.size());
   for (const TimeNs stamp_ms : stamps_ms) {
     stamps_ns.push_back(stamp_ms * 1'000'000);
   }

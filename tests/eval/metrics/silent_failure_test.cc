@@ -12,6 +12,7 @@ namespace {
 template <typename Nees, typename Alarmed>
 std::vector<ReportedError> Instants(int count, Nees nees, Alarmed alarmed) {
   std::vector<ReportedError> instants;
+  instants.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     instants.push_back({i * (kSecondNs / 10), nees(i), alarmed(i)});
   }

@@ -195,7 +195,7 @@ TEST(ToolAssociation, RulesDifferWhereEstimatesCompeteForARow) {
 
 TEST(ToolRpe, GivenAnImpossibleRequestThenItIsRefused) {
   const test::TrajectoryPair pair = FormulaPair("crowded");
-  const auto message = [&](EvaluationOptions options, bool oriented = true) {
+  const auto message = [&](const EvaluationOptions& options, bool oriented = true) {
     Trajectory estimate = pair.estimate;
     estimate.has_orientation = oriented;
     return std::string(Evaluate(pair.truth, estimate, options).message());

@@ -57,7 +57,7 @@ class GnssWatchRunTest : public testing::TestWithParam<Backend> {
     RunOptions options;
     options.truth = &*dataset->truth;
     options.seed = kSeed;
-    const RunResult result = RunEstimator(
+    RunResult result = RunEstimator(
         config, {dataset->rig, dataset->imu, dataset->frames, {}, dataset->gnss, dataset->fixes}, options);
     EXPECT_TRUE(result.status.ok()) << result.status.message();
     return result;

@@ -16,7 +16,6 @@
 namespace alidade {
 namespace {
 
-using testing::HasSubstr;
 using testing::StartsWith;
 
 class RecorderTest : public testing::Test {

@@ -22,7 +22,7 @@ class HeadlessBrowserTest : public ::testing::Test {
   /// A program that notes each run and its profile in `runs`, then does `body`; $n is the number of the run.
   std::string Program(const std::string& body) {
     const std::string runs = folder_.File("runs");
-    const std::string program =
+    std::string program =
         folder_.Write("browser", "#!/bin/sh\nfor word; do case $word in --user-data-dir=*) echo $word >>" +
                                      runs + ";; esac; done\nn=$(wc -l <" + runs + ")\n" + body + "\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);

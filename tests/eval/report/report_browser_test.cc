@@ -7,14 +7,12 @@ namespace alidade {
 namespace {
 
 using test::ExpectWhole;
-using test::HeadlessBrowser;
 using test::kPlots;
 using test::PageVisit;
 using test::ReadFile;
 using test::ReportInBrowser;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 
 /// A page that shows `name`, a file beside it, in a frame of `width` pixels (a window is never narrower than
 /// 500), and marks what of it sticks out.

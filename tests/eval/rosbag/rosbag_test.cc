@@ -29,7 +29,7 @@ ImuSample SampleAt(int i) {
 }
 
 std::string WriteSamples(const test::TemporaryFolder& folder, BagCompression compression) {
-  const std::string path = folder.File(std::string(ToString(compression)) + ".bag");
+  std::string path = folder.File(std::string(ToString(compression)) + ".bag");
   Result<RosbagWriter> bag = RosbagWriter::Create(path, compression);
   EXPECT_TRUE(bag.ok()) << bag.message();
   const std::uint32_t imu = bag->AddTopic("/imu0", "sensor_msgs/Imu");

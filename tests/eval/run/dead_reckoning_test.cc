@@ -12,6 +12,7 @@ constexpr TimeNs kStepNs = 5'000'000;
 std::vector<ImuSample> Samples(int count) {
   RandomStream random(1, "samples");
   std::vector<ImuSample> samples;
+  samples.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     samples.push_back(
         {i * kStepNs, 0.2 * random.Normal3(), Eigen::Vector3d(0, 0, 9.81) + 0.5 * random.Normal3()});

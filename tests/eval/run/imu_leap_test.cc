@@ -45,6 +45,7 @@ class ImuLeapTest : public testing::Test {
 
   static std::vector<TimeNs> At(const std::vector<double>& seconds) {
     std::vector<TimeNs> stamps;
+    stamps.reserve(seconds.size());
     for (const double time : seconds) {
       stamps.push_back(SecondsToNs(time));
     }

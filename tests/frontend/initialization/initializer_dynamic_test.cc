@@ -14,7 +14,6 @@ namespace {
 
 using test::StartAt;
 using test::StartOutcome;
-using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 EstimatorConfig DynamicConfig() {

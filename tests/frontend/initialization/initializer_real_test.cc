@@ -35,8 +35,7 @@ StartOutcome AutoStart(const Dataset& dataset, double at_s, double accel_bias_st
   EstimatorConfig config;
   config.init.method = InitMethod::kAuto;
   config.init.accel_bias_std_mps2 = accel_bias_std_mps2;
-  const StartOutcome outcome =
-      StartAt(config, dataset, dataset.frames.front().stamp_ns + SecondsToNs(at_s), 12);
+  StartOutcome outcome = StartAt(config, dataset, dataset.frames.front().stamp_ns + SecondsToNs(at_s), 12);
   std::cout << "  " << dataset.name << " + " << at_s << " s: " << outcome.method << " after "
             << outcome.waited_s << " s, tilt error " << outcome.tilt_error_rad << " rad, velocity error "
             << outcome.velocity_error_mps << " m/s, scale error " << outcome.scale_error << "; "

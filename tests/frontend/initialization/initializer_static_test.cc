@@ -49,6 +49,7 @@ struct Bench {
     Result<NavEstimate> result = Status::Diverged("no frame");
     std::uniform_real_distribution<double> u(20, 730), v(20, 460);
     std::vector<Vector2d> pixels;
+    pixels.reserve(static_cast<std::size_t>(tracks));
     for (int i = 0; i < tracks; ++i) {
       pixels.emplace_back(u(random), v(random));
     }

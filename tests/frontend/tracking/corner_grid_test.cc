@@ -78,8 +78,10 @@ TEST(CornerGrid, FillsTheEmptiestCellsFirst) {
   CornerGrid grid(SmallConfig(), kWidthPx, kHeightPx, kBorderPx);
   // The left two columns have their share already, 16 features; 24 are left for the 12 cells of the others.
   std::vector<cv::Point2f> existing;
+  existing.reserve(16);
   for (int i = 0; i < 16; ++i) {
-    existing.emplace_back(20.F + 40 * static_cast<float>(i % 4), 20.F + 60 * static_cast<float>(i / 4));
+    const int row = i / 4;
+    existing.emplace_back(20.F + 40 * static_cast<float>(i % 4), 20.F + 60 * static_cast<float>(row));
   }
   const std::vector<cv::Point2f> found = grid.Detect(scene.image, scene.derivatives, existing);
   EXPECT_EQ(found.size(), 24U);

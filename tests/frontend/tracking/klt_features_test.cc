@@ -80,9 +80,9 @@ TEST(KltTrackerFeatures, DropsTracksThatLeaveTheImageAndAccountsForEveryTrack) {
         before);
     EXPECT_EQ(static_cast<size_t>(statistics.tracked + statistics.detected), frame.observations.size());
     lost += statistics.lost;
+    const int margin_px = FrontendConfig().window_px / 2;
     for (const TrackObservation& observation : frame.observations) {
-      EXPECT_TRUE(TestRig().camera.InImage(observation.pixel, FrontendConfig().window_px / 2))
-          << observation.pixel.transpose();
+      EXPECT_TRUE(TestRig().camera.InImage(observation.pixel, margin_px)) << observation.pixel.transpose();
     }
     EXPECT_GT(frame.frontend_ms, 0);
     before = frame.observations.size();

@@ -69,7 +69,7 @@ TEST(KltTracker, FollowsATranslatedImageToATenthOfAPixel) {
 // gets a larger noise ratio, and has a larger error.
 TEST(KltTracker, ObservationsOfTwoSurfacesHaveALargerNoiseRatio) {
   KltTracker tracker(WithoutImu(), TestRig());
-  const double edge_px = kWidthPx / 2;
+  const double edge_px = 0.5 * kWidthPx;
   const Vector2d step(0.8, 0.3);
   std::map<std::int64_t, Vector2d> began;
   double sure_px = 0, unsure_px = 0, sure = 0, unsure = 0;
@@ -217,7 +217,7 @@ TEST(KltTracker, BackwardPassAndTemplateEachLoseTracksWhoseTextureIsCovered) {
   const std::vector<unsigned char> before = Render(kWidthPx, kHeightPx, [](const Vector2d& u) { return u; });
   // Something else comes to stand before the right half.
   const std::vector<unsigned char> after = Render(kWidthPx, kHeightPx, [](const Vector2d& u) -> Vector2d {
-    return u.x() > kWidthPx / 2 ? Vector2d(u + Vector2d(3000, 4000)) : u;
+    return u.x() > 0.5 * kWidthPx ? Vector2d(u + Vector2d(3000, 4000)) : u;
   });
   const auto wrong_tracks = [&](double forward_backward_px, int template_px) {
     FrontendConfig config = WithoutImu();
@@ -228,10 +228,10 @@ TEST(KltTracker, BackwardPassAndTemplateEachLoseTracksWhoseTextureIsCovered) {
     const TrackFrame first = MustTrack(&tracker, 0, before);
     const TrackFrame second = MustTrack(&tracker, kFrameNs, after);
     const std::map<std::int64_t, Vector2d> start = ById(first);
-    return std::count_if(second.observations.begin(), second.observations.end(),
-                         [&](const TrackObservation& o) {
-                           return start.contains(o.track_id) && start.at(o.track_id).x() > kWidthPx / 2 + 15;
-                         });
+    return std::count_if(
+        second.observations.begin(), second.observations.end(), [&](const TrackObservation& o) {
+          return start.contains(o.track_id) && start.at(o.track_id).x() > 0.5 * kWidthPx + 15;
+        });
   };
   EXPECT_LE(wrong_tracks(0.5, 0), 12);
   EXPECT_LE(wrong_tracks(0, 13), 12);

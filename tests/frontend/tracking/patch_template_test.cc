@@ -70,7 +70,8 @@ TEST(PatchTemplate, GainAndOffsetDoNotMatter) {
 TEST(PatchTemplate, WhatLiesFarFromTheCornerCountsLittle) {
   float sum = 0;
   for (int i = 0; i < 16; ++i) {
-    const Vector2f corner(36.3F + 16 * static_cast<float>(i % 4), 36.8F + 16 * static_cast<float>(i / 4));
+    const int row = i / 4;
+    const Vector2f corner(36.3F + 16 * static_cast<float>(i % 4), 36.8F + 16 * static_cast<float>(row));
     const PatchTemplate patch(ImageOf(kAsItIs), corner, kSidePx);
     const cv::Mat parted = ImageOf([&](const Vector2d& u) -> Vector2d {
       return u.x() < static_cast<double>(corner.x()) + 5 ? u : Vector2d(u.x() + 1, u.y() + 1);
@@ -115,7 +116,8 @@ TEST(PatchTemplate, WhatLooksDifferentSeldomCorrelates) {
   const cv::Mat other = ImageOf([](const Vector2d& u) -> Vector2d { return u + Vector2d(3000, 4000); });
   int alike = 0, same = 0;
   for (int i = 0; i < 64; ++i) {
-    const Vector2f corner(20.0F + 11 * static_cast<float>(i % 8), 20.0F + 11 * static_cast<float>(i / 8));
+    const int row = i / 8;
+    const Vector2f corner(20.0F + 11 * static_cast<float>(i % 8), 20.0F + 11 * static_cast<float>(row));
     const PatchTemplate patch(image, corner, kSidePx);
     TemplateMatch match{.centre = corner, .affine = Matrix2f::Identity(), .correlation = 0};
     same += patch.Align(image, &match) && match.correlation > 0.99F ? 1 : 0;

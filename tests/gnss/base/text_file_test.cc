@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string Gzip(const test::TemporaryFolder& folder, const std::string& text) {
-  const std::string path = folder.File("text.gz");
+  std::string path = folder.File("text.gz");
   gzFile file = gzopen(path.c_str(), "wb");
   EXPECT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
   gzclose(file);

@@ -71,6 +71,7 @@ TEST(RobustFitTest, UndeterminedOrBrokenSystemsGiveNothing) {
 TEST(RobustFitTest, ScaleIsTheDeviationOfTheMajority) {
   RandomStream random(9, "scale");
   std::vector<double> whitened;
+  whitened.reserve(1001);
   for (int i = 0; i < 1001; ++i) {
     whitened.push_back(i % 5 == 0 ? 1000 : 3 * random.Normal());
   }

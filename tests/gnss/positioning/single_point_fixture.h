@@ -24,7 +24,7 @@ inline SinglePointSolver MakeSolver(const NavigationData& sky,
                                     std::optional<Eigen::Vector3d> start = std::nullopt,
                                     GnssCorrectionOptions options = NoIonosphere()) {
   return {MeasurementBuilder(std::make_shared<SatelliteCatalog>(sky), std::move(options)),
-          SinglePointOptions(), start};
+          SinglePointOptions(), std::move(start)};
 }
 
 inline SyntheticReceiver Receiver() {

@@ -3,10 +3,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "tests/smoother/batch/batch_fixture.h"
+#include "tests/support/estimate_difference.h"
 #include "tests/support/fix_scenario.h"
 
 namespace alidade {
@@ -116,8 +116,8 @@ TEST(BatchEstimatorTest, EqualInputGivesEqualBits) {
   for (size_t i = 0; i < first.frames->size(); ++i) {
     const FinalizedFrame& a = (*first.frames)[i];
     const FinalizedFrame& b = (*second.frames)[i];
-    EXPECT_EQ(std::memcmp(&a.estimate, &b.estimate, sizeof(NavEstimate)), 0);
-    EXPECT_EQ(std::memcmp(&*a.filtering_covariance, &*b.filtering_covariance, sizeof(Matrix15d)), 0);
+    EXPECT_TRUE(test::AreSame(a.estimate, b.estimate));
+    EXPECT_EQ(*a.filtering_covariance, *b.filtering_covariance);
   }
 }
 

@@ -46,6 +46,7 @@ Eigen::MatrixXd TangentJacobian(const ceres::CostFunction& cost, const NavStateM
   for (const int size : cost.parameter_block_sizes()) {
     ambient.emplace_back(cost.num_residuals(), size);
   }
+  pointers.reserve(ambient.size());
   for (RowMatrix& jacobian : ambient) {
     pointers.push_back(jacobian.data());
   }

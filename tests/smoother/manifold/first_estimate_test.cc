@@ -200,6 +200,7 @@ MatrixXd Evaluate(const Factor& factor, const std::vector<const double*>& parame
   for (const BlockKind kind : factor.blocks()) {
     storage.emplace_back(static_cast<size_t>(factor.rows() * TangentSize(kind)));
   }
+  jacobians.reserve(storage.size());
   for (std::vector<double>& each : storage) {
     jacobians.push_back(each.data());
   }

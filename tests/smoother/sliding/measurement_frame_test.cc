@@ -225,7 +225,8 @@ TEST(MeasurementFrame, AnEpochStaysNearTheFrameItIsAttachedTo) {
   for (int k = 0; k <= 30; ++k) {
     TrackFrame frame{rig.StampAt(0.1 * k), {}};
     for (int i = 0; i < 30; ++i) {
-      frame.observations.push_back({i, {100.0 + 50 * (i % 6), 100.0 + 40 * (i / 6)}});
+      const int row = i / 6;
+      frame.observations.push_back({i, {100.0 + 50 * (i % 6), 100.0 + 40 * row}});
     }
     const Status status = rig.smoother->AddFrame(frame);
     ASSERT_TRUE(status.ok()) << status.message();

@@ -45,7 +45,7 @@ inline EstimatorConfig MakeConfig(SmootherLandmark landmark,
 inline ScenarioResult RunSmoother(const Dataset& dataset, const EstimatorConfig& config, bool perturb,
                                   unsigned seed = 1) {
   const std::unique_ptr<Estimator> estimator = MakeSmoother(config, dataset.rig);
-  const ScenarioResult result =
+  ScenarioResult result =
       RunScenario(dataset, DrawInitialState(dataset, seed, perturb ? 1 : 0), estimator.get());
   EXPECT_TRUE(result.status.ok()) << result.status.message();
   return result;

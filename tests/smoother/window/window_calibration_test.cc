@@ -30,6 +30,7 @@ VectorXd Gradient(const PoseOnlyFactor& factor, const std::vector<VectorXd>& blo
     parameters.push_back(blocks[i].data());
     storage.emplace_back(static_cast<size_t>(factor.rows()) * (i + 1 < blocks.size() ? 9 : kBlock));
   }
+  jacobians.reserve(storage.size());
   for (std::vector<double>& each : storage) {
     jacobians.push_back(each.data());
   }
