@@ -133,7 +133,7 @@ void GnssUpdate::Weigh(const FilterState& state, FrameStatistics* statistics) {
   const GnssWeights result = WeighRows(config_, gate_threshold_, nis_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const double root = std::sqrt(result.weights[i]);
+    const double root = std::sqrt(result.weights[i] * rows_[i].information);
     jacobian_.row(k) *= root;
     innovation_[k] *= root;
     SatelliteResidual& satellite = residuals_.satellites[rows_[i].satellite];

@@ -50,6 +50,7 @@ void AssumeNoise(const PerNoise& noise, const EstimatorConfig& given, EstimatorC
   const double gnss = noise[IndexOf(NoiseSource::kGnss)];
   config->gnss.corrections.pseudorange_std_m = gnss * given.gnss.corrections.pseudorange_std_m;
   config->gnss.corrections.range_rate_std_mps = gnss * given.gnss.corrections.range_rate_std_mps;
+  config->gnss.lasting_errors = false;
   config->gnss.corrections.model_std_scale = gnss * given.gnss.corrections.model_std_scale;
   ForEachSensorEntry([&](auto entry, Sensor) {
     entry.Config(*config).AssumeNoise(entry.Config(given), noise[IndexOf(NoiseSource::kMeasurement)]);

@@ -25,6 +25,7 @@ GnssSetup SetupOf(const GnssLog& log) {
 
 GnssFeed::GnssFeed(const GnssConfig& config, const GnssSetup& setup, double time_offset_s)
     : corrections_(config.corrections),
+      lasting_errors_(config.lasting_errors),
       glonass_channels_(setup.glonass_channels),
       offset_s_(time_offset_s),
       state_([&]() -> State {
@@ -109,11 +110,17 @@ const GnssEpoch* GnssFeed::Next() {
   const double clock_m = solution_ ? solution_->clock_m : after_->ClockAt(raw.stamp_ns);
   epoch.stamp_ns = raw.stamp_ns - SecondsToNs(clock_m / kSpeedOfLight) + SecondsToNs(offset_s_);
   epoch.builder = after_->builder;
+  if (lasting_errors_) {
+    epoch.measurements.noise = errors_.noise();
+  }
   next_ = std::move(epoch);
   return &*next_;
 }
 
 void GnssFeed::Pop() {
+  if (solution_ && lasting_errors_) {
+    errors_.Add(*solution_);
+  }
   last_tag_ns_ = waiting_.front()->stamp_ns;
   waiting_.pop_front();
   state_ = *std::move(after_);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "gnss/model/gnss_epoch.h"
+#include "gnss/positioning/pseudorange_errors.h"
 #include "gnss/positioning/single_point.h"
 #include "gnss/positioning/single_point_solution.h"
 
@@ -67,6 +68,8 @@ class GnssFeed {
   void UseCatalog(TimeNs tag_ns, State* state) const;
 
   GnssCorrectionOptions corrections_;
+  bool lasting_errors_;
+  PseudorangeErrors errors_;  ///< of the epochs that were popped
   std::map<int, int> glonass_channels_;
   double offset_s_;
   std::map<TimeNs, std::shared_ptr<const SatelliteCatalog>> catalogs_;  ///< not in use yet, by first tag

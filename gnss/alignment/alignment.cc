@@ -102,17 +102,26 @@ void GnssAligner::Locate() {
     return;
   }
   enu_ = EnuFrame::At(receiver_.anchor_E.value_or(*approximate_E_));
+  // What the newest epoch knows of the errors holds for those before it; each one that is chosen stands for
+  // those that are not.
+  PseudorangeNoise noise = samples_.back().measurements.noise;
+  noise.epochs = std::max(1.0, noise.epochs / static_cast<double>(ChoiceStep()));
+  noise = noise.AtOnce();
   for (AlignmentSample& sample : samples_) {
+    sample.measurements.noise = noise;
     builder_->Locate(*approximate_E_, &sample.measurements);
   }
   located_ = true;
 }
 
+std::size_t GnssAligner::ChoiceStep() const {
+  return std::max<std::size_t>((samples_.size() + kMaxSamples - 1) / kMaxSamples, 1);
+}
+
 std::vector<const AlignmentSample*> GnssAligner::Choose() const {
-  const std::size_t step = (samples_.size() + kMaxSamples - 1) / kMaxSamples;
+  const std::size_t step = ChoiceStep();
   std::vector<const AlignmentSample*> chosen;
-  for (std::size_t i = (samples_.size() - 1) % std::max<std::size_t>(step, 1); i < samples_.size();
-       i += step) {
+  for (std::size_t i = (samples_.size() - 1) % step; i < samples_.size(); i += step) {
     chosen.push_back(&samples_[i]);
   }
   return chosen;

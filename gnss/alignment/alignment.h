@@ -71,6 +71,8 @@ class GnssAligner {
   void Locate();
   /// What became of the satellites, where no epoch could be used; else empty.
   [[nodiscard]] std::string LeftOut() const;
+  /// Every how many epochs one is chosen.
+  [[nodiscard]] std::size_t ChoiceStep() const;
   [[nodiscard]] std::vector<const AlignmentSample*> Choose() const;
   [[nodiscard]] std::optional<AlignmentGuess> FirstGuess(const AlignmentFit& fit) const;
   /// The alignment, if its yaw is known well enough; sets the report.

@@ -149,7 +149,7 @@ void AlignmentFit::AddEpoch(std::size_t index, const Options& options, Alignment
     if (!row.is_rate && row.bias_index >= 0) {
       entries.emplace_back(kBiases + row.bias_index - ClockState::kBiases, 1.0);
     }
-    system->Add(entries, row.residual, row.deviation, weight);
+    system->Add(entries, row.residual, row.deviation, weight * row.information);
   }
 }
 

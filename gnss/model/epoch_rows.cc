@@ -63,6 +63,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     satellite.residual_m = row.residual;
     if (config.pseudorange) {
       row.deviation = satellite.deviation_m;
+      row.information = epoch.noise.InformationShare(m.pseudorange_variance);
       row.jacobian.noalias() = line * position_jacobian;
       row.lever_arm.noalias() = line * position_by_arm;
       rows.push_back(row);
@@ -70,6 +71,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     if (HasRateRow(config, m)) {
       RowVector3d by_velocity;
       row.is_rate = true;
+      row.information = 1;
       row.deviation = std::sqrt(m.range_rate_variance);
       RangeRateModel::Of(m).Evaluate(antenna_E, velocity_E, point.clock[ClockState::kDrift], &row.residual,
                                      &line, &by_velocity);

@@ -18,6 +18,8 @@ struct GnssRow {
   int bias_index = -1;  ///< of the system in ClockState, -1: none; of a pseudorange
   double residual = 0;  ///< predicted - measured [m] or [m/s]
   double deviation = 1;
+  /// Factor on its information beside the deviation, by which it is gated (PseudorangeNoise).
+  double information = 1;
   GnssJacobian jacobian;                        ///< over (phi, dp, dv, dbg, dba)
   RowVector3d lever_arm = RowVector3d::Zero();  ///< d residual / d p_BA
 

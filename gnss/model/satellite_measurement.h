@@ -48,11 +48,31 @@ struct MeasurementCounts {
 /// "3 without ephemeris, 0 unhealthy, 1 without signal".
 [[nodiscard]] std::string Describe(const MeasurementCounts& counts);
 
+/// How the errors of an epoch's pseudoranges differ from white noise as stated
+/// (gnss/positioning/pseudorange_errors.h).
+struct PseudorangeNoise {
+  double scale = 1;             ///< factor on the stated deviations, at least 1
+  double lasting_variance = 0;  ///< c [m^2] of errors beside, which last
+  double epochs = 1;  ///< m: the mean of all epochs so far has the lasting variance m c / k of k epochs
+  double settled_epochs = 1;  ///< g = m - k dm/dk: what m is short of growing with k; 1 for a constant error
+
+  /// What the next epoch adds to the information of k epochs, k / (w + m c), over that of an epoch alone,
+  /// 1 / (w + c): (w + c) (w + g c) / (w + m c)^2. w + c: `variance`.
+  [[nodiscard]] double InformationShare(double variance) const {
+    const double white = variance - lasting_variance;
+    const double of_mean = white + epochs * lasting_variance;
+    return variance * (white + settled_epochs * lasting_variance) / (of_mean * of_mean);
+  }
+  /// For several epochs at once, none of which was used before: each has the same share.
+  [[nodiscard]] PseudorangeNoise AtOnce() const { return {scale, lasting_variance, epochs, epochs}; }
+};
+
 /// The measurements of one epoch.
 struct EpochMeasurements {
   TimeNs tag_ns = 0;                             ///< receiver's time tag, GPST
   std::vector<SatelliteMeasurement> satellites;  ///< sorted by satellite
   MeasurementCounts left_out;
+  PseudorangeNoise noise = {};  ///< measured
 };
 
 /// Turns observations into corrected measurements. One call of Prepare an epoch computes orbits and clocks,

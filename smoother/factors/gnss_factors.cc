@@ -34,14 +34,18 @@ FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const Frame
   result.clock.setZero(count, 6);
   result.lever_arm.setZero(count, 3);
   result.residual.setZero(count);
+  result.information.assign(rows.size(), 1);
   for (Index i = 0; i < count; ++i) {
     const GnssRow& row = rows[static_cast<std::size_t>(i)];
     if (!epoch.used.empty() && !epoch.used[static_cast<std::size_t>(i)]) {
       continue;
     }
     RobustResidual residual{row.residual / row.deviation, 1};
+    result.information[static_cast<std::size_t>(i)] = row.information;
     if (robust) {
       residual = Robustify(context.config.robust_kernel, context.config.robust_scale_sigma, residual.value);
+      residual.value *= std::sqrt(row.information);
+      residual.slope *= std::sqrt(row.information);
     }
     result.residual[i] = residual.value;
     result.frame.row(i).noalias() = residual.slope / row.deviation * (row.jacobian * carry);

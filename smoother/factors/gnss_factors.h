@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
+#include <vector>
 
 #include "core/calibration.h"
 #include "gnss/model/epoch_rows.h"
@@ -27,8 +28,10 @@ struct FrameEpochRows {
   Eigen::Matrix<double, Eigen::Dynamic, 6> clock;
   Eigen::Matrix<double, Eigen::Dynamic, 3> lever_arm;
   Eigen::VectorXd residual;
+  std::vector<double> information;  ///< GnssRow::information; of one that is refused 1
 };
-/// `robust`: the kernel acts, as a residual whose square is the kernel's cost.
+/// `robust`: as a factor has the rows, with their information and the kernel, which acts as a residual whose
+/// square is the kernel's cost. Otherwise as they are gated.
 [[nodiscard]] FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const FrameEpoch& epoch,
                                                  double dt_s, const NavState& nav, const ImuBias& bias,
                                                  const Vector6d& clock, bool robust,

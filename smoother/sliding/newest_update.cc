@@ -76,7 +76,8 @@ AbsoluteCorrection NewestUpdate::Add(const GnssFactorContext& context, double ga
   const std::vector<double> weights = WeighRows(context.config, gate_threshold, nis).weights;
   Eigen::VectorXd residual = rows.residual;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const double root = std::sqrt(weights[static_cast<std::size_t>(i)]);
+    const auto k = static_cast<std::size_t>(i);
+    const double root = std::sqrt(weights[k] * rows.information[k]);
     jacobian.row(i) *= root;
     residual[i] *= root;
   }

@@ -114,6 +114,26 @@ TEST_P(LinearLimitGnssTest, WithoutErrorsTheCovariancesAreTheSame) {
   }
 }
 
+// GIVEN pseudoranges of which it was measured that their errors are larger than stated and last over several
+// epochs, THEN both back ends give them the same weight: that of white errors with as much information.
+TEST_P(LinearLimitGnssTest, LastingErrorsWeighTheSameInAll) {
+  const EstimatorConfig config = GnssConfigOf(GetParam());
+  OneWindow as_stated = GnssWindowOf(config, 0);
+  OneWindow lasting = as_stated;
+  OneWindow larger = as_stated;
+  for (size_t i = 0; i < lasting.epochs.size(); ++i) {
+    lasting.epochs[i].measurements.noise = {
+        .scale = 1.5, .lasting_variance = 2, .epochs = 10, .settled_epochs = 10};
+    larger.epochs[i].measurements.noise = {.scale = 1.5, .lasting_variance = 20};
+  }
+  const Ends stated = Solve(as_stated, config, SmootherLandmark::kPoseOnly);
+  const Ends weighed = Solve(lasting, config, SmootherLandmark::kPoseOnly);
+  EXPECT_GT(RelativeDifference(weighed.state.covariance, stated.state.covariance), 0.1);
+  constexpr Bounds kBounds = {1e-8, 1e-8, 1e-6};
+  ExpectAgreement(weighed, Solve(larger, config, SmootherLandmark::kPoseOnly), kBounds);
+  ExpectAllAgree(lasting, config, SmootherLandmark::kPoseOnly, weighed, kBounds);
+}
+
 // GIVEN pseudoranges or range rates alone, THEN each is informative about state and clock, so that the tests
 // above would notice a wrong one.
 TEST_P(LinearLimitGnssTest, PseudorangesAndRangeRatesAreInformative) {

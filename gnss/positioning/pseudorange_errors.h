@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "gnss/base/satellite_id.h"
+#include "gnss/model/satellite_measurement.h"
+#include "gnss/positioning/single_point_solution.h"
+
+namespace alidade {
+
+/// Measures how large the errors of pseudoranges are beside what is stated, and how long they last, from the
+/// residuals of single-point solutions.
+///
+/// Multipath, orbits and atmosphere change over seconds to hours. A filter that takes them for white noise
+/// averages them away: its covariance becomes far too small, the more so the higher the rate is. Errors with
+/// the covariance c(l) at lag l are taken as white noise, of their stated deviations times a scale, and
+/// errors of variance c that last. The mean of the latter over a time T has the variance of white errors that
+/// are larger by
+///
+///   m = 1 + 2 / (c dt) int_0^T (1 - l / T) c(l) dl,   dt: interval of the epochs
+///
+/// (Priestley, "Spectral Analysis and Time Series", 5.3.2). c(l) is measured at lags of 0.25 to 64 s: with
+/// the whitened residuals w of a satellite of the stated variance V at either end, sum(w w') / sum(1 / V),
+/// less the degrees of freedom that the solution takes. The integral ends at the first lag at which c
+/// is not significant. What is not reached yet is assumed to last, so that a constant error counts as one
+/// epoch.
+///
+/// The share of an error that is common to all satellites, or looks like a shift of the position, is not seen
+/// in the residuals; it is assumed to behave as the rest.
+class PseudorangeErrors {
+ public:
+  static constexpr std::array<double, 9> kLagsS = {0.25, 0.5, 1, 2, 4, 8, 16, 32, 64};
+  /// Older products count less, with these time constants; the larger ratio counts: the first notices a
+  /// change of the surroundings, the second what is small.
+  static constexpr std::array<double, 2> kMemoriesS = {10, 300};
+  /// Of a covariance, in its deviations for white errors.
+  static constexpr double kSignificance = 4;
+  /// Before so much time has been measured, a covariance that is not significant counts as larger by so many
+  /// deviations: an estimate that began with too much confidence never loses it again.
+  static constexpr double kSettlingS = 5;
+  static constexpr double kDoubt = 1;
+
+  /// In the order of tags.
+  void Add(const SinglePointSolution& solution);
+  [[nodiscard]] PseudorangeNoise noise() const;
+
+ private:
+  struct Whitened {
+    SatelliteId satellite;
+    double residual = 0;     ///< over its stated deviation
+    double information = 0;  ///< of the stated deviation [1/m^2]
+  };
+  struct Epoch {
+    TimeNs tag_ns = 0;
+    std::vector<Whitened> residuals;  ///< rising satellites
+  };
+  /// A mean product.
+  struct Mean {
+    double sum = 0;
+    double weight = 0;
+    double squares = 0;  ///< variance of the sum for independent errors as stated
+
+    void Forget(double keep);
+    void Add(double products, double freedom, double new_weight);
+    [[nodiscard]] double value() const { return weight > 0 ? sum / weight : 0; }
+    /// Of the value, for independent errors as stated; infinite without any.
+    [[nodiscard]] double Deviation() const;
+  };
+  struct Memory {
+    Mean variance;                           ///< of whitened residuals
+    Mean information;                        ///< of the stated deviations [1/m^2]
+    std::array<Mean, kLagsS.size()> lagged;  ///< [m^2]
+  };
+  /// Errors that last: their variance c [m^2], the integrals of c(l) [m^2 s] and l c(l) [m^2 s^2].
+  struct Lasting {
+    double variance = 0;
+    double integral = 0;
+    double moment = 0;
+
+    /// From lag a to lag b, linear in between.
+    void Add(double from_s, double from_m2, double to_s, double to_m2);
+  };
+
+  [[nodiscard]] static Epoch Whiten(const SinglePointSolution& solution);
+  void Forget(double since_s);
+  void AddSquares(const Epoch& now);
+  void AddProducts(const Epoch& earlier, const Epoch& now, std::size_t lag);
+  [[nodiscard]] Lasting Integrate(const Memory& memory) const;
+
+  std::array<Memory, kMemoriesS.size()> memories_;
+  std::deque<Epoch> history_;  ///< of the longest lag
+  TimeNs first_ns_ = 0;
+  double interval_s_ = 0;  ///< mean of the epochs
+};
+
+}  // namespace alidade
