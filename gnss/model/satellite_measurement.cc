@@ -244,8 +244,6 @@ void MeasurementBuilder::Locate(const Eigen::Vector3d& position_E, EpochMeasurem
         m.noise_gain * m.noise_gain * noise +
         options_.model_std_scale * options_.model_std_scale *
             (m.ephemeris_variance + ionosphere_std * ionosphere_std + troposphere_std * troposphere_std);
-    m.pseudorange_variance =
-        epoch->noise.scale * epoch->noise.scale * m.pseudorange_variance + epoch->noise.lasting_variance;
     m.range_rate_variance = ObservationVariance(factor * options_.range_rate_std_mps, elevation, m.cn0_dbhz,
                                                 m.reported_rate_std_mps);
   }

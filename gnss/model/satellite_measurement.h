@@ -56,12 +56,12 @@ struct PseudorangeNoise {
   double epochs = 1;  ///< m: the mean of all epochs so far has the lasting variance m c / k of k epochs
   double settled_epochs = 1;  ///< g = m - k dm/dk: what m is short of growing with k; 1 for a constant error
 
-  /// What the next epoch adds to the information of k epochs, k / (w + m c), over that of an epoch alone,
-  /// 1 / (w + c): (w + c) (w + g c) / (w + m c)^2. w + c: `variance`.
-  [[nodiscard]] double InformationShare(double variance) const {
-    const double white = variance - lasting_variance;
+  /// What the next epoch adds to the information of k epochs, k / (w + m c), over that of one with white
+  /// errors of the stated variance V: V (w + g c) / (w + m c)^2, w = scale^2 V. At most 1.
+  [[nodiscard]] double InformationShare(double stated_variance) const {
+    const double white = scale * scale * stated_variance;
     const double of_mean = white + epochs * lasting_variance;
-    return variance * (white + settled_epochs * lasting_variance) / (of_mean * of_mean);
+    return stated_variance * (white + settled_epochs * lasting_variance) / (of_mean * of_mean);
   }
   /// For several epochs at once, none of which was used before: each has the same share.
   [[nodiscard]] PseudorangeNoise AtOnce() const { return {scale, lasting_variance, epochs, epochs}; }

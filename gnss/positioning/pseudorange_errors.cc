@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace alidade {
 namespace {
@@ -11,6 +12,15 @@ constexpr int kLeastFreedom = 4;  // fewer residuals do not count
 constexpr double kClipScales = 4;
 constexpr double kLongestIntervalS = 5;  // a longer one is an outage
 constexpr double kIntervalGain = 0.05;
+
+/// Sum of normal products of one variance, were they all like their median: 0.455 is that of chi-square with
+/// one degree of freedom.
+double SumByMedian(std::vector<double> products) {
+  constexpr double kMedian = 0.455;
+  const auto middle = products.begin() + static_cast<std::ptrdiff_t>(products.size() / 2);
+  std::nth_element(products.begin(), middle, products.end());
+  return *middle / kMedian * static_cast<double>(products.size());
+}
 
 }  // namespace
 
@@ -32,12 +42,14 @@ PseudorangeErrors::Epoch PseudorangeErrors::Whiten(const SinglePointSolution& so
 
 void PseudorangeErrors::Mean::Forget(double keep) {
   sum *= keep;
+  of_medians *= keep;
   weight *= keep;
   squares *= keep * keep;
 }
 
-void PseudorangeErrors::Mean::Add(double products, double freedom, double new_weight) {
+void PseudorangeErrors::Mean::Add(double products, double by_median, double freedom, double new_weight) {
   sum += products;
+  of_medians += by_median;
   weight += new_weight;
   squares += freedom;
 }
@@ -66,15 +78,18 @@ void PseudorangeErrors::AddSquares(const Epoch& now) {
   if (freedom < kLeastFreedom) {
     return;
   }
+  std::vector<double> each;
   double squares = 0;
   double information = 0;
   for (const Whitened& whitened : now.residuals) {
-    squares += whitened.residual * whitened.residual;
+    each.push_back(whitened.residual * whitened.residual);
+    squares += each.back();
     information += whitened.information;
   }
+  const double by_median = SumByMedian(std::move(each));
   for (Memory& memory : memories_) {
-    memory.variance.Add(squares, freedom, freedom);
-    memory.information.Add(information, freedom, count);
+    memory.variance.Add(squares, by_median, freedom, freedom);
+    memory.information.Add(information, information, freedom, count);
   }
 }
 
@@ -104,6 +119,7 @@ void PseudorangeErrors::Add(const SinglePointSolution& solution) {
 }
 
 void PseudorangeErrors::AddProducts(const Epoch& earlier, const Epoch& now, std::size_t lag) {
+  std::vector<double> each;
   double products = 0;
   double information = 0;
   int common = 0;
@@ -113,15 +129,17 @@ void PseudorangeErrors::AddProducts(const Epoch& earlier, const Epoch& now, std:
       ++other;
     }
     if (other != earlier.residuals.end() && other->satellite == whitened.satellite) {
-      products += whitened.residual * other->residual;
+      each.push_back(whitened.residual * other->residual);
+      products += each.back();
       information += std::sqrt(whitened.information * other->information);
       ++common;
     }
   }
   const double freedom = common - kUnknowns;
   if (freedom >= kLeastFreedom) {
+    const double by_median = SumByMedian(std::move(each));
     for (Memory& memory : memories_) {
-      memory.lagged[lag].Add(products, freedom, information * freedom / common);
+      memory.lagged[lag].Add(products, by_median, freedom, information * freedom / common);
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <optional>
@@ -57,15 +58,18 @@ class PseudorangeErrors {
     TimeNs tag_ns = 0;
     std::vector<Whitened> residuals;  ///< rising satellites
   };
-  /// A mean product.
+  /// A mean product: the smaller one of the mean over all satellites and epochs and the mean over epochs of
+  /// what the median over the satellites says, so that a minority of them, such as reflections, counts
+  /// little.
   struct Mean {
     double sum = 0;
+    double of_medians = 0;
     double weight = 0;
     double squares = 0;  ///< variance of the sum for independent errors as stated
 
     void Forget(double keep);
-    void Add(double products, double freedom, double new_weight);
-    [[nodiscard]] double value() const { return weight > 0 ? sum / weight : 0; }
+    void Add(double products, double by_median, double freedom, double new_weight);
+    [[nodiscard]] double value() const { return weight > 0 ? std::min(sum, of_medians) / weight : 0; }
     /// Of the value, for independent errors as stated; infinite without any.
     [[nodiscard]] double Deviation() const;
   };
