@@ -34,7 +34,7 @@ namespace alidade {
 class PseudorangeErrors {
  public:
   static constexpr std::array<double, 9> kLagsS = {0.25, 0.5, 1, 2, 4, 8, 16, 32, 64};
-  /// Older products count less, with these time constants; the larger ratio counts: the first notices a
+  /// Older products count less, with these time constants; the larger m c counts: the first notices a
   /// change of the surroundings, the second what is small.
   static constexpr std::array<double, 2> kMemoriesS = {10, 300};
   /// Of a covariance, in its deviations for white errors.
