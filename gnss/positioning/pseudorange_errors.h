@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <optional>
 #include <vector>
 
 #include "gnss/base/satellite_id.h"
@@ -33,7 +32,8 @@ namespace alidade {
 /// in the residuals; it is assumed to behave as the rest.
 class PseudorangeErrors {
  public:
-  static constexpr std::array<double, 9> kLagsS = {0.25, 0.5, 1, 2, 4, 8, 16, 32, 64};
+  /// The first one gives the variance.
+  static constexpr std::array<double, 10> kLagsS = {0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64};
   /// Older products count less, with these time constants; the larger m c counts: the first notices a
   /// change of the surroundings, the second what is small.
   static constexpr std::array<double, 2> kMemoriesS = {10, 300};
@@ -60,37 +60,36 @@ class PseudorangeErrors {
   };
   /// A mean product: the smaller one of the mean over all satellites and epochs and the mean over epochs of
   /// what the median over the satellites says, so that a minority of them, such as reflections, counts
-  /// little.
+  /// little. Weights are of each satellite, times its share of the degrees of freedom.
   struct Mean {
     double sum = 0;
     double of_medians = 0;
-    double weight = 0;
-    double squares = 0;  ///< variance of the sum for independent errors as stated
+    double freedom = 0;
+    double information = 0;  ///< sum of 1 / V [1/m^2]
+    double squares = 0;      ///< variance of the sum for independent errors as stated
 
     void Forget(double keep);
-    void Add(double products, double by_median, double freedom, double new_weight);
-    [[nodiscard]] double value() const { return weight > 0 ? std::min(sum, of_medians) / weight : 0; }
-    /// Of the value, for independent errors as stated; infinite without any.
+    /// Over the stated variances.
+    [[nodiscard]] double Relative() const;
+    /// Of Relative, for independent errors as stated; infinite without any.
     [[nodiscard]] double Deviation() const;
+    /// V where all are equal [m^2].
+    [[nodiscard]] double StatedVariance() const { return freedom / information; }
   };
-  struct Memory {
-    Mean variance;                           ///< of whitened residuals
-    Mean information;                        ///< of the stated deviations [1/m^2]
-    std::array<Mean, kLagsS.size()> lagged;  ///< [m^2]
-  };
-  /// Errors that last: their variance c [m^2], the integrals of c(l) [m^2 s] and l c(l) [m^2 s^2].
+  using Memory = std::array<Mean, kLagsS.size()>;
+  /// Errors that last: their variance c, the integrals of c(l) [s] and l c(l) [s^2], over the stated
+  /// variance.
   struct Lasting {
     double variance = 0;
     double integral = 0;
     double moment = 0;
 
     /// From lag a to lag b, linear in between.
-    void Add(double from_s, double from_m2, double to_s, double to_m2);
+    void Add(double from_s, double from, double to_s, double to);
   };
 
   [[nodiscard]] static Epoch Whiten(const SinglePointSolution& solution);
   void Forget(double since_s);
-  void AddSquares(const Epoch& now);
   void AddProducts(const Epoch& earlier, const Epoch& now, std::size_t lag);
   [[nodiscard]] Lasting Integrate(const Memory& memory) const;
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <bit>
+#include <cstdint>
 
 #include "core/calibration.h"
 #include "core/clock_state.h"
@@ -17,11 +19,20 @@ double RelativeDifference(const Eigen::MatrixBase<A>& a, const Eigen::Matrix<dou
   return factor.matrixL().solve(half.transpose()).cwiseAbs().maxCoeff();
 }
 
-/// Whether all numbers are the same.
-inline bool AreSame(const NavEstimate& a, const NavEstimate& b) {
-  return a.stamp_ns == b.stamp_ns && a.nav.R_WB == b.nav.R_WB && a.nav.p_WB == b.nav.p_WB &&
-         a.nav.v_WB == b.nav.v_WB && a.bias.gyro == b.bias.gyro && a.bias.accel == b.bias.accel &&
-         a.covariance == b.covariance;
+/// Whether all numbers have the same bits.
+template <typename A, typename B>
+bool EqualBits(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a
+      .binaryExpr(b,
+                  [](double left, double right) {
+                    return std::bit_cast<std::uint64_t>(left) == std::bit_cast<std::uint64_t>(right);
+                  })
+      .all();
+}
+inline bool EqualBits(const NavEstimate& a, const NavEstimate& b) {
+  return a.stamp_ns == b.stamp_ns && EqualBits(a.nav.R_WB, b.nav.R_WB) && EqualBits(a.nav.p_WB, b.nav.p_WB) &&
+         EqualBits(a.nav.v_WB, b.nav.v_WB) && EqualBits(a.bias.gyro, b.bias.gyro) &&
+         EqualBits(a.bias.accel, b.bias.accel) && EqualBits(a.covariance, b.covariance);
 }
 
 /// Distance of the means in standard deviations of b.

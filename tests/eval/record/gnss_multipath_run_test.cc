@@ -3,10 +3,9 @@
 #include "eval/metrics/nees.h"
 #include "eval/record/recorder.h"
 #include "eval/simulation/simulator.h"
-#include "eval/simulation/simulator_config.h"
 #include "eval/trajectory/trajectory_interpolation.h"
 #include "eval/trajectory/trajectory_point.h"
-#include "tests/eval/record/estimator_runs.h"
+#include "tests/eval/record/gnss_scene.h"
 
 // Multipath that the stated noise lacks, with both back ends.
 
@@ -17,32 +16,14 @@ class GnssMultipathRunTest : public testing::TestWithParam<Backend> {
  protected:
   /// Mean NEES of the position from 5 s on.
   static double PositionNees(double multipath_m, bool lasting_errors, unsigned seed) {
-    SimulatorConfig scene;
-    scene.start_time_s = 1700000000;
-    scene.duration_s = 25;
-    scene.length_m = 60;
-    scene.width_m = 30;
-    scene.height_m = 3;
-    scene.path_m = 100;
-    scene.landmark_count = 2000;
-    scene.landmark_max_distance_m = 20;
-    scene.max_features = 60;
+    SimulatorConfig scene = test::GnssScene(25);
     scene.gnss.rate_hz = 10;
     scene.gnss.multipath_m = multipath_m;
     const Result<Dataset> dataset = Simulate(scene, seed);
     EXPECT_TRUE(dataset.ok()) << dataset.message();
-    EstimatorConfig config = test::CarryingEstimator(GetParam());
-    config.filter.window = 12;
-    config.smoother.landmark = SmootherLandmark::kPoseOnly;
-    config.gnss.enabled = true;
+    EstimatorConfig config = test::GnssEstimator(GetParam());
     config.gnss.lasting_errors = lasting_errors;
-    config.gnss.corrections.model_std_scale = 0;
-    config.gnss.corrections.pseudorange_std_m = 0.5;
-    RunOptions options;
-    options.truth = &*dataset->truth;
-    options.seed = seed;
-    const RunResult result =
-        RunEstimator(config, {dataset->rig, dataset->imu, dataset->frames, {}, dataset->gnss}, options);
+    const RunResult result = test::RunWithSensors(config, *dataset, seed);
     EXPECT_TRUE(result.status.ok()) << result.status.message();
     std::vector<StatePair> pairs;
     for (const RunRecord& record : result.records) {

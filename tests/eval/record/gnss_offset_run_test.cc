@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "eval/simulation/simulator.h"
-#include "eval/simulation/simulator_config.h"
-#include "tests/eval/record/estimator_runs.h"
+#include "tests/eval/record/gnss_scene.h"
 #include "tests/support/scenario.h"
 
 // Runs whose receiver's clock is not that of the IMU.
@@ -14,16 +13,7 @@ constexpr unsigned kSeed = 5;
 
 /// 25 s of a figure-8 at 4 m/s with GNSS and camera.
 Dataset Flight() {
-  SimulatorConfig config;
-  config.start_time_s = 1700000000;
-  config.duration_s = 25;
-  config.length_m = 60;
-  config.width_m = 30;
-  config.height_m = 3;
-  config.path_m = 100;
-  config.landmark_count = 2000;
-  config.landmark_max_distance_m = 20;
-  config.max_features = 60;
+  SimulatorConfig config = GnssScene(25);
   config.gnss.rate_hz = 5;
   return SimulateOrDie(config, kSeed);
 }
@@ -46,15 +36,7 @@ Dataset ClocksBehind(Dataset dataset, double shift_s) {
 }
 
 RunResult RunWithGnss(const Dataset& dataset) {
-  EstimatorConfig config = CarryingEstimator(Backend::kFilter);
-  config.filter.window = 12;
-  config.gnss.enabled = true;
-  config.gnss.corrections.model_std_scale = 0;
-  config.gnss.corrections.pseudorange_std_m = 0.5;
-  RunOptions options;
-  options.truth = &*dataset.truth;
-  options.seed = kSeed;
-  return RunEstimator(config, {dataset.rig, dataset.imu, dataset.frames, {}, dataset.gnss}, options);
+  return RunWithSensors(GnssEstimator(Backend::kFilter), dataset, kSeed);
 }
 
 // GIVEN a receiver whose tags are 18 s ahead of the IMU's time, as in the sheet, THEN its epochs come

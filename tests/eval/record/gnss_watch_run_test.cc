@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "eval/simulation/simulator.h"
-#include "eval/simulation/simulator_config.h"
-#include "tests/eval/record/estimator_runs.h"
+#include "tests/eval/record/gnss_scene.h"
 
 // What calibration.watch reports of GNSS and position fixes, with both back ends.
 
@@ -20,16 +19,7 @@ constexpr unsigned kSeed = 961;
 enum class Absolute { kGnss, kFixes };
 
 SimulatorConfig Scene(Absolute sensor) {
-  SimulatorConfig config;
-  config.start_time_s = 1700000000;
-  config.duration_s = 45;
-  config.length_m = 60;
-  config.width_m = 30;
-  config.height_m = 3;
-  config.path_m = 180;
-  config.landmark_count = 2000;
-  config.landmark_max_distance_m = 20;
-  config.max_features = 60;
+  SimulatorConfig config = test::GnssScene(45);
   config.fault_start_s = kFaultS;
   config.fault_duration_s = 1000;
   if (sensor == Absolute::kGnss) {
@@ -46,19 +36,11 @@ class GnssWatchRunTest : public testing::TestWithParam<Backend> {
   static RunResult Run(const SimulatorConfig& simulation) {
     const Result<Dataset> dataset = Simulate(simulation, kSeed);
     EXPECT_TRUE(dataset.ok()) << dataset.message();
-    EstimatorConfig config = test::CarryingEstimator(GetParam());
-    config.filter.window = 12;
-    config.smoother.landmark = SmootherLandmark::kPoseOnly;
+    EstimatorConfig config = test::GnssEstimator(GetParam());
     config.calibration.watch = true;
     config.gnss.enabled = simulation.gnss.rate_hz > 0;
-    config.gnss.corrections.model_std_scale = 0;
-    config.gnss.corrections.pseudorange_std_m = 0.5;
     config.fix.enabled = simulation.fix.rate_hz > 0;
-    RunOptions options;
-    options.truth = &*dataset->truth;
-    options.seed = kSeed;
-    RunResult result = RunEstimator(
-        config, {dataset->rig, dataset->imu, dataset->frames, {}, dataset->gnss, dataset->fixes}, options);
+    RunResult result = test::RunWithSensors(config, *dataset, kSeed);
     EXPECT_TRUE(result.status.ok()) << result.status.message();
     return result;
   }

@@ -17,29 +17,35 @@ constexpr double kDeviationM = 0.5;
 /// Error of a satellite at an epoch, over its stated deviation.
 using Error = std::function<double(int satellite, int epoch)>;
 
+/// A solution with these residuals, over the stated deviation, of satellites in use.
+SinglePointSolution SolutionAt(double time_s, const std::vector<double>& whitened) {
+  SinglePointSolution solution;
+  solution.tag_ns = SecondsToNs(time_s);
+  double squares = 0;
+  for (std::size_t i = 0; i < whitened.size(); ++i) {
+    SatelliteResidual satellite;
+    satellite.satellite = {i % 2 == 0 ? GnssSystem::kGps : GnssSystem::kGalileo, 1 + static_cast<int>(i)};
+    satellite.residual_m = kDeviationM * whitened[i];
+    satellite.deviation_m = kDeviationM;
+    satellite.used = true;
+    solution.satellites.push_back(satellite);
+    squares += whitened[i] * whitened[i] / static_cast<double>(whitened.size());
+  }
+  solution.scale = std::max(1.0, std::sqrt(squares));
+  return solution;
+}
+
 PseudorangeNoise MeasuredNoise(int epochs, double interval_s, const Error& error) {
   PseudorangeErrors errors;
+  // As a fit leaves them: unknowns take up as many degrees of freedom.
+  const double share = std::sqrt(1 - 4.0 / kSatellites);
   for (int k = 0; k < epochs; ++k) {
-    SinglePointSolution solution;
-    solution.tag_ns = SecondsToNs(1000 + k * interval_s);
+    std::vector<double> whitened;
+    whitened.reserve(kSatellites);
     for (int i = 0; i < kSatellites; ++i) {
-      SatelliteResidual satellite;
-      satellite.satellite = {i % 2 == 0 ? GnssSystem::kGps : GnssSystem::kGalileo, 1 + i};
-      satellite.residual_m = kDeviationM * error(i, k);
-      satellite.deviation_m = kDeviationM;
-      satellite.used = true;
-      solution.satellites.push_back(satellite);
+      whitened.push_back(share * error(i, k));
     }
-    // As a fit leaves it: unknowns take up as many degrees of freedom.
-    const double share = std::sqrt(1 - 4.0 / kSatellites);
-    double squares = 0;
-    for (SatelliteResidual& satellite : solution.satellites) {
-      satellite.residual_m *= share;
-      squares += std::pow(satellite.residual_m / kDeviationM, 2) / kSatellites;
-    }
-    solution.scale = std::max(1.0, std::sqrt(squares));
-    solution.used = kSatellites;
-    errors.Add(solution);
+    errors.Add(SolutionAt(1000 + k * interval_s, whitened));
   }
   return errors.noise();
 }
@@ -141,39 +147,69 @@ TEST(PseudorangeErrors, ASatelliteOutOfUseDoesNotCount) {
   RandomStream random(7, "white");
   PseudorangeErrors errors;
   for (int k = 0; k < 300; ++k) {
-    SinglePointSolution solution;
-    solution.tag_ns = SecondsToNs(0.1 * k);
-    for (int i = 0; i < 12; ++i) {
-      SatelliteResidual satellite;
-      satellite.satellite = {GnssSystem::kGps, 1 + i};
-      satellite.used = i > 1;
-      satellite.residual_m = satellite.used ? 0.7 * random.Normal() : 40;
-      satellite.deviation_m = 1;
-      solution.satellites.push_back(satellite);
+    std::vector<double> whitened = {80, 80};
+    for (int i = 0; i < 10; ++i) {
+      whitened.push_back(0.7 * random.Normal());
     }
+    SinglePointSolution solution = SolutionAt(0.1 * k, whitened);
+    solution.satellites[0].used = solution.satellites[1].used = false;
+    solution.scale = 1;
     errors.Add(solution);
   }
   EXPECT_EQ(errors.noise().scale, 1);
   EXPECT_EQ(errors.noise().lasting_variance, 0);
 }
 
+// GIVEN two of eighteen satellites with constant errors of 20 deviations that were not refused, THEN the
+// errors of all are taken to be far smaller than the mean square of 44, by what the median is shifted.
+TEST(PseudorangeErrors, AMinorityCountsLittle) {
+  RandomStream random(8, "white");
+  const PseudorangeNoise noise =
+      MeasuredNoise(300, 0.1, [&](int satellite, int) { return random.Normal() + (satellite < 2 ? 20 : 0); });
+  EXPECT_LT(noise.lasting_variance, 0.5 * kDeviationM * kDeviationM);
+  EXPECT_LT(noise.scale, 1.3);
+}
+
+// GIVEN constant errors, THEN further epochs add nothing; GIVEN errors that last for seconds, THEN they add
+// what the mean over a long time gains.
+TEST(PseudorangeErrors, EpochsAddUpToTheInformationOfTheirMean) {
+  constexpr double kVariance = kDeviationM * kDeviationM;
+  RandomStream random(10, "constant");
+  std::vector<double> constant;
+  constant.reserve(kSatellites);
+  for (int i = 0; i < kSatellites; ++i) {
+    constant.push_back(2 * random.Normal());
+  }
+  const auto constant_and_white = [&](int satellite, int) {
+    return constant[static_cast<std::size_t>(satellite)] + random.Normal();
+  };
+  double added = 0;  // in epochs of white errors as stated
+  for (int k = 20; k < 200; ++k) {
+    added += MeasuredNoise(k, 0.1, constant_and_white).InformationShare(kVariance);
+  }
+  EXPECT_LT(added, 0.03);
+  Multipath multipath(3, 4, 0.1);
+  const PseudorangeNoise settled = MeasuredNoise(3000, 0.1, std::ref(multipath));
+  EXPECT_GT(settled.settled_epochs, 0.8 * settled.epochs);
+}
+
 TEST(PseudorangeErrors, FewSatellitesDecideNothing) {
   PseudorangeErrors errors;
   for (int k = 0; k < 100; ++k) {
-    SinglePointSolution solution;
-    solution.tag_ns = SecondsToNs(k);
-    for (int i = 0; i < 7; ++i) {
-      SatelliteResidual satellite;
-      satellite.satellite = {GnssSystem::kGps, 1 + i};
-      satellite.used = true;
-      satellite.residual_m = 5;
-      satellite.deviation_m = 1;
-      solution.satellites.push_back(satellite);
-    }
-    errors.Add(solution);
+    errors.Add(SolutionAt(k, std::vector<double>(7, 5.0)));
   }
   EXPECT_EQ(errors.noise().scale, 1);
   EXPECT_EQ(errors.noise().lasting_variance, 0);
+}
+
+// GIVEN white errors for half a second, THEN they are not taken for white yet; after six seconds they are.
+TEST(PseudorangeErrors, TheBeginningIsDoubted) {
+  RandomStream random(9, "white");
+  const auto white = [&](int, int) { return random.Normal(); };
+  const PseudorangeNoise soon = MeasuredNoise(6, 0.1, white);
+  EXPECT_GT(Ratio(soon), 1);
+  EXPECT_LT(Ratio(soon), 10);
+  EXPECT_EQ(Ratio(MeasuredNoise(60, 0.1, white)), 1);
 }
 
 }  // namespace

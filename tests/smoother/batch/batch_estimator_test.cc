@@ -116,8 +116,8 @@ TEST(BatchEstimatorTest, EqualInputGivesEqualBits) {
   for (size_t i = 0; i < first.frames->size(); ++i) {
     const FinalizedFrame& a = (*first.frames)[i];
     const FinalizedFrame& b = (*second.frames)[i];
-    EXPECT_TRUE(test::AreSame(a.estimate, b.estimate));
-    EXPECT_EQ(*a.filtering_covariance, *b.filtering_covariance);
+    EXPECT_TRUE(test::EqualBits(a.estimate, b.estimate));
+    EXPECT_TRUE(test::EqualBits(*a.filtering_covariance, *b.filtering_covariance));
   }
 }
 

@@ -123,7 +123,7 @@ TEST(SmootherEstimatorTest, EqualInputGivesEqualBits) {
   for (const SmootherLandmark landmark : kLandmarks) {
     const test::ScenarioResult first = RunSmoother(dataset, MakeConfig(landmark), true);
     const test::ScenarioResult second = RunSmoother(dataset, MakeConfig(landmark), true);
-    EXPECT_TRUE(test::AreSame(first.last, second.last));
+    EXPECT_TRUE(test::EqualBits(first.last, second.last));
     EXPECT_EQ(first.rmse_position_m, second.rmse_position_m);
   }
 }
