@@ -64,7 +64,8 @@ void DescribeRobustness(GnssConfig* config, ConfigVisitor& visitor) {
                &config->robust_scale_sigma, 0.1, 1e3);
   visitor.Boolean({"lasting_errors", "-",
                    "measure how large the errors of pseudoranges are and how long they last, as multipath "
-                   "does, and weigh them accordingly; false: white noise as stated"},
+                   "does, and weigh them accordingly, satellites that most others contradict by their "
+                   "deviation alone; false: white noise as stated"},
                   &config->lasting_errors);
 }
 

@@ -40,7 +40,7 @@ struct GnssConfig {
   double max_gated_share = 0.5;
   RobustKernel robust_kernel = RobustKernel::kHuber;
   double robust_scale_sigma = 2.0;
-  bool lasting_errors = false;
+  bool lasting_errors = true;
   // Receiver clock (gnss/model/receiver_clock.h).
   double clock_walk_m_sqrts = 0.1;
   double drift_walk_mps_sqrts = 0.1;

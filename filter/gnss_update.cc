@@ -128,7 +128,8 @@ void GnssUpdate::Weigh(const FilterState& state, FrameStatistics* statistics) {
       jacobian_.leftCols<kSeen>() * state.covariance().Block(state.ClockOffset(), kSeen);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    nis_[i] = innovation_[k] * innovation_[k] / (1 + predicted.row(k).dot(jacobian_.row(k).head<kSeen>()));
+    nis_[i] = NormalisedInnovation(innovation_[k], predicted.row(k).dot(jacobian_.row(k).head<kSeen>()),
+                                   rows_[i].contradicted);
   }
   const GnssWeights result = WeighRows(config_, gate_threshold_, nis_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {

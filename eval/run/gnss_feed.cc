@@ -112,6 +112,9 @@ const GnssEpoch* GnssFeed::Next() {
   epoch.builder = after_->builder;
   if (lasting_errors_) {
     epoch.measurements.noise = errors_.noise();
+    for (std::size_t k = 0; solution_ && k < epoch.measurements.satellites.size(); ++k) {
+      epoch.measurements.satellites[k].contradicted = !solution_->satellites[k].used;
+    }
   }
   next_ = std::move(epoch);
   return &*next_;

@@ -64,6 +64,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     if (config.pseudorange) {
       row.deviation = satellite.deviation_m;
       row.information = epoch.noise.InformationShare(m.pseudorange_variance);
+      row.contradicted = m.contradicted;
       row.jacobian.noalias() = line * position_jacobian;
       row.lever_arm.noalias() = line * position_by_arm;
       rows.push_back(row);
@@ -72,6 +73,7 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
       RowVector3d by_velocity;
       row.is_rate = true;
       row.information = 1;
+      row.contradicted = false;
       row.deviation = std::sqrt(m.range_rate_variance);
       RangeRateModel::Of(m).Evaluate(antenna_E, velocity_E, point.clock[ClockState::kDrift], &row.residual,
                                      &line, &by_velocity);
@@ -118,6 +120,10 @@ bool IsClockJump(const GnssConfig& config, const std::vector<GnssRow>& rows, dou
   const auto ranges = std::count_if(rows.begin(), rows.end(), [](const GnssRow& r) { return !r.is_rate; });
   const double threshold = std::max(config.clock_jump_m, kDeviations * clock_std_m);
   return ranges >= kLeastSatellites && std::abs(step_m) > threshold;
+}
+
+double NormalisedInnovation(double residual, double of_state, bool contradicted) {
+  return residual * residual / (1 + (contradicted ? 0 : of_state));
 }
 
 GnssWeights WeighRows(const GnssConfig& config, double gate_threshold, const std::vector<double>& nis) {

@@ -20,6 +20,7 @@ struct GnssRow {
   double deviation = 1;
   /// Factor on its information beside the deviation, by which it is gated (PseudorangeNoise).
   double information = 1;
+  bool contradicted = false;                    ///< SatelliteMeasurement
   GnssJacobian jacobian;                        ///< over (phi, dp, dv, dbg, dba)
   RowVector3d lever_arm = RowVector3d::Zero();  ///< d residual / d p_BA
 
@@ -56,6 +57,11 @@ void LocateEpoch(const MeasurementBuilder& builder, const AntennaMount& mount, c
 /// least three satellites.
 [[nodiscard]] bool IsClockJump(const GnssConfig& config, const std::vector<GnssRow>& rows, double step_m,
                                double clock_std_m);
+
+/// Normalised innovation squared of a whitened residual, with the whitened variance `of_state` of its
+/// prediction. That of a contradicted pseudorange does not count: an uncertain state is no argument for what
+/// most satellites speak against.
+[[nodiscard]] double NormalisedInnovation(double residual, double of_state, bool contradicted);
 
 /// What gate and kernel make of rows with these normalised innovations squared (one degree of freedom each).
 struct GnssWeights {

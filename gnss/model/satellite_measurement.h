@@ -34,6 +34,8 @@ struct SatelliteMeasurement {
   double noise_gain = 1;          ///< of the combination on the noise of a code
   std::optional<double> reported_std_m;
   std::optional<double> reported_rate_std_mps;
+  /// Pseudorange refused by the epoch's single-point solution, in favour of what most satellites agree on.
+  bool contradicted = false;
 };
 
 /// Satellites of an epoch that were left out, by reason.

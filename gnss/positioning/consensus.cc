@@ -1,10 +1,12 @@
 #include "gnss/positioning/consensus.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
+#include "core/robust.h"
 
 namespace alidade {
 namespace {
@@ -25,6 +27,31 @@ void Draw(const std::vector<int>& group, RandomStream* random, std::vector<Eigen
   });
 }
 
+/// Least squares over the measurements that agree with the fit: a sample alone has the noise of few.
+void FitAgreeing(const WhitenedRows& rows, Consensus* consensus) {
+  constexpr double kAgreeSigma = 2.5;
+  constexpr int kFits = 3;
+  for (int k = 0; k < kFits; ++k) {
+    std::vector<Eigen::Index> agreeing;
+    for (Eigen::Index i = 0; i < rows.measurements; ++i) {
+      if (std::abs(consensus->residual[i]) < kAgreeSigma * std::max(1.0, consensus->spread)) {
+        agreeing.push_back(i);
+      }
+    }
+    const Eigen::MatrixXd jacobian = rows.jacobian(agreeing, Eigen::all);
+    const Eigen::VectorXd residual = rows.residual(agreeing);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian);
+    const auto spare = static_cast<double>(agreeing.size()) - static_cast<double>(jacobian.cols());
+    if (qr.rank() < jacobian.cols() || spare < 1) {
+      return;
+    }
+    consensus->step = qr.solve(-residual);
+    consensus->residual =
+        rows.residual.head(rows.measurements) + rows.jacobian.topRows(rows.measurements) * consensus->step;
+    consensus->spread = (residual + jacobian * consensus->step).norm() / std::sqrt(spare);
+  }
+}
+
 }  // namespace
 
 std::optional<Consensus> SeekConsensus(const WhitenedRows& rows, const std::vector<int>& group) {
@@ -41,7 +68,13 @@ std::optional<Consensus> SeekConsensus(const WhitenedRows& rows, const std::vect
     order[i] = static_cast<Eigen::Index>(i);
   }
   const auto others = order.begin() + unknowns;
-  const auto middle = others + (count - unknowns - 1) / 2;
+  // The sample is among those that agree, so that nearly half of all measurements may be wrong; but of the
+  // others a third agrees, which few do by chance.
+  const Eigen::Index spare = count - unknowns;
+  const Eigen::Index agree = std::max(count / 2 - unknowns, spare / 3) + 1;
+  const auto last = others + (agree - 1);
+  const double normal =
+      std::sqrt(ChiSquareQuantile(1, static_cast<double>(agree) / static_cast<double>(spare)));
   std::optional<Consensus> best;
   for (int k = 0; k < kSamples; ++k) {
     Draw(group, &random, &order);
@@ -53,12 +86,15 @@ std::optional<Consensus> SeekConsensus(const WhitenedRows& rows, const std::vect
     if (!left.allFinite()) {  // a sample without a solution
       continue;
     }
-    std::nth_element(others, middle, order.end(),
+    std::nth_element(others, last, order.end(),
                      [&](Eigen::Index a, Eigen::Index b) { return std::abs(left[a]) < std::abs(left[b]); });
-    const double spread = 1.4826 * std::abs(left[*middle]);
+    const double spread = std::abs(left[*last]) / normal;
     if (!best || spread < best->spread) {
       best = {step, spread, left};
     }
+  }
+  if (best) {
+    FitAgreeing(rows, &*best);
   }
   return best;
 }

@@ -86,7 +86,9 @@ Status SinglePointSolver::SolveFrom(const Eigen::Vector3d& start_E, EpochMeasure
     }
   }
   Agree(*epoch, state);
-  if (Gate(*epoch, state)) {
+  // Each satellite that goes shows others.
+  constexpr int kMaxGates = 5;
+  for (int i = 0; i < kMaxGates && Gate(*epoch, state); ++i) {
     ALIDADE_RETURN_IF_ERROR(Iterate(*epoch, state));
   }
   const double deviation = state->scale * std::sqrt(state->covariance.topLeftCorner<3, 3>().trace());

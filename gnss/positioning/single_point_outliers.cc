@@ -29,10 +29,15 @@ void SinglePointSolver::Agree(const EpochMeasurements& epoch, SinglePointState* 
     return;
   }
   Eigen::Index row = 0;
+  Eigen::Index agreeing = 0;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
     if (other.active[k]) {
       other.active[k] = std::abs(consensus->residual[row++]) < kAgreeSigma * std::max(1.0, consensus->spread);
+      agreeing += other.active[k] ? 1 : 0;
     }
+  }
+  if (2 * agreeing <= rows.measurements) {
+    return;
   }
   other.biases_anew = true;
   if (Iterate(epoch, &other).ok()) {

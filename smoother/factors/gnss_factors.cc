@@ -35,6 +35,7 @@ FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const Frame
   result.lever_arm.setZero(count, 3);
   result.residual.setZero(count);
   result.information.assign(rows.size(), 1);
+  result.contradicted.assign(rows.size(), false);
   for (Index i = 0; i < count; ++i) {
     const GnssRow& row = rows[static_cast<std::size_t>(i)];
     if (!epoch.used.empty() && !epoch.used[static_cast<std::size_t>(i)]) {
@@ -42,6 +43,7 @@ FrameEpochRows LinearizeFrameEpoch(const GnssFactorContext& context, const Frame
     }
     RobustResidual residual{row.residual / row.deviation, 1};
     result.information[static_cast<std::size_t>(i)] = row.information;
+    result.contradicted[static_cast<std::size_t>(i)] = row.contradicted;
     if (robust) {
       residual = Robustify(context.config.robust_kernel, context.config.robust_scale_sigma, residual.value);
       residual.value *= std::sqrt(row.information);

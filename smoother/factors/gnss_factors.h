@@ -29,6 +29,7 @@ struct FrameEpochRows {
   Eigen::Matrix<double, Eigen::Dynamic, 3> lever_arm;
   Eigen::VectorXd residual;
   std::vector<double> information;  ///< GnssRow::information; of one that is refused 1
+  std::vector<bool> contradicted;   ///< GnssRow
 };
 /// `robust`: as a factor has the rows, with their information and the kernel, which acts as a residual whose
 /// square is the kernel's cost. Otherwise as they are gated.

@@ -71,7 +71,8 @@ AbsoluteCorrection NewestUpdate::Add(const GnssFactorContext& context, double ga
   const Eigen::MatrixXd predicted = jacobian * covariance_;
   std::vector<double> nis;
   for (Eigen::Index i = 0; i < count; ++i) {
-    nis.push_back(rows.residual[i] * rows.residual[i] / (1 + predicted.row(i).dot(jacobian.row(i))));
+    nis.push_back(NormalisedInnovation(rows.residual[i], predicted.row(i).dot(jacobian.row(i)),
+                                       rows.contradicted[static_cast<std::size_t>(i)]));
   }
   const std::vector<double> weights = WeighRows(context.config, gate_threshold, nis).weights;
   Eigen::VectorXd residual = rows.residual;

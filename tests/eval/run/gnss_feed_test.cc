@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <set>
+
 #include "eval/simulation/simulator.h"
 #include "eval/simulation/simulator_config.h"
 
@@ -66,6 +69,33 @@ TEST(GnssFeedTest, StampsContainTheTimeOffset) {
     EXPECT_EQ(feed.Next()->measurements.tag_ns, epochs[i].stamp_ns);
     EXPECT_EQ(feed.Next()->stamp_ns, feed.solution()->stamp_ns + SecondsToNs(i < 2 ? 0.25 : 0.2)) << i;
     feed.Pop();
+  }
+}
+
+// GIVEN reflections, THEN the satellites that the single-point solution refuses are marked, as far as errors
+// are measured.
+TEST(GnssFeedTest, ContradictedSatellitesAreMarked) {
+  const Dataset dataset = SimulateGnss();
+  ObservationEpoch epoch = dataset.gnss->epochs[0];
+  const std::set<SatelliteId> reflected = {epoch.satellites[1].satellite, epoch.satellites[6].satellite};
+  for (SatelliteObservation& observed : epoch.satellites) {
+    if (reflected.contains(observed.satellite)) {
+      *observed.signals[0].pseudorange_m += 60;
+    }
+  }
+  for (const bool lasting_errors : {true, false}) {
+    GnssConfig config;
+    config.lasting_errors = lasting_errors;
+    GnssFeed feed(config, SetupOf(*dataset.gnss), 0);
+    feed.Add(std::make_shared<ObservationEpoch>(epoch));
+    ASSERT_TRUE(feed.Next() != nullptr && feed.solution());
+    std::set<SatelliteId> marked;
+    for (const SatelliteMeasurement& satellite : feed.Next()->measurements.satellites) {
+      if (satellite.contradicted) {
+        marked.insert(satellite.satellite);
+      }
+    }
+    EXPECT_EQ(marked, lasting_errors ? reflected : std::set<SatelliteId>());
   }
 }
 

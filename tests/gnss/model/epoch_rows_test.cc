@@ -32,6 +32,11 @@ TEST(EpochRowsTest, AJumpIsCommonLargeAndSharedByThree) {
   EXPECT_FALSE(IsClockJump(config, Rows({-jump, -jump, -jump}), jump, 1e5));
 }
 
+TEST(EpochRowsTest, AnUncertainStateExcusesNoContradictedPseudorange) {
+  EXPECT_DOUBLE_EQ(NormalisedInnovation(6, 8, false), 4);
+  EXPECT_DOUBLE_EQ(NormalisedInnovation(6, 8, true), 36);
+}
+
 TEST(EpochRowsTest, GateRefusesFewAndWeighsManyDown) {
   GnssConfig config;
   config.robust_kernel = RobustKernel::kNone;

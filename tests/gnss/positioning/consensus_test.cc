@@ -43,6 +43,16 @@ TEST(ConsensusTest, AThirdOfLateMeasurementsHasNoEffect) {
   }
 }
 
+TEST(ConsensusTest, TwoFifthsOfLateMeasurementsHaveNoEffect) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Problem problem(25, 10, seed);
+    const std::optional<Consensus> consensus = SeekConsensus(problem.rows, problem.group);
+    ASSERT_TRUE(consensus.has_value());
+    EXPECT_LT((consensus->step - problem.truth).norm(), 3) << seed;
+    EXPECT_LT(consensus->spread, 2) << seed;
+  }
+}
+
 TEST(ConsensusTest, EqualInputGivesEqualBits) {
   const Problem problem(24, 8, 7);
   const std::optional<Consensus> first = SeekConsensus(problem.rows, problem.group);
