@@ -29,8 +29,8 @@ void Draw(const std::vector<int>& group, RandomStream* random, std::vector<Eigen
 
 /// Least squares over the measurements that agree with the fit: a sample alone has the noise of few.
 void FitAgreeing(const WhitenedRows& rows, Consensus* consensus) {
-  constexpr double kAgreeSigma = 2.5;
-  constexpr int kFits = 3;
+  constexpr double kAgreeSigma = 4;
+  constexpr int kFits = 10;
   for (int k = 0; k < kFits; ++k) {
     std::vector<Eigen::Index> agreeing;
     for (Eigen::Index i = 0; i < rows.measurements; ++i) {
