@@ -92,20 +92,27 @@ bool GnssWindow::Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, cons
   if (!RemoveClockJump(&attached, *frame)) {
     return false;
   }
+  for (const GnssRow& row : PredictRows(attached, *frame)) {
+    const double residual = row.residual / row.deviation;
+    attached.used.push_back(!row.contradicted || residual * residual <= gate_threshold_);
+  }
   frame->epochs.push_back(std::move(attached));
   return true;
+}
+
+std::vector<GnssRow> GnssWindow::PredictRows(const FrameEpoch& epoch, const WindowFrame& frame) const {
+  GnssResiduals ignored;
+  const double dt_s = epoch.SecondsAfter(frame.stamp_ns);
+  GnssPoint point{frame.nav_state(), frame.imu_bias(), epoch.gyro_radps, frame.clock_state()};
+  point.nav.p_WB += dt_s * point.nav.v_WB;
+  point.clock[ClockState::kClock] += dt_s * point.clock[ClockState::kDrift];
+  return LinearizeEpoch(config_, context_->mount, point, epoch.measurements, &ignored);
 }
 
 bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
   constexpr double kMillisecondM = 1e-3 * kSpeedOfLight;
   constexpr double kSureM = 200;  // within which a step counts as whole milliseconds
-  GnssResiduals ignored;
-  const double dt_s = epoch->SecondsAfter(frame.stamp_ns);
-  GnssPoint point{frame.nav_state(), frame.imu_bias(), epoch->gyro_radps, frame.clock_state()};
-  point.nav.p_WB += dt_s * point.nav.v_WB;
-  point.clock[ClockState::kClock] += dt_s * point.clock[ClockState::kDrift];
-  const std::vector<GnssRow> rows =
-      LinearizeEpoch(config_, context_->mount, point, epoch->measurements, &ignored);
+  const std::vector<GnssRow> rows = PredictRows(*epoch, frame);
   const double step = CommonStep(rows);
   step_m_ = step;
   const double since_s = std::max(0.0, SecondsBetween(clock_known_ns_, epoch->stamp_ns));

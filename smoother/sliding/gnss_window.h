@@ -28,7 +28,8 @@ class GnssWindow {
   /// The clock of a frame that was just added, from that of the frame `from` before it.
   void PredictClock(const WindowFrame& from, WindowFrame* frame);
 
-  /// Links the epoch to the frame; `imu` spans from the frame to the epoch, empty at the frame itself. False
+  /// Links the epoch to the frame; `imu` spans from the frame to the epoch, empty at the frame itself.
+  /// Contradicted pseudoranges beyond the gate at the prediction take no part until Gate. False
   /// when the epoch was skipped because the clock was lost; it is re-initialised at the next frame.
   bool Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, const ImuNoise& noise, WindowFrame* frame);
   /// After a solve: the gate of each row of each epoch of a frame; statistics of those that are gated for
@@ -43,6 +44,8 @@ class GnssWindow {
   [[nodiscard]] double step_m() const { return step_m_; }
 
  private:
+  /// At the state and clock that the frame predicts for the epoch.
+  [[nodiscard]] std::vector<GnssRow> PredictRows(const FrameEpoch& epoch, const WindowFrame& frame) const;
   /// Looks for a jump of the clock at the predicted state and takes whole milliseconds out of the epoch;
   /// false when the clock is lost, by this or an earlier jump of another size.
   bool RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame);

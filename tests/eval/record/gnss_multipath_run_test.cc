@@ -66,11 +66,12 @@ TEST_P(GnssMultipathRunTest, WhiteErrorsStayInBand) {
 }
 
 // GIVEN a third of the satellites reflected, WHEN the estimate begins, THEN they do not pull it. An uncertain
-// position alone lets them through its gate, and errors that last keep it uncertain.
+// position alone lets them through its gate: on these seeds the filter's RMSE is then 0.50 m instead of 0.30
+// m.
 TEST_P(GnssMultipathRunTest, ReflectionsDoNotEnterAtTheStart) {
   double squared = 0;
   std::size_t count = 0;
-  for (const unsigned seed : {974, 975, 976}) {
+  for (const unsigned seed : {976, 991}) {
     SimulatorConfig scene = test::GnssScene(12);
     scene.gnss.rate_hz = 10;
     scene.gnss.nlos_rate = 0.3;
@@ -79,8 +80,8 @@ TEST_P(GnssMultipathRunTest, ReflectionsDoNotEnterAtTheStart) {
       ++count;
     }
   }
-  EXPECT_GT(count, 300U);
-  EXPECT_LT(std::sqrt(squared / static_cast<double>(count)), 0.7);
+  EXPECT_GT(count, 200U);
+  EXPECT_LT(std::sqrt(squared / static_cast<double>(count)), 0.4);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBackEnds, GnssMultipathRunTest,

@@ -19,11 +19,12 @@ struct GnssFixture : WindowFixture {
   explicit GnssFixture(unsigned seed) : WindowFixture(seed, 4, 12, 1.0) {
     constexpr TimeNs sky_ns = 1'700'000'100 * kSecondNs;
     const NavigationData sky = SyntheticSky(sky_ns);
-    const MeasurementBuilder builder(std::make_shared<SatelliteCatalog>(sky), GnssTestConfig().corrections);
+    builder = std::make_shared<const MeasurementBuilder>(std::make_shared<SatelliteCatalog>(sky),
+                                                         GnssTestConfig().corrections);
     SyntheticReceiver receiver;
     receiver.stamp_ns = sky_ns;
-    EpochMeasurements measurements = builder.Prepare(Observe(sky, receiver));
-    builder.Locate(receiver.position_E, &measurements);
+    EpochMeasurements measurements = builder->Prepare(Observe(sky, receiver));
+    builder->Locate(receiver.position_E, &measurements);
     context.config = GnssTestConfig();
     context.mount = {EnuFrame::At(receiver.position_E), Eigen::Vector3d(0.1, -0.2, 0.3)};
     context.gravity_W = gravity_W;
@@ -47,6 +48,7 @@ struct GnssFixture : WindowFixture {
     }
   }
   GnssFactorContext context;
+  std::shared_ptr<const MeasurementBuilder> builder;
 };
 
 }  // namespace alidade::test

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "core/robust.h"
 #include "tests/smoother/sliding/gnss_fixture.h"
 #include "tests/smoother/solve/given_terms.h"
@@ -66,6 +70,45 @@ TEST(ClockFactorTest, ZeroOnItsProcess) {
   ASSERT_TRUE(ClockFactor(step).Evaluate(blocks.data(), residual.data(), nullptr));
   EXPECT_LT(residual.norm(), 1e-9);
   EXPECT_DOUBLE_EQ(to[0], 110);
+}
+
+// GIVEN two pseudoranges that are 60 m late, of which most satellites contradict one, WHEN their epoch is
+// attached, THEN that one takes no part until the gate, however uncertain the state is.
+TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
+  GnssFixture fixture(2);
+  GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
+  GnssAlignment alignment;
+  alignment.enu = fixture.context.mount.enu;
+  alignment.clock = Vector6d::Zero();
+  LinearPrior prior;
+  ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0),
+                               Matrix15d::Identity(), &prior));
+  WindowFrame& frame = fixture.window.frame(0);
+  gnss.Align(alignment, &frame, &prior);
+  const FrameEpoch given = frame.epochs[0];
+  frame.epochs.clear();
+  GnssEpoch epoch{given.stamp_ns, given.measurements, fixture.builder};
+  std::vector<SatelliteMeasurement>& satellites = epoch.measurements.satellites;
+  std::size_t high = 0;  // index of a row: those above the mask
+  std::vector<std::size_t> late;
+  for (SatelliteMeasurement& satellite : satellites) {
+    if (satellite.direction.elevation_rad * 180 / M_PI < GnssTestConfig().corrections.elevation_mask_deg) {
+      continue;
+    }
+    if (high == 2 || high == 5) {
+      satellite.pseudorange_m += 60;
+      satellite.contradicted = high == 5;
+      late.push_back(high);
+    }
+    ++high;
+  }
+  ASSERT_EQ(late.size(), 2U);
+  ASSERT_TRUE(gnss.Attach(epoch, given.imu, fixture.noise, &frame));
+  const std::vector<bool>& used = frame.epochs[0].used;
+  ASSERT_GT(used.size(), high);  // rates follow
+  EXPECT_TRUE(used[2]);
+  EXPECT_FALSE(used[5]);
+  EXPECT_EQ(std::count(used.begin(), used.end(), false), 1);
 }
 
 // GIVEN most rows of an epoch beyond the gate, so that the state is suspect and not the satellites, THEN none
