@@ -18,6 +18,48 @@ bool HasRateRow(const GnssConfig& config, const SatelliteMeasurement& m) {
   return config.doppler && m.range_rate_mps;
 }
 
+/// Of a state, with Jacobians over its error and over the lever arm.
+struct AntennaMotion {
+  AntennaMotion(const AntennaMount& mount, const GnssPoint& point)
+      : position_E(mount.Position(point.nav, &position_jacobian)),
+        velocity_E(mount.Velocity(point.nav, point.bias, point.gyro_radps, &velocity_jacobian)),
+        position_by_arm(mount.PositionByLeverArm(point.nav)),
+        velocity_by_arm(mount.VelocityByLeverArm(point.nav, point.bias, point.gyro_radps)) {}
+
+  Eigen::Matrix<double, 3, 15> position_jacobian;
+  Eigen::Matrix<double, 3, 15> velocity_jacobian;
+  Eigen::Vector3d position_E;
+  Eigen::Vector3d velocity_E;
+  Eigen::Matrix3d position_by_arm;
+  Eigen::Matrix3d velocity_by_arm;
+};
+
+GnssRow PseudorangeRow(const SatelliteMeasurement& m, const AntennaMotion& antenna, const Vector6d& clock) {
+  GnssRow row;
+  row.bias_index = ClockBiasIndex(m.satellite.system);
+  row.deviation = std::sqrt(m.pseudorange_variance);
+  row.contradicted = m.contradicted;
+  const double clock_m = clock[ClockState::kClock] + (row.bias_index >= 0 ? clock[row.bias_index] : 0);
+  RowVector3d line;
+  PseudorangeModel::Of(m).Evaluate(antenna.position_E, clock_m, &row.residual, &line);
+  row.jacobian.noalias() = line * antenna.position_jacobian;
+  row.lever_arm.noalias() = line * antenna.position_by_arm;
+  return row;
+}
+
+GnssRow RangeRateRow(const SatelliteMeasurement& m, const AntennaMotion& antenna, const Vector6d& clock) {
+  GnssRow row;
+  row.is_rate = true;
+  row.deviation = std::sqrt(m.range_rate_variance);
+  RowVector3d line;
+  RowVector3d by_velocity;
+  RangeRateModel::Of(m).Evaluate(antenna.position_E, antenna.velocity_E, clock[ClockState::kDrift],
+                                 &row.residual, &line, &by_velocity);
+  row.jacobian.noalias() = line * antenna.position_jacobian + by_velocity * antenna.velocity_jacobian;
+  row.lever_arm.noalias() = line * antenna.position_by_arm + by_velocity * antenna.velocity_by_arm;
+  return row;
+}
+
 }  // namespace
 
 Eigen::Matrix<double, 1, 6> GnssRow::ClockJacobian() const {
@@ -37,13 +79,7 @@ void LocateEpoch(const MeasurementBuilder& builder, const AntennaMount& mount, c
 std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount& mount,
                                     const GnssPoint& point, const EpochMeasurements& epoch,
                                     GnssResiduals* residuals) {
-  Eigen::Matrix<double, 3, 15> position_jacobian;
-  Eigen::Matrix<double, 3, 15> velocity_jacobian;
-  const Eigen::Vector3d antenna_E = mount.Position(point.nav, &position_jacobian);
-  const Eigen::Vector3d velocity_E =
-      mount.Velocity(point.nav, point.bias, point.gyro_radps, &velocity_jacobian);
-  const Eigen::Matrix3d position_by_arm = mount.PositionByLeverArm(point.nav);
-  const Eigen::Matrix3d velocity_by_arm = mount.VelocityByLeverArm(point.nav, point.bias, point.gyro_radps);
+  const AntennaMotion antenna(mount, point);
   std::vector<GnssRow> rows;
   std::vector<GnssRow> rates;
   residuals->satellites.clear();
@@ -53,32 +89,17 @@ std::vector<GnssRow> LinearizeEpoch(const GnssConfig& config, const AntennaMount
     }
     SatelliteResidual satellite{m.satellite, m.direction,  0,    std::sqrt(m.pseudorange_variance),
                                 false,       std::nullopt, false};
-    GnssRow row;
-    row.satellite = residuals->satellites.size();
-    row.bias_index = ClockBiasIndex(m.satellite.system);
-    RowVector3d line;
-    const double clock =
-        point.clock[ClockState::kClock] + (row.bias_index >= 0 ? point.clock[row.bias_index] : 0);
-    PseudorangeModel::Of(m).Evaluate(antenna_E, clock, &row.residual, &line);
+    const std::size_t index = residuals->satellites.size();
+    GnssRow row = PseudorangeRow(m, antenna, point.clock);
     satellite.residual_m = row.residual;
     if (config.pseudorange) {
-      row.deviation = satellite.deviation_m;
+      row.satellite = index;
       row.information = epoch.noise.InformationShare(m.pseudorange_variance);
-      row.contradicted = m.contradicted;
-      row.jacobian.noalias() = line * position_jacobian;
-      row.lever_arm.noalias() = line * position_by_arm;
       rows.push_back(row);
     }
     if (HasRateRow(config, m)) {
-      RowVector3d by_velocity;
-      row.is_rate = true;
-      row.information = 1;
-      row.contradicted = false;
-      row.deviation = std::sqrt(m.range_rate_variance);
-      RangeRateModel::Of(m).Evaluate(antenna_E, velocity_E, point.clock[ClockState::kDrift], &row.residual,
-                                     &line, &by_velocity);
-      row.jacobian.noalias() = line * position_jacobian + by_velocity * velocity_jacobian;
-      row.lever_arm.noalias() = line * position_by_arm + by_velocity * velocity_by_arm;
+      row = RangeRateRow(m, antenna, point.clock);
+      row.satellite = index;
       satellite.range_rate_residual_mps = row.residual;
       rates.push_back(row);
     }

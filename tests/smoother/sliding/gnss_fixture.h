@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <memory>
 
 #include "smoother/sliding/gnss_window.h"
@@ -47,6 +49,19 @@ struct GnssFixture : WindowFixture {
       frame.epochs.push_back(epoch);
     }
   }
+  /// A window of GNSS that begins at the first frame in the fixture's frame, with the frame's clock zero.
+  GnssWindow AlignedWindow() {
+    GnssWindow gnss(GnssTestConfig(), {}, gravity_W);
+    GnssAlignment alignment;
+    alignment.enu = context.mount.enu;
+    alignment.clock = Vector6d::Zero();
+    LinearPrior prior;
+    EXPECT_TRUE(
+        MakeInitialPrior(ErrorConvention::kRightInvariant, window.frame(0), Matrix15d::Identity(), &prior));
+    gnss.Align(alignment, &window.frame(0), &prior);
+    return gnss;
+  }
+
   GnssFactorContext context;
   std::shared_ptr<const MeasurementBuilder> builder;
 };

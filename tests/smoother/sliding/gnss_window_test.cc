@@ -76,15 +76,8 @@ TEST(ClockFactorTest, ZeroOnItsProcess) {
 // attached, THEN that one takes no part until the gate, however uncertain the state is.
 TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
   GnssFixture fixture(2);
-  GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
-  GnssAlignment alignment;
-  alignment.enu = fixture.context.mount.enu;
-  alignment.clock = Vector6d::Zero();
-  LinearPrior prior;
-  ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0),
-                               Matrix15d::Identity(), &prior));
+  GnssWindow gnss = fixture.AlignedWindow();
   WindowFrame& frame = fixture.window.frame(0);
-  gnss.Align(alignment, &frame, &prior);
   const FrameEpoch given = frame.epochs[0];
   frame.epochs.clear();
   GnssEpoch epoch{given.stamp_ns, given.measurements, fixture.builder};
@@ -115,14 +108,7 @@ TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
 // pulls harder than at the gate, as in the filter.
 TEST(GnssWindowTest, RowsOfASuspectEpochAreScaledToTheGate) {
   GnssFixture fixture(2);
-  GnssWindow gnss(GnssTestConfig(), {}, fixture.gravity_W);
-  GnssAlignment alignment;
-  alignment.enu = fixture.context.mount.enu;
-  alignment.clock = Vector6d::Zero();
-  LinearPrior prior;
-  ASSERT_TRUE(MakeInitialPrior(ErrorConvention::kRightInvariant, fixture.window.frame(0),
-                               Matrix15d::Identity(), &prior));
-  gnss.Align(alignment, &fixture.window.frame(0), &prior);
+  GnssWindow gnss = fixture.AlignedWindow();
   for (int i = 0; i < fixture.window.size(); ++i) {
     WindowFrame& frame = fixture.window.frame(i);
     NavState away = frame.nav_state();
