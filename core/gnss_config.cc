@@ -62,11 +62,12 @@ void DescribeRobustness(GnssConfig* config, ConfigVisitor& visitor) {
       {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
   visitor.Real({"robust_scale_sigma", "sigma", "whitened residual above which the kernel reduces the weight"},
                &config->robust_scale_sigma, 0.1, 1e3);
-  visitor.Boolean({"lasting_errors", "-",
-                   "measure how large the errors of pseudoranges are and how long they last, as multipath "
-                   "does, and weigh them accordingly, satellites that most others contradict by their "
-                   "deviation alone; false: white noise as stated"},
-                  &config->lasting_errors);
+  visitor.Boolean(
+      {"lasting_errors", "-",
+       "measure size and duration of the errors of pseudoranges, such as multipath, and weigh "
+       "pseudoranges by them; the gate leaves out the state's uncertainty for satellites that the "
+       "single-point solution refuses; false: white noise as stated"},
+      &config->lasting_errors);
 }
 
 void DescribeClock(GnssConfig* config, ConfigVisitor& visitor) {

@@ -29,12 +29,11 @@ void Draw(const std::vector<int>& group, RandomStream* random, std::vector<Eigen
 
 /// Least squares over the measurements that agree with the fit: a sample alone has the noise of few.
 void FitAgreeing(const WhitenedRows& rows, Consensus* consensus) {
-  constexpr double kAgreeSigma = 4;
   constexpr int kFits = 10;
   for (int k = 0; k < kFits; ++k) {
     std::vector<Eigen::Index> agreeing;
     for (Eigen::Index i = 0; i < rows.measurements; ++i) {
-      if (std::abs(consensus->residual[i]) < kAgreeSigma * std::max(1.0, consensus->spread)) {
+      if (consensus->Agrees(i)) {
         agreeing.push_back(i);
       }
     }
@@ -53,6 +52,11 @@ void FitAgreeing(const WhitenedRows& rows, Consensus* consensus) {
 }
 
 }  // namespace
+
+bool Consensus::Agrees(Eigen::Index measurement) const {
+  constexpr double kSigma = 4;
+  return std::abs(residual[measurement]) < kSigma * std::max(1.0, spread);
+}
 
 std::optional<Consensus> SeekConsensus(const WhitenedRows& rows, const std::vector<int>& group) {
   const Eigen::Index unknowns = rows.jacobian.cols();

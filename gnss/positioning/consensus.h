@@ -13,6 +13,8 @@ struct Consensus {
   Eigen::VectorXd step;      ///< unknowns
   double spread = 0;         ///< deviation of the whitened residuals of those that agree
   Eigen::VectorXd residual;  ///< r + H x of the measurements, whitened
+
+  [[nodiscard]] bool Agrees(Eigen::Index measurement) const;
 };
 
 /// Least median of squares (Rousseeuw 1984) of |r + H x| over random samples of as many measurements as there

@@ -12,7 +12,6 @@ namespace alidade {
 void SinglePointSolver::Agree(const EpochMeasurements& epoch, SinglePointState* state) const {
   constexpr double kSuspiciousScale = 1.5;
   constexpr double kBetter = 0.5;
-  constexpr double kAgreeSigma = 4;
   if (state->scale < kSuspiciousScale) {
     return;
   }
@@ -32,7 +31,7 @@ void SinglePointSolver::Agree(const EpochMeasurements& epoch, SinglePointState* 
   Eigen::Index agreeing = 0;
   for (std::size_t k = 0; k < epoch.satellites.size(); ++k) {
     if (other.active[k]) {
-      other.active[k] = std::abs(consensus->residual[row++]) < kAgreeSigma * std::max(1.0, consensus->spread);
+      other.active[k] = consensus->Agrees(row++);
       agreeing += other.active[k] ? 1 : 0;
     }
   }

@@ -89,10 +89,11 @@ bool GnssWindow::Attach(const GnssEpoch& epoch, std::vector<ImuSample> imu, cons
     m.pseudorange_m -= removed_jumps_m_;
   }
   jumped_ = false;
-  if (!RemoveClockJump(&attached, *frame)) {
+  std::vector<GnssRow> rows = PredictRows(attached, *frame);
+  if (!RemoveClockJump(&attached, &rows)) {
     return false;
   }
-  for (const GnssRow& row : PredictRows(attached, *frame)) {
+  for (const GnssRow& row : rows) {
     const double residual = row.residual / row.deviation;
     attached.used.push_back(!row.contradicted || residual * residual <= gate_threshold_);
   }
@@ -109,16 +110,15 @@ std::vector<GnssRow> GnssWindow::PredictRows(const FrameEpoch& epoch, const Wind
   return LinearizeEpoch(config_, context_->mount, point, epoch.measurements, &ignored);
 }
 
-bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
+bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, std::vector<GnssRow>* rows) {
   constexpr double kMillisecondM = 1e-3 * kSpeedOfLight;
   constexpr double kSureM = 200;  // within which a step counts as whole milliseconds
-  const std::vector<GnssRow> rows = PredictRows(*epoch, frame);
-  const double step = CommonStep(rows);
+  const double step = CommonStep(*rows);
   step_m_ = step;
   const double since_s = std::max(0.0, SecondsBetween(clock_known_ns_, epoch->stamp_ns));
   const double walk = PropagateClock(config_, since_s).q(ClockState::kClock, ClockState::kClock);
-  clock_known_ns_ = rows.empty() ? clock_known_ns_ : epoch->stamp_ns;
-  if (!IsClockJump(config_, rows, step, std::sqrt(kFreshClockStdM * kFreshClockStdM + walk))) {
+  clock_known_ns_ = rows->empty() ? clock_known_ns_ : epoch->stamp_ns;
+  if (!IsClockJump(config_, *rows, step, std::sqrt(kFreshClockStdM * kFreshClockStdM + walk))) {
     return !clock_lost_;
   }
   jumped_ = true;
@@ -133,6 +133,9 @@ bool GnssWindow::RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame) {
   step_m_ -= whole;
   for (SatelliteMeasurement& m : epoch->measurements.satellites) {
     m.pseudorange_m -= whole;
+  }
+  for (GnssRow& row : *rows) {
+    row.residual += row.is_rate ? 0 : whole;
   }
   return !clock_lost_;
 }

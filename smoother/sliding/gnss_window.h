@@ -46,9 +46,9 @@ class GnssWindow {
  private:
   /// At the state and clock that the frame predicts for the epoch.
   [[nodiscard]] std::vector<GnssRow> PredictRows(const FrameEpoch& epoch, const WindowFrame& frame) const;
-  /// Looks for a jump of the clock at the predicted state and takes whole milliseconds out of the epoch;
+  /// Looks for a jump of the clock in the predicted rows and takes whole milliseconds out of epoch and rows;
   /// false when the clock is lost, by this or an earlier jump of another size.
-  bool RemoveClockJump(FrameEpoch* epoch, const WindowFrame& frame);
+  bool RemoveClockJump(FrameEpoch* epoch, std::vector<GnssRow>* rows);
 
   GnssConfig config_;
   GnssReceiver receiver_;

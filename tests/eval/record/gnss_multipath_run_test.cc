@@ -65,9 +65,8 @@ TEST_P(GnssMultipathRunTest, WhiteErrorsStayInBand) {
   EXPECT_LT(nees, 9);
 }
 
-// GIVEN a third of the satellites reflected, WHEN the estimate begins, THEN they do not pull it. An uncertain
-// position alone lets them through its gate: on these seeds the filter's RMSE is then 0.50 m instead of 0.30
-// m.
+// GIVEN 30 % of the satellites reflected, WHEN the estimate begins, THEN they do not pull it. On these seeds
+// an uncertain position lets them through the gate of the state alone: the filter's RMSE is then 0.50 m.
 TEST_P(GnssMultipathRunTest, ReflectionsDoNotEnterAtTheStart) {
   double squared = 0;
   std::size_t count = 0;
