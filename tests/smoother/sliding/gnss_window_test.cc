@@ -104,6 +104,30 @@ TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 1);
 }
 
+// GIVEN an epoch whose satellites are all marked as contradicted, THEN a jump of the clock by a millisecond,
+// which is taken out, changes nothing in which of them take part.
+TEST(GnssWindowTest, AClockJumpDoesNotDecideWhichContradictedTakePart) {
+  std::vector<std::vector<bool>> used;
+  for (const double jump_m : {0.0, 299792.458}) {
+    GnssFixture fixture(2);
+    GnssWindow gnss = fixture.AlignedWindow();
+    WindowFrame& frame = fixture.window.frame(0);
+    const FrameEpoch given = frame.epochs[0];
+    frame.epochs.clear();
+    GnssEpoch epoch{given.stamp_ns, given.measurements, fixture.builder};
+    for (SatelliteMeasurement& satellite : epoch.measurements.satellites) {
+      satellite.pseudorange_m += jump_m;
+      satellite.contradicted = true;
+    }
+    ASSERT_TRUE(gnss.Attach(epoch, given.imu, fixture.noise, &frame));
+    EXPECT_EQ(gnss.jumped(), jump_m > 0);
+    used.push_back(frame.epochs[0].used);
+  }
+  const auto pseudoranges = used[0].begin() + static_cast<std::ptrdiff_t>(used[0].size() / 2);
+  EXPECT_GT(std::count(used[0].begin(), pseudoranges, true), 0);
+  EXPECT_EQ(used[1], used[0]);
+}
+
 // GIVEN most rows of an epoch beyond the gate, so that the state is suspect and not the satellites, THEN none
 // pulls harder than at the gate, as in the filter.
 TEST(GnssWindowTest, RowsOfASuspectEpochAreScaledToTheGate) {
