@@ -70,6 +70,10 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
   /// Appends the rows of a track: of its landmark in the state, of its entry there, or of its due views.
   void AppendTrack(size_t index, int leaving_serial);
+  /// While tracks determine the direction of the motion: a row for the volume that the start's density of the
+  /// velocity has around that direction, s^2 over its length s; the most likely start alone would be too slow
+  /// (docs/track_memory.md).
+  void AppendScaleVolume();
   /// Appends the rows of all tracks that are due; where those of landmarks of the state begin.
   int AppendDueTracks(int leaving_serial);
   /// While the window's shape is less certain than FilterConfig::max_direction_deviation, all tracks update
@@ -100,9 +104,9 @@ class FilterEstimator : public Estimator {
   void Correct();
   /// Whether the tracks' information must be kept blind to the scale (filter/scale_direction.h).
   [[nodiscard]] bool ScaleIsUncertain() const;
-  /// Moves the state to the solution of the update at hand, where its tracks are to be linearised again;
-  /// false, with nothing moved, where that changes nothing. `corrected`: less the prior's mean, as an error
-  /// of the state.
+  /// Moves the state to the solution of the update at hand, or towards it, where its tracks are to be
+  /// linearised again; false, with nothing moved, where that changes nothing. `corrected`: less the prior's
+  /// mean, as an error of the state.
   bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
   /// Correct(), and what it does to the covariance while the scale is uncertain, and to `errors` likewise.
   void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);

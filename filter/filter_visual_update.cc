@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "filter/filter_estimator.h"
 #include "filter/window_shape.h"
 
@@ -20,8 +22,11 @@ constexpr double kKnownShape = 0.1;
 constexpr double kKnownScale = 0.02;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
-// Of the deviation across the line between the cameras that is allowed, what may be along it.
-constexpr double kScaleTolerance = 2;
+// Largest deformation of the window between two linearisations. Gauss-Newton steps that are longer jump
+// between shapes, and end where the scale has vanished.
+constexpr double kLongestStep = 0.3;
+// Degrees of freedom of the direction of a motion.
+constexpr double kDirectionFreedom = 2;
 
 }  // namespace
 
@@ -78,7 +83,19 @@ int FilterEstimator::AppendDueTracks(int leaving_serial) {
       AppendTrack(i, leaving_serial);
     }
   }
+  if (due_ == DueTracks::kAll) {
+    AppendScaleVolume();
+  }
   return landmark_rows;
+}
+
+void FilterEstimator::AppendScaleVolume() {
+  if (!scale_direction_.Take(state_, serial_)) {
+    return;
+  }
+  const FeatureUpdate::Block block = update_.AddBlock(1);
+  update_.jacobian().row(block.first) = std::sqrt(kDirectionFreedom) * scale_direction_.row().transpose();
+  update_.innovation()(block.first) = std::sqrt(kDirectionFreedom);
 }
 
 bool FilterEstimator::ShapeIsKnown() const {
@@ -99,7 +116,7 @@ int FilterEstimator::ChooseAndAppendTracks(int leaving_serial) {
       return landmark_rows;
     }
     due_ = DueTracks::kLeaving;
-  } else if (baseline_.along > kScaleTolerance * limit) {
+  } else if (baseline_.along > limit) {
     due_ = DueTracks::kLeaving;
   }
   return AppendDueTracks(leaving_serial);
@@ -138,6 +155,9 @@ bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
   const double negligible = ShapeIsKnown() ? kNegligible : kNegligibleUncertain;
   if (!(deformation * deformation * explained > negligible)) {
     return false;
+  }
+  if (deformation > kLongestStep) {
+    Correction() *= kLongestStep / deformation;
   }
   corrected += Correction();
   moved_.head(corrected.size()) += Correction();

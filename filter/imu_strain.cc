@@ -140,7 +140,7 @@ Matrix6d ImuStrain::MotionCovariance(size_t index) const {
   return turned;
 }
 
-void ImuStrain::Solve() {
+void ImuStrain::Solve(Vector3d Node::*e) {
   const size_t last = nodes_.size() - 2;
   Matrix6d before = MotionCovariance(1);
   double before_s = nodes_[1].since.motion.duration_s;
@@ -151,7 +151,7 @@ void ImuStrain::Solve() {
     Matrix3d diagonal = after.topLeftCorner<3, 3>() / (after_s * after_s) +
                         before.topLeftCorner<3, 3>() / (before_s * before_s) +
                         before.bottomRightCorner<3, 3>() - cross - cross.transpose();
-    solved_[k] = nodes_[k].strain;
+    solved_[k] = nodes_[k].*e;
     if (k > 1) {
       // The interval before it is also in e of the node before.
       couplings_[k] = cross.transpose() - before.topLeftCorner<3, 3>() / (before_s * before_s);
@@ -171,20 +171,20 @@ void ImuStrain::Solve() {
   }
 }
 
-double ImuStrain::NormalizedSquare() {
+double ImuStrain::NormalizedSquare(Vector3d Node::*e) {
   if (Freedom() == 0) {
     return 0;
   }
-  Solve();
+  Solve(e);
   double sum = 0;
   for (size_t k = 1; k + 1 < nodes_.size(); ++k) {
-    sum += nodes_[k].strain.dot(solved_[k]);
+    sum += (nodes_[k].*e).dot(solved_[k]);
   }
   return sum;
 }
 
 double ImuStrain::ScaleGradient() {
-  if (!(NormalizedSquare() < Freedom())) {
+  if (!(NormalizedSquare(&Node::marked) < Freedom()) || !(NormalizedSquare() < Freedom())) {
     return 0;
   }
   double sum = 0;

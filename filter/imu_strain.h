@@ -42,10 +42,10 @@ class ImuStrain {
   void MarkNewest();
   /// The cost's gradient along the scale of the window that corrections since the marks have caused: the sum
   /// of d e^T C^-1 e, C the covariance of e by the IMU's noise. 0 where e is larger than that noise can make
-  /// it: then it is of the neglected squares.
+  /// it, now or at the marks: then it is of the neglected squares.
   [[nodiscard]] double ScaleGradient();
   /// e^T C^-1 e, and its degrees of freedom.
-  [[nodiscard]] double NormalizedSquare();
+  [[nodiscard]] double NormalizedSquare() { return NormalizedSquare(&Node::strain); }
   [[nodiscard]] int Freedom() const;
   /// e of clone `index`; of the newest one, that of the velocity after it.
   [[nodiscard]] const Eigen::Vector3d& strain(size_t index) const { return nodes_[index].strain; }
@@ -63,7 +63,8 @@ class ImuStrain {
   /// Covariance of the (alpha, beta) of that interval in W.
   [[nodiscard]] Matrix6d MotionCovariance(size_t index) const;
   /// solved_ <- C^-1 e, by block elimination: only neighbours have an interval in common.
-  void Solve();
+  void Solve(Eigen::Vector3d Node::*e);
+  [[nodiscard]] double NormalizedSquare(Eigen::Vector3d Node::*e);
 
   size_t capacity_;
   bool has_pending_ = false;

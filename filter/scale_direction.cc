@@ -1,6 +1,7 @@
 #include "filter/scale_direction.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace alidade {
 
@@ -35,7 +36,8 @@ bool ScaleDirection::Take(const FilterState& state, int last_serial) {
   if (determined_ < 2) {
     return false;
   }
-  auto row = row_.head(state.covariance().dimension());
+  dimension_ = state.covariance().dimension();
+  auto row = row_.head(dimension_);
   row.setZero();
   double extent = 0;
   for (size_t i = 0; i < determined_; ++i) {
@@ -97,7 +99,8 @@ void ScaleDirection::Descend(const SquareRootCovariance& covariance, double grad
   auto whitened = change_.head(correction.size());
   whitened.noalias() = factor.transpose() * row_.head(correction.size());
   correction.noalias() = factor * whitened;
-  correction *= -gradient / scale_;
+  const double variance = whitened.squaredNorm() / (scale_ * scale_);
+  correction *= -gradient / (scale_ * (1 + variance * std::abs(gradient)));
 }
 
 }  // namespace alidade

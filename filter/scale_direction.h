@@ -24,12 +24,16 @@ class ScaleDirection {
   /// follows with their velocity. Applied to the covariance and to `errors` (of the whole error's size, or
   /// empty).
   void Carry(FilterState* state, Eigen::Ref<Eigen::VectorXd> errors);
-  /// The correction that takes away a gradient of the cost along the direction, -P l gradient, l.n' = 1.
+  /// l, l.x being the relative error of scale in x.
+  [[nodiscard]] auto row() const { return row_.head(dimension_); }
+  /// The correction that takes away a gradient g of the cost along the direction: -P l g / (1 + v |g|), l.n'
+  /// = 1, v = l P l. Smaller than the scale itself however large v g is: the cost is no parabola that far.
   void Descend(const SquareRootCovariance& covariance, double gradient,
                Eigen::Ref<Eigen::VectorXd> correction);
 
  private:
-  size_t determined_ = 0;    ///< number of clones that `last_serial` closes
+  size_t determined_ = 0;  ///< number of clones that `last_serial` closes
+  Eigen::Index dimension_ = 0;
   Eigen::VectorXd row_;      ///< l
   double scale_ = 1;         ///< l.n of the direction now
   Eigen::MatrixX3d places_;  ///< of these cameras, seen from the oldest one
