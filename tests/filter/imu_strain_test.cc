@@ -181,6 +181,18 @@ TEST_P(ImuStrainTest, StrainBeyondTheNoiseGivesNoGradient) {
   EXPECT_EQ(state.strain().ScaleGradient(), 0);
 }
 
+// GIVEN a correction that takes a large strain away THEN there is no gradient either.
+TEST_P(ImuStrainTest, StrainBeyondTheNoiseAtTheMarksGivesNoGradient) {
+  FilterState state = Cloned();
+  const Vector3d shift(1e-2, 0, 0);
+  Move(4, shift, &state);
+  state.strain().Mark();
+  Move(4, -shift, &state);
+  Shake(4e-6, 8, &state);
+  EXPECT_LT(state.strain().NormalizedSquare(), state.strain().Freedom());
+  EXPECT_EQ(state.strain().ScaleGradient(), 0);
+}
+
 TEST_P(ImuStrainTest, AWorldThatTurnsLeavesTheSquare) {
   FilterState state = Cloned();
   Shake(1e-5, 9, &state);

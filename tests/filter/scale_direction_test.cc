@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/cloned_window.h"
 #include "tests/support/jacobian_checker.h"
 
@@ -102,18 +104,22 @@ TEST_P(ScaleDirectionTest, TheCovarianceIsCarriedAsErrorsAre) {
   EXPECT_GT((map - Eigen::MatrixXd::Identity(size, size)).norm(), 0.1);
 }
 
-// GIVEN a gradient along the direction THEN the correction is P l times it, l n = 1, with the l of the state
-// where the direction was taken and the n of now.
+// GIVEN a gradient g along the direction THEN the correction is P l g / (1 + v |g|), v = l P l and l n = 1,
+// with the l of the state where the direction was taken and the n of now: it never turns the window about.
 TEST_P(ScaleDirectionTest, TheCorrectionForAGradientFollowsTheCovariance) {
-  constexpr double kGradient = 0.7;
   ScaleDirection direction(state_.covariance().capacity());
   ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
   const VectorXd row = RowOfScale();
   VectorXd correction(row.size());
   for (int carried = 0; carried <= 1; ++carried) {
-    direction.Descend(state_.covariance(), kGradient, correction);
-    const VectorXd expected = -kGradient / row.dot(ErrorOfScale()) * (state_.covariance().Covariance() * row);
-    EXPECT_LT((correction - expected).norm(), 1e-5 * expected.norm()) << carried;
+    const VectorXd l = row / row.dot(ErrorOfScale());
+    const VectorXd covariance = state_.covariance().Covariance() * l;
+    for (const double gradient : {0.7, -0.7, 1e6}) {
+      direction.Descend(state_.covariance(), gradient, correction);
+      const VectorXd expected = -gradient / (1 + l.dot(covariance) * std::abs(gradient)) * covariance;
+      EXPECT_LT((correction - expected).norm(), 1e-5 * expected.norm()) << carried << " " << gradient;
+      EXPECT_LE(std::abs(l.dot(correction)), 1 + 1e-5) << carried << " " << gradient;
+    }
     ChangeShape(&state_);
     VectorXd none;
     direction.Carry(&state_, none);
