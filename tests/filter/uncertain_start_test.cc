@@ -61,6 +61,23 @@ TEST(UncertainStartTest, TheFirstUpdateFindsTheMostLikelySpeed) {
   }
 }
 
+// GIVEN a start far from the origin THEN the speed is that of a start at the origin.
+TEST(UncertainStartTest, TheOriginDoesNotMatter) {
+  constexpr double kPixelNoise_px = 0.7;
+  const Dataset dataset = Crawl(1, kPixelNoise_px, 2);
+  const NavEstimate start = Start(dataset, 2, Vector3d(0.05, -0.05, 0.05));
+  const auto speed_mps = [&](const Vector3d& shift) {
+    NavEstimate shifted = start;
+    shifted.nav.p_WB += shift;
+    FilterEstimator filter(Config(kPixelNoise_px), dataset.rig);
+    const test::ScenarioResult result = test::RunScenario(dataset, shifted, &filter);
+    EXPECT_TRUE(result.status.ok()) << result.status.message();
+    return result.last.nav.v_WB.norm();
+  };
+  const double expected = speed_mps(Vector3d::Zero());
+  EXPECT_NEAR(speed_mps(Vector3d(30, -20, 5)), expected, 0.01 * expected);
+}
+
 // GIVEN starts one deviation off in each axis of the velocity THEN the scale neither vanishes nor grows.
 TEST(UncertainStartTest, AnUncertainScaleStaysNearTheTrueOne) {
   constexpr double kPixelNoise_px = 0.7;

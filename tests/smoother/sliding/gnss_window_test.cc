@@ -72,16 +72,23 @@ TEST(ClockFactorTest, ZeroOnItsProcess) {
   EXPECT_DOUBLE_EQ(to[0], 110);
 }
 
+/// An aligned window, and an epoch taken out of its first frame, to be attached anew.
+struct DetachedEpoch {
+  DetachedEpoch() { frame.epochs.clear(); }
+  [[nodiscard]] bool Attach() { return gnss.Attach(epoch, given.imu, fixture.noise, &frame); }
+
+  GnssFixture fixture{2};
+  GnssWindow gnss = fixture.AlignedWindow();
+  WindowFrame& frame = fixture.window.frame(0);
+  FrameEpoch given = frame.epochs[0];
+  GnssEpoch epoch{given.stamp_ns, given.measurements, fixture.builder};
+};
+
 // GIVEN two pseudoranges that are 60 m late, of which most satellites contradict one, WHEN their epoch is
 // attached, THEN that one takes no part until the gate, however uncertain the state is.
 TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
-  GnssFixture fixture(2);
-  GnssWindow gnss = fixture.AlignedWindow();
-  WindowFrame& frame = fixture.window.frame(0);
-  const FrameEpoch given = frame.epochs[0];
-  frame.epochs.clear();
-  GnssEpoch epoch{given.stamp_ns, given.measurements, fixture.builder};
-  std::vector<SatelliteMeasurement>& satellites = epoch.measurements.satellites;
+  DetachedEpoch at;
+  std::vector<SatelliteMeasurement>& satellites = at.epoch.measurements.satellites;
   std::size_t high = 0;  // index of a row: those above the mask
   std::vector<std::size_t> late;
   for (SatelliteMeasurement& satellite : satellites) {
@@ -96,8 +103,8 @@ TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
     ++high;
   }
   ASSERT_EQ(late.size(), 2U);
-  ASSERT_TRUE(gnss.Attach(epoch, given.imu, fixture.noise, &frame));
-  const std::vector<bool>& used = frame.epochs[0].used;
+  ASSERT_TRUE(at.Attach());
+  const std::vector<bool>& used = at.frame.epochs[0].used;
   ASSERT_GT(used.size(), high);  // rates follow
   EXPECT_TRUE(used[2]);
   EXPECT_FALSE(used[5]);
@@ -109,19 +116,14 @@ TEST(GnssWindowTest, AContradictedPseudorangeTakesNoPartBeforeTheGate) {
 TEST(GnssWindowTest, AClockJumpDoesNotDecideWhichContradictedTakePart) {
   std::vector<std::vector<bool>> used;
   for (const double jump_m : {0.0, 299792.458}) {
-    GnssFixture fixture(2);
-    GnssWindow gnss = fixture.AlignedWindow();
-    WindowFrame& frame = fixture.window.frame(0);
-    const FrameEpoch given = frame.epochs[0];
-    frame.epochs.clear();
-    GnssEpoch epoch{given.stamp_ns, given.measurements, fixture.builder};
-    for (SatelliteMeasurement& satellite : epoch.measurements.satellites) {
+    DetachedEpoch at;
+    for (SatelliteMeasurement& satellite : at.epoch.measurements.satellites) {
       satellite.pseudorange_m += jump_m;
       satellite.contradicted = true;
     }
-    ASSERT_TRUE(gnss.Attach(epoch, given.imu, fixture.noise, &frame));
-    EXPECT_EQ(gnss.jumped(), jump_m > 0);
-    used.push_back(frame.epochs[0].used);
+    ASSERT_TRUE(at.Attach());
+    EXPECT_EQ(at.gnss.jumped(), jump_m > 0);
+    used.push_back(at.frame.epochs[0].used);
   }
   const auto pseudoranges = used[0].begin() + static_cast<std::ptrdiff_t>(used[0].size() / 2);
   EXPECT_GT(std::count(used[0].begin(), pseudoranges, true), 0);
