@@ -38,7 +38,7 @@ void FilterEstimator::GateBlocks(PreparedRows* rows) {
   statistics_.features_gated = 0;
   statistics_.nis_dof = 0;
   for (size_t i = appended_.size(); i < update_.blocks().size(); ++i) {
-    statistics_.nis_dof += update_.blocks()[i].rows;  // of no track
+    statistics_.nis_dof += update_.blocks()[i].rows;  // rows of no track
   }
   statistics_.suspect = state_is_suspect;
   for (size_t i = 0; i < appended_.size(); ++i) {

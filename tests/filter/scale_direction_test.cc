@@ -105,7 +105,7 @@ TEST_P(ScaleDirectionTest, TheCovarianceIsCarriedAsErrorsAre) {
 }
 
 // GIVEN a gradient g along the direction THEN the correction is P l g / (1 + v |g|), v = l P l and l n = 1,
-// with the l of the state where the direction was taken and the n of now: it never turns the window about.
+// with the l of the state where the direction was taken and the n of now: it never inverts the window.
 TEST_P(ScaleDirectionTest, TheCorrectionForAGradientFollowsTheCovariance) {
   ScaleDirection direction(state_.covariance().capacity());
   ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
