@@ -21,7 +21,11 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   CHECK_EQ(correction.size(), covariance_.dimension());
   CorrectStrain(correction);
   const int core = CoreOffset();
+  const bool about_centre = convention_ == ErrorConvention::kRightInvariant;
   nav_ = Retract(convention_, nav_, Vector9d(correction.segment<9>(core)));
+  if (about_centre) {
+    nav_.p_WB += TurnShift(correction.segment<3>(core), centre());
+  }
   nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
   bias_.gyro += correction.segment<3>(core + 9);
   bias_.accel += correction.segment<3>(core + 12);
@@ -34,7 +38,11 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   }
   for (size_t i = 0; i < clones_.size(); ++i) {
     Clone& clone = clones_[i];
-    clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(correction.segment<6>(CloneOffset(i))));
+    const auto error = correction.segment<6>(CloneOffset(i));
+    clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(error));
+    if (about_centre) {
+      clone.T_WB.translation += TurnShift(error.head<3>(), centre());
+    }
     clone.T_WB.rotation = Eigen::Quaterniond(clone.T_WB.rotation).normalized().toRotationMatrix();
     RefreshClone(&clone);
   }
@@ -42,7 +50,8 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
     Landmark& landmark = landmarks_[i];
     if (landmark_error().anchored()) {
       const auto anchor = static_cast<size_t>(FindClone(landmark.anchor_serial));
-      landmark.p_W = LandmarkError::Turned(correction.segment<3>(CloneOffset(anchor)), landmark.p_W);
+      landmark.p_W =
+          LandmarkError::Turned(correction.segment<3>(CloneOffset(anchor)), landmark.p_W, centre());
     }
     landmark.p_W += correction.segment<3>(LandmarkOffset(i));
   }

@@ -44,8 +44,9 @@ bool ScaleDirection::Take(const FilterState& state, int last_serial) {
     const Vector3d place = FromOldest(state, i);
     places_.row(static_cast<Index>(i)) = place;
     extent += place.squaredNorm();
-    row.segment<3>(state.CloneOffset(i) + 3) += OverPosition(clones[i]).transpose() * place;
-    row.segment<3>(state.CloneOffset(0) + 3) -= OverPosition(clones.front()).transpose() * place;
+    row.segment<6>(state.CloneOffset(i)) += clones[i].camera_from_error.bottomRows<3>().transpose() * place;
+    row.segment<6>(state.CloneOffset(0)) -=
+        clones.front().camera_from_error.bottomRows<3>().transpose() * place;
   }
   row /= extent;
   scale_ = 1;

@@ -114,7 +114,7 @@ void SlamFeatures::Enter(const Eigen::Ref<const Eigen::VectorXd>& correction,
     if (state->landmark_error().anchored()) {
       const auto anchor = static_cast<size_t>(state->FindClone(rows.landmark.anchor_serial));
       const int theta = state->CloneOffset(anchor) - state->CoreOffset();
-      rows.landmark.p_W = LandmarkError::Turned(moved.segment<3>(theta), rows.landmark.p_W);
+      rows.landmark.p_W = LandmarkError::Turned(moved.segment<3>(theta), rows.landmark.p_W, state->centre());
     }
     rows.R_f *= scale;
     rows.T *= scale;

@@ -163,7 +163,7 @@ void TrackMemoryKeeper::Correct(const FilterState& state, const Eigen::Ref<const
     const int anchor = state.FindClone(memory->anchor);
     CHECK_GE(anchor, 0) << "a memory's anchor left the window";
     const Vector3d theta = correction.segment<3>(state.CloneOffset(static_cast<size_t>(anchor)));
-    memory->p_W = LandmarkError::Turned(theta, memory->p_W);
+    memory->p_W = LandmarkError::Turned(theta, memory->p_W, state.centre());
   }
   memory->p_W += move;
 }

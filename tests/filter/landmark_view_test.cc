@@ -145,7 +145,8 @@ TEST(LandmarkErrorTest, TheLeverMovesTheAnchor) {
   ASSERT_TRUE(error.anchored());
   // The same true landmark by the attitude errors of two anchors, over (theta_a, theta_b, f~).
   const auto error_from_b = [&](const VectorXd& xi) -> VectorXd {
-    return Truth(error, xi.head<3>(), xi.tail<3>()) - LandmarkError::Turned(xi.segment<3>(3), kPoint);
+    return Truth(error, xi.head<3>(), xi.tail<3>()) -
+           LandmarkError::Turned(xi.segment<3>(3), kPoint, Eigen::Vector3d::Zero());
   };
   MatrixXd analytic(3, 9);
   analytic << -LandmarkError::Lever(kPoint), LandmarkError::Lever(kPoint), Eigen::Matrix3d::Identity();

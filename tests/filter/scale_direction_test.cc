@@ -27,19 +27,30 @@ class ScaleDirectionTest : public test::ClonedWindow {
 
   /// Over an error, the mean change of those distances in proportion to them.
   [[nodiscard]] VectorXd RowOfScale() const {
-    VectorXd row = VectorXd::Zero(state_.covariance().dimension());
-    const auto add = [&](size_t clone, const Vector3d& place) {
-      row.segment<3>(state_.CloneOffset(clone) + 3) +=
-          state_.clones()[clone].camera_from_error.bottomRightCorner<3, 3>().transpose() * place;
+    constexpr double kStep = 1e-6;
+    VectorXd row(state_.covariance().dimension());
+    const auto along = [&](const FilterState& moved) {
+      double sum = 0;
+      double extent = 0;
+      for (size_t i = 0; i < state_.clones().size(); ++i) {
+        const Vector3d place = FromOldest(state_, i);
+        sum += place.dot(FromOldest(moved, i));
+        extent += place.squaredNorm();
+      }
+      return sum / extent;
     };
-    double extent = 0;
-    for (size_t i = 0; i < state_.clones().size(); ++i) {
-      const Vector3d place = state_.clones()[i].T_WC.translation - state_.clones().front().T_WC.translation;
-      extent += place.squaredNorm();
-      add(i, place);
-      add(0, -place);
+    for (Eigen::Index i = 0; i < row.size(); ++i) {
+      FilterState more = state_;
+      FilterState less = state_;
+      more.Correct(kStep * VectorXd::Unit(row.size(), i));
+      less.Correct(-kStep * VectorXd::Unit(row.size(), i));
+      row[i] = (along(more) - along(less)) / (2 * kStep);
     }
-    return row / extent;
+    return row;
+  }
+
+  [[nodiscard]] static Vector3d FromOldest(const FilterState& state, size_t clone) {
+    return state.clones()[clone].T_WC.translation - state.clones().front().T_WC.translation;
   }
 
   /// Moves every clone, as another velocity from the oldest one on would have.

@@ -14,6 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDeviation_mps = 0.05;  // of the start's velocity
+// Rounding at some kilometres, over the corrections of five seconds.
+constexpr double kOriginTolerance = 1e-6;
 
 /// A figure-8 at 0.1 m/s with landmarks within a few metres.
 Dataset Crawl(double duration_s, double pixel_noise_px, unsigned seed) {
@@ -61,21 +63,36 @@ TEST(UncertainStartTest, TheFirstUpdateFindsTheMostLikelySpeed) {
   }
 }
 
-// GIVEN a start far from the origin THEN the speed is that of a start at the origin.
+// GIVEN a start far from the origin, and corrections as large as an uncertain start needs them THEN the
+// states are those of a start at the origin, with remembered tracks and with landmarks of the state.
 TEST(UncertainStartTest, TheOriginDoesNotMatter) {
   constexpr double kPixelNoise_px = 0.7;
-  const Dataset dataset = Crawl(1, kPixelNoise_px, 2);
+  const Vector3d far(3000, -2000, 50);
+  const Dataset dataset = Crawl(5, kPixelNoise_px, 2);
   const NavEstimate start = Start(dataset, 2, Vector3d(0.05, -0.05, 0.05));
-  const auto speed_mps = [&](const Vector3d& shift) {
-    NavEstimate shifted = start;
-    shifted.nav.p_WB += shift;
-    FilterEstimator filter(Config(kPixelNoise_px), dataset.rig);
-    const test::ScenarioResult result = test::RunScenario(dataset, shifted, &filter);
-    EXPECT_TRUE(result.status.ok()) << result.status.message();
-    return result.last.nav.v_WB.norm();
-  };
-  const double expected = speed_mps(Vector3d::Zero());
-  EXPECT_NEAR(speed_mps(Vector3d(30, -20, 5)), expected, 0.01 * expected);
+  for (const int slam_features : {0, 20}) {
+    EstimatorConfig config = Config(kPixelNoise_px);
+    if (slam_features > 0) {
+      config.filter.slam_features = slam_features;
+      config.filter.slam_max_depth_deviation = 0.3;
+      config.filter.track_memory = TrackMemoryPolicy::kNone;
+      config.filter.max_direction_deviation = 0;
+    }
+    const auto end = [&](const Vector3d& shift) {
+      NavEstimate shifted = start;
+      shifted.nav.p_WB += shift;
+      FilterEstimator filter(config, dataset.rig);
+      const test::ScenarioResult result = test::RunScenario(dataset, shifted, &filter);
+      EXPECT_TRUE(result.status.ok()) << result.status.message();
+      EXPECT_EQ(filter.state().landmarks().empty(), slam_features == 0);
+      return result.last.nav;
+    };
+    const NavState near = end(Vector3d::Zero());
+    const NavState there = end(far);
+    EXPECT_LT((there.p_WB - far - near.p_WB).norm(), kOriginTolerance) << slam_features;
+    EXPECT_LT((there.v_WB - near.v_WB).norm(), kOriginTolerance) << slam_features;
+    EXPECT_LT((there.R_WB - near.R_WB).norm(), kOriginTolerance) << slam_features;
+  }
 }
 
 // GIVEN starts one deviation off in each axis of the velocity THEN the scale neither vanishes nor grows.
