@@ -35,7 +35,7 @@ ColumnMap LinearPrior::columns() const {
 }
 
 Vector9d LinearPrior::NavError(size_t anchor, const NavState& state) const {
-  return Local(convention, anchors[anchor].origin, state);
+  return chart.Local(anchors[anchor].origin, state);
 }
 
 Vector6d LinearPrior::BiasError(const ImuBias& bias) const {
@@ -56,7 +56,8 @@ Eigen::VectorXd LinearPrior::CalibrationError(const CameraCalibration& camera) c
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior) {
   const NavState state = frame.nav_state();
-  const Matrix15d to_xi = InverseImuChartJacobian(convention, state);
+  prior->chart = {convention, state.p_WB};
+  const Matrix15d to_xi = InverseImuChartJacobian(convention, prior->chart.FromCentre(state));
   Matrix15d covariance_xi = to_xi * covariance * to_xi.transpose();
   // A direction given as exactly known gets a deviation far below every unit's use, so that the prior exists.
   covariance_xi.diagonal().array() += 1e-18;
@@ -64,7 +65,6 @@ bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, cons
   if (factor.info() != Eigen::Success) {
     return false;
   }
-  prior->convention = convention;
   prior->anchors = {{&frame, state, frame.imu_bias()}};
   prior->jacobian = factor.matrixL().solve(Matrix15d::Identity());
   prior->residual = Vector15d::Zero();
@@ -114,7 +114,7 @@ void PriorFactor::AddFrame(size_t anchor, const double* block, double* residual,
   Eigen::Map<Eigen::VectorXd>(residual, rows()).noalias() += jacobian * xi.head(width);
   if (tangent != nullptr) {
     const Matrix9d chain =
-        LocalJacobian(prior_->convention, at.origin, state) * InverseChartJacobian(prior_->convention, state);
+        prior_->chart.LocalJacobian(at.origin, state) * prior_->chart.InverseJacobian(state);
     RowMap<9>(tangent, rows(), 9).noalias() = jacobian * chain.topRows(width);
   }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "smoother/manifold/lifted_cost.h"
+#include "smoother/manifold/state_chart.h"
 #include "smoother/window/column_map.h"
 #include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
@@ -13,7 +14,7 @@
 namespace alidade {
 
 /// Information of marginalised frames and landmarks about the remaining ones: r = r0 + J xi, unit noise, with
-/// xi the stacked Local(convention, origin, state) of the frames. The Jacobian J and the origins are fixed
+/// xi the stacked chart.Local(origin, state) of the frames. The Jacobian J and the origins are fixed
 /// when the prior is made.
 ///
 /// Columns (PriorColumns): the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta,
@@ -33,7 +34,7 @@ struct LinearPrior {
     Eigen::Vector3d origin;  ///< (x, y, rho) in the anchor's camera, on this plane of it:
     BearingPlane plane;
   };
-  ErrorConvention convention = ErrorConvention::kRightInvariant;
+  StateChart chart;
   std::vector<Anchor> anchors;
   std::vector<Landmark> landmarks;
   Eigen::MatrixXd jacobian;  ///< m x columns().size()

@@ -34,8 +34,8 @@ MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& column
   for (size_t i = 0; i < prior_->anchors.size(); ++i) {
     const LinearPrior::Anchor& anchor = prior_->anchors[i];
     const NavState& state = point.states[static_cast<size_t>(anchor.frame->index)];
-    const Matrix9d chain = LocalJacobian(prior_->convention, anchor.origin, state) *
-                           InverseChartJacobian(prior_->convention, state);
+    const Matrix9d chain =
+        prior_->chart.LocalJacobian(anchor.origin, state) * prior_->chart.InverseJacobian(state);
     const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
     const Index width = std::min(from.size, kNavColumns);
     chained.middleCols(columns_.Frame(anchor.frame->index).first, width).noalias() =

@@ -1,7 +1,5 @@
 #include "smoother/manifold/first_estimate.h"
 
-#include "smoother/manifold/nav_state_manifold.h"
-
 namespace alidade {
 
 NavState FirstEstimate::Point(const NavState& now) const {
@@ -10,8 +8,7 @@ NavState FirstEstimate::Point(const NavState& now) const {
 
 Matrix9d FirstEstimate::Chain(const NavState& now) const {
   const NavState point = Point(now);
-  return ChartJacobian(convention, point) * LocalJacobian(convention, point, now) *
-         InverseChartJacobian(convention, now);
+  return chart.Jacobian(point) * chart.LocalJacobian(point, now) * chart.InverseJacobian(now);
 }
 
 }  // namespace alidade

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/error_convention.h"
+#include "smoother/manifold/state_chart.h"
 
 namespace alidade {
 
@@ -9,8 +9,8 @@ namespace alidade {
 /// Factors linearised elsewhere have a different null space for yaw and position than the prior, and their
 /// sum would contain spurious information about them. Residuals are evaluated at the present state.
 struct FirstEstimate {
-  ErrorConvention convention = ErrorConvention::kRightInvariant;  ///< of the prior
-  NavState state;  ///< its velocity counts once the prior holds it: from when the frame is the oldest
+  StateChart chart;  ///< of the prior
+  NavState state;    ///< its velocity counts once the prior holds it: from when the frame is the oldest
   bool holds_velocity = false;
 
   /// The point itself, for a frame that is at `now`.

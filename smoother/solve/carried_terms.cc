@@ -30,10 +30,11 @@ struct CarriedPrior::Rows {
   VectorXd residual;
 };
 
-CarriedPrior::CarriedPrior(const LinearPrior& prior, const Window& window,
+CarriedPrior::CarriedPrior(const LinearPrior& prior, const StateChart& next, const Window& window,
                            const WindowCalibration& calibration, std::vector<PriorLandmark> landmarks,
                            const std::vector<FrameGeometry>& geometry)
     : prior_(prior),
+      next_(next),
       window_(window),
       calibration_(calibration),
       landmarks_(std::move(landmarks)),
@@ -70,6 +71,7 @@ Status CarriedPrior::Linearize(LinearTerm* linear) const {
 }
 
 void CarriedPrior::AddFrames(Rows* rows) const {
+  const Eigen::Matrix3d turn = prior_.chart.TurnOfCentre(next_);
   for (size_t i = 0; i < prior_.anchors.size(); ++i) {
     const WindowFrame& frame = *prior_.anchors[i].frame;
     const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
@@ -79,7 +81,9 @@ void CarriedPrior::AddFrames(Rows* rows) const {
     if (from.size == kStateColumns) {
       xi.tail<kBiasColumns>() = prior_.BiasError(frame.imu_bias());
     }
-    rows->Columns({columns_.Frame(frame.index).first, from.size}) = columns;
+    Eigen::Block<MatrixXd> moved = rows->Columns({columns_.Frame(frame.index).first, from.size});
+    moved = columns;
+    moved.leftCols<3>().noalias() += columns.middleCols<3>(3) * turn;
     rows->residual.noalias() += columns * xi.head(from.size);
   }
 }
@@ -126,8 +130,8 @@ void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
     return rows->Columns({columns_.Frame(frame.index).first, kPoseColumns});
   };
   own.noalias() = columns * change.landmark;
-  pose(from).noalias() += columns * (change.from_frame * PosePriorChart(prior_.convention, from));
-  pose(to).noalias() += columns * (change.to_frame * PosePriorChart(prior_.convention, to));
+  pose(from).noalias() += columns * (change.from_frame * PosePriorChart(next_, from));
+  pose(to).noalias() += columns * (change.to_frame * PosePriorChart(next_, to));
   rows->Columns(columns_.Calibration()).noalias() += columns * change.calibration;
   rows->residual.noalias() += columns * (back.to - known.origin);
 }

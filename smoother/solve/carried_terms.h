@@ -16,14 +16,16 @@ struct PriorLandmark {
 };
 
 /// A prior as it enters the next one: its landmarks explicit, the residual at the present states, the
-/// Jacobian as it was made (first estimates; LinearTerm::Chart::kPrior). The residual is that of PriorFactor;
-/// MakePriorTerm and SlamPriorTerm are the same information for the solver.
+/// Jacobian as it was made (first estimates; LinearTerm::Chart::kPrior), over the errors in the next chart.
+/// The residual is that of PriorFactor; MakePriorTerm and SlamPriorTerm are the same information for the
+/// solver.
 class CarriedPrior final : public InformationTerm {
  public:
   /// `landmarks`: as the prior's. All must outlive the term. `geometry`: of every frame, used where a
   /// landmark has changed its anchor.
-  CarriedPrior(const LinearPrior& prior, const Window& window, const WindowCalibration& calibration,
-               std::vector<PriorLandmark> landmarks, const std::vector<FrameGeometry>& geometry);
+  CarriedPrior(const LinearPrior& prior, const StateChart& next, const Window& window,
+               const WindowCalibration& calibration, std::vector<PriorLandmark> landmarks,
+               const std::vector<FrameGeometry>& geometry);
 
   Status Linearize(LinearTerm* linear) const override;
 
@@ -35,6 +37,7 @@ class CarriedPrior final : public InformationTerm {
   void AddLandmark(size_t landmark, Rows* rows) const;
 
   const LinearPrior& prior_;
+  StateChart next_;
   const Window& window_;
   const WindowCalibration& calibration_;
   std::vector<PriorLandmark> landmarks_;

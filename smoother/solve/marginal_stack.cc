@@ -9,27 +9,26 @@
 
 namespace alidade {
 
-Matrix6d PosePriorChart(ErrorConvention convention, const WindowFrame& frame) {
+Matrix6d PosePriorChart(const StateChart& chart, const WindowFrame& frame) {
   if (frame.first) {
-    return StatePriorChart(convention, frame).topLeftCorner<6, 6>();
+    return StatePriorChart(chart, frame).topLeftCorner<6, 6>();
   }
-  return ChartJacobian(convention, frame.nav_state().T_WB());
+  return ChartJacobian(chart.convention, chart.FromCentre(frame.nav_state().T_WB()));
 }
 
-Matrix15d StatePriorChart(ErrorConvention convention, const WindowFrame& frame) {
+Matrix15d StatePriorChart(const StateChart& chart, const WindowFrame& frame) {
   const NavState state = frame.nav_state();
-  Matrix15d chart = ImuChartJacobian(convention, state);
+  Matrix15d jacobian = ImuChartJacobian(chart.convention, chart.FromCentre(state));
   if (frame.first) {
     // The columns are the prior's coordinates, around the first estimate.
-    const Matrix9d moved = LocalJacobian(convention, frame.first->Point(state), state);
-    chart.topLeftCorner<9, 9>() = (chart.topLeftCorner<9, 9>() * moved.inverse()).eval();
+    const Matrix9d moved = chart.LocalJacobian(frame.first->Point(state), state);
+    jacobian.topLeftCorner<9, 9>() = (jacobian.topLeftCorner<9, 9>() * moved.inverse()).eval();
   }
-  return chart;
+  return jacobian;
 }
 
-MarginalStack::MarginalStack(const Window& window, ErrorConvention convention, ColumnMap columns,
-                             Index leaving)
-    : window_(window), convention_(convention), columns_(std::move(columns)), leaving_(leaving) {
+MarginalStack::MarginalStack(const Window& window, const StateChart& chart, ColumnMap columns, Index leaving)
+    : window_(window), chart_(chart), columns_(std::move(columns)), leaving_(leaving) {
   stack_.resize(2 * columns_.size(), columns_.size() + 1);
 }
 
@@ -58,13 +57,12 @@ void MarginalStack::Add(LinearTerm* term) {
     const WindowFrame& frame = window_.frame(part.of.index);
     if (part.width != kPoseColumns) {
       block.noalias() = term->jacobian.middleCols(part.first, part.width) *
-                        StatePriorChart(convention_, frame).topLeftCorner(part.width, part.width);
+                        StatePriorChart(chart_, frame).topLeftCorner(part.width, part.width);
     } else if (count == 2) {  // a view: of fixed size, its rounding does not depend on where the block lies
       const Eigen::Matrix<double, 2, 6> view = term->jacobian.middleCols<kPoseColumns>(part.first);
-      block = Eigen::Matrix<double, 2, 6>(view * PosePriorChart(convention_, frame));
+      block = Eigen::Matrix<double, 2, 6>(view * PosePriorChart(chart_, frame));
     } else {
-      block.noalias() =
-          term->jacobian.middleCols<kPoseColumns>(part.first) * PosePriorChart(convention_, frame);
+      block.noalias() = term->jacobian.middleCols<kPoseColumns>(part.first) * PosePriorChart(chart_, frame);
     }
   }
   stack_.col(columns_.size()).segment(first, count) = term->residual;

@@ -7,22 +7,22 @@
 
 namespace alidade {
 
-/// d (phi, dp) of a frame's body / d its columns in the next prior: errors of the convention around the
+/// d (phi, dp) of a frame's body / d its columns in the next prior: errors in its chart around the
 /// present state, or around the first estimate where the frame has one.
-[[nodiscard]] Matrix6d PosePriorChart(ErrorConvention convention, const WindowFrame& frame);
+[[nodiscard]] Matrix6d PosePriorChart(const StateChart& chart, const WindowFrame& frame);
 /// The same of its whole state.
-[[nodiscard]] Matrix15d StatePriorChart(ErrorConvention convention, const WindowFrame& frame);
+[[nodiscard]] Matrix15d StatePriorChart(const StateChart& chart, const WindowFrame& frame);
 
-/// Whitened rows over the coordinates of priors (errors of a convention around the present states, or around
+/// Whitened rows over the coordinates of priors (errors in their chart around the present states, or around
 /// first estimates where frames have such). QR eliminates the leading columns.
 class MarginalStack {
  public:
   using Index = Eigen::Index;
 
   /// `leaving`: how many of the columns come first and are eliminated.
-  MarginalStack(const Window& window, ErrorConvention convention, ColumnMap columns, Index leaving);
+  MarginalStack(const Window& window, const StateChart& chart, ColumnMap columns, Index leaving);
 
-  /// The rows of a term; those of a prior as they are.
+  /// The rows of a term; those of a prior as they are: CarriedPrior has them in the chart.
   void Add(LinearTerm* term);
   /// The rows that are left, over the columns that stay.
   void Eliminate(Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual);
@@ -32,7 +32,7 @@ class MarginalStack {
   Index NewRows(Index count);
 
   const Window& window_;
-  ErrorConvention convention_;
+  StateChart chart_;
   ColumnMap columns_;
   Index leaving_;
   Eigen::MatrixXd stack_;  ///< the residual is its last column

@@ -71,8 +71,8 @@ bool LeavingColumns::Reach(const InformationTerm& term) const {
 /// The old prior and the landmarks' views that leave (SlamChange), as terms.
 class CarriedTerms {
  public:
-  CarriedTerms(const Window& window, const LinearPrior& prior, const WindowCalibration& calibration,
-               const SlamChange& slam, const LeavingColumns& leaving);
+  CarriedTerms(const Window& window, const LinearPrior& prior, const StateChart& next,
+               const WindowCalibration& calibration, const SlamChange& slam, const LeavingColumns& leaving);
   CarriedTerms(const CarriedTerms&) = delete;  // the terms refer to geometry_
   CarriedTerms& operator=(const CarriedTerms&) = delete;
   CarriedTerms(CarriedTerms&&) = delete;
@@ -88,7 +88,7 @@ class CarriedTerms {
   std::vector<AnchoredViewTerm> views_;
 };
 
-CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior,
+CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior, const StateChart& next,
                            const WindowCalibration& calibration, const SlamChange& slam,
                            const LeavingColumns& leaving) {
   if (!slam.before.empty() || !slam.after.empty()) {
@@ -114,7 +114,7 @@ CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior,
       }
     }
   }
-  prior_.emplace(prior, window, calibration, std::move(landmarks), geometry_);
+  prior_.emplace(prior, next, window, calibration, std::move(landmarks), geometry_);
 }
 
 /// Names what the rows of a new prior are about. They hold at the present states.
@@ -133,7 +133,7 @@ void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next
     if (anchor.frame->first) {  // the origin is another than the present state
       const ColumnMap::Range of = columns.Frame(static_cast<int>(i));
       const Index width = std::min(of.size, kNavColumns);
-      const Vector9d xi = Local(next->convention, anchor.origin, anchor.frame->nav_state());
+      const Vector9d xi = next->chart.Local(anchor.origin, anchor.frame->nav_state());
       next->residual.noalias() -= next->jacobian.middleCols(of.first, width) * xi.head(width);
     }
   }
@@ -145,8 +145,10 @@ Result<LinearPrior> MarginalizeOldest(const Window& window, const LinearPrior& p
                                       const WindowCalibration& calibration, const WindowTerms& terms,
                                       const SlamChange& slam) {
   const LeavingColumns leaving(window, prior, calibration, slam);
-  MarginalStack stack(window, prior.convention, leaving.columns, leaving.leaving);
-  const CarriedTerms carried(window, prior, calibration, slam, leaving);
+  LinearPrior next;
+  next.chart = {prior.chart.convention, window.frame(1).nav_state().p_WB};
+  MarginalStack stack(window, next.chart, leaving.columns, leaving.leaving);
+  const CarriedTerms carried(window, prior, next.chart, calibration, slam, leaving);
   std::vector<const InformationTerm*> all = {&carried.prior()};
   for (const std::unique_ptr<WindowTerm>& term : terms) {
     all.push_back(term.get());
@@ -161,8 +163,6 @@ Result<LinearPrior> MarginalizeOldest(const Window& window, const LinearPrior& p
       stack.Add(&linear);
     }
   }
-  LinearPrior next;
-  next.convention = prior.convention;
   stack.Eliminate(&next.jacobian, &next.residual);
   if (prior.clock_origin) {
     next.clock_origin = window.frame(1).clock_state();
@@ -175,7 +175,7 @@ Result<LinearPrior> MarginalizeOldest(const Window& window, const LinearPrior& p
 void KeepFirstEstimates(const LinearPrior& prior, Window* window) {
   for (size_t i = 0; i < prior.anchors.size(); ++i) {
     const LinearPrior::Anchor& anchor = prior.anchors[i];
-    window->frame(anchor.frame->index).first = FirstEstimate{prior.convention, anchor.origin, i == 0};
+    window->frame(anchor.frame->index).first = FirstEstimate{prior.chart, anchor.origin, i == 0};
   }
 }
 

@@ -62,6 +62,28 @@ TEST(BatchEstimatorTest, EqualsASmootherWhoseWindowHoldsTheWholeSequence) {
   EXPECT_LT((window.last.covariance - last.covariance).norm(), 0.01 * last.covariance.norm());
 }
 
+// GIVEN a world whose origin is kilometres away THEN every state and covariance is that near the origin.
+TEST(BatchEstimatorTest, TheOriginDoesNotMatter) {
+  const Eigen::Vector3d shift(4000, -3000, 200);
+  const Dataset near = MakeBatchDataset({});
+  Dataset far = near;
+  for (TrajectoryPoint& point : far.truth->points) {
+    point.nav.p_WB += shift;
+  }
+  const BatchRun at_origin = RunBatch(near, BatchTestConfig(), 1);
+  const BatchRun away = RunBatch(far, BatchTestConfig(), 1);
+  ASSERT_TRUE(at_origin.frames.ok() && away.frames.ok());
+  ASSERT_EQ(away.frames->size(), at_origin.frames->size());
+  for (size_t i = 0; i < away.frames->size(); ++i) {
+    const NavEstimate& expected = at_origin.frames->at(i).estimate;
+    NavEstimate estimate = away.frames->at(i).estimate;
+    estimate.nav.p_WB -= shift;
+    const Vector9d difference = Local(ErrorConvention::kSo3xRn, expected.nav, estimate.nav);
+    EXPECT_LT(difference.norm(), 1e-6) << i;
+    EXPECT_LT((estimate.covariance - expected.covariance).norm(), 1e-5 * expected.covariance.norm()) << i;
+  }
+}
+
 // The band of the mean NEES of all 15 components over independent runs: chi-square, 99.9 %.
 TEST(BatchEstimatorTest, CovarianceIsThatOfTheErrors) {
   constexpr int kRuns = 10;

@@ -198,7 +198,7 @@ TEST(PriorFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions
   for (const ErrorConvention made_in : kAllConventions) {
     WindowFixture fixture(7, 3, 0);
     LinearPrior prior;
-    prior.convention = made_in;
+    prior.chart = {made_in, fixture.random.Vector(5)};
     for (int i = 0; i < 3; ++i) {
       const WindowFrame& frame = fixture.window.frame(i);
       Vector9d shift;

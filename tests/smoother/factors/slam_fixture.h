@@ -159,7 +159,7 @@ struct DenseWindow {
     }
     at.push_back(Calibration());
     width.push_back(fixture.calibration.size() + 3 * static_cast<Eigen::Index>(landmarks));
-    Add(at, width, prior.jacobian, prior.residual);
+    Add(at, width, RowsAboutOrigin(prior), prior.residual);
   }
   /// Schur complement on the coordinates the prior of the next window has: frame 1 whole, poses of the
   /// others, calibration, the landmarks given.

@@ -14,15 +14,17 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::DenseWindow;
 using test::NumericJacobian;
+using test::RowsAboutOrigin;
 using test::SlamFixture;
 
 using SlamPriorTest = test::SlamFixtureTest;
 
 void ExpectPrior(const LinearPrior& prior, const DenseWindow& dense) {
   ASSERT_EQ(prior.columns().size(), dense.hessian.rows());
-  const MatrixXd information = prior.jacobian.transpose() * prior.jacobian;
+  const MatrixXd rows = RowsAboutOrigin(prior);
+  const MatrixXd information = rows.transpose() * rows;
   EXPECT_LT((information - dense.hessian).norm(), 1e-6 * dense.hessian.norm());
-  const VectorXd gradient = prior.jacobian.transpose() * prior.residual;
+  const VectorXd gradient = rows.transpose() * prior.residual;
   EXPECT_LT((gradient - dense.gradient).norm(), 1e-6 * dense.gradient.norm());
   // The calibration's columns are compared by themselves: those of the poses are far larger.
   const auto [at, size] = prior.columns().Calibration();

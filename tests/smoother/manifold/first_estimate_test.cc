@@ -33,7 +33,7 @@ TEST(FirstEstimateTest, ChainAgainstDifferences) {
     for (int trial = 0; trial < 20; ++trial) {
       const NavState point{random.Rotation(), random.Vector(5), random.Vector(2)};
       const NavState now = Retract(convention, point, 10 * SomeShift(&random));
-      const FirstEstimate first{convention, point, true};
+      const FirstEstimate first{{convention}, point, true};
       const auto coordinates = [&](const VectorXd& zeta) -> VectorXd {
         return Local(convention, point, Retract(ErrorConvention::kSo3xRn, now, Vector9d(zeta)));
       };
@@ -47,9 +47,9 @@ TEST(FirstEstimateTest, AnUnheldVelocityIsThePresentOne) {
   test::RandomStates random(2);
   const NavState point{random.Rotation(), random.Vector(5), random.Vector(2)};
   const NavState now{random.Rotation(), random.Vector(5), random.Vector(2)};
-  EXPECT_EQ((FirstEstimate{ErrorConvention::kSo3xRn, point, false}.Point(now).v_WB), now.v_WB);
-  EXPECT_EQ((FirstEstimate{ErrorConvention::kSo3xRn, point, true}.Point(now).v_WB), point.v_WB);
-  EXPECT_EQ((FirstEstimate{ErrorConvention::kSo3xRn, point, false}.Point(now).p_WB), point.p_WB);
+  EXPECT_EQ((FirstEstimate{{ErrorConvention::kSo3xRn}, point, false}.Point(now).v_WB), now.v_WB);
+  EXPECT_EQ((FirstEstimate{{ErrorConvention::kSo3xRn}, point, true}.Point(now).v_WB), point.v_WB);
+  EXPECT_EQ((FirstEstimate{{ErrorConvention::kSo3xRn}, point, false}.Point(now).p_WB), point.p_WB);
 }
 
 /// Turn about gravity and shifts of everything, over 15 canonical coordinates of each frame at its present
@@ -128,8 +128,7 @@ struct Sliding : WindowFixture {
     for (size_t i = 0; i < prior.anchors.size(); ++i) {
       const LinearPrior::Anchor& anchor = prior.anchors[i];
       const NavState now = anchor.frame->nav_state();
-      const Matrix9d chain =
-          LocalJacobian(prior.convention, anchor.origin, now) * InverseChartJacobian(prior.convention, now);
+      const Matrix9d chain = prior.chart.LocalJacobian(anchor.origin, now) * prior.chart.InverseJacobian(now);
       const Index width = i == 0 ? 9 : 6;
       jacobian.middleCols(15 * static_cast<Index>(i), 9) =
           prior.jacobian.middleCols(prior.columns().Frame(static_cast<int>(i)).first, width) *
@@ -241,7 +240,7 @@ TEST(FirstEstimateTest, FactorsKeepTheirResiduals) {
   const std::vector<MatrixXd> plain = everything();
   for (int i = 0; i < sliding.window.size(); ++i) {
     WindowFrame& frame = sliding.window.frame(i);
-    frame.first = FirstEstimate{ErrorConvention::kSo3xRn, frame.nav_state(), i == 0};
+    frame.first = FirstEstimate{{ErrorConvention::kSo3xRn}, frame.nav_state(), i == 0};
   }
   const std::vector<MatrixXd> there = everything();
   for (size_t i = 0; i < plain.size(); ++i) {

@@ -17,11 +17,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// A prior in its own chart to the canonical one. Precondition: the states are its origins.
-void ToCanonical(ErrorConvention convention, const Window& window, LinearTerm* linear) {
+void ToCanonical(const StateChart& prior, const Window& window, LinearTerm* linear) {
   ASSERT_EQ(linear->chart, LinearTerm::Chart::kPrior);
   for (const TermPart& part : linear->parts) {
     if (part.of.kind == Unknown::Kind::kFrame) {
-      const Matrix15d chart = InverseImuChartJacobian(convention, window.frame(part.of.index).nav_state());
+      const Matrix15d chart = InverseImuChartJacobian(
+          prior.convention, prior.FromCentre(window.frame(part.of.index).nav_state()));
       const MatrixXd columns = linear->jacobian.middleCols(part.first, part.width);
       linear->jacobian.middleCols(part.first, part.width) =
           columns * chart.topLeftCorner(part.width, part.width);
@@ -38,7 +39,7 @@ TEST(CarriedTermsTest, APriorHasTheRowsOfItsFactor) {
     GnssFixture fixture(4);
     const LinearPrior prior = PriorWithoutTheOldest(convention, &fixture);
     const std::vector<FrameGeometry> geometry;
-    const CarriedPrior carried(prior, fixture.window, fixture.calibration, {}, geometry);
+    const CarriedPrior carried(prior, prior.chart, fixture.window, fixture.calibration, {}, geometry);
     const std::unique_ptr<WindowTerm> factor = MakePriorTerm(prior, fixture.calibration);
     LinearTerm own;
     LinearTerm expected;
@@ -46,7 +47,7 @@ TEST(CarriedTermsTest, APriorHasTheRowsOfItsFactor) {
     ASSERT_TRUE(factor->Linearize(&expected).ok());
     EXPECT_EQ(own.jacobian, prior.jacobian);
     EXPECT_LT((own.residual - expected.residual).norm(), 1e-12 * (1 + expected.residual.norm()));
-    ToCanonical(convention, fixture.window, &own);
+    ToCanonical(prior.chart, fixture.window, &own);
     EXPECT_EQ(CompareJacobians(own.jacobian, expected.jacobian, 1e-11), "");
 
     Disturb(&fixture);
@@ -85,9 +86,10 @@ TEST(CarriedTermsTest, PriorAndViewsAreTheSlamPrior) {
       VectorXd gradient = VectorXd::Zero(columns.size());
       const std::vector<FrameGeometry> geometry = fixture.Geometry();
       LinearTerm linear;
-      ASSERT_TRUE(
-          CarriedPrior(prior, window, fixture.calibration, landmarks, geometry).Linearize(&linear).ok());
-      ToCanonical(convention, window, &linear);
+      ASSERT_TRUE(CarriedPrior(prior, prior.chart, window, fixture.calibration, landmarks, geometry)
+                      .Linearize(&linear)
+                      .ok());
+      ToCanonical(prior.chart, window, &linear);
       linear.AddTo(columns, &hessian, &gradient);
       for (const PriorLandmark& landmark : landmarks) {
         for (const WindowView& view : landmark.track->views) {

@@ -44,6 +44,20 @@ inline WindowTerms MakeTerms(const Window& window, const PoseSystem& vision, con
   return terms;
 }
 
+/// The rows of a prior at its origins, over errors about W's origin.
+inline Eigen::MatrixXd RowsAboutOrigin(const LinearPrior& prior) {
+  Eigen::MatrixXd rows = prior.jacobian;
+  for (size_t i = 0; i < prior.anchors.size(); ++i) {
+    const NavState& state = prior.anchors[i].origin;
+    const ColumnMap::Range at = prior.columns().Frame(static_cast<int>(i));
+    const Matrix15d change = InverseImuChartJacobian(prior.chart.convention, prior.chart.FromCentre(state)) *
+                             ImuChartJacobian(prior.chart.convention, state);
+    rows.middleCols(at.first, at.size) =
+        prior.jacobian.middleCols(at.first, at.size) * change.topLeftCorner(at.size, at.size);
+  }
+  return rows;
+}
+
 inline LinearPrior Marginalize(const Window& window, const LinearPrior& prior, const PoseSystem& vision,
                                const SensorContext& sensors, const SlamChange& slam = {}) {
   const WindowTerms terms = MakeTerms(window, vision, sensors);

@@ -47,8 +47,9 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
   const int frames = fixture.window.size();
   DenseSystem system{Eigen::MatrixXd::Zero(15 * frames, 15 * frames), Eigen::VectorXd::Zero(15 * frames)};
   // prior on frame 0 at its origin
-  system.hessian.topLeftCorner<15, 15>() += prior.jacobian.transpose() * prior.jacobian;
-  system.gradient.head<15>() += prior.jacobian.transpose() * prior.residual;
+  const Eigen::MatrixXd rows = test::RowsAboutOrigin(prior);
+  system.hessian.topLeftCorner<15, 15>() += rows.transpose() * rows;
+  system.gradient.head<15>() += rows.transpose() * prior.residual;
   for (int i = 0; i + 1 < frames; ++i) {
     const WindowFrame& a = fixture.window.frame(i);
     const WindowFrame& b = fixture.window.frame(i + 1);
@@ -59,8 +60,8 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
     const Matrix15d& covariance = b.preintegration->covariance();
     const Matrix15d weight = covariance.inverse();
     Eigen::Matrix<double, 15, 30> j;
-    j << ja * ImuChartJacobian(prior.convention, a.nav_state()),
-        jb * ImuChartJacobian(prior.convention, b.nav_state());
+    j << ja * ImuChartJacobian(prior.chart.convention, a.nav_state()),
+        jb * ImuChartJacobian(prior.chart.convention, b.nav_state());
     system.hessian.block<30, 30>(15 * i, 15 * i) += j.transpose() * weight * j;
     system.gradient.segment<30>(15 * i) += j.transpose() * weight * r;
   }
@@ -68,7 +69,7 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
     const WindowFrame& frame = fixture.window.frame(i);
     if (frame.rest) {
       // Zero velocity and gyro bias by their definitions, in the columns they touch.
-      const Matrix15d c = ImuChartJacobian(prior.convention, frame.nav_state());
+      const Matrix15d c = ImuChartJacobian(prior.chart.convention, frame.nav_state());
       const double wv = 50 * 50;
       const double wb = 200 * 200;
       const Eigen::Matrix<double, 3, 15> jv = c.middleRows<3>(6);
@@ -81,10 +82,10 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
   }
   const Eigen::MatrixXd full = vision.hessian.selfadjointView<Eigen::Lower>();
   for (int i = 0; i < frames; ++i) {
-    const Matrix6d ci = ChartJacobian(prior.convention, fixture.window.frame(i).nav_state().T_WB());
+    const Matrix6d ci = ChartJacobian(prior.chart.convention, fixture.window.frame(i).nav_state().T_WB());
     system.gradient.segment<6>(15 * i) += ci.transpose() * vision.gradient.segment<6>(6 * i);
     for (int j = 0; j < frames; ++j) {
-      const Matrix6d cj = ChartJacobian(prior.convention, fixture.window.frame(j).nav_state().T_WB());
+      const Matrix6d cj = ChartJacobian(prior.chart.convention, fixture.window.frame(j).nav_state().T_WB());
       system.hessian.block<6, 6>(15 * i, 15 * j) += ci.transpose() * full.block<6, 6>(6 * i, 6 * j) * cj;
     }
   }
@@ -139,8 +140,9 @@ TEST_P(MarginalizationTest, PriorEqualsTheBatchOnTheLinearProblem) {
     Eigen::VectorXd gradient = rest.gradient.tail<45>();
     hessian.topLeftCorner<15, 15>() -= jb_xi.transpose() * covariance.inverse() * jb_xi;
     gradient.head<15>() -= jb_xi.transpose() * covariance.inverse() * r;
-    const Eigen::MatrixXd prior_hessian = next.jacobian.transpose() * next.jacobian;
-    const Eigen::VectorXd prior_gradient = next.jacobian.transpose() * next.residual;
+    const Eigen::MatrixXd rows = test::RowsAboutOrigin(next);
+    const Eigen::MatrixXd prior_hessian = rows.transpose() * rows;
+    const Eigen::VectorXd prior_gradient = rows.transpose() * next.residual;
     const auto spread = [](int i) { return i < 15 ? i : i < 21 ? i : i + 9; };  // 15 | 6 (of 15) | 6 (of 15)
     for (int i = 0; i < 27; ++i) {
       gradient[spread(i)] += prior_gradient[i];
