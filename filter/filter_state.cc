@@ -3,11 +3,20 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/format.h"
 #include "core/visual_observation.h"
 
 namespace alidade {
 
 using Eigen::Matrix3d;
+
+namespace {
+
+// Of a start from the origin of W. The right-invariant error has the attitude's deviation times that distance
+// in its position; at 500 km double precision does not hold the rest.
+constexpr double kFarthestStart_m = 2e5;
+
+}  // namespace
 
 FilterState::FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits)
     : FilterState(convention, first_estimates, CalibrationEstimate{{}, {{}, T_BC, 0}, {}}, limits) {}
@@ -32,6 +41,13 @@ FilterState::FilterState(ErrorConvention convention, bool first_estimates, Calib
 
 Status FilterState::Reset(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(CheckInitialState(initial));
+  const double distance_m = initial.nav.p_WB.norm();
+  if (convention_ == ErrorConvention::kRightInvariant && distance_m > kFarthestStart_m) {
+    return Status::Input(
+        Format("initial position: found %.0f km from the origin of the world frame, expected "
+               "at most %.0f km with filter.error: right_invariant; shift the truth",
+               1e-3 * distance_m, 1e-3 * kFarthestStart_m));
+  }
   const Matrix15d to_error = InverseImuChartJacobian(convention_, initial.nav);
   const Matrix15d transformed = to_error * initial.covariance * to_error.transpose();
   ALIDADE_RETURN_IF_ERROR(covariance_.Reset(0.5 * (transformed + transformed.transpose())));

@@ -198,6 +198,11 @@ TEST(FilterEstimatorTest, BadInitialStatesAreRefused) {
   initial = test::DrawInitialState(dataset, 9);
   initial.nav.v_WB.x() = std::nan("");
   EXPECT_EQ(filter.Initialize(initial).code(), StatusCode::kInput);
+  initial = test::DrawInitialState(dataset, 9);
+  initial.nav.p_WB += Eigen::Vector3d(485e3, 5420e3, 0);  // UTM
+  const Status far = filter.Initialize(initial);
+  EXPECT_EQ(far.code(), StatusCode::kInput);
+  EXPECT_NE(far.message().find("found 5442 km"), std::string::npos) << far.message();
   EXPECT_FALSE(filter.initialized());
 }
 
