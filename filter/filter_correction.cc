@@ -21,9 +21,9 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   CHECK_EQ(correction.size(), covariance_.dimension());
   CorrectStrain(correction);
   const int core = CoreOffset();
-  const bool about_centre = convention_ == ErrorConvention::kRightInvariant;
+  const bool turns = TurnsAboutOrigin(convention_);
   nav_ = Retract(convention_, nav_, Vector9d(correction.segment<9>(core)));
-  if (about_centre) {
+  if (turns) {
     nav_.p_WB += TurnShift(correction.segment<3>(core), centre());
   }
   nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
@@ -40,7 +40,7 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
     Clone& clone = clones_[i];
     const auto error = correction.segment<6>(CloneOffset(i));
     clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(error));
-    if (about_centre) {
+    if (turns) {
       clone.T_WB.translation += TurnShift(error.head<3>(), centre());
     }
     clone.T_WB.rotation = Eigen::Quaterniond(clone.T_WB.rotation).normalized().toRotationMatrix();

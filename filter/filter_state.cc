@@ -42,7 +42,7 @@ FilterState::FilterState(ErrorConvention convention, bool first_estimates, Calib
 Status FilterState::Reset(const NavEstimate& initial) {
   ALIDADE_RETURN_IF_ERROR(CheckInitialState(initial));
   const double distance_m = initial.nav.p_WB.norm();
-  if (convention_ == ErrorConvention::kRightInvariant && distance_m > kFarthestStart_m) {
+  if (TurnsAboutOrigin(convention_) && distance_m > kFarthestStart_m) {
     return Status::Input(
         Format("initial position: found %.0f km from the origin of the world frame, expected "
                "at most %.0f km with filter.error: right_invariant; shift the truth",

@@ -6,6 +6,11 @@
 
 namespace alidade {
 
+/// Whether a correction of the convention turns every state about the origin of W.
+[[nodiscard]] constexpr bool TurnsAboutOrigin(ErrorConvention convention) {
+  return convention == ErrorConvention::kRightInvariant;
+}
+
 /// What a right-invariant correction by theta leaves out in Exp(theta) x + xi: with it the turn is about
 /// `centre`, and what a correction of first order neglects does not grow with the distance from W's origin.
 [[nodiscard]] inline Eigen::Vector3d TurnShift(const Eigen::Vector3d& theta, const Eigen::Vector3d& centre) {
@@ -21,8 +26,7 @@ namespace alidade {
 /// landmark is linearised.
 class LandmarkError {
  public:
-  explicit LandmarkError(ErrorConvention convention)
-      : anchored_(convention == ErrorConvention::kRightInvariant) {}
+  explicit LandmarkError(ErrorConvention convention) : anchored_(TurnsAboutOrigin(convention)) {}
 
   /// True when the error turns with an anchor's.
   [[nodiscard]] bool anchored() const { return anchored_; }

@@ -31,10 +31,11 @@ Matrix9d StateChart::InverseJacobian(const NavState& state) const {
 }
 
 Eigen::Matrix3d StateChart::TurnOfCentre(const StateChart& next) const {
-  if (convention != ErrorConvention::kRightInvariant) {
-    return Eigen::Matrix3d::Zero();
-  }
-  return Skew(next.centre - centre);
+  // The same for every pose.
+  const Pose pose;
+  const Matrix6d change =
+      InverseChartJacobian(convention, FromCentre(pose)) * ChartJacobian(convention, next.FromCentre(pose));
+  return change.bottomLeftCorner<3, 3>();
 }
 
 }  // namespace alidade
