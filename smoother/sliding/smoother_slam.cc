@@ -1,6 +1,8 @@
 // SLAM features of a SmootherEstimator, and what leaves with the oldest frame.
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "smoother/sliding/smoother_estimator.h"
 #include "smoother/solve/marginalization.h"
@@ -17,17 +19,57 @@ constexpr double kMaxFeatureDepthDeviation = 0.04;
 // landmarks and biases the scale, where a landmark's own part averages out.
 constexpr double kStateShare = 0.5;
 constexpr size_t kMinFeatureViews = 3;
+// Largest product of three shares: the depth's own deviation, how far the camera has approached the landmark
+// over the window, and the deviation of the window's scale. Rows are linear in the inverse depth at one
+// place; while the camera approaches the landmark, what they neglect grows, with the same sign for all
+// landmarks: that of a larger scale. It does not matter where the IMU tells the scale (docs/smoother.md).
+constexpr double kMaxApproachDeviation = 7e-5;
 
-/// The coordinates of a feature are those of its anchor when the middle row was exposed; before, those of the
-/// base's row.
-bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, WindowTrack* track) {
+/// Whether the depth is known well enough for how the camera has approached it: rho_before in the window's
+/// oldest camera, `landmark` in `anchor`, the newest. Of the views in the window alone.
+bool StaysLinear(const std::vector<FrameGeometry>& geometry, const std::vector<WindowView>& views,
+                 double rho_before, const FrameGeometry& anchor, const Eigen::Vector3d& landmark,
+                 const BearingPlane& plane, double scale_deviation) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (const WindowView& view : views) {
+    FrameGeometry row;
+    AnchoredRows rows;
+    if (LinearizeAnchoredView(anchor, AtRow(geometry, view, &row), view.observation, {}, landmark, &rows,
+                              false, NotCalibrated(), plane)) {
+      information.noalias() += rows.landmark.transpose() * rows.landmark;
+    }
+  }
+  const double own = std::sqrt(information.inverse()(2, 2)) / landmark.z();
+  const double deviation = own < 1 ? own : 1;  // not a number where the camera has not moved
+  return deviation * std::abs(landmark.z() / rho_before - 1) * scale_deviation < kMaxApproachDeviation;
+}
+
+/// Relative standard deviation of the line from the oldest camera to the newest.
+double ScaleDeviation(const WindowInformation& information, const std::vector<FrameGeometry>& geometry) {
+  const Eigen::Vector3d line = geometry.back().T_WC.translation - geometry.front().T_WC.translation;
+  if (!(line.squaredNorm() > 0)) {
+    return 0;  // no camera has approached anything
+  }
+  const auto poses = kPoseColumns * static_cast<Eigen::Index>(geometry.size());
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(poses);
+  row.segment<3>(3) = -line.transpose() / line.squaredNorm();
+  row.tail<3>() = line.transpose() / line.squaredNorm();
+  return information.Deviation(row);
+}
+
+/// Gives a feature the newest frame as its anchor; false when it is to have none. Its coordinates are those
+/// of its anchor when the middle row was exposed; before, those of the base's row.
+bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geometry, double scale_deviation,
+              WindowTrack* track) {
   FrameGeometry row;
   const FrameGeometry& before = track->anchor != nullptr ? geometry[static_cast<size_t>(track->anchor->index)]
                                                          : AtRow(geometry, track->views.front(), &row);
   const FrameGeometry& after = geometry[static_cast<size_t>(newest.index)];
   const AnchorPlanes planes{track->plane(), PlaneInAnchor(before, track->plane(), after, track->landmark)};
   AnchorChange change;
-  if (!ChangeAnchor(before, after, track->landmark, &change, {}, planes)) {
+  if (!ChangeAnchor(before, after, track->landmark, &change, {}, planes) ||
+      !StaysLinear(geometry, track->views, track->landmark.z(), after, change.to, planes.to,
+                   scale_deviation)) {
     return false;
   }
   track->landmark = change.to;
@@ -53,7 +95,8 @@ SlamPriorTerm* SmootherEstimator::SetPriorTerm(const LinearPrior& prior, const W
   return made;
 }
 
-std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<FrameGeometry>& geometry) {
+std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<FrameGeometry>& geometry,
+                                                             double scale_deviation) {
   std::vector<WindowTrack*> staying;
   for (const LinearPrior::Landmark& landmark : prior_.landmarks) {
     const auto found = window_.tracks().find(landmark.track_id);
@@ -61,7 +104,7 @@ std::vector<WindowTrack*> SmootherEstimator::StayingFeatures(const std::vector<F
       continue;
     }
     WindowTrack& track = found->second;
-    if (track.anchor->index > 0 || AnchorIn(window_.newest(), geometry, &track)) {
+    if (track.anchor->index > 0 || AnchorIn(window_.newest(), geometry, scale_deviation, &track)) {
       staying.push_back(&track);
     }
   }
@@ -78,7 +121,7 @@ bool SmootherEstimator::DepthIsKnown(const std::vector<FrameGeometry>& geometry,
 }
 
 std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<FrameGeometry>& geometry,
-                                                         size_t free) {
+                                                         double scale_deviation, size_t free) {
   std::vector<WindowTrack*> candidates;
   for (auto& [id, track] : window_.tracks()) {
     if (free > 0 && track.anchor == nullptr && track.alive && track.views.size() >= kMinFeatureViews &&
@@ -93,7 +136,7 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
   });
   std::vector<WindowTrack*> promoted;
   for (WindowTrack* track : candidates) {
-    if (promoted.size() < free && AnchorIn(window_.newest(), geometry, track)) {
+    if (promoted.size() < free && AnchorIn(window_.newest(), geometry, scale_deviation, track)) {
       promoted.push_back(track);
     }
   }
@@ -103,10 +146,12 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
 Status SmootherEstimator::MarginalizeOldestFrame() {
   const WindowFrame* oldest = &window_.frame(0);
   const std::vector<FrameGeometry> geometry = Geometry();
-  SlamChange slam{PriorTracks(prior_, window_), {}, kernel_};
-  const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
   const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
-  const std::vector<WindowTrack*> promoted = NewFeatures(geometry, limit - std::min(limit, staying.size()));
+  const double scale_deviation = limit > 0 ? ScaleDeviation(window_information_, geometry) : 0;
+  SlamChange slam{PriorTracks(prior_, window_), {}, kernel_};
+  const std::vector<WindowTrack*> staying = StayingFeatures(geometry, scale_deviation);
+  const std::vector<WindowTrack*> promoted =
+      NewFeatures(geometry, scale_deviation, limit - std::min(limit, staying.size()));
   slam.after.assign(staying.begin(), staying.end());
   slam.after.insert(slam.after.end(), promoted.begin(), promoted.end());
 
