@@ -4,6 +4,31 @@
 
 namespace alidade {
 
+using Eigen::Vector3d;
+
+namespace {
+
+Vector3d& Position(NavState& state) {
+  return state.p_WB;
+}
+
+Vector3d& Position(Pose& pose) {
+  return pose.translation;
+}
+
+/// Retract by an error about W's origin, as a turn about `centre`: what the first order neglects does not
+/// grow with the distance from W's origin.
+template <typename State, typename Error>
+State RetractAbout(ErrorConvention convention, const Vector3d& centre, State state, Error xi) {
+  Position(state) -= centre;
+  xi.template segment<3>(3) += Vector3d(xi.template head<3>()).cross(centre);
+  state = Retract(convention, state, xi);
+  Position(state) += centre;
+  return state;
+}
+
+}  // namespace
+
 void FilterState::CorrectStrain(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   if (!strain_.active()) {
     return;
@@ -21,11 +46,8 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   CHECK_EQ(correction.size(), covariance_.dimension());
   CorrectStrain(correction);
   const int core = CoreOffset();
-  const bool turns = TurnsAboutOrigin(convention_);
-  nav_ = Retract(convention_, nav_, Vector9d(correction.segment<9>(core)));
-  if (turns) {
-    nav_.p_WB += TurnShift(correction.segment<3>(core), centre());
-  }
+  const Vector3d about = TurnsAboutOrigin(convention_) ? centre() : Vector3d::Zero();
+  nav_ = RetractAbout(convention_, about, nav_, Vector9d(correction.segment<9>(core)));
   nav_.R_WB = Eigen::Quaterniond(nav_.R_WB).normalized().toRotationMatrix();
   bias_.gyro += correction.segment<3>(core + 9);
   bias_.accel += correction.segment<3>(core + 12);
@@ -38,11 +60,8 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& correction) {
   }
   for (size_t i = 0; i < clones_.size(); ++i) {
     Clone& clone = clones_[i];
-    const auto error = correction.segment<6>(CloneOffset(i));
-    clone.T_WB = Retract(convention_, clone.T_WB, Vector6d(error));
-    if (turns) {
-      clone.T_WB.translation += TurnShift(error.head<3>(), centre());
-    }
+    clone.T_WB =
+        RetractAbout(convention_, about, clone.T_WB, Vector6d(correction.segment<6>(CloneOffset(i))));
     clone.T_WB.rotation = Eigen::Quaterniond(clone.T_WB.rotation).normalized().toRotationMatrix();
     RefreshClone(&clone);
   }

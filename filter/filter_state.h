@@ -159,7 +159,7 @@ class FilterState {
   [[nodiscard]] bool first_estimates() const { return first_estimates_; }
   [[nodiscard]] LandmarkError landmark_error() const { return LandmarkError(convention_); }
   [[nodiscard]] const NavState& nav() const { return nav_; }
-  /// About which corrections turn the states in the right-invariant convention (TurnShift).
+  /// About which corrections turn the states in the right-invariant convention.
   [[nodiscard]] const Eigen::Vector3d& centre() const { return nav_first_.p_WB; }
   /// The current state as it was predicted, before any update.
   [[nodiscard]] const NavState& nav_first() const { return nav_first_; }

@@ -11,12 +11,6 @@ namespace alidade {
   return convention == ErrorConvention::kRightInvariant;
 }
 
-/// What a right-invariant correction by theta leaves out in Exp(theta) x + xi: with it the turn is about
-/// `centre`, and what a correction of first order neglects does not grow with the distance from W's origin.
-[[nodiscard]] inline Eigen::Vector3d TurnShift(const Eigen::Vector3d& theta, const Eigen::Vector3d& centre) {
-  return centre + theta.cross(centre) - so3::Exp(theta) * centre;
-}
-
 /// The error f~ of a landmark, in the state or remembered with a track. It is additive, p_W = p^_W + f~,
 /// except in the right-invariant convention, where it turns with the attitude error of its anchor clone a:
 ///
@@ -43,10 +37,11 @@ class LandmarkError {
   }
 
   /// An anchored landmark after a correction that turned its anchor by theta_a; its own f~ comes on top.
-  /// centre: FilterState::centre().
+  /// To first order it is Exp(theta_a) p_W. Turned about `centre` (FilterState::centre()), what the first
+  /// order neglects does not grow with the distance from W's origin.
   [[nodiscard]] static Eigen::Vector3d Turned(const Eigen::Vector3d& theta_a, const Eigen::Vector3d& p_W,
                                               const Eigen::Vector3d& centre) {
-    return so3::Exp(theta_a) * p_W + TurnShift(theta_a, centre);
+    return centre + theta_a.cross(centre) + so3::Exp(theta_a) * (p_W - centre);
   }
 
  private:

@@ -2,7 +2,7 @@
 
 #include "tests/support/preset_run.h"
 
-// Driving: landmarks live longest where the images move them least.
+// Driving: landmarks ahead are seen longest, and their images move least.
 
 namespace alidade {
 namespace {

@@ -33,11 +33,16 @@ TEST(FirstEstimateTest, ChainAgainstDifferences) {
     for (int trial = 0; trial < 20; ++trial) {
       const NavState point{random.Rotation(), random.Vector(5), random.Vector(2)};
       const NavState now = Retract(convention, point, 10 * SomeShift(&random));
-      const FirstEstimate first{{convention}, point, true};
-      const auto coordinates = [&](const VectorXd& zeta) -> VectorXd {
-        return Local(convention, point, Retract(ErrorConvention::kSo3xRn, now, Vector9d(zeta)));
+      const Eigen::Vector3d centre = random.Vector(5);
+      const auto seen = [&](NavState state) {
+        state.p_WB -= centre;
+        return state;
       };
-      const MatrixXd numeric = ChartJacobian(convention, point) * test::NumericJacobian(coordinates, 9);
+      const FirstEstimate first{{convention, centre}, point, true};
+      const auto coordinates = [&](const VectorXd& zeta) -> VectorXd {
+        return Local(convention, seen(point), seen(Retract(ErrorConvention::kSo3xRn, now, Vector9d(zeta))));
+      };
+      const MatrixXd numeric = ChartJacobian(convention, seen(point)) * test::NumericJacobian(coordinates, 9);
       EXPECT_EQ(test::CompareJacobians(first.Chain(now), numeric, 1e-7), "") << ToString(convention);
     }
   }
