@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "smoother/factors/imu_factor.h"
+#include "smoother/factors/spread.h"
 
 namespace alidade {
 namespace {
@@ -51,6 +52,22 @@ Vector6d LinearPrior::ClockError(const Vector6d& clock) const {
 
 Eigen::VectorXd LinearPrior::CalibrationError(const CameraCalibration& camera) const {
   return Local(calibration_origin.layout, calibration_origin.mean, camera);
+}
+
+LinearPrior::SpreadChange LinearPrior::SpreadAt(std::span<const NavState> states) const {
+  SpreadChange change;
+  if (!(spread > 0)) {
+    change.slope.setZero(6, static_cast<Eigen::Index>(anchors.size()));
+    return change;
+  }
+  std::vector<NavState> own, first;
+  for (const Anchor& anchor : anchors) {
+    own.push_back(states[static_cast<size_t>(anchor.frame->index)]);
+    first.push_back(anchor.frame->first ? anchor.frame->first->Point(own.back()) : own.back());
+  }
+  change.ratio = SpreadOf(own, spread_point_B).metres / spread;
+  change.slope = SpreadOf(first, spread_point_B).slope;
+  return change;
 }
 
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,

@@ -21,7 +21,9 @@ namespace alidade {
 /// p): vision reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the
 /// next one alone. Once aligned with GNSS, the clock of the first frame has six more, then comes the camera's
 /// calibration where it is estimated. Landmarks whose information outlives the window have three each at the
-/// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge.
+/// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge. Where
+/// the prior has a spread, the third is rho times its ratio (SpreadAt): then they do not move with the scale
+/// of the window either.
 struct LinearPrior {
   struct Anchor {
     const WindowFrame* frame = nullptr;
@@ -40,6 +42,10 @@ struct LinearPrior {
   Eigen::MatrixXd jacobian;  ///< m x columns().size()
   Eigen::VectorXd residual;  ///< m, r0
 
+  /// m, of the frames' cameras when the prior was made; 0: the landmarks have rho itself.
+  double spread = 0;
+  Eigen::Vector3d spread_point_B = Eigen::Vector3d::Zero();  ///< m, the camera then
+
   std::optional<Vector6d> clock_origin;
   WindowCalibration calibration_origin;  ///< with an empty layout where nothing is estimated
 
@@ -50,6 +56,14 @@ struct LinearPrior {
   [[nodiscard]] Vector6d BiasError(const ImuBias& bias) const;     ///< of the first frame
   [[nodiscard]] Vector6d ClockError(const Vector6d& clock) const;  ///< precondition: clock_origin
   [[nodiscard]] Eigen::VectorXd CalibrationError(const CameraCalibration& camera) const;
+
+  struct SpreadChange {
+    double ratio = 1;                                ///< to the spread
+    Eigen::Matrix<double, 6, Eigen::Dynamic> slope;  ///< d ln(ratio) / d (phi, dp) of each anchor's body
+  };
+  /// At states of all frames of the window; the slope at first estimates where there are such. Ratio 1 and
+  /// slope 0 without a spread.
+  [[nodiscard]] SpreadChange SpreadAt(std::span<const NavState> states) const;
 };
 
 /// The columns of a prior on so many frames and landmarks.

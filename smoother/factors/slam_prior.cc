@@ -32,19 +32,6 @@ std::vector<const WindowTrack*> PriorTracks(const LinearPrior& prior, const Wind
   return tracks;
 }
 
-WindowPoint PointOf(const Window& window, const CameraCalibration& camera) {
-  WindowPoint point;
-  point.camera = camera;
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    point.states.push_back(frame->nav_state());
-  }
-  point.bias = window.frame(0).imu_bias();
-  if (window.frame(0).clock) {
-    point.clock = window.frame(0).clock_state();
-  }
-  return point;
-}
-
 /// Normal equations of the views over landmarks and, when asked for, frames.
 struct SlamPrior::Views {
   std::vector<Eigen::Matrix3d> landmark_hessian;
@@ -83,6 +70,8 @@ struct SlamPrior::Scene {
   WindowCalibration calibration;
   std::vector<const std::vector<WindowView>*> views;  ///< of each track; null: lost
   std::vector<std::vector<WindowView>> renormalized;  ///< likewise: what `views` may refer to
+  LinearPrior::SpreadChange spread;
+  VectorXd units;  ///< diagonal of D, 3L
 };
 
 SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
@@ -110,6 +99,11 @@ SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
   for (size_t i = 0; i < point.states.size(); ++i) {
     const WindowFrame& frame = window_->frame(static_cast<int>(i));
     scene.geometry.push_back(MakeGeometry(frame, point.states[i], point.camera));
+  }
+  scene.spread = prior_->SpreadAt(point.states);
+  scene.units.setOnes(origins_.size());
+  for (Index i = 2; i < origins_.size(); i += 3) {
+    scene.units[i] = scene.spread.ratio;
   }
   scene.renormalized.resize(tracks_.size());
   for (size_t i = 0; i < tracks_.size(); ++i) {
@@ -180,9 +174,10 @@ bool SlamPrior::See(const Scene& scene, const VectorXd& landmarks, bool with_fra
   return true;
 }
 
-MatrixXd SlamPrior::LandmarkHessian(const Views& views, double damping) const {
+MatrixXd SlamPrior::LandmarkHessian(const Views& views, const Scene& scene, double damping) const {
   const Index frames = gram_.cols() - 1 - origins_.size();
-  MatrixXd hessian = gram_.block(frames, frames, origins_.size(), origins_.size());
+  MatrixXd hessian = scene.units.asDiagonal() *
+                     gram_.block(frames, frames, origins_.size(), origins_.size()) * scene.units.asDiagonal();
   for (size_t i = 0; i < tracks_.size(); ++i) {
     const Index row = 3 * static_cast<Index>(i);
     hessian.block<3, 3>(row, row) += views.landmark_hessian[i];
@@ -200,20 +195,21 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
   const double offset =
       gram_(frames + size, frames + size) +
       xi.dot(2 * gram_.block(0, frames + size, frames, 1).col(0) + gram_.topLeftCorner(frames, frames) * xi);
+  const auto shift = [&](const VectorXd& at) -> VectorXd { return scene.units.cwiseProduct(at) - origins_; };
   const auto total = [&](const VectorXd& at, const VectorXd& pull, const Views& views) {
-    return offset + (at - origins_).dot(slope + pull) + views.robust_cost;
+    return offset + shift(at).dot(slope + pull) + views.robust_cost;
   };
   Views views;
   if (!See(scene, *landmarks, false, &views)) {
     return false;
   }
-  VectorXd pull = slope + landmark_gram * (*landmarks - origins_);
+  VectorXd pull = slope + landmark_gram * shift(*landmarks);
   *cost = total(*landmarks, pull, views);
   double damping = 0;
   for (int k = 0; k < kMaxPriorIterations; ++k) {
-    const VectorXd gradient = pull + views.landmark_gradient;
+    const VectorXd gradient = scene.units.cwiseProduct(pull) + views.landmark_gradient;
     VectorXd step = -gradient;
-    MatrixXd hessian = LandmarkHessian(views, damping);
+    MatrixXd hessian = LandmarkHessian(views, scene, damping);
     if (!FactorLower(&hessian)) {
       return false;
     }
@@ -224,7 +220,7 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
     const VectorXd candidate = *landmarks + step;
     Views next;
     const bool in_front = See(scene, candidate, false, &next);
-    const VectorXd next_pull = slope + landmark_gram * (candidate - origins_);
+    const VectorXd next_pull = slope + landmark_gram * shift(candidate);
     const double next_cost = in_front ? total(candidate, next_pull, next) : *cost;
     if (in_front && next_cost <= *cost) {
       *landmarks = candidate;
@@ -252,25 +248,34 @@ bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* r
 
 bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, Reduced* reduced) const {
   const VectorXd xi = Displacement(point);
+  const Scene scene = MakeScene(point);
   Views views;
-  if (!See(MakeScene(point), landmarks, true, &views)) {
+  if (!See(scene, landmarks, true, &views)) {
     return false;
   }
   const Index frames = xi.size();
   const Index size = landmarks.size();
-  const VectorXd shift = landmarks - origins_;
-  const MatrixXd chained = ChainFrames(point, gram_.leftCols(frames));
-  const VectorXd pull =
-      gram_.col(frames + size) + gram_.leftCols(frames) * xi + gram_.middleCols(frames, size) * shift;
+  const VectorXd scaled = scene.units.cwiseProduct(landmarks);
+  const VectorXd pull = gram_.col(frames + size) + gram_.leftCols(frames) * xi +
+                        gram_.middleCols(frames, size) * (scaled - origins_);
+  VectorXd along_scale = VectorXd::Zero(size);
+  for (Index i = 2; i < size; i += 3) {
+    along_scale[i] = scaled[i];
+  }
+  const Eigen::RowVectorXd spread = SpreadRow(scene.spread);
+  MatrixXd chained = ChainFrames(point, gram_.leftCols(frames));
+  chained.noalias() += (gram_.middleCols(frames, size) * along_scale) * spread;
   reduced->hessian = ChainFrames(point, chained.topRows(frames).transpose()) + views.frame_hessian;
+  reduced->hessian.noalias() += (chained.middleRows(frames, size).transpose() * along_scale) * spread;
   reduced->gradient = ChainFrames(point, pull.head(frames).transpose()).transpose() + views.frame_gradient;
+  reduced->gradient.noalias() += along_scale.dot(pull.segment(frames, size)) * spread.transpose();
 
-  MatrixXd hessian = LandmarkHessian(views, 0);
+  MatrixXd hessian = LandmarkHessian(views, scene, 0);
   if (!FactorLower(&hessian)) {
     return false;
   }
-  MatrixXd coupling = chained.middleRows(frames, size) + views.coupling;
-  VectorXd gradient = pull.segment(frames, size) + views.landmark_gradient;
+  MatrixXd coupling = scene.units.asDiagonal() * chained.middleRows(frames, size) + views.coupling;
+  VectorXd gradient = scene.units.cwiseProduct(pull.segment(frames, size)) + views.landmark_gradient;
   SolveLower(hessian, coupling);
   SolveLower(hessian, gradient);
   SubtractGram(coupling, &reduced->hessian);

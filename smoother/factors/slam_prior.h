@@ -25,7 +25,9 @@ struct WindowPoint {
 
 /// A LinearPrior together with the views of its landmarks (SLAM features), as a function of the frames alone:
 ///
-///     F(X) = min_L |r0 + J_x xi(X) + J_l (L - L0)|^2 + sum over views of rho(|W (pi(X, l) - z)|^2).
+///     F(X) = min_L |r0 + J_x xi(X) + J_l (D(X) L - L0)|^2 + sum over views of rho(|W (pi(X, l) - z)|^2),
+///
+/// D multiplies inverse depths by the ratio of the spread (LinearPrior::SpreadAt).
 ///
 /// Variable projection as in PoseOnlyFactor, but the prior couples the landmarks, so that they are solved for
 /// together (3L x 3L, damped, re-weighted Gauss-Newton).
@@ -64,8 +66,10 @@ class SlamPrior {
   bool See(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
   [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point) const;
   [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Eigen::MatrixXd& columns) const;
+  /// The slope of the spread, over columns().
+  [[nodiscard]] Eigen::RowVectorXd SpreadRow(const LinearPrior::SpreadChange& spread) const;
   /// Over the landmarks, of the prior and the views, made regular.
-  [[nodiscard]] Eigen::MatrixXd LandmarkHessian(const Views& views, double damping) const;
+  [[nodiscard]] Eigen::MatrixXd LandmarkHessian(const Views& views, const Scene& scene, double damping) const;
   bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,
                 double* cost) const;
 

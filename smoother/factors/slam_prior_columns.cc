@@ -10,6 +10,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+WindowPoint PointOf(const Window& window, const CameraCalibration& camera) {
+  WindowPoint point;
+  point.camera = camera;
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    point.states.push_back(frame->nav_state());
+  }
+  point.bias = window.frame(0).imu_bias();
+  if (window.frame(0).clock) {
+    point.clock = window.frame(0).clock_state();
+  }
+  return point;
+}
+
 VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
   VectorXd xi(prior_columns_.size() - origins_.size());
   for (size_t i = 0; i < prior_->anchors.size(); ++i) {
@@ -26,6 +39,15 @@ VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
   const ColumnMap::Range camera = prior_columns_.Calibration();
   xi.segment(camera.first, camera.size) = prior_->CalibrationError(point.camera);
   return xi;
+}
+
+Eigen::RowVectorXd SlamPrior::SpreadRow(const LinearPrior::SpreadChange& spread) const {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(columns_.size());
+  for (size_t i = 0; i < prior_->anchors.size(); ++i) {
+    row.segment<kPoseColumns>(columns_.Frame(prior_->anchors[i].frame->index).first) =
+        spread.slope.col(static_cast<Index>(i)).transpose();
+  }
+  return row;
 }
 
 /// Columns over the prior's frames, clock and calibration to columns of the reduced system.

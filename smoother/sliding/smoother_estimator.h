@@ -87,12 +87,11 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool MayTakeOutNewest() const;
   void DetectRest(const TrackFrame& frame);
   Status MarginalizeOldestFrame();
-  [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry,
-                                                          double scale_deviation);
+  [[nodiscard]] std::vector<WindowTrack*> StayingFeatures(const std::vector<FrameGeometry>& geometry);
   /// Whether the rows of a track's landmark may be linearised for good.
   [[nodiscard]] bool DepthIsKnown(const std::vector<FrameGeometry>& geometry, const WindowTrack& track) const;
   [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
-                                                      double scale_deviation, size_t free);
+                                                      size_t free);
   [[nodiscard]] SensorContext Sensors(const WindowCalibration& calibration) const {
     return {gravity_W_, gnss_.context(), &calibration};
   }

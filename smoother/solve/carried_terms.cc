@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "smoother/factors/slam_prior.h"
 #include "smoother/solve/marginal_stack.h"
 #include "smoother/tracks/anchored_landmark.h"
 
@@ -25,6 +26,8 @@ struct CarriedPrior::Rows {
   }
 
   Index count;
+  LinearPrior::SpreadChange spread;
+  VectorXd along_scale;  ///< what changes per relative change of the spread, landmarks held fixed
   /// An even number of rows: all columns are aligned alike, so that products are rounded alike in each.
   MatrixXd jacobian;
   VectorXd residual;
@@ -58,11 +61,14 @@ CarriedPrior::CarriedPrior(const LinearPrior& prior, const StateChart& next, con
 Status CarriedPrior::Linearize(LinearTerm* linear) const {
   Rows rows(prior_.jacobian.rows(), columns_.size());
   rows.residual = prior_.residual;
+  rows.spread = prior_.SpreadAt(PointOf(window_, calibration_.mean).states);
+  rows.along_scale.setZero(rows.count);
   AddFrames(&rows);
   AddClockAndCalibration(&rows);
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     AddLandmark(i, &rows);
   }
+  AddSpread(&rows);
   linear->ResizeRows(parts(), rows.count);
   linear->chart = LinearTerm::Chart::kPrior;
   linear->jacobian = rows.jacobian.topRows(rows.count);
@@ -104,16 +110,20 @@ void CarriedPrior::AddClockAndCalibration(Rows* rows) const {
 void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
   const LinearPrior::Landmark& known = prior_.landmarks[landmark];
   const WindowTrack* track = landmarks_[landmark].track;
-  const MatrixXd columns =
+  // Over the landmark itself: its inverse depth times the ratio of the spread is what the prior has.
+  MatrixXd columns =
       prior_.jacobian.middleCols<kLandmarkColumns>(prior_columns_.Landmark(static_cast<int>(landmark)).first);
+  columns.col(2) *= rows->spread.ratio;
+  Eigen::Vector3d origin = known.origin;
+  origin.z() /= rows->spread.ratio;
   Eigen::Block<MatrixXd> own = rows->Columns(columns_.Landmark(landmarks_[landmark].number));
-  if (track == nullptr) {
+  const auto at = [&](const Eigen::Vector3d& in_known_anchor) {
+    rows->along_scale.noalias() += in_known_anchor.z() * columns.col(2);
+    rows->residual.noalias() += columns * (in_known_anchor - origin);
+  };
+  if (track == nullptr || track->anchor == known.anchor) {
     own = columns;
-    return;
-  }
-  if (track->anchor == known.anchor) {
-    own = columns;
-    rows->residual.noalias() += columns * (track->landmark - known.origin);
+    at(track == nullptr ? origin : track->landmark);
     return;
   }
   // The track has changed its anchor: the old coordinates as a function of the new ones and both frames.
@@ -133,7 +143,16 @@ void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
   pose(from).noalias() += columns * (change.from_frame * PosePriorChart(next_, from));
   pose(to).noalias() += columns * (change.to_frame * PosePriorChart(next_, to));
   rows->Columns(columns_.Calibration()).noalias() += columns * change.calibration;
-  rows->residual.noalias() += columns * (back.to - known.origin);
+  at(back.to);
+}
+
+void CarriedPrior::AddSpread(Rows* rows) const {
+  for (size_t i = 0; i < prior_.anchors.size(); ++i) {
+    const WindowFrame& frame = *prior_.anchors[i].frame;
+    rows->Columns({columns_.Frame(frame.index).first, kPoseColumns}).noalias() +=
+        rows->along_scale *
+        (rows->spread.slope.col(static_cast<Index>(i)).transpose() * PosePriorChart(next_, frame));
+  }
 }
 
 AnchoredViewTerm::AnchoredViewTerm(const std::vector<FrameGeometry>& geometry,

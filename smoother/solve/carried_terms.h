@@ -35,6 +35,7 @@ class CarriedPrior final : public InformationTerm {
   void AddFrames(Rows* rows) const;
   void AddClockAndCalibration(Rows* rows) const;
   void AddLandmark(size_t landmark, Rows* rows) const;
+  void AddSpread(Rows* rows) const;
 
   const LinearPrior& prior_;
   StateChart next_;

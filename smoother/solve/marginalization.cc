@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "smoother/factors/spread.h"
 #include "smoother/solve/carried_terms.h"
 #include "smoother/solve/marginal_stack.h"
 
@@ -117,6 +118,28 @@ CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior, const
   prior_.emplace(prior, next, window, calibration, std::move(landmarks), geometry_);
 }
 
+/// Inverse depths times the ratio of the spread in place of the inverse depths.
+void RelateToSpread(const Window& window, const Eigen::Vector3d& camera_B, LinearPrior* next) {
+  std::vector<NavState> states;
+  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
+    states.push_back(frame->nav_state());
+  }
+  next->spread_point_B = camera_B;
+  next->spread = SpreadOf(std::span(states).subspan(1), camera_B).metres;
+  const LinearPrior::SpreadChange change = next->SpreadAt(states);
+  const ColumnMap columns = next->columns();
+  Eigen::VectorXd along_scale = Eigen::VectorXd::Zero(next->jacobian.rows());
+  for (size_t i = 0; i < next->landmarks.size(); ++i) {
+    const Index inverse_depth = columns.Landmark(static_cast<int>(i)).first + 2;
+    along_scale += next->landmarks[i].origin.z() * next->jacobian.col(inverse_depth);
+  }
+  for (size_t i = 0; i < next->anchors.size(); ++i) {
+    next->jacobian.middleCols<kPoseColumns>(columns.Frame(static_cast<int>(i)).first).noalias() -=
+        along_scale * (change.slope.col(static_cast<Index>(i)).transpose() *
+                       PosePriorChart(next->chart, *next->anchors[i].frame));
+  }
+}
+
 /// Names what the rows of a new prior are about. They hold at the present states.
 void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next) {
   for (int i = 1; i < window.size(); ++i) {
@@ -126,6 +149,9 @@ void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next
   }
   for (const WindowTrack* track : slam.after) {
     next->landmarks.push_back({track->id, track->anchor, track->landmark, track->plane()});
+  }
+  if (slam.relative_to_spread && !next->landmarks.empty()) {
+    RelateToSpread(window, next->calibration_origin.mean.T_BC.translation, next);
   }
   const ColumnMap columns = next->columns();
   for (size_t i = 0; i < next->anchors.size(); ++i) {

@@ -17,6 +17,8 @@ struct SlamChange {
   /// the tracks of `before` that are not among them every view does, and the landmark is eliminated.
   std::vector<const WindowTrack*> after;
   ObservationKernel kernel;
+  /// Whether the new prior has a spread (LinearPrior). Precondition: the frames that stay have one.
+  bool relative_to_spread = false;
 };
 
 /// Marginalises the oldest frame. The old prior (CarriedPrior), `terms` (the tracks that leave among them)

@@ -201,10 +201,10 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   ++system->tracks;
   return true;
 }
-std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowView> views,
-                                                       std::span<const FrameGeometry> geometry,
-                                                       const ObservationKernel& kernel,
-                                                       const Vector3d& landmark) {
+
+std::optional<double> InverseDepthDeviation(std::span<const WindowView> views,
+                                            std::span<const FrameGeometry> geometry,
+                                            const ObservationKernel& kernel, const Vector3d& landmark) {
   TrackWorkspace workspace;
   if (!LinearizeViews(views, geometry, kernel, landmark, &workspace)) {
     return std::nullopt;
@@ -214,20 +214,7 @@ std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowVie
   if (!scale.allFinite() || factor.info() != Eigen::Success) {
     return std::nullopt;
   }
-  // Last row of the inverse of the landmark's Hessian.
-  const Vector3d last = scale.asDiagonal() * factor.solve(Vector3d(0, 0, scale.z()));
-  InverseDepthError error;
-  error.own_deviation = std::sqrt(last.z());
-  error.row.setZero(kPoseColumns * static_cast<Eigen::Index>(geometry.size()));
-  for (size_t k = 0; k < views.size(); ++k) {
-    error.row.segment<kPoseColumns>(kPoseColumns * views[k].frame->index) -=
-        (workspace.coupling[k] * last).transpose();
-  }
-  FrameGeometry row;
-  const FrameGeometry& base = AtRow(geometry, views.front(), &row);
-  error.row.segment<kPoseColumns>(kPoseColumns * views.front().frame->index) +=
-      InverseDepthRow(base, landmark, views.front().observation.plane) * base.camera_from_body;
-  return error;
+  return scale.z() * std::sqrt(factor.solve(Vector3d::UnitZ()).z());
 }
 
 void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,

@@ -78,18 +78,12 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
               const ObservationKernel& kernel, const Eigen::Vector3d& landmark, TrackWorkspace* workspace,
               PoseSystem* system, const DepthPrior& prior = {});
 
-/// The error of a track's inverse depth in its base view by the poses of the window: d rho / d (phi, dp) of
-/// each frame's body, 1 x 6 geometry.size(), the landmark being the one that its views determine from those
-/// poses; and the deviation of rho with the poses held fixed.
-struct InverseDepthError {
-  Eigen::RowVectorXd row;
-  double own_deviation = 0;
-};
-/// nullopt: behind a view, or the views do not determine the landmark.
-[[nodiscard]] std::optional<InverseDepthError> LinearizeInverseDepth(std::span<const WindowView> views,
-                                                                     std::span<const FrameGeometry> geometry,
-                                                                     const ObservationKernel& kernel,
-                                                                     const Eigen::Vector3d& landmark);
+/// Standard deviation of a track's inverse depth in its base view, the poses held fixed. nullopt: behind a
+/// view, or the views do not determine the landmark.
+[[nodiscard]] std::optional<double> InverseDepthDeviation(std::span<const WindowView> views,
+                                                          std::span<const FrameGeometry> geometry,
+                                                          const ObservationKernel& kernel,
+                                                          const Eigen::Vector3d& landmark);
 
 /// Rows [J | r] with J^T J = H and J^T r = g: upper-triangular Cholesky factor of a positive SEMI-definite H
 /// (lower triangle given). Directions without information (pivot below 1e-13 of the diagonal) give zero rows.

@@ -19,7 +19,7 @@ namespace alidade::test {
 /// the frames `anchors` gives in turn (indices before the frame left). With or without a calibration.
 struct SlamFixture : WindowFixture {
   SlamFixture(unsigned seed, ErrorConvention error, bool calibrated, const std::vector<int>& anchors,
-              FixtureView seen = FixtureView::kAhead)
+              FixtureView seen = FixtureView::kAhead, bool relative_to_spread = true)
       : WindowFixture(seed, 5, 12, calibrated && seen == FixtureView::kBehind ? 0.0 : 1.0, seen),
         convention(error) {
     EXPECT_TRUE(MakeInitialPrior(error, window.frame(0), 1e-3 * Matrix15d::Identity(), &first));
@@ -29,6 +29,7 @@ struct SlamFixture : WindowFixture {
       calibration = {estimate.layout, estimate.mean};
     }
     first.residual.setConstant(0.3);
+    change.relative_to_spread = relative_to_spread;
     for (auto& [id, track] : window.tracks()) {
       if (track.views.front().frame->index == 0) {
         const int anchor = anchors[change.after.size() % anchors.size()];
@@ -196,25 +197,28 @@ struct DenseWindow {
   Eigen::VectorXd gradient;
 };
 
-/// Convention, with a calibration, where the camera looks.
-using SlamFixtureKind = std::tuple<ErrorConvention, bool, FixtureView>;
+/// Convention, with a calibration, where the camera looks, inverse depths relative to the spread.
+using SlamFixtureKind = std::tuple<ErrorConvention, bool, FixtureView, bool>;
 
-/// In every convention; with and without a calibration; ahead of the camera and behind it.
+/// In every convention; with and without a calibration; ahead of the camera and behind it; with and without a
+/// spread.
 inline auto AllSlamFixtures() {
   return testing::Combine(testing::ValuesIn(kAllConventions), testing::Bool(),
-                          testing::Values(FixtureView::kAhead, FixtureView::kBehind));
+                          testing::Values(FixtureView::kAhead, FixtureView::kBehind), testing::Bool());
 }
 
 inline std::string NameOfSlamFixture(const testing::TestParamInfo<SlamFixtureKind>& item) {
   return std::string(ToString(std::get<0>(item.param))) + (std::get<1>(item.param) ? "_calibrated" : "") +
-         (std::get<2>(item.param) == FixtureView::kBehind ? "_behind" : "");
+         (std::get<2>(item.param) == FixtureView::kBehind ? "_behind" : "") +
+         (std::get<3>(item.param) ? "" : "_metric");
 }
 
 class SlamFixtureTest : public testing::TestWithParam<SlamFixtureKind> {
  protected:
   [[nodiscard]] static ErrorConvention convention() { return std::get<0>(GetParam()); }
   [[nodiscard]] static SlamFixture Fixture(unsigned seed, const std::vector<int>& anchors) {
-    return SlamFixture(seed, convention(), std::get<1>(GetParam()), anchors, std::get<2>(GetParam()));
+    return SlamFixture(seed, convention(), std::get<1>(GetParam()), anchors, std::get<2>(GetParam()),
+                       std::get<3>(GetParam()));
   }
 };
 

@@ -82,7 +82,7 @@ TEST_P(SlamPriorTest, AnchorsThatLeaveAndLostFeaturesGiveTheSchurComplement) {
     }
     // The landmarks' new coordinates, by differences of the change of anchor.
     MatrixXd substitute = MatrixXd::Identity(dense.hessian.rows(), dense.hessian.cols());
-    SlamChange change{tracks, {}, {}};
+    SlamChange change{tracks, {}, {}, fixture.change.relative_to_spread};
     for (const size_t i : staying) {
       WindowTrack& track = fixture.window.tracks().at(tracks[i]->id);
       change.after.push_back(&track);
@@ -236,7 +236,7 @@ TEST(SlamPriorGaugeTest, NothingIsLearntOfYawAndPosition) {
     }
     EXPECT_LT((prior.jacobian * gauge).norm(), 1e-6 * prior.jacobian.norm());
     // Once more, with anchors that leave.
-    SlamChange change{PriorTracks(prior, fixture.window), {}, {}};
+    SlamChange change{PriorTracks(prior, fixture.window), {}, {}, true};
     for (const WindowTrack* known : change.before) {
       WindowTrack& track = fixture.window.tracks().at(known->id);
       if (track.anchor->index == 0) {
@@ -245,6 +245,49 @@ TEST(SlamPriorGaugeTest, NothingIsLearntOfYawAndPosition) {
       change.after.push_back(&track);
     }
     prior = test::Marginalize(fixture.window, prior, fixture.NoVision(), {fixture.gravity_W}, change);
+  }
+}
+
+// GIVEN a prior of vision alone, whose landmarks have been found nearer or farther since it was made, THEN it
+// prefers no scale of the window; without a spread it prefers one.
+TEST(SlamPriorGaugeTest, NothingIsLearntOfTheScale) {
+  for (const bool relative_to_spread : {true, false}) {
+    const SlamFixture fixture(8, ErrorConvention::kRightInvariant, false, {3, 4}, test::FixtureView::kAhead,
+                              relative_to_spread);
+    LinearPrior nothing = fixture.first;
+    nothing.jacobian.setZero();
+    nothing.residual.setZero();
+    WindowTerms terms;
+    const PoseSystem no_vision = fixture.NoVision();
+    terms.push_back(std::make_unique<test::GivenTerm>(no_vision));
+    const Result<LinearPrior> prior =
+        MarginalizeOldest(fixture.window, nothing, fixture.calibration, terms, fixture.change);
+    ASSERT_TRUE(prior.ok());
+    const ColumnMap columns = prior->columns();
+    const Eigen::Vector3d camera_B = fixture.T_BC.translation;
+    const auto residual = [&](double scale) -> VectorXd {
+      std::vector<NavState> states = PointOf(fixture.window, fixture.calibration.mean).states;
+      const Eigen::Vector3d centre = states.back().T_WB() * camera_B;
+      VectorXd xi = VectorXd::Zero(columns.size());
+      for (size_t i = 0; i < prior->anchors.size(); ++i) {
+        NavState& state = states[i + 1];
+        const Eigen::Vector3d scaled = centre + scale * (state.T_WB() * camera_B - centre);
+        state.p_WB = scaled - state.R_WB * camera_B;
+        xi.segment<6>(columns.Frame(static_cast<int>(i)).first) = prior->NavError(i, state).head<6>();
+      }
+      for (size_t l = 0; l < prior->landmarks.size(); ++l) {
+        const double inverse_depth = prior->landmarks[l].origin.z() * (l % 2 == 0 ? 1.1 : 0.9) / scale;
+        xi[columns.Landmark(static_cast<int>(l)).first + 2] =
+            inverse_depth * prior->SpreadAt(states).ratio - prior->landmarks[l].origin.z();
+      }
+      return prior->jacobian * xi;
+    };
+    const double difference = (residual(1.2) - residual(1)).norm() / residual(1).norm();
+    if (relative_to_spread) {
+      EXPECT_LT(difference, 1e-6);
+    } else {
+      EXPECT_GT(difference, 0.1);
+    }
   }
 }
 

@@ -12,6 +12,7 @@
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/window_system.h"
 #include "smoother/tracks/track_system.h"
+#include "tests/support/jacobian_checker.h"
 
 namespace alidade::test {
 
@@ -44,6 +45,35 @@ inline WindowTerms MakeTerms(const Window& window, const PoseSystem& vision, con
   return terms;
 }
 
+/// The spread of a prior's frames, each moved by an error of the prior's convention about the origin of W.
+inline Eigen::VectorXd LogSpread(const LinearPrior& prior, const Eigen::VectorXd& delta) {
+  Eigen::Matrix3Xd cameras(3, prior.anchors.size());
+  for (size_t i = 0; i < prior.anchors.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    Vector9d xi = Vector9d::Zero();
+    xi.head<6>() = delta.segment<6>(6 * column);
+    cameras.col(column) =
+        Retract(prior.chart.convention, prior.anchors[i].origin, xi).T_WB() * prior.spread_point_B;
+  }
+  const Eigen::Vector3d mean = cameras.rowwise().mean();
+  return Eigen::VectorXd::Constant(1, 0.5 * std::log((cameras.colwise() - mean).squaredNorm()));
+}
+
+/// The columns of a prior with a spread, over the inverse depths themselves.
+inline void AddSpread(const LinearPrior& prior, Eigen::MatrixXd* rows) {
+  const ColumnMap columns = prior.columns();
+  const auto spread = [&](const Eigen::VectorXd& delta) { return LogSpread(prior, delta); };
+  const Eigen::MatrixXd slope = NumericJacobian(spread, static_cast<int>(6 * prior.anchors.size()));
+  for (size_t l = 0; l < prior.landmarks.size(); ++l) {
+    const Eigen::VectorXd along_scale =
+        prior.landmarks[l].origin.z() * rows->col(columns.Landmark(static_cast<int>(l)).first + 2);
+    for (size_t i = 0; i < prior.anchors.size(); ++i) {
+      rows->middleCols<6>(columns.Frame(static_cast<int>(i)).first) +=
+          along_scale * slope.middleCols<6>(6 * static_cast<Eigen::Index>(i));
+    }
+  }
+}
+
 /// The rows of a prior at its origins, over errors about W's origin.
 inline Eigen::MatrixXd RowsAboutOrigin(const LinearPrior& prior) {
   Eigen::MatrixXd rows = prior.jacobian;
@@ -54,6 +84,9 @@ inline Eigen::MatrixXd RowsAboutOrigin(const LinearPrior& prior) {
                              ImuChartJacobian(prior.chart.convention, state);
     rows.middleCols(at.first, at.size) =
         prior.jacobian.middleCols(at.first, at.size) * change.topLeftCorner(at.size, at.size);
+  }
+  if (prior.spread > 0) {
+    AddSpread(prior, &rows);
   }
   return rows;
 }
