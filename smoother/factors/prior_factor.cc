@@ -60,13 +60,20 @@ LinearPrior::SpreadChange LinearPrior::SpreadAt(std::span<const NavState> states
     change.slope.setZero(6, static_cast<Eigen::Index>(anchors.size()));
     return change;
   }
-  std::vector<NavState> own, first;
+  const Eigen::Vector3d& camera_B = calibration_origin.mean.T_BC.translation;
+  std::vector<NavState> now, points;
   for (const Anchor& anchor : anchors) {
-    own.push_back(states[static_cast<size_t>(anchor.frame->index)]);
-    first.push_back(anchor.frame->first ? anchor.frame->first->Point(own.back()) : own.back());
+    now.push_back(states[static_cast<size_t>(anchor.frame->index)]);
+    points.push_back(anchor.frame->first ? anchor.frame->first->Point(now.back()) : now.back());
   }
-  change.ratio = SpreadOf(own, spread_point_B).metres / spread;
-  change.slope = SpreadOf(first, spread_point_B).slope;
+  change.ratio = SpreadOf(now, camera_B).metres / spread;
+  change.slope = SpreadOf(points, camera_B).slope;
+  for (size_t i = 0; i < anchors.size(); ++i) {
+    if (anchors[i].frame->first) {
+      const Matrix6d chain = anchors[i].frame->first->Chain(now[i]).topLeftCorner<6, 6>();
+      change.slope.col(static_cast<Eigen::Index>(i)).applyOnTheLeft(chain.transpose());
+    }
+  }
   return change;
 }
 

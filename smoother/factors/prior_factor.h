@@ -42,9 +42,8 @@ struct LinearPrior {
   Eigen::MatrixXd jacobian;  ///< m x columns().size()
   Eigen::VectorXd residual;  ///< m, r0
 
-  /// m, of the frames' cameras when the prior was made; 0: the landmarks have rho itself.
+  /// m, of the camera of calibration_origin when the prior was made; 0: the landmarks have rho itself.
   double spread = 0;
-  Eigen::Vector3d spread_point_B = Eigen::Vector3d::Zero();  ///< m, the camera then
 
   std::optional<Vector6d> clock_origin;
   WindowCalibration calibration_origin;  ///< with an empty layout where nothing is estimated

@@ -7,13 +7,14 @@
 
 namespace alidade {
 
-/// How far a point of the body, the camera, gets about in a window: the root of its mean squared distance
-/// from its mean position. Of all lengths of a window this one changes in proportion with its scale.
+/// How far the camera gets about in a window: the root of the mean squared distance of its positions from
+/// their mean [m]. It is proportional to the scale of the window.
 struct Spread {
   double metres = 0;
-  Eigen::Matrix<double, 6, Eigen::Dynamic>
-      slope;  ///< d ln(metres) / d (phi, dp) of each state; not finite at 0 m
+  /// d ln(metres) / d (phi, dp) of the body at each state; not finite where it does not move.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> slope;
 };
+/// point_B: the camera in the body [m].
 [[nodiscard]] Spread SpreadOf(std::span<const NavState> states, const Eigen::Vector3d& point_B);
 
 }  // namespace alidade

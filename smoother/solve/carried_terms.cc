@@ -147,11 +147,10 @@ void CarriedPrior::AddLandmark(size_t landmark, Rows* rows) const {
 }
 
 void CarriedPrior::AddSpread(Rows* rows) const {
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> slope = SpreadPriorSlope(prior_, rows->spread, next_);
   for (size_t i = 0; i < prior_.anchors.size(); ++i) {
-    const WindowFrame& frame = *prior_.anchors[i].frame;
-    rows->Columns({columns_.Frame(frame.index).first, kPoseColumns}).noalias() +=
-        rows->along_scale *
-        (rows->spread.slope.col(static_cast<Index>(i)).transpose() * PosePriorChart(next_, frame));
+    rows->Columns({columns_.Frame(prior_.anchors[i].frame->index).first, kPoseColumns}).noalias() +=
+        rows->along_scale * slope.col(static_cast<Index>(i)).transpose();
   }
 }
 

@@ -27,6 +27,17 @@ Matrix15d StatePriorChart(const StateChart& chart, const WindowFrame& frame) {
   return jacobian;
 }
 
+Eigen::Matrix<double, 6, Eigen::Dynamic> SpreadPriorSlope(const LinearPrior& prior,
+                                                          const LinearPrior::SpreadChange& change,
+                                                          const StateChart& chart) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> slope = change.slope;
+  for (size_t i = 0; i < prior.anchors.size(); ++i) {
+    slope.col(static_cast<Eigen::Index>(i))
+        .applyOnTheLeft(PosePriorChart(chart, *prior.anchors[i].frame).transpose());
+  }
+  return slope;
+}
+
 MarginalStack::MarginalStack(const Window& window, const StateChart& chart, ColumnMap columns, Index leaving)
     : window_(window), chart_(chart), columns_(std::move(columns)), leaving_(leaving) {
   stack_.resize(2 * columns_.size(), columns_.size() + 1);

@@ -13,6 +13,10 @@ namespace alidade {
 /// The same of its whole state.
 [[nodiscard]] Matrix15d StatePriorChart(const StateChart& chart, const WindowFrame& frame);
 
+/// The slope of a spread (LinearPrior::SpreadAt at the present states) over the same columns of each anchor.
+[[nodiscard]] Eigen::Matrix<double, 6, Eigen::Dynamic> SpreadPriorSlope(
+    const LinearPrior& prior, const LinearPrior::SpreadChange& change, const StateChart& chart);
+
 /// Whitened rows over the coordinates of priors (errors in their chart around the present states, or around
 /// first estimates where frames have such). QR eliminates the leading columns.
 class MarginalStack {

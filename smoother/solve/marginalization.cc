@@ -119,14 +119,10 @@ CarriedTerms::CarriedTerms(const Window& window, const LinearPrior& prior, const
 }
 
 /// Inverse depths times the ratio of the spread in place of the inverse depths.
-void RelateToSpread(const Window& window, const Eigen::Vector3d& camera_B, LinearPrior* next) {
-  std::vector<NavState> states;
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    states.push_back(frame->nav_state());
-  }
-  next->spread_point_B = camera_B;
-  next->spread = SpreadOf(std::span(states).subspan(1), camera_B).metres;
-  const LinearPrior::SpreadChange change = next->SpreadAt(states);
+void RelateToSpread(const WindowPoint& present, LinearPrior* next) {
+  next->spread = SpreadOf(std::span(present.states).subspan(1), present.camera.T_BC.translation).metres;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> slope =
+      SpreadPriorSlope(*next, next->SpreadAt(present.states), next->chart);
   const ColumnMap columns = next->columns();
   Eigen::VectorXd along_scale = Eigen::VectorXd::Zero(next->jacobian.rows());
   for (size_t i = 0; i < next->landmarks.size(); ++i) {
@@ -135,8 +131,7 @@ void RelateToSpread(const Window& window, const Eigen::Vector3d& camera_B, Linea
   }
   for (size_t i = 0; i < next->anchors.size(); ++i) {
     next->jacobian.middleCols<kPoseColumns>(columns.Frame(static_cast<int>(i)).first).noalias() -=
-        along_scale * (change.slope.col(static_cast<Index>(i)).transpose() *
-                       PosePriorChart(next->chart, *next->anchors[i].frame));
+        along_scale * slope.col(static_cast<Index>(i)).transpose();
   }
 }
 
@@ -151,7 +146,7 @@ void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next
     next->landmarks.push_back({track->id, track->anchor, track->landmark, track->plane()});
   }
   if (slam.relative_to_spread && !next->landmarks.empty()) {
-    RelateToSpread(window, next->calibration_origin.mean.T_BC.translation, next);
+    RelateToSpread(PointOf(window, next->calibration_origin.mean), next);
   }
   const ColumnMap columns = next->columns();
   for (size_t i = 0; i < next->anchors.size(); ++i) {

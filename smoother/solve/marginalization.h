@@ -17,7 +17,7 @@ struct SlamChange {
   /// the tracks of `before` that are not among them every view does, and the landmark is eliminated.
   std::vector<const WindowTrack*> after;
   ObservationKernel kernel;
-  /// Whether the new prior has a spread (LinearPrior). Precondition: the frames that stay have one.
+  /// Whether the new prior has a spread (LinearPrior).
   bool relative_to_spread = false;
 };
 

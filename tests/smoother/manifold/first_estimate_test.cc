@@ -195,6 +195,28 @@ TEST(FirstEstimateTest, WithoutFirstEstimatesThePriorGainsInformationAboutThem) 
   }
 }
 
+// The spread of the window does not change when everything turns about gravity or shifts.
+TEST(FirstEstimateTest, TheSpreadLeavesYawAndPositionUndecided) {
+  for (const bool keeps : {true, false}) {
+    Sliding sliding(6, keeps);
+    sliding.Leave();
+    sliding.Move();
+    sliding.prior.calibration_origin.mean.T_BC = sliding.T_BC;
+    sliding.prior.spread = 1;
+    std::vector<NavState> states;
+    MatrixXd row = MatrixXd::Zero(1, 15 * sliding.window.size());
+    for (const std::unique_ptr<WindowFrame>& frame : sliding.window.frames()) {
+      states.push_back(frame->nav_state());
+    }
+    const LinearPrior::SpreadChange spread = sliding.prior.SpreadAt(states);
+    for (Index i = 0; i < spread.slope.cols(); ++i) {
+      row.middleCols<6>(15 * i) = spread.slope.col(i).transpose();
+    }
+    EXPECT_GT(row.norm(), 0.01);
+    EXPECT_LT(Seen(row, NullSpace(sliding.window)), 1e-9);
+  }
+}
+
 /// The residual, and beside it the sums of the Jacobians' columns, one column a block.
 template <typename Factor>
 MatrixXd Evaluate(const Factor& factor, const std::vector<const double*>& parameters) {

@@ -52,8 +52,8 @@ inline Eigen::VectorXd LogSpread(const LinearPrior& prior, const Eigen::VectorXd
     const auto column = static_cast<Eigen::Index>(i);
     Vector9d xi = Vector9d::Zero();
     xi.head<6>() = delta.segment<6>(6 * column);
-    cameras.col(column) =
-        Retract(prior.chart.convention, prior.anchors[i].origin, xi).T_WB() * prior.spread_point_B;
+    cameras.col(column) = Retract(prior.chart.convention, prior.anchors[i].origin, xi).T_WB() *
+                          prior.calibration_origin.mean.T_BC.translation;
   }
   const Eigen::Vector3d mean = cameras.rowwise().mean();
   return Eigen::VectorXd::Constant(1, 0.5 * std::log((cameras.colwise() - mean).squaredNorm()));
