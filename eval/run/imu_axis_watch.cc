@@ -16,6 +16,11 @@ int Other(int axis, int which) {
   return (axis + 1 + which) % 3;
 }
 
+/// Of ImuAxisWatch::Axis::limits.
+std::size_t Side(double value) {
+  return value > 0 ? 1 : 0;
+}
+
 }  // namespace
 
 ImuAxisWatch::ImuAxisWatch(const ImpliedImu* implied)
@@ -25,6 +30,20 @@ ImuAxisWatch::ImuAxisWatch(const ImpliedImu* implied)
                Signal{&ImuSample::accel, &ImuSample::accel_fault_density_mps2_sqrthz, &ImpliedImu::Accel,
                       "accelerometer", "m/s^2", imu_gap::kMinAccelMps2}} {}
 
+void ImuAxisWatch::Begin(const ImuSample& sample, const Signal& other, Signal* signal) {
+  signal->held.Restart(sample.stamp_ns, sample.*other.value);
+  const Eigen::Vector3d& now = sample.*signal->value;
+  for (int index = 0; index < 3; ++index) {
+    Axis& axis = signal->axes[static_cast<std::size_t>(index)];
+    axis.since_ns = sample.stamp_ns;
+    axis.low = axis.high = {now[Other(index, 0)], now[Other(index, 1)]};
+    axis.lowest = axis.highest = axis.mean = now[index];
+    axis.mean_square = now[index] * now[index];
+    axis.measured = 1;
+    axis.recent.emplace_back(sample.stamp_ns, now[index]);
+  }
+}
+
 void ImuAxisWatch::CountShare(bool changed, Axis* axis) {
   constexpr double kKept = 1 - 1 / kMemory;
   const double kept = std::pow(kKept, static_cast<double>(axis->equal - 1));
@@ -32,20 +51,26 @@ void ImuAxisWatch::CountShare(bool changed, Axis* axis) {
   axis->changed = kKept * kept * axis->changed + (changed ? 1 : 0);
 }
 
-bool ImuAxisWatch::OthersMove(const Axis& axis) {
+bool ImuAxisWatch::OthersMove(const Axis& axis, double resolution) {
   const double span = std::max(axis.high[0] - axis.low[0], axis.high[1] - axis.low[1]);
-  return span >= kSpan * axis.resolution;
+  return resolution > 0 && span >= kSpan * resolution;
 }
 
-void ImuAxisWatch::CheckLimit(double value, TimeNs stamp_ns, Axis* axis) {
-  if (axis->limit > 0 ? value > axis->limit : value < axis->limit) {
-    axis->limit = 0;
-  }
-  if (axis->limit == 0 || std::abs(value - axis->limit) >= kSteps * axis->resolution) {
-    axis->near_limit_since_ns = stamp_ns;
-  } else if (SecondsBetween(axis->near_limit_since_ns, stamp_ns) > kConstantS && !OthersMove(*axis)) {
-    axis->limit = 0;
-    axis->came_from = value;
+void ImuAxisWatch::CheckLimits(double value, TimeNs stamp_ns, Axis* axis) {
+  for (std::optional<Level>& limit : axis->limits) {
+    if (!limit) {
+      continue;
+    }
+    const double inside = limit->value > 0 ? limit->value - value : value - limit->value;
+    if (inside < 0) {
+      limit.reset();
+    } else if (inside >= kSteps * axis->resolution) {
+      limit->since_ns = stamp_ns;
+    } else if (SecondsBetween(limit->since_ns, stamp_ns) > kConstantS &&
+               !OthersMove(*axis, axis->resolution)) {
+      limit.reset();
+      axis->came_from = value;
+    }
   }
 }
 
@@ -66,9 +91,14 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
     axis->equal = 1;
     axis->since_ns = sample.stamp_ns;
     axis->faulty = false;
-    const bool known = axis->recent.size() == kSaturated;
-    axis->came_from = known ? axis->recent.front().second : value;
-    axis->came_from_s = known ? SecondsBetween(axis->recent.front().first, sample.stamp_ns) : 0;
+    axis->came_from = value;
+    axis->came_from_s = 0;
+    for (const auto& [stamp_ns, recent] : axis->recent) {
+      if (axis->recent.size() == kSaturated && std::abs(value - recent) > std::abs(value - axis->came_from)) {
+        axis->came_from = recent;
+        axis->came_from_s = SecondsBetween(stamp_ns, sample.stamp_ns);
+      }
+    }
   } else {
     ++axis->equal;
   }
@@ -81,13 +111,13 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
     axis->low[k] = starts ? other : std::min(axis->low[k], other);
     axis->high[k] = starts ? other : std::max(axis->high[k], other);
   }
-  CheckLimit(value, sample.stamp_ns, axis);
+  CheckLimits(value, sample.stamp_ns, axis);
   axis->recent.emplace_back(sample.stamp_ns, value);
   if (axis->recent.size() > kSaturated) {
     axis->recent.pop_front();
   }
-  axis->lowest = axis->measured == 0 ? value : std::min(axis->lowest, value);
-  axis->highest = axis->measured == 0 ? value : std::max(axis->highest, value);
+  axis->lowest = std::min(axis->lowest, value);
+  axis->highest = std::max(axis->highest, value);
   ++axis->measured;
   if (axis->equal == 1) {
     const double share = 1 / std::min(kMemory, static_cast<double>(axis->measured));
@@ -96,44 +126,100 @@ void ImuAxisWatch::Count(const Signal& signal, int index, const ImuSample& last,
   }
 }
 
+bool ImuAxisWatch::IsRestless(const Axis& axis) {
+  return 2 * axis.changed >= axis.counted;
+}
+
 bool ImuAxisWatch::IsExtreme(double value, const Axis& axis) {
   return value >= axis.highest || value <= axis.lowest;
 }
 
-ImuAxisWatch::Fault ImuAxisWatch::Classify(double value, double floor, const Axis& axis) {
-  if (axis.limit != 0 && value == axis.limit) {
+double ImuAxisWatch::Resolution(const Signal& signal, int index) {
+  const double own = signal.axes[static_cast<std::size_t>(index)].resolution;
+  if (own > 0) {
+    return own;
+  }
+  const double first = signal.axes[static_cast<std::size_t>(Other(index, 0))].resolution;
+  const double second = signal.axes[static_cast<std::size_t>(Other(index, 1))].resolution;
+  return first > 0 && second > 0 ? std::min(first, second) : std::max(first, second);
+}
+
+int ImuAxisWatch::StuckRun(const Axis& axis) {
+  constexpr double kChance = 1e-10;
+  const double share = (axis.counted - axis.changed + 1) / (axis.counted + 1);
+  const double run = share < 1 ? 1 + std::log(kChance) / std::log(share) : kStuck;
+  return static_cast<int>(std::clamp(run, double{kSaturated}, double{kStuck}));
+}
+
+ImuAxisWatch::Fault ImuAxisWatch::Classify(double value, double floor, double resolution, const Axis& axis) {
+  const bool arrived = axis.came_from_s > 0 && std::abs(value - axis.came_from) >= kSteps * resolution;
+  const std::optional<Level>& limit = axis.limits[Side(value)];
+  const std::optional<Level>& stuck_at = axis.stuck_at[Side(value)];
+  const bool back = stuck_at && value == stuck_at->value && axis.since_ns != stuck_at->since_ns;
+  if ((limit && value == limit->value) || (back && arrived && axis.equal >= kReturned)) {
     return Fault::kSaturated;
   }
-  if (axis.measured < kLeastMeasurements || axis.resolution == 0) {
-    return Fault::kNone;
-  }
-  if (axis.equal >= kSaturated && IsExtreme(value, axis) && std::abs(value) > floor &&
-      std::abs(value - axis.came_from) >= kSteps * axis.resolution) {
+  const bool settled = axis.measured >= kLeastMeasurements;
+  const bool restless = IsRestless(axis);
+  const bool others_move = OthersMove(axis, resolution);
+  const bool certain = std::abs(value) > floor && (settled || others_move);
+  if (IsExtreme(value, axis) && (certain || (axis.equal >= kSaturatedInDoubt && restless && others_move)) &&
+      (axis.resolution == 0 ? axis.equal >= kSaturatedInDoubt : arrived && axis.equal >= kSaturated)) {
     return Fault::kSaturated;
   }
-  if (2 * axis.changed < axis.counted) {
+  if (!settled || !restless || axis.resolution == 0) {
     return Fault::kNone;
   }
   const double span = std::min(axis.high[0] - axis.low[0], axis.high[1] - axis.low[1]);
-  return axis.equal >= kStuck && span >= kSpan * axis.resolution ? Fault::kStuck : Fault::kNone;
+  return (axis.equal >= kStuck && span >= kSpan * resolution) ||
+                 (axis.equal >= StuckRun(axis) && arrived && others_move)
+             ? Fault::kStuck
+             : Fault::kNone;
 }
 
 double ImuAxisWatch::Sigma(Fault fault, double value, double floor, double seconds, const Axis& axis) {
-  if (fault == Fault::kStuck) {
+  if (fault != Fault::kSaturated) {
     const double replaced = axis.faulty ? axis.mean : value;
     const double square = axis.mean_square - 2 * replaced * axis.mean + replaced * replaced;
     return std::max(floor, std::sqrt(std::max(0.0, square)));
   }
-  const double rate = axis.came_from_s > 0 ? std::abs(value - axis.came_from) / axis.came_from_s : 0;
-  return std::max(floor, std::min(rate * seconds, kBeyondRange * std::abs(value)));
+  const double beyond = kBeyondRange * std::abs(value);
+  if (axis.came_from_s == 0) {
+    return std::max(floor, beyond);
+  }
+  const double rate = std::abs(value - axis.came_from) / axis.came_from_s;
+  return std::max(floor, std::min(rate * seconds, beyond));
 }
 
 double ImuAxisWatch::Reading(Fault fault, double value, const Axis& axis,
                              std::optional<double> implied) const {
-  if (fault == Fault::kStuck) {
+  if (fault != Fault::kSaturated || axis.resolution == 0) {
     return implied.value_or(axis.mean);
   }
   return value * std::max(1.0, implied.value_or(value) / value);
+}
+
+void ImuAxisWatch::CountHeld(const ImuSample& last, const ImuSample& sample, const Signal& other,
+                             Signal* signal) {
+  const Eigen::Vector3d& value = sample.*signal->value;
+  HeldRows& held = signal->held;
+  if (value != last.*signal->value || imu_gap::IsInside(last, sample)) {
+    held.Restart(sample.stamp_ns, sample.*other.value);
+    return;
+  }
+  held.Add(sample.*other.value);
+  const double resolution = Resolution(other, 0);
+  const bool other_moves = resolution > 0 && held.OtherSpan() >= kSpan * resolution;
+  // This row of the other one may not be counted yet.
+  const bool other_held = other.held.rows() + 1 >= held.rows();
+  const bool active = std::any_of(signal->axes.begin(), signal->axes.end(), [](const Axis& axis) {
+    return axis.measured >= kLeastMeasurements && IsRestless(axis);
+  });
+  const bool never_moved = std::all_of(signal->axes.begin(), signal->axes.end(),
+                                       [](const Axis& axis) { return axis.resolution == 0; });
+  const bool off_rest = value.cwiseAbs().maxCoeff() > signal->floor;
+  held.Judge((active && (other_moves || other_held)) || (never_moved && off_rest && other_moves),
+             sample.stamp_ns);
 }
 
 std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measured, int index, Signal* signal,
@@ -141,7 +227,9 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
   Axis& axis = signal->axes[static_cast<std::size_t>(index)];
   Count(*signal, index, last, measured, &axis);
   const double value = (measured.*signal->value)[index];
-  const Fault fault = Classify(value, signal->floor, axis);
+  const Fault fault = signal->held.frozen()
+                          ? Fault::kFrozen
+                          : Classify(value, signal->floor, Resolution(*signal, index), axis);
   if (fault == Fault::kNone) {
     return {};
   }
@@ -154,16 +242,23 @@ std::string ImuAxisWatch::AddAxis(const ImuSample& last, const ImuSample& measur
   const std::optional<double> implied =
       implied_ != nullptr ? (implied_->*signal->implied)(index, sample->stamp_ns) : std::nullopt;
   (sample->*signal->value)[index] = Reading(fault, value, axis, implied);
-  axis.limit = fault == Fault::kSaturated ? value : axis.limit;
+  std::optional<Level>& limit = axis.limits[Side(value)];
+  if (fault == Fault::kSaturated && (!limit || limit->value != value)) {
+    limit = {value, axis.since_ns};
+  } else if (fault == Fault::kStuck) {
+    axis.stuck_at[Side(value)] = {value, axis.since_ns};
+  }
   Eigen::Vector3d axes = Eigen::Vector3d::Unit(index);
   if (fault == Fault::kSaturated || IsExtreme(value, axis)) {
     axes.setOnes();
   }
   Eigen::Vector3d& densities = sample->*signal->fault_density;
   densities = (densities.cwiseAbs2() + density * density * axes).cwiseSqrt();
-  reason_ = Format(fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
-                                              : "the %s's %c axis repeats %.4g %s while the others change",
-                   signal->name, "xyz"[index], value, signal -> unit);
+  const char* const text = fault == Fault::kSaturated ? "the %s's %c axis is saturated at %.4g %s"
+                           : fault == Fault::kStuck
+                               ? "the %s's %c axis repeats %.4g %s while the others change"
+                               : "the %s's %c axis repeats %.4g %s, and so do the others";
+  reason_ = Format(text, signal->name, "xyz"[index], value, signal -> unit);
   const bool reported = sample->stamp_ns <= axis.reported_until_ns;
   axis.reported_until_ns = sample->stamp_ns + SecondsToNs(kSameFaultS);
   return reported ? std::string() : reason_ + " from " + FormatSeconds(axis.since_ns) + " s on";
@@ -173,12 +268,18 @@ std::string ImuAxisWatch::Add(ImuSample* sample) {
   std::string reported;
   const ImuSample measured = *sample;
   reason_.clear();
-  if (any_) {
-    for (Signal& signal : signals_) {
-      for (int index = 0; index < 3; ++index) {
-        const std::string one = AddAxis(last_, measured, index, &signal, sample);
-        reported += one.empty() || reported.empty() ? one : "; " + one;
-      }
+  for (std::size_t i = 0; i < signals_.size(); ++i) {
+    const Signal& other = signals_[1 - i];
+    if (any_) {
+      CountHeld(last_, measured, other, &signals_[i]);
+    } else {
+      Begin(measured, other, &signals_[i]);
+    }
+  }
+  for (Signal& signal : signals_) {
+    for (int index = 0; any_ && index < 3; ++index) {
+      const std::string one = AddAxis(last_, measured, index, &signal, sample);
+      reported += one.empty() || reported.empty() ? one : "; " + one;
     }
   }
   any_ = true;

@@ -61,15 +61,22 @@ void Saturate(const FaultSpan& span, Signal signal, double share, std::vector<Im
   }
 }
 
-void Stick(const FaultSpan& span, std::uint64_t seed, Signal signal, std::vector<ImuSample>* imu) {
-  const auto axis = static_cast<Eigen::Index>(RandomStream(seed, "fault/stuck").Below(3));
+void Repeat(const FaultSpan& span, Signal signal, const std::vector<Eigen::Index>& axes,
+            std::vector<ImuSample>* imu) {
   const ImuSample* last = nullptr;
   for (ImuSample& sample : *imu) {
-    if (last != nullptr && span.Contains(sample.stamp_ns)) {
-      (sample.*signal)[axis] = (last->*signal)[axis];
+    for (const Eigen::Index axis : axes) {
+      if (last != nullptr && span.Contains(sample.stamp_ns)) {
+        (sample.*signal)[axis] = (last->*signal)[axis];
+      }
     }
     last = &sample;
   }
+}
+
+/// One axis, which the seed draws.
+std::vector<Eigen::Index> OneAxis(std::uint64_t seed) {
+  return {static_cast<Eigen::Index>(RandomStream(seed, "fault/stuck").Below(3))};
 }
 
 void ChangeUnit(const FaultSpan& span, std::vector<ImuSample>* imu) {
@@ -118,10 +125,16 @@ void ApplyImuFault(const SimulatorConfig& config, std::uint64_t seed, const Faul
       Saturate(span, &ImuSample::accel, config.fault_limit_share, imu);
       break;
     case SimFaultKind::kGyroStuck:
-      Stick(span, seed, &ImuSample::gyro, imu);
+      Repeat(span, &ImuSample::gyro, OneAxis(seed), imu);
       break;
     case SimFaultKind::kAccelStuck:
-      Stick(span, seed, &ImuSample::accel, imu);
+      Repeat(span, &ImuSample::accel, OneAxis(seed), imu);
+      break;
+    case SimFaultKind::kImuFrozen:
+      Repeat(span, &ImuSample::accel, {0, 1, 2}, imu);
+      [[fallthrough]];
+    case SimFaultKind::kGyroFrozen:
+      Repeat(span, &ImuSample::gyro, {0, 1, 2}, imu);
       break;
     case SimFaultKind::kImuUnit:
       ChangeUnit(span, imu);

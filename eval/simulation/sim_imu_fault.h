@@ -21,7 +21,8 @@ namespace alidade {
 /// gyro_spike, accel_spike: 30 rad/s or 490 m/s^2 (50 g) in a random direction are added to one sample, drawn
 /// from those of the fault. gyro_saturation, accel_saturation: each axis is clipped at its limit
 /// (SaturationLimits with fault_limit_share). gyro_stuck, accel_stuck: one axis, which the seed draws,
-/// repeats its last value from before the span (the first one in it where there is none). From the beginning
+/// repeats its last value from before the span (the first one in it where there is none); gyro_frozen,
+/// imu_frozen: so do all axes of the gyroscope, of both sensors. From the beginning
 /// of the span to the end of the sequence: imu_unit: the gyroscope is in deg/s. imu_clock: stamps have
 /// fault_clock_jump_s more.
 void ApplyImuFault(const SimulatorConfig& config, std::uint64_t seed, const FaultSpan& span,

@@ -175,6 +175,8 @@ void DescribeFaults(SimulatorConfig* config, ConfigVisitor& visitor) {
        {"accel_saturation", SimFaultKind::kAccelSaturation},
        {"gyro_stuck", SimFaultKind::kGyroStuck},
        {"accel_stuck", SimFaultKind::kAccelStuck},
+       {"gyro_frozen", SimFaultKind::kGyroFrozen},
+       {"imu_frozen", SimFaultKind::kImuFrozen},
        {"imu_unit", SimFaultKind::kImuUnit},
        {"imu_clock", SimFaultKind::kImuClock},
        {"frame_drops", SimFaultKind::kFrameDrops},

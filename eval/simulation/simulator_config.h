@@ -43,6 +43,8 @@ enum class SimFaultKind {
   kAccelSaturation,   ///< each axis is clipped
   kGyroStuck,         ///< one axis repeats its last value
   kAccelStuck,        ///< one axis repeats its last value
+  kGyroFrozen,        ///< all axes repeat their last values
+  kImuFrozen,         ///< those of both sensors
   kImuUnit,           ///< the gyroscope is in deg/s from the start of the fault on
   kImuClock,          ///< the stamps of all later IMU samples are off
   kFrameDrops,        ///< some frames are missing

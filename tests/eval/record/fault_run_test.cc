@@ -105,9 +105,7 @@ TEST_P(FaultRunTest, AStuckAxisIsReportedWhileItLasts) {
   }
 }
 
-// Pose NEES over a minute with a fault of IMU axes.
-double NeesWithFaultyAxes(EstimatorConfig config, SimFaultKind fault, double start_s, double duration_s,
-                          std::uint64_t seed) {
+SimulatorConfig FaultyMotion(SimFaultKind fault, double start_s, double duration_s) {
   SimulatorConfig simulation;
   simulation.duration_s = 60;
   simulation.path_m = 78;
@@ -116,6 +114,11 @@ double NeesWithFaultyAxes(EstimatorConfig config, SimFaultKind fault, double sta
   simulation.fault = fault;
   simulation.fault_start_s = start_s;
   simulation.fault_duration_s = duration_s;
+  return simulation;
+}
+
+// Pose NEES over such a motion.
+double NeesWithFaultyAxes(EstimatorConfig config, const SimulatorConfig& simulation, std::uint64_t seed) {
   const Result<Dataset> dataset = Simulate(simulation, seed);
   EXPECT_TRUE(dataset.ok()) << dataset.message();
   config.init.method = InitMethod::kTruth;
@@ -131,22 +134,54 @@ double NeesWithFaultyAxes(EstimatorConfig config, SimFaultKind fault, double sta
   return ComputeNees(pairs).mean_pose;
 }
 
+EstimatorConfig AlidadeFilter() {
+  const Result<EstimatorConfig> config =
+      LoadEstimatorConfig(ALIDADE_SOURCE_DIR "/configs/estimators/alidade_filter.yaml", {});
+  EXPECT_TRUE(config.ok()) << config.message();
+  return config.ok() ? *config : EstimatorConfig();
+}
+
 // GIVEN a gyroscope axis that sticks for ten seconds while the body turns about it, THEN the covariance still
 // holds: a correction of the attitude by some degrees in every frame would deform the estimate.
 TEST(FaultyAxes, AStuckGyroscopeLeavesTheCovarianceTrue) {
   for (const std::uint64_t seed : {915u, 919u}) {
-    EXPECT_LT(NeesWithFaultyAxes({}, SimFaultKind::kGyroStuck, 20, 10, seed), 15) << seed;
+    EXPECT_LT(NeesWithFaultyAxes({}, FaultyMotion(SimFaultKind::kGyroStuck, 20, 10), seed), 15) << seed;
   }
 }
 
 // GIVEN an accelerometer whose axes are clipped throughout, so that the scale is known to some percent, THEN
 // the covariance of the preset that carries the direction of the scale holds.
 TEST(FaultyAxes, ASaturatedAccelerometerLeavesTheCovarianceTrue) {
-  const Result<EstimatorConfig> config =
-      LoadEstimatorConfig(ALIDADE_SOURCE_DIR "/configs/estimators/alidade_filter.yaml", {});
-  ASSERT_TRUE(config.ok()) << config.message();
   for (const std::uint64_t seed : {941u, 945u}) {
-    EXPECT_LT(NeesWithFaultyAxes(*config, SimFaultKind::kAccelSaturation, 0, 60, seed), 15) << seed;
+    EXPECT_LT(NeesWithFaultyAxes(AlidadeFilter(), FaultyMotion(SimFaultKind::kAccelSaturation, 0, 60), seed),
+              15)
+        << seed;
+  }
+}
+
+// GIVEN a gyroscope whose axes are clipped, and in a turn are so from the first sample on, or from some
+// second on below what they measured before, THEN the covariance holds.
+TEST(FaultyAxes, AGyroscopeThatIsClippedInATurnLeavesTheCovarianceTrue) {
+  for (const double start_s : {0.0, 8.0}) {
+    SimulatorConfig simulation = FaultyMotion(SimFaultKind::kGyroSaturation, start_s, 60);
+    simulation.trajectory = SimTrajectory::kEllipse;
+    simulation.duration_s = 40;
+    simulation.path_m = 60;
+    for (const std::uint64_t seed : {921u, 923u}) {
+      EXPECT_LT(NeesWithFaultyAxes(AlidadeFilter(), simulation, seed), 15) << start_s << " s, seed " << seed;
+    }
+  }
+}
+
+// GIVEN an IMU, or a gyroscope, all of whose axes repeat themselves, THEN it is reported while it lasts, and
+// covered.
+TEST_P(FaultRunTest, AFrozenImuIsReportedAndCovered) {
+  const Faulty clean = Run(SimFaultKind::kNone, 0);
+  for (const SimFaultKind fault : {SimFaultKind::kGyroFrozen, SimFaultKind::kImuFrozen}) {
+    const Faulty run = Run(fault, 1);
+    ExpectReportedAtOnce(run, 1.6);
+    EXPECT_EQ(run.result.imu_rejected, 1);
+    EXPECT_LT(run.rmse_m, 2 * clean.rmse_m + 0.02);
   }
 }
 

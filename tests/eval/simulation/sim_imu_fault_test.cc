@@ -104,6 +104,17 @@ TEST_F(SimImuFaultTest, AStuckAxisRepeatsItsLastValueAndTheOthersGoOn) {
   }
 }
 
+TEST_F(SimImuFaultTest, AFrozenSensorRepeatsAllItsAxes) {
+  for (const bool both : {false, true}) {
+    Make(both ? SimFaultKind::kImuFrozen : SimFaultKind::kGyroFrozen);
+    for (std::size_t k = 0; k < clean_.size(); ++k) {
+      const bool frozen = k >= begin_ && k < end_;
+      ASSERT_EQ(faulty_[k].gyro, clean_[frozen ? begin_ - 1 : k].gyro) << k;
+      ASSERT_EQ(faulty_[k].accel, clean_[frozen && both ? begin_ - 1 : k].accel) << k;
+    }
+  }
+}
+
 TEST(SimImuFaultSeedTest, TheSeedDrawsWhichAxisIsStuck) {
   std::set<int> axes;
   for (unsigned seed = 1; seed <= 12; ++seed) {

@@ -129,6 +129,7 @@ TEST(PseudorangeErrors, MultipathIsNoticedWithinTwoSeconds) {
 TEST(PseudorangeErrors, ConstantErrorsBelowTheStatedOnesCountAsOneEpoch) {
   RandomStream random(6, "constant");
   std::vector<double> constant;
+  constant.reserve(kSatellites);
   for (int i = 0; i < kSatellites; ++i) {
     constant.push_back(0.5 * random.Normal());
   }
