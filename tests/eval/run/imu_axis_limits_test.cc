@@ -144,6 +144,17 @@ TEST(FrozenImuTest, ASlowSensorAmongFastRowsIsNotFrozenUntilItStops) {
   EXPECT_EQ(FirstFault(watched), 9999u - 9999u % 15 + 3 * 14);
 }
 
+// GIVEN a gyroscope all of whose axes are clipped in the first rows THEN that is found, since they are not at rest.
+TEST(FrozenImuTest, AGyroscopeThatTurnsWithoutAChangeFromTheFirstRowOnIsFrozen) {
+  std::vector<ImuSample> samples = Motion(kLong, 1e-3);
+  for (std::size_t k = 0; k < 60; ++k) {
+    samples[k].gyro = Eigen::Vector3d(0.05, -0.07, 0.3);
+  }
+  const Watched watched = Watch(std::move(samples));
+  EXPECT_EQ(FirstFault(watched), 20u);
+  EXPECT_EQ(std::count(watched.faulty.begin(), watched.faulty.end(), true), 40);
+}
+
 // GIVEN a gyroscope that does not change at rest THEN it is not frozen, although the accelerometer has noise.
 TEST(FrozenImuTest, AGyroscopeAtRestIsNotFrozen) {
   std::vector<ImuSample> samples = Motion(kLong, 1e-3, 0);
