@@ -136,8 +136,10 @@ bool FilterEstimator::ScaleIsUncertain() const {
 }
 
 void FilterEstimator::CorrectScale() {
-  // The prior of the start is no part of the strain: its clones must have left.
-  if (!carry_scale_ || !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
+  // The gradient is of second order in the corrections, so the scale must be known well. The prior of the
+  // start is no part of the strain: its clones must have left.
+  if (!carry_scale_ || baseline_.along > kKnownShape || !state_.landmarks().empty() ||
+      serial_ - first_serial_ <= config_.filter.window) {
     return;
   }
   const double gradient = state_.strain().ScaleGradient();

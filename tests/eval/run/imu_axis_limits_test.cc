@@ -144,7 +144,8 @@ TEST(FrozenImuTest, ASlowSensorAmongFastRowsIsNotFrozenUntilItStops) {
   EXPECT_EQ(FirstFault(watched), 9999u - 9999u % 15 + 3 * 14);
 }
 
-// GIVEN a gyroscope all of whose axes are clipped in the first rows THEN that is found, since they are not at rest.
+// GIVEN a gyroscope all of whose axes are clipped in the first rows THEN that is found, since they are not at
+// rest.
 TEST(FrozenImuTest, AGyroscopeThatTurnsWithoutAChangeFromTheFirstRowOnIsFrozen) {
   std::vector<ImuSample> samples = Motion(kLong, 1e-3);
   for (std::size_t k = 0; k < 60; ++k) {
