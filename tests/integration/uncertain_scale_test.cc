@@ -26,6 +26,32 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   }
 }
 
+// GIVEN a slow motion among distant landmarks and a weak IMU, so that the scale is known to a quarter only
+// when the first window is full, WHEN few tracks correct the window in a frame THEN the step along the scale
+// does not shrink it from frame to frame.
+TEST(UncertainScale, IsNoReasonToStepAlongIt) {
+  SimulatorConfig sim;
+  sim.trajectory = SimTrajectory::kEllipse;
+  sim.duration_s = 30;
+  sim.length_m = 7.45;
+  sim.width_m = 4.35;
+  sim.height_m = 0.86;
+  sim.path_m = 12;
+  sim.camera_rate_hz = 20;
+  sim.pixel_noise_px = 0.7;
+  sim.imu_noise = {9e-4, 3e-3, 9e-5, 6e-4};
+  sim.landmark_min_distance_m = 4;
+  sim.landmark_max_distance_m = 32;
+  sim.max_range_m = 51.2;
+  sim.landmark_count = 1335;
+  for (const unsigned seed : {7301U, 7303U}) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    const test::ScenarioResult result =
+        test::RunPreset("alidade_filter", {"vision.pixel_noise_px=0.7"}, dataset, seed, 5);
+    EXPECT_LT(result.nees_pose, 20) << "seed " << seed;
+  }
+}
+
 // GIVEN an accelerometer so poor that vision determines the window's shape better, and the IMU its scale WHEN
 // the scale's direction is carried from correction to correction THEN the IMU's noise is not taken for
 // motion, which would make the scale grow.
