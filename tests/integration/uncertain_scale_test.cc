@@ -5,6 +5,12 @@
 namespace alidade {
 namespace {
 
+/// Of the pose, of tracks of 0.7 px.
+double FilterNees(const SimulatorConfig& sim, unsigned seed) {
+  const Dataset dataset = test::SimulateOrDie(sim, seed);
+  return test::RunPreset("alidade_filter", {"vision.pixel_noise_px=0.7"}, dataset, seed, 5).nees_pose;
+}
+
 // GIVEN a walk of 0.1 m/s whose velocity is known to 0.05 m/s at its start, so that the scale is uncertain by
 // half, WHEN the window changes its shape with every correction THEN the filter does not take that for
 // knowledge of the scale.
@@ -19,10 +25,7 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   sim.landmark_max_distance_m = 6;
   sim.pixel_noise_px = 0.7;
   for (const unsigned seed : {526U, 527U, 528U, 530U}) {
-    const Dataset dataset = test::SimulateOrDie(sim, seed);
-    const test::ScenarioResult result =
-        test::RunPreset("alidade_filter", {"vision.pixel_noise_px=0.7"}, dataset, seed, 5);
-    EXPECT_LT(result.nees_pose, 40) << "seed " << seed;
+    EXPECT_LT(FilterNees(sim, seed), 40) << "seed " << seed;
   }
 }
 
@@ -45,10 +48,7 @@ TEST(UncertainScale, IsNoReasonToStepAlongIt) {
   sim.max_range_m = 51.2;
   sim.landmark_count = 1335;
   for (const unsigned seed : {7301U, 7303U}) {
-    const Dataset dataset = test::SimulateOrDie(sim, seed);
-    const test::ScenarioResult result =
-        test::RunPreset("alidade_filter", {"vision.pixel_noise_px=0.7"}, dataset, seed, 5);
-    EXPECT_LT(result.nees_pose, 20) << "seed " << seed;
+    EXPECT_LT(FilterNees(sim, seed), 20) << "seed " << seed;
   }
 }
 
