@@ -183,6 +183,7 @@ double ImuAxisWatch::Sigma(Fault fault, double value, double floor, double secon
     const double square = axis.mean_square - 2 * replaced * axis.mean + replaced * replaced;
     return std::max(floor, std::sqrt(std::max(0.0, square)));
   }
+  floor = std::min(floor, std::abs(value));  // hardly any motion exceeds a small range by more than the range
   const double beyond = kBeyondRange * std::abs(value);
   if (axis.came_from_s == 0) {
     return std::max(floor, beyond);
