@@ -46,9 +46,10 @@ namespace alidade {
 /// step that detects gets the variance sigma^2 t^2 up to then. Stuck: sigma^2 is the variance about the
 /// mean, in the step that detects about the stuck value. Saturated: the motion goes on as it came, at most
 /// half beyond the range: sigma = min(rate t, |value| / 2), |value| / 2 if that is not known. Both at least
-/// the floor, 0.2 rad/s and 1 m/s^2 (core/imu_gap.h). The noise of a stuck axis is in its direction alone.
-/// That of a saturated one, or of one that is stuck at its largest or smallest value, is in all three: in a
-/// motion beyond the range the other axes may be clipped in samples that do not reveal it yet.
+/// the floor, 0.2 rad/s and 1 m/s^2 (core/imu_gap.h), or |value| of a saturated axis where that is less. The
+/// noise of a stuck axis is in its direction alone. That of a saturated one, or of one that is stuck at its
+/// largest or smallest value, is in all three: in a motion beyond the range the other axes may be clipped in
+/// samples that do not reveal it yet.
 ///
 /// Neglected: axes that a calibration has mixed, since none of them repeats itself; an axis that sticks in
 /// the first kLeastMeasurements.
