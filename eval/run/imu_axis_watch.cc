@@ -172,7 +172,7 @@ ImuAxisWatch::Fault ImuAxisWatch::Classify(double value, double floor, double re
   }
   const double span = std::min(axis.high[0] - axis.low[0], axis.high[1] - axis.low[1]);
   return (axis.equal >= kStuck && span >= kSpan * resolution) ||
-                 (axis.equal >= StuckRun(axis) && arrived && others_move)
+                 (axis.equal >= kSaturated && arrived && others_move && axis.equal >= StuckRun(axis))
              ? Fault::kStuck
              : Fault::kNone;
 }
@@ -183,7 +183,7 @@ double ImuAxisWatch::Sigma(Fault fault, double value, double floor, double secon
     const double square = axis.mean_square - 2 * replaced * axis.mean + replaced * replaced;
     return std::max(floor, std::sqrt(std::max(0.0, square)));
   }
-  floor = std::min(floor, std::abs(value));  // hardly any motion exceeds a small range by more than the range
+  floor = std::min(floor, std::abs(value));  // a small range is hardly exceeded by more than itself
   const double beyond = kBeyondRange * std::abs(value);
   if (axis.came_from_s == 0) {
     return std::max(floor, beyond);

@@ -25,7 +25,7 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
   sim.landmark_max_distance_m = 6;
   sim.pixel_noise_px = 0.7;
   for (const unsigned seed : {526U, 527U, 528U, 530U}) {
-    EXPECT_LT(FilterNees(sim, seed), 40) << "seed " << seed;
+    EXPECT_LT(FilterNees(sim, seed), 20) << "seed " << seed;
   }
 }
 

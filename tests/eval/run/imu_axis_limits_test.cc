@@ -16,8 +16,7 @@ using testing::HasSubstr;
 
 constexpr std::size_t kLong = 4000;
 
-/// Noise in one measurement of `every` alone, so that the axis is finer than its steps: true of the others,
-/// too.
+/// Motion, and a gyroscope whose y axis, a cosine of 1 rad/s, is clipped from a sample on.
 std::vector<ImuSample> Clipped(double lower, double upper, std::size_t from = 0) {
   std::vector<ImuSample> samples = Motion(kLong, 1e-9);
   for (std::size_t k = from; k < samples.size(); ++k) {
