@@ -136,10 +136,10 @@ bool FilterEstimator::ScaleIsUncertain() const {
 }
 
 void FilterEstimator::CorrectScale() {
-  // The gradient is of second order in the corrections, which are large while tracks wait for a better scale.
+  // The gradient is of second order in the corrections, which are large while the scale is uncertain.
   // The prior of the start is no part of the strain: its clones must have left.
-  if (!carry_scale_ || baseline_.along > config_.filter.max_direction_deviation ||
-      !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
+  if (!carry_scale_ || baseline_.along > kKnownShape || !state_.landmarks().empty() ||
+      serial_ - first_serial_ <= config_.filter.window) {
     return;
   }
   const double gradient = state_.strain().ScaleGradient();
@@ -200,6 +200,12 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
     }
     if (pass == config_.filter.update_iterations || !MoveByTracks(corrected)) {
       break;
+    }
+    if (carry_scale_ && state_.strain().ExceedsNoise()) {
+      // The direction carried is no longer one along which the IMU's prior knows the scale.
+      scale_direction_.TakeBack(&state_);
+      corrected = moved;
+      carry_scale_ = false;
     }
   }
   if (observer_ != nullptr) {

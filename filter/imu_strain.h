@@ -47,6 +47,8 @@ class ImuStrain {
   /// e^T C^-1 e, and its degrees of freedom.
   [[nodiscard]] double NormalizedSquare() { return NormalizedSquare(&Node::strain); }
   [[nodiscard]] int Freedom() const;
+  /// Whether e is larger than the IMU's noise can make it.
+  [[nodiscard]] bool ExceedsNoise() { return NormalizedSquare() > Freedom(); }
   /// e of clone `index`; of the newest one, that of the velocity after it.
   [[nodiscard]] const Eigen::Vector3d& strain(size_t index) const { return nodes_[index].strain; }
 

@@ -25,7 +25,8 @@ auto OverPosition(const Clone& clone) {
 
 }  // namespace
 
-ScaleDirection::ScaleDirection(int capacity) : row_(capacity), places_(capacity / 6, 3), change_(capacity) {}
+ScaleDirection::ScaleDirection(int capacity)
+    : row_(capacity), places_(capacity / 6, 3), change_(capacity), carried_(capacity) {}
 
 bool ScaleDirection::Take(const FilterState& state, int last_serial) {
   const std::vector<Clone>& clones = state.clones();
@@ -50,6 +51,7 @@ bool ScaleDirection::Take(const FilterState& state, int last_serial) {
   }
   row /= extent;
   scale_ = 1;
+  carried_.head(dimension_).setZero();
   return extent > 0;
 }
 
@@ -89,9 +91,19 @@ void ScaleDirection::Carry(FilterState* state, Eigen::Ref<VectorXd> errors) {
   scale_ = scale + row.dot(change);
   change /= scale;
   state->Shear(change, row);
+  auto carried = carried_.head(change.size());
+  carried += (1 + row.dot(carried)) * change;
   if (errors.size() > 0) {
     errors += row.dot(errors) * change;
   }
+}
+
+void ScaleDirection::TakeBack(FilterState* state) {
+  const auto row = row_.head(dimension_);
+  auto carried = carried_.head(dimension_);
+  carried /= -(1 + row.dot(carried));
+  state->Shear(carried, row);
+  carried.setZero();
 }
 
 void ScaleDirection::Descend(const SquareRootCovariance& covariance, double gradient,

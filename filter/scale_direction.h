@@ -24,6 +24,8 @@ class ScaleDirection {
   /// follows with their velocity. Applied to the covariance and to `errors` (of the whole error's size, or
   /// empty).
   void Carry(FilterState* state, Eigen::Ref<Eigen::VectorXd> errors);
+  /// Takes what Carry has done to the covariance since Take back.
+  void TakeBack(FilterState* state);
   /// l, l.x being the relative error of scale in x.
   [[nodiscard]] auto row() const { return row_.head(dimension_); }
   /// The correction that takes away a gradient g of the cost along the direction: -P l g / (1 + v |g|), l.n'
@@ -38,6 +40,7 @@ class ScaleDirection {
   double scale_ = 1;         ///< l.n of the direction now
   Eigen::MatrixX3d places_;  ///< of these cameras, seen from the oldest one
   Eigen::VectorXd change_;
+  Eigen::VectorXd carried_;  ///< errors are x + carried l.x since Take
 };
 
 }  // namespace alidade

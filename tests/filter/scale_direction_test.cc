@@ -115,6 +115,23 @@ TEST_P(ScaleDirectionTest, TheCovarianceIsCarriedAsErrorsAre) {
   EXPECT_GT((map - Eigen::MatrixXd::Identity(size, size)).norm(), 0.1);
 }
 
+// GIVEN corrections that the covariance was carried over, twice WHEN that is taken back THEN the covariance
+// is the one at Take.
+TEST_P(ScaleDirectionTest, WhatWasCarriedIsTakenBack) {
+  ScaleDirection direction(state_.covariance().capacity());
+  ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
+  const Eigen::MatrixXd taken = state_.covariance().Covariance();
+  VectorXd none;
+  for (int carried = 0; carried < 2; ++carried) {
+    ChangeShape(&state_);
+    direction.Carry(&state_, none);
+    change_mps_ = Vector3d(-0.1, 0.3, 0.1);
+  }
+  EXPECT_GT((state_.covariance().Covariance() - taken).norm(), 1e-3 * taken.norm());
+  direction.TakeBack(&state_);
+  EXPECT_LT((state_.covariance().Covariance() - taken).norm(), 1e-9 * taken.norm());
+}
+
 // GIVEN a gradient g along the direction THEN the correction is P l g / (1 + v |g|), v = l P l and l n = 1,
 // with the l of the state where the direction was taken and the n of now: it never inverts the window.
 TEST_P(ScaleDirectionTest, TheCorrectionForAGradientFollowsTheCovariance) {
