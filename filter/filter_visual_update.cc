@@ -136,10 +136,10 @@ bool FilterEstimator::ScaleIsUncertain() const {
 }
 
 void FilterEstimator::CorrectScale() {
-  // The gradient is of second order in the corrections, which are large while the scale is uncertain.
+  // The gradient is of second order in the corrections, which are large while tracks wait for a better scale.
   // The prior of the start is no part of the strain: its clones must have left.
-  if (!carry_scale_ || baseline_.along > kKnownShape || !state_.landmarks().empty() ||
-      serial_ - first_serial_ <= config_.filter.window) {
+  if (!carry_scale_ || baseline_.along > config_.filter.max_direction_deviation ||
+      !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
     return;
   }
   const double gradient = state_.strain().ScaleGradient();
