@@ -2,8 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/check.h"
+#include "core/lie.h"
 #include "smoother/factors/imu_factor.h"
 #include "smoother/factors/spread.h"
 
@@ -77,6 +80,48 @@ LinearPrior::SpreadChange LinearPrior::SpreadAt(std::span<const NavState> states
   return change;
 }
 
+LinearPrior::FrameErrors LinearPrior::ErrorsAt(std::span<const NavState> states, const SpreadChange& change,
+                                               Derivative derivative) const {
+  const auto state_of = [&](const Anchor& anchor) -> const NavState& {
+    return states[static_cast<size_t>(anchor.frame->index)];
+  };
+  FrameErrors errors;
+  // First estimates hold positions where they are, whatever the scale.
+  const bool separate = spread > 0 && !anchors.front().frame->first;
+  errors.ratio = separate ? change.ratio : 1;
+  const Eigen::Vector3d& camera_B = calibration_origin.mean.T_BC.translation;
+  const NavState& first = state_of(anchors.front());
+  errors.on_first << first.R_WB * Skew(-camera_B), Eigen::Matrix3d::Identity();
+  errors.on_first *= errors.ratio - 1;
+  const auto along_scale = [&](const NavState& state, const NavState& from) {
+    Vector9d zeta;
+    zeta << Eigen::Vector3d::Zero(), state.T_WB() * camera_B - from.T_WB() * camera_B, state.v_WB;
+    return zeta;
+  };
+  for (size_t i = 0; i < anchors.size(); ++i) {
+    const NavState& origin = anchors[i].origin;
+    NavState state = state_of(anchors[i]);
+    const Vector9d scale = along_scale(state, first) / errors.ratio;
+    state.p_WB -= (errors.ratio - 1) * scale.segment<3>(3);
+    state.v_WB /= errors.ratio;
+    Matrix9d chain = chart.InverseJacobian(state);
+    if (derivative == Derivative::kHere) {
+      chain = (chart.LocalJacobian(origin, state) * chain).eval();
+    }
+    errors.xi.push_back(NavError(i, state));
+    errors.along.emplace_back(Vector9d::Zero());
+    if (separate) {
+      const Vector9d along = chart.InverseJacobian(origin) * along_scale(origin, anchors.front().origin);
+      errors.xi.back() += std::log(errors.ratio) * along;
+      errors.along.back() = along - chain * scale;
+    }
+    chain.rightCols<6>() /= errors.ratio;
+    chain.leftCols<3>() += (errors.ratio - 1) * chain.middleCols<3>(3) * state.R_WB * Skew(camera_B);
+    errors.chain.push_back(chain);
+  }
+  return errors;
+}
+
 bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, const Matrix15d& covariance,
                       LinearPrior* prior) {
   const NavState state = frame.nav_state();
@@ -120,6 +165,7 @@ LinearPrior WithoutCalibration(const LinearPrior& prior) {
 
 PriorFactor::PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration)
     : prior_(prior), calibration_(calibration), columns_(prior->columns()) {
+  CHECK(prior->landmarks.empty() && !(prior->spread > 0)) << "a prior for SlamPriorFactor";
   blocks_ = {BlockKind::kNavState, BlockKind::kBias};
   blocks_.resize(prior->anchors.size() + 1, BlockKind::kNavState);
   if (prior->clock_origin) {

@@ -17,13 +17,18 @@ namespace alidade {
 /// xi the stacked chart.Local(origin, state) of the frames. The Jacobian J and the origins are fixed
 /// when the prior is made.
 ///
+/// Where the prior has a spread, xi separates the scale of the window from its shape (ErrorsAt): the cameras
+/// and the first velocity are brought to the scale that the window had, and the logarithm of the ratio counts
+/// along the direction of the scale at the origins. Both have the same derivative at the origins. Rows of
+/// vision do not concern the scale; in these coordinates they keep it undecided however scale and shape
+/// change.
+///
 /// Columns (PriorColumns): the first frame has 15 (theta, p, v, bg, ba), every other one its pose's 6 (theta,
 /// p): vision reaches only poses, and the IMU ties velocity and biases of the frame that left to those of the
 /// next one alone. Once aligned with GNSS, the clock of the first frame has six more, then comes the camera's
 /// calibration where it is estimated. Landmarks whose information outlives the window have three each at the
-/// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge. Where
-/// the prior has a spread, the third is rho times its ratio (SpreadAt): then they do not move with the scale
-/// of the window either.
+/// end, (x, y, rho) in the camera of a frame that is in the window: so they do not move with the gauge. With
+/// a spread the third is rho times its ratio: then they do not move with the scale of the window either.
 struct LinearPrior {
   struct Anchor {
     const WindowFrame* frame = nullptr;
@@ -42,7 +47,7 @@ struct LinearPrior {
   Eigen::MatrixXd jacobian;  ///< m x columns().size()
   Eigen::VectorXd residual;  ///< m, r0
 
-  /// m, of the camera of calibration_origin when the prior was made; 0: the landmarks have rho itself.
+  /// m, of the camera of calibration_origin when the prior was made; 0: states and landmarks as they are.
   double spread = 0;
 
   std::optional<Vector6d> clock_origin;
@@ -63,6 +68,23 @@ struct LinearPrior {
   /// At states of all frames of the window; the slope at first estimates where there are such. Ratio 1 and
   /// slope 0 without a spread.
   [[nodiscard]] SpreadChange SpreadAt(std::span<const NavState> states) const;
+
+  /// xi of the anchors, and how it moves with their states (zeta, canonical chart), where E puts a vector in
+  /// the place of the position: d xi_i = chain_i (d zeta_i + E on_first d (phi, dp)_first) + along_i d
+  /// ln(ratio).
+  struct FrameErrors {
+    double ratio = 1;
+    std::vector<Vector9d> xi;
+    std::vector<Matrix9d> chain;
+    std::vector<Vector9d> along;
+    Eigen::Matrix<double, 3, 6> on_first;  ///< the first anchor stays where it is: zero at ratio 1
+  };
+  /// kHere: derivatives at the states. kAsMade: those of the chart at xi = 0, so that directions which the
+  /// prior's rows annihilate stay the same.
+  enum class Derivative { kHere, kAsMade };
+  /// At states of all frames of the window, with their SpreadAt.
+  [[nodiscard]] FrameErrors ErrorsAt(std::span<const NavState> states, const SpreadChange& change,
+                                     Derivative derivative) const;
 };
 
 /// The columns of a prior on so many frames and landmarks.
@@ -80,8 +102,8 @@ void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior
 /// The prior given that the calibration is its origin.
 [[nodiscard]] LinearPrior WithoutCalibration(const LinearPrior& prior);
 
-/// LinearPrior without landmarks as a factor (with them: smoother/factors/slam_prior_factor.h); blocks nav
-/// and bias of the first frame, nav of the others, clock of the first, calibration.
+/// LinearPrior without landmarks and spread as a factor (with them: smoother/factors/slam_prior_factor.h);
+/// blocks nav and bias of the first frame, nav of the others, clock of the first, calibration.
 class PriorFactor {
  public:
   static constexpr int kRows = Eigen::Dynamic;

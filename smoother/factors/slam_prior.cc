@@ -65,15 +65,6 @@ struct SlamPrior::Views {
   }
 };
 
-struct SlamPrior::Scene {
-  std::vector<FrameGeometry> geometry;
-  WindowCalibration calibration;
-  std::vector<const std::vector<WindowView>*> views;  ///< of each track; null: lost
-  std::vector<std::vector<WindowView>> renormalized;  ///< likewise: what `views` may refer to
-  LinearPrior::SpreadChange spread;
-  VectorXd units;  ///< diagonal of D, 3L
-};
-
 SlamPrior::SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
                      const WindowCalibration& calibration, const ObservationKernel& kernel)
     : prior_(prior),
@@ -101,6 +92,7 @@ SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
     scene.geometry.push_back(MakeGeometry(frame, point.states[i], point.camera));
   }
   scene.spread = prior_->SpreadAt(point.states);
+  scene.frames = prior_->ErrorsAt(point.states, scene.spread, LinearPrior::Derivative::kHere);
   scene.units.setOnes(origins_.size());
   for (Index i = 2; i < origins_.size(); i += 3) {
     scene.units[i] = scene.spread.ratio;
@@ -199,6 +191,10 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
   const auto total = [&](const VectorXd& at, const VectorXd& pull, const Views& views) {
     return offset + shift(at).dot(slope + pull) + views.robust_cost;
   };
+  if (size == 0) {
+    *cost = offset;
+    return std::isfinite(offset);
+  }
   Views views;
   if (!See(scene, *landmarks, false, &views)) {
     return false;
@@ -239,7 +235,8 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
 }
 
 bool SlamPrior::SolveLandmarks(const WindowPoint& point, VectorXd* landmarks, double* cost) const {
-  return Minimize(Displacement(point), MakeScene(point), landmarks, cost);
+  const Scene scene = MakeScene(point);
+  return Minimize(Displacement(point, scene), scene, landmarks, cost);
 }
 
 bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* reduced) const {
@@ -247,8 +244,8 @@ bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* r
 }
 
 bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, Reduced* reduced) const {
-  const VectorXd xi = Displacement(point);
   const Scene scene = MakeScene(point);
+  const VectorXd xi = Displacement(point, scene);
   Views views;
   if (!See(scene, landmarks, true, &views)) {
     return false;
@@ -263,13 +260,17 @@ bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, R
     along_scale[i] = scaled[i];
   }
   const Eigen::RowVectorXd spread = SpreadRow(scene.spread);
-  MatrixXd chained = ChainFrames(point, gram_.leftCols(frames));
+  MatrixXd chained = ChainFrames(point, scene, gram_.leftCols(frames));
   chained.noalias() += (gram_.middleCols(frames, size) * along_scale) * spread;
-  reduced->hessian = ChainFrames(point, chained.topRows(frames).transpose()) + views.frame_hessian;
+  reduced->hessian = ChainFrames(point, scene, chained.topRows(frames).transpose()) + views.frame_hessian;
   reduced->hessian.noalias() += (chained.middleRows(frames, size).transpose() * along_scale) * spread;
-  reduced->gradient = ChainFrames(point, pull.head(frames).transpose()).transpose() + views.frame_gradient;
+  reduced->gradient =
+      ChainFrames(point, scene, pull.head(frames).transpose()).transpose() + views.frame_gradient;
   reduced->gradient.noalias() += along_scale.dot(pull.segment(frames, size)) * spread.transpose();
 
+  if (size == 0) {
+    return reduced->hessian.allFinite();
+  }
   MatrixXd hessian = LandmarkHessian(views, scene, 0);
   if (!FactorLower(&hessian)) {
     return false;

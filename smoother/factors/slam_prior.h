@@ -61,15 +61,26 @@ class SlamPrior {
 
  private:
   struct Views;  // information of the views at a point
-  struct Scene;  // where the cameras are at a point, and the rays they see
+  /// Where the cameras are at a point, and the rays they see.
+  struct Scene {
+    std::vector<FrameGeometry> geometry;
+    WindowCalibration calibration;
+    std::vector<const std::vector<WindowView>*> views;  ///< of each track; null: lost
+    std::vector<std::vector<WindowView>> renormalized;  ///< likewise: what `views` may refer to
+    LinearPrior::SpreadChange spread;
+    LinearPrior::FrameErrors frames;
+    Eigen::VectorXd units;  ///< diagonal of D, 3L
+  };
   [[nodiscard]] Scene MakeScene(const WindowPoint& point) const;
   bool See(const Scene& scene, const Eigen::VectorXd& landmarks, bool with_frames, Views* views) const;
-  [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point) const;
-  [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Eigen::MatrixXd& columns) const;
+  [[nodiscard]] Eigen::VectorXd Displacement(const WindowPoint& point, const Scene& scene) const;
+  [[nodiscard]] Eigen::MatrixXd ChainFrames(const WindowPoint& point, const Scene& scene,
+                                            const Eigen::MatrixXd& columns) const;
   /// The slope of the spread, over columns().
   [[nodiscard]] Eigen::RowVectorXd SpreadRow(const LinearPrior::SpreadChange& spread) const;
   /// Over the landmarks, of the prior and the views, made regular.
   [[nodiscard]] Eigen::MatrixXd LandmarkHessian(const Views& views, const Scene& scene, double damping) const;
+  /// xi: Displacement.
   bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,
                 double* cost) const;
 

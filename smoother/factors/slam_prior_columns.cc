@@ -23,14 +23,12 @@ WindowPoint PointOf(const Window& window, const CameraCalibration& camera) {
   return point;
 }
 
-VectorXd SlamPrior::Displacement(const WindowPoint& point) const {
+VectorXd SlamPrior::Displacement(const WindowPoint& point, const Scene& scene) const {
   VectorXd xi(prior_columns_.size() - origins_.size());
   for (size_t i = 0; i < prior_->anchors.size(); ++i) {
-    const LinearPrior::Anchor& anchor = prior_->anchors[i];
     const ColumnMap::Range columns = prior_columns_.Frame(static_cast<int>(i));
     const Index width = std::min(columns.size, kNavColumns);
-    xi.segment(columns.first, width) =
-        prior_->NavError(i, point.states[static_cast<size_t>(anchor.frame->index)]).head(width);
+    xi.segment(columns.first, width) = scene.frames.xi[i].head(width);
   }
   xi.segment<kBiasColumns>(prior_columns_.Frame(0).first + kNavColumns) = prior_->BiasError(point.bias);
   if (prior_->clock_origin) {
@@ -51,17 +49,23 @@ Eigen::RowVectorXd SlamPrior::SpreadRow(const LinearPrior::SpreadChange& spread)
 }
 
 /// Columns over the prior's frames, clock and calibration to columns of the reduced system.
-MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const MatrixXd& columns) const {
+MatrixXd SlamPrior::ChainFrames(const WindowPoint& point, const Scene& scene, const MatrixXd& columns) const {
   MatrixXd chained = MatrixXd::Zero(columns.rows(), columns_.size());
+  const LinearPrior::FrameErrors& errors = scene.frames;
+  VectorXd along = VectorXd::Zero(columns.rows());
+  Eigen::MatrixX3d on_positions = Eigen::MatrixX3d::Zero(columns.rows(), 3);
   for (size_t i = 0; i < prior_->anchors.size(); ++i) {
-    const LinearPrior::Anchor& anchor = prior_->anchors[i];
-    const NavState& state = point.states[static_cast<size_t>(anchor.frame->index)];
-    const Matrix9d chain =
-        prior_->chart.LocalJacobian(anchor.origin, state) * prior_->chart.InverseJacobian(state);
     const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
     const Index width = std::min(from.size, kNavColumns);
-    chained.middleCols(columns_.Frame(anchor.frame->index).first, width).noalias() =
-        columns.middleCols(from.first, width) * chain.topLeftCorner(width, width);
+    auto own = chained.middleCols(columns_.Frame(prior_->anchors[i].frame->index).first, width);
+    own.noalias() = columns.middleCols(from.first, width) * errors.chain[i].topLeftCorner(width, width);
+    on_positions += own.middleCols<3>(3);
+    along.noalias() += columns.middleCols(from.first, width) * errors.along[i].head(width);
+  }
+  if (prior_->spread > 0) {
+    const Index first = columns_.Frame(prior_->anchors.front().frame->index).first;
+    chained.middleCols<kPoseColumns>(first).noalias() += on_positions * errors.on_first;
+    chained.noalias() += along * SpreadRow(scene.spread);
   }
   chained.middleCols<kBiasColumns>(columns_.Frame(0).first + kNavColumns) =
       columns.middleCols<kBiasColumns>(prior_columns_.Frame(0).first + kNavColumns);

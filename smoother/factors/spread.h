@@ -17,4 +17,12 @@ struct Spread {
 /// point_B: the camera in the body [m].
 [[nodiscard]] Spread SpreadOf(std::span<const NavState> states, const Eigen::Vector3d& point_B);
 
+/// The camera's positions in a window about their mean [m], in the axes of the first body: neither rotation
+/// nor shift of the whole window changes them.
+struct Shape {
+  Eigen::Matrix3Xd positions;
+  Eigen::MatrixXd jacobian;  ///< 3F x 6F, over (phi, dp) of the body at each state
+};
+[[nodiscard]] Shape ShapeOf(std::span<const NavState> states, const Eigen::Vector3d& point_B);
+
 }  // namespace alidade

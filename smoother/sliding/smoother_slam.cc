@@ -14,16 +14,19 @@ namespace {
 // A landmark joins the prior once its depth is known so well, relative to the window's scale, that its rows
 // are close to linear: largest relative deviation of the inverse depth with the poses held fixed.
 constexpr double kMaxFeatureDepthDeviation = 0.1;
-// Largest relative deviation of the spread of the window's cameras with which the prior's inverse depths are
-// told relative to it. Above, the spread is hardly more than the errors of single positions.
-constexpr double kMaxSpreadDeviation = 0.1;
+// Largest deviation of the shape of the window, relative to its size, with which the prior separates shape
+// and scale. Above (rest, rotation in place) the spread is hardly more than the errors of single positions.
+constexpr double kMaxShapeDeviation = 0.1;
 constexpr size_t kMinFeatureViews = 3;
 
-/// Relative standard deviation of the spread of the window's cameras; not a number at rest.
-double SpreadDeviation(const WindowInformation& information, const Window& window,
-                       const CameraCalibration& camera) {
-  const Eigen::MatrixXd slope = SpreadOf(PointOf(window, camera).states, camera.T_BC.translation).slope;
-  return information.Deviation(slope.reshaped().transpose());
+/// Standard deviation of the camera's positions about their mean, up to rotation, shift and scale of the
+/// whole window, relative to their root sum of squares; infinite or not a number without motion.
+double ShapeDeviation(const WindowInformation& information, const Window& window,
+                      const CameraCalibration& camera) {
+  const Shape shape = ShapeOf(PointOf(window, camera).states, camera.T_BC.translation);
+  const Eigen::MatrixXd whitened = information.Whitened(shape.jacobian);
+  const double along_scale = (whitened * shape.positions.reshaped().normalized()).squaredNorm();
+  return std::sqrt(std::max(0.0, whitened.squaredNorm() - along_scale)) / shape.positions.norm();
 }
 
 /// Gives a feature the newest frame as its anchor; false when it lies behind it. Its coordinates are those of
@@ -51,7 +54,7 @@ SlamPriorTerm* SmootherEstimator::SetPriorTerm(const LinearPrior& prior, const W
   if (terms->empty()) {
     terms->emplace_back();
   }
-  if (prior.landmarks.empty()) {
+  if (prior.landmarks.empty() && !(prior.spread > 0)) {
     terms->front() = MakePriorTerm(prior, calibration);
     return nullptr;
   }
@@ -112,7 +115,7 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
   SlamChange slam{PriorTracks(prior_, window_), {}, kernel_};
   slam.relative_to_spread =
-      limit > 0 && SpreadDeviation(window_information_, window_, calibration_.mean) < kMaxSpreadDeviation;
+      limit > 0 && ShapeDeviation(window_information_, window_, calibration_.mean) < kMaxShapeDeviation;
   const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
   const std::vector<WindowTrack*> promoted =
       NewFeatures(geometry, slam.relative_to_spread ? limit - std::min(limit, staying.size()) : 0);

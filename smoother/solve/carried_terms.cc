@@ -78,20 +78,31 @@ Status CarriedPrior::Linearize(LinearTerm* linear) const {
 
 void CarriedPrior::AddFrames(Rows* rows) const {
   const Eigen::Matrix3d turn = prior_.chart.TurnOfCentre(next_);
+  const LinearPrior::FrameErrors errors = prior_.ErrorsAt(PointOf(window_, calibration_.mean).states,
+                                                          rows->spread, LinearPrior::Derivative::kAsMade);
+  Eigen::MatrixX3d on_positions = Eigen::MatrixX3d::Zero(rows->count, 3);
   for (size_t i = 0; i < prior_.anchors.size(); ++i) {
     const WindowFrame& frame = *prior_.anchors[i].frame;
     const ColumnMap::Range from = prior_columns_.Frame(static_cast<int>(i));
     const MatrixXd::ConstColsBlockXpr columns = prior_.jacobian.middleCols(from.first, from.size);
-    Vector15d xi = Vector15d::Zero();
-    xi.head<kNavColumns>() = prior_.NavError(i, frame.nav_state());
-    if (from.size == kStateColumns) {
-      xi.tail<kBiasColumns>() = prior_.BiasError(frame.imu_bias());
-    }
+    Vector15d xi;
+    xi << errors.xi[i], prior_.BiasError(frame.imu_bias());
+    rows->residual.noalias() += columns * xi.head(from.size);
     Eigen::Block<MatrixXd> moved = rows->Columns({columns_.Frame(frame.index).first, from.size});
     moved = columns;
-    moved.leftCols<3>().noalias() += columns.middleCols<3>(3) * turn;
-    rows->residual.noalias() += columns * xi.head(from.size);
+    if (prior_.spread > 0 && !frame.first) {
+      const Index width = std::min(from.size, kNavColumns);
+      const MatrixXd own = columns.leftCols(width) * errors.chain[i].topLeftCorner(width, width);
+      moved.leftCols(width).noalias() = own * next_.Jacobian(frame.nav_state()).topLeftCorner(width, width);
+      on_positions += own.middleCols<3>(3);
+      rows->along_scale.noalias() += columns.leftCols(width) * errors.along[i].head(width);
+    } else {
+      moved.leftCols<3>().noalias() += columns.middleCols<3>(3) * turn;
+    }
   }
+  const WindowFrame& first = *prior_.anchors.front().frame;
+  rows->Columns({columns_.Frame(first.index).first, kPoseColumns}).noalias() +=
+      on_positions * errors.on_first * next_.Jacobian(first.nav_state()).topLeftCorner<6, 6>();
 }
 
 void CarriedPrior::AddClockAndCalibration(Rows* rows) const {

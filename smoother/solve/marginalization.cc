@@ -145,7 +145,7 @@ void AnchorPrior(const Window& window, const SlamChange& slam, LinearPrior* next
   for (const WindowTrack* track : slam.after) {
     next->landmarks.push_back({track->id, track->anchor, track->landmark, track->plane()});
   }
-  if (slam.relative_to_spread && !next->landmarks.empty()) {
+  if (slam.relative_to_spread) {
     RelateToSpread(PointOf(window, next->calibration_origin.mean), next);
   }
   const ColumnMap columns = next->columns();

@@ -29,14 +29,14 @@ Index CalibrationSize(const WindowTerms& terms) {
 
 }  // namespace
 
-double WindowInformation::Deviation(const Eigen::RowVectorXd& row) const {
-  Eigen::VectorXd whitened = Eigen::VectorXd::Zero(columns.size());
-  for (Index i = 0; kPoseColumns * i < row.size(); ++i) {
-    whitened.segment<kPoseColumns>(columns.Frame(static_cast<int>(i)).first) =
-        row.segment<kPoseColumns>(kPoseColumns * i).transpose();
+Eigen::MatrixXd WindowInformation::Whitened(const Eigen::MatrixXd& rows) const {
+  Eigen::MatrixXd whitened = Eigen::MatrixXd::Zero(columns.size(), rows.rows());
+  for (Index i = 0; kPoseColumns * i < rows.cols(); ++i) {
+    whitened.middleRows<kPoseColumns>(columns.Frame(static_cast<int>(i)).first) =
+        rows.middleCols<kPoseColumns>(kPoseColumns * i).transpose();
   }
   root.triangularView<Eigen::Upper>().transpose().solveInPlace(whitened);
-  return whitened.norm();
+  return whitened;
 }
 
 bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, NewestEstimate* newest,

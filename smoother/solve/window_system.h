@@ -12,8 +12,9 @@ struct WindowInformation {
   ColumnMap columns;
   Eigen::MatrixXd root;  ///< R, upper triangular: R^T R is the information
 
-  /// Standard deviation of row * x over the poses of the window, row 1 x 6F in the order of the frames.
-  [[nodiscard]] double Deviation(const Eigen::RowVectorXd& row) const;
+  /// A square root of the covariance of rows * x over the poses of the window: W with W^T W that covariance,
+  /// rows m x 6F in the order of the frames.
+  [[nodiscard]] Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows) const;
 };
 
 /// Information of a window on its newest frame.
