@@ -47,6 +47,12 @@ void SolveLower(const Eigen::MatrixXd& lower, Eigen::Ref<Eigen::MatrixXd> right)
               Size(right.cols()), 1.0, lower.data(), Stride(lower), right.data(), Size(right.outerStride()));
 }
 
+void SolveUpperTransposed(const Eigen::MatrixXd& upper, Eigen::Ref<Eigen::MatrixXd> right) {
+  UseOneThreadPerBlasCall();
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasUpper, CblasTrans, CblasNonUnit, Size(right.rows()),
+              Size(right.cols()), 1.0, upper.data(), Stride(upper), right.data(), Size(right.outerStride()));
+}
+
 void SolveCholesky(const Eigen::MatrixXd& lower, Eigen::VectorXd* right) {
   UseOneThreadPerBlasCall();
   for (const CBLAS_TRANSPOSE transpose : {CblasNoTrans, CblasTrans}) {

@@ -16,6 +16,8 @@ void SubtractGram(const Eigen::MatrixXd& rows, Eigen::MatrixXd* hessian);
 bool FactorLower(Eigen::MatrixXd* matrix);
 /// right <- L^-1 right.
 void SolveLower(const Eigen::MatrixXd& lower, Eigen::Ref<Eigen::MatrixXd> right);
+/// right <- R^-T right, R the upper triangle.
+void SolveUpperTransposed(const Eigen::MatrixXd& upper, Eigen::Ref<Eigen::MatrixXd> right);
 /// right <- L^-T L^-1 right.
 void SolveCholesky(const Eigen::MatrixXd& lower, Eigen::VectorXd* right);
 /// Householder QR in place: the upper triangle becomes R, what is below it has no meaning.

@@ -1,5 +1,6 @@
 #include "smoother/solve/window_system.h"
 
+#include "smoother/manifold/dense_blas.h"
 #include "smoother/solve/row_elimination.h"
 
 namespace alidade {
@@ -35,7 +36,7 @@ Eigen::MatrixXd WindowInformation::Whitened(const Eigen::MatrixXd& rows) const {
     whitened.middleRows<kPoseColumns>(columns.Frame(static_cast<int>(i)).first) =
         rows.middleCols<kPoseColumns>(kPoseColumns * i).transpose();
   }
-  root.triangularView<Eigen::Upper>().transpose().solveInPlace(whitened);
+  SolveUpperTransposed(root, whitened);
   return whitened;
 }
 
