@@ -17,16 +17,24 @@ constexpr double kMaxFeatureDepthDeviation = 0.1;
 // Largest deviation of the shape of the window, relative to its size, with which the prior separates shape
 // and scale. Above (rest, rotation in place) the spread is hardly more than the errors of single positions.
 constexpr double kMaxShapeDeviation = 0.1;
+// Largest relative deviation of the window's scale with which it takes in landmarks.
+constexpr double kMaxScaleDeviation = 0.1;
 constexpr size_t kMinFeatureViews = 3;
 
-/// Standard deviation of the camera's positions about their mean, up to rotation, shift and scale of the
-/// whole window, relative to their root sum of squares; infinite or not a number without motion.
-double ShapeDeviation(const WindowInformation& information, const Window& window,
-                      const CameraCalibration& camera) {
+/// Standard deviations of the camera's positions about their mean, up to rotation and shift of the whole
+/// window, relative to their root sum of squares: along their scale, and root sum of squares of the rest.
+/// Infinite or not a number without motion.
+struct PositionDeviations {
+  double scale;
+  double shape;
+};
+PositionDeviations DeviationsOf(const WindowInformation& information, const Window& window,
+                                const CameraCalibration& camera) {
   const Shape shape = ShapeOf(PointOf(window, camera).states, camera.T_BC.translation);
   const Eigen::MatrixXd whitened = information.Whitened(shape.jacobian);
-  const double along_scale = (whitened * shape.positions.reshaped().normalized()).squaredNorm();
-  return std::sqrt(std::max(0.0, whitened.squaredNorm() - along_scale)) / shape.positions.norm();
+  const double size = shape.positions.norm();
+  const double scale = (whitened * shape.positions.reshaped().normalized()).squaredNorm();
+  return {std::sqrt(scale) / size, std::sqrt(std::max(0.0, whitened.squaredNorm() - scale)) / size};
 }
 
 /// Gives a feature the newest frame as its anchor; false when it lies behind it. Its coordinates are those of
@@ -114,11 +122,12 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   const std::vector<FrameGeometry> geometry = Geometry();
   const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
   SlamChange slam{PriorTracks(prior_, window_), {}, kernel_};
-  slam.relative_to_spread =
-      limit > 0 && ShapeDeviation(window_information_, window_, calibration_.mean) < kMaxShapeDeviation;
+  const PositionDeviations known = DeviationsOf(window_information_, window_, calibration_.mean);
+  slam.relative_to_spread = limit > 0 && known.shape < kMaxShapeDeviation;
+  const bool takes_in = slam.relative_to_spread && known.scale < kMaxScaleDeviation;
   const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
   const std::vector<WindowTrack*> promoted =
-      NewFeatures(geometry, slam.relative_to_spread ? limit - std::min(limit, staying.size()) : 0);
+      NewFeatures(geometry, takes_in ? limit - std::min(limit, staying.size()) : 0);
   slam.after.assign(staying.begin(), staying.end());
   slam.after.insert(slam.after.end(), promoted.begin(), promoted.end());
 
