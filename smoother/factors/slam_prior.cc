@@ -178,23 +178,24 @@ MatrixXd SlamPrior::LandmarkHessian(const Views& views, const Scene& scene, doub
   return hessian;
 }
 
+double SlamPrior::CostAtOrigins(const VectorXd& xi) const {
+  const Index frames = xi.size();
+  const Index last = gram_.cols() - 1;
+  return gram_(last, last) +
+         xi.dot(2 * gram_.block(0, last, frames, 1).col(0) + gram_.topLeftCorner(frames, frames) * xi);
+}
+
 bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landmarks, double* cost) const {
   const Index frames = xi.size();
   const Index size = landmarks->size();
   const auto landmark_gram = gram_.block(frames, frames, size, size);
   const VectorXd slope =
       gram_.block(frames, frames + size, size, 1) + gram_.block(frames, 0, size, frames) * xi;
-  const double offset =
-      gram_(frames + size, frames + size) +
-      xi.dot(2 * gram_.block(0, frames + size, frames, 1).col(0) + gram_.topLeftCorner(frames, frames) * xi);
+  const double offset = CostAtOrigins(xi);
   const auto shift = [&](const VectorXd& at) -> VectorXd { return scene.units.cwiseProduct(at) - origins_; };
   const auto total = [&](const VectorXd& at, const VectorXd& pull, const Views& views) {
     return offset + shift(at).dot(slope + pull) + views.robust_cost;
   };
-  if (size == 0) {
-    *cost = offset;
-    return std::isfinite(offset);
-  }
   Views views;
   if (!See(scene, *landmarks, false, &views)) {
     return false;
@@ -236,7 +237,12 @@ bool SlamPrior::Minimize(const VectorXd& xi, const Scene& scene, VectorXd* landm
 
 bool SlamPrior::SolveLandmarks(const WindowPoint& point, VectorXd* landmarks, double* cost) const {
   const Scene scene = MakeScene(point);
-  return Minimize(Displacement(point, scene), scene, landmarks, cost);
+  const VectorXd xi = Displacement(point, scene);
+  if (landmarks->size() == 0) {
+    *cost = CostAtOrigins(xi);
+    return std::isfinite(*cost);
+  }
+  return Minimize(xi, scene, landmarks, cost);
 }
 
 bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* reduced) const {

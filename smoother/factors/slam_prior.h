@@ -80,7 +80,9 @@ class SlamPrior {
   [[nodiscard]] Eigen::RowVectorXd SpreadRow(const LinearPrior::SpreadChange& spread) const;
   /// Over the landmarks, of the prior and the views, made regular.
   [[nodiscard]] Eigen::MatrixXd LandmarkHessian(const Views& views, const Scene& scene, double damping) const;
-  /// xi: Displacement.
+  /// The prior's part of F with the landmarks at its origins. xi: Displacement.
+  [[nodiscard]] double CostAtOrigins(const Eigen::VectorXd& xi) const;
+  /// SolveLandmarks for at least one of them. xi: Displacement.
   bool Minimize(const Eigen::VectorXd& xi, const Scene& scene, Eigen::VectorXd* landmarks,
                 double* cost) const;
 

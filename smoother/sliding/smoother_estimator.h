@@ -92,6 +92,8 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool DepthIsKnown(const std::vector<FrameGeometry>& geometry, const WindowTrack& track) const;
   [[nodiscard]] std::vector<WindowTrack*> NewFeatures(const std::vector<FrameGeometry>& geometry,
                                                       size_t free);
+  /// Tracks without an anchor whose views begin in the oldest frame, with their landmarks solved for.
+  [[nodiscard]] std::vector<const WindowTrack*> LeavingTracks(const std::vector<FrameGeometry>& geometry);
   [[nodiscard]] SensorContext Sensors(const WindowCalibration& calibration) const {
     return {gravity_W_, gnss_.context(), &calibration};
   }

@@ -117,29 +117,35 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
   return promoted;
 }
 
+std::vector<const WindowTrack*> SmootherEstimator::LeavingTracks(const std::vector<FrameGeometry>& geometry) {
+  std::vector<const WindowTrack*> leaving;
+  for (auto& [id, track] : window_.tracks()) {
+    if (track.anchor == nullptr && track.views.size() >= kMinViews && track.views.front().frame->index == 0 &&
+        PrepareLandmark(geometry, &track) == Landmark::kReady &&
+        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark)) {
+      leaving.push_back(&track);
+    }
+  }
+  return leaving;
+}
+
 Status SmootherEstimator::MarginalizeOldestFrame() {
-  const WindowFrame* oldest = &window_.frame(0);
   const std::vector<FrameGeometry> geometry = Geometry();
   const size_t limit = static_cast<size_t>(config_.smoother.slam_features);
   SlamChange slam{PriorTracks(prior_, window_), {}, kernel_};
-  const PositionDeviations known = DeviationsOf(window_information_, window_, calibration_.mean);
-  slam.relative_to_spread = limit > 0 && known.shape < kMaxShapeDeviation;
-  const bool takes_in = slam.relative_to_spread && known.scale < kMaxScaleDeviation;
+  bool takes_in = false;
+  if (limit > 0) {
+    const PositionDeviations known = DeviationsOf(window_information_, window_, calibration_.mean);
+    slam.relative_to_spread = known.shape < kMaxShapeDeviation;
+    takes_in = slam.relative_to_spread && known.scale < kMaxScaleDeviation;
+  }
   const std::vector<WindowTrack*> staying = StayingFeatures(geometry);
   const std::vector<WindowTrack*> promoted =
       NewFeatures(geometry, takes_in ? limit - std::min(limit, staying.size()) : 0);
   slam.after.assign(staying.begin(), staying.end());
   slam.after.insert(slam.after.end(), promoted.begin(), promoted.end());
 
-  std::vector<const WindowTrack*> leaving;
-  for (auto& [id, track] : window_.tracks()) {
-    if (track.anchor == nullptr && !track.views.empty() && track.views.front().frame == oldest &&
-        track.views.size() >= kMinViews && PrepareLandmark(geometry, &track) == Landmark::kReady &&
-        SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark)) {
-      leaving.push_back(&track);
-    }
-  }
-  auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(leaving), calibration_, kernel_);
+  auto vision = std::make_unique<PoseOnlyTerm>(window_, LeavingTracks(geometry), calibration_, kernel_);
   const std::vector<const WindowTrack*> gone = vision->used();
   WindowTerms terms;
   if (const Status status = AddSensorTerms(Sensors(calibration_), window_.frames(), 2, &terms);

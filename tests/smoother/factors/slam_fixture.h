@@ -15,6 +15,15 @@
 
 namespace alidade::test {
 
+/// Every camera `scale` times as far from the last one, and every velocity as much larger.
+inline void Grow(double scale, const Eigen::Vector3d& camera_B, std::vector<NavState>* states) {
+  const Eigen::Vector3d centre = states->back().T_WB() * camera_B;
+  for (NavState& state : *states) {
+    state.p_WB = centre + scale * (state.T_WB() * camera_B - centre) - state.R_WB * camera_B;
+    state.v_WB *= scale;
+  }
+}
+
 /// A window of which the oldest frame leaves: tracks that were based there become SLAM features, anchored in
 /// the frames `anchors` gives in turn (indices before the frame left). With or without a calibration.
 struct SlamFixture : WindowFixture {
