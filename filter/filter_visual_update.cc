@@ -16,7 +16,7 @@ constexpr int kMaxRefusals = 1;
 // larger scale. While the scale is uncertain, a repeated update takes noise for it.
 constexpr double kNegligible = 1e-3;
 constexpr double kNegligibleUncertain = 0.1;
-// Largest relative deviation of a window of known shape.
+// Largest relative deviation of a window of known shape, and of its scale where it is corrected.
 constexpr double kKnownShape = 0.1;
 // Relative deviation of the scale above which its direction is carried.
 constexpr double kKnownScale = 0.02;
@@ -136,8 +136,8 @@ bool FilterEstimator::ScaleIsUncertain() const {
 }
 
 void FilterEstimator::CorrectScale() {
-  // The gradient is of second order in the corrections, which are large while tracks wait for a better scale.
-  // The prior of the start is no part of the strain: its clones must have left.
+  // While tracks wait for a better scale, corrections are large, and the gradient of second order in them
+  // says nothing. The prior of the start is no part of the strain: its clones must have left.
   if (!carry_scale_ || baseline_.along > config_.filter.max_direction_deviation ||
       !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
     return;
@@ -147,7 +147,11 @@ void FilterEstimator::CorrectScale() {
     return;
   }
   scale_direction_.Descend(state_.covariance(), gradient, Correction());
-  Correct();
+  if (baseline_.along < kKnownShape) {
+    Correct();
+  } else {
+    scale_direction_.Doubt(Correction(), &state_);  // each step would make the next one longer
+  }
 }
 
 bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {

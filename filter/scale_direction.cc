@@ -116,4 +116,19 @@ void ScaleDirection::Descend(const SquareRootCovariance& covariance, double grad
   correction *= -gradient / (scale_ * (1 + variance * std::abs(gradient)));
 }
 
+void ScaleDirection::Doubt(const Eigen::Ref<const VectorXd>& step, FilterState* state) {
+  const auto row = row_.head(step.size());
+  const auto factor = state->covariance().factor().triangularView<Eigen::Upper>();
+  auto whitened = change_.head(step.size());
+  whitened.noalias() = factor.transpose() * row;
+  const double variance = whitened.squaredNorm();
+  const double along = row.dot(step);
+  if (!(variance > 0) || along == 0) {
+    return;
+  }
+  auto column = change_.head(step.size());
+  column = step * ((std::sqrt(1 + along * along / (3 * variance)) - 1) / along);
+  state->Shear(column, row);
+}
+
 }  // namespace alidade

@@ -32,6 +32,10 @@ class ScaleDirection {
   /// = 1, v = l P l. Smaller than the scale itself however large v g is: the cost is no parabola that far.
   void Descend(const SquareRootCovariance& covariance, double gradient,
                Eigen::Ref<Eigen::VectorXd> correction);
+  /// In place of a correction by `step` of Descend: the scale may be wrong by anything between nothing and
+  /// s = l.step, of which s^2 / 3 is the mean square. Its variance v grows by so much: errors x become x + c
+  /// (l.x / s) step, (1 + c)^2 v = v + s^2 / 3. What is not correlated with the scale stays as it is.
+  void Doubt(const Eigen::Ref<const Eigen::VectorXd>& step, FilterState* state);
 
  private:
   size_t determined_ = 0;  ///< number of clones that `last_serial` closes

@@ -10,6 +10,7 @@
 namespace alidade {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -147,6 +148,33 @@ TEST_P(ScaleDirectionTest, TheCorrectionForAGradientFollowsTheCovariance) {
       const VectorXd expected = -gradient / (1 + l.dot(covariance) * std::abs(gradient)) * covariance;
       EXPECT_LT((correction - expected).norm(), 1e-5 * expected.norm()) << carried << " " << gradient;
       EXPECT_LE(std::abs(l.dot(correction)), 1 + 1e-5) << carried << " " << gradient;
+    }
+    ChangeShape(&state_);
+    VectorXd none;
+    direction.Carry(&state_, none);
+  }
+}
+
+// GIVEN a step that may not be taken THEN the variance of the scale grows by a third of its square, also
+// after the direction has been carried, and what is not correlated with the scale stays as it is.
+TEST_P(ScaleDirectionTest, AStepThatIsNotTakenWidensTheScale) {
+  ScaleDirection direction(state_.covariance().capacity());
+  ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
+  const VectorXd row = RowOfScale();
+  for (int carried = 0; carried <= 1; ++carried) {
+    const VectorXd l = row / row.dot(ErrorOfScale());
+    for (const double gradient : {1e4, -30.0}) {
+      const MatrixXd before = state_.covariance().Covariance();
+      VectorXd step(row.size());
+      direction.Descend(state_.covariance(), gradient, step);
+      direction.Doubt(step, &state_);
+      const double variance = l.dot(before * l);
+      const double added = l.dot(step) * l.dot(step) / 3;
+      const VectorXd along = before * l / variance;
+      const MatrixXd after = state_.covariance().Covariance();
+      EXPECT_GT(added, 0.01 * variance) << carried << " " << gradient;
+      EXPECT_LT((after - before - added * along * along.transpose()).norm(), 1e-5 * (after - before).norm())
+          << carried << " " << gradient;
     }
     ChangeShape(&state_);
     VectorXd none;
