@@ -111,7 +111,7 @@ class FilterEstimator : public Estimator {
   /// Correct(), and what it does to the covariance while the scale is uncertain, and to `errors` likewise.
   void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);
   /// After the last CorrectByTracks: makes up for what carrying the scale's direction did to the IMU's share
-  /// of the information on it, or, while the scale is known badly, lets its deviation tell.
+  /// of the information on it. While the scale is known to less than a tenth, by its deviation alone.
   void CorrectScale();
   /// What the memories become when a clone leaves.
   void LeaveMemories(size_t leaving);

@@ -16,7 +16,7 @@ constexpr int kMaxRefusals = 1;
 // larger scale. While the scale is uncertain, a repeated update takes noise for it.
 constexpr double kNegligible = 1e-3;
 constexpr double kNegligibleUncertain = 0.1;
-// Largest relative deviation of a window of known shape, and of its scale where it is corrected.
+// Largest relative deviation of a window of known shape, and of a scale that is corrected.
 constexpr double kKnownShape = 0.1;
 // Relative deviation of the scale above which its direction is carried.
 constexpr double kKnownScale = 0.02;
@@ -150,7 +150,7 @@ void FilterEstimator::CorrectScale() {
   if (baseline_.along < kKnownShape) {
     Correct();
   } else {
-    scale_direction_.Doubt(Correction(), &state_);  // each step would make the next one longer
+    scale_direction_.Inflate(Correction(), &state_);  // each step would make the next one longer
   }
 }
 

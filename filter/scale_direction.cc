@@ -106,22 +106,23 @@ void ScaleDirection::TakeBack(FilterState* state) {
   carried.setZero();
 }
 
+double ScaleDirection::VarianceOfRow(const SquareRootCovariance& covariance) {
+  const auto factor = covariance.factor().triangularView<Eigen::Upper>();
+  auto whitened = change_.head(covariance.dimension());
+  whitened.noalias() = factor.transpose() * row_.head(whitened.size());
+  return whitened.squaredNorm();
+}
+
 void ScaleDirection::Descend(const SquareRootCovariance& covariance, double gradient,
                              Eigen::Ref<VectorXd> correction) {
-  const auto factor = covariance.factor().triangularView<Eigen::Upper>();
-  auto whitened = change_.head(correction.size());
-  whitened.noalias() = factor.transpose() * row_.head(correction.size());
-  correction.noalias() = factor * whitened;
-  const double variance = whitened.squaredNorm() / (scale_ * scale_);
+  const double variance = VarianceOfRow(covariance) / (scale_ * scale_);
+  correction.noalias() = covariance.factor().triangularView<Eigen::Upper>() * change_.head(correction.size());
   correction *= -gradient / (scale_ * (1 + variance * std::abs(gradient)));
 }
 
-void ScaleDirection::Doubt(const Eigen::Ref<const VectorXd>& step, FilterState* state) {
+void ScaleDirection::Inflate(const Eigen::Ref<const VectorXd>& step, FilterState* state) {
   const auto row = row_.head(step.size());
-  const auto factor = state->covariance().factor().triangularView<Eigen::Upper>();
-  auto whitened = change_.head(step.size());
-  whitened.noalias() = factor.transpose() * row;
-  const double variance = whitened.squaredNorm();
+  const double variance = VarianceOfRow(state->covariance());
   const double along = row.dot(step);
   if (!(variance > 0) || along == 0) {
     return;

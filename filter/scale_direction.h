@@ -35,9 +35,12 @@ class ScaleDirection {
   /// In place of a correction by `step` of Descend: the scale may be wrong by anything between nothing and
   /// s = l.step, of which s^2 / 3 is the mean square. Its variance v grows by so much: errors x become x + c
   /// (l.x / s) step, (1 + c)^2 v = v + s^2 / 3. What is not correlated with the scale stays as it is.
-  void Doubt(const Eigen::Ref<const Eigen::VectorXd>& step, FilterState* state);
+  void Inflate(const Eigen::Ref<const Eigen::VectorXd>& step, FilterState* state);
 
  private:
+  /// l P l; change_ becomes S^T l, P = S S^T.
+  double VarianceOfRow(const SquareRootCovariance& covariance);
+
   size_t determined_ = 0;  ///< number of clones that `last_serial` closes
   Eigen::Index dimension_ = 0;
   Eigen::VectorXd row_;      ///< l

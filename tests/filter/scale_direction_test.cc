@@ -157,7 +157,7 @@ TEST_P(ScaleDirectionTest, TheCorrectionForAGradientFollowsTheCovariance) {
 
 // GIVEN a step that may not be taken THEN the variance of the scale grows by a third of its square, also
 // after the direction has been carried, and what is not correlated with the scale stays as it is.
-TEST_P(ScaleDirectionTest, AStepThatIsNotTakenWidensTheScale) {
+TEST_P(ScaleDirectionTest, AStepThatIsNotTakenInflatesTheScale) {
   ScaleDirection direction(state_.covariance().capacity());
   ASSERT_TRUE(direction.Take(state_, state_.clones().back().serial));
   const VectorXd row = RowOfScale();
@@ -167,7 +167,7 @@ TEST_P(ScaleDirectionTest, AStepThatIsNotTakenWidensTheScale) {
       const MatrixXd before = state_.covariance().Covariance();
       VectorXd step(row.size());
       direction.Descend(state_.covariance(), gradient, step);
-      direction.Doubt(step, &state_);
+      direction.Inflate(step, &state_);
       const double variance = l.dot(before * l);
       const double added = l.dot(step) * l.dot(step) / 3;
       const VectorXd along = before * l / variance;
