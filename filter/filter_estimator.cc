@@ -10,6 +10,13 @@
 #include "filter/leaving_clone.h"
 
 namespace alidade {
+namespace {
+
+// Of the window, the views of a track that updates together with all others after the first window: the
+// depths of shorter ones are biased, and so is the motion that they alone determine.
+constexpr double kLeastShareOfWindow = 0.4;
+
+}  // namespace
 
 FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibration& rig)
     : config_(config),
@@ -169,7 +176,7 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
     return ends && filter.flush_lost_tracks && filter.update == UpdateTiming::kImmediate && views >= 3;
   }
   if (due_ == DueTracks::kAll) {
-    return true;
+    return serial_ - first_serial_ < filter.window || views >= kLeastShareOfWindow * filter.window;
   }
   switch (filter.update) {
     case UpdateTiming::kImmediate:

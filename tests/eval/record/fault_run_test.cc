@@ -173,6 +173,19 @@ TEST(FaultyAxes, AGyroscopeThatIsClippedInATurnLeavesTheCovarianceTrue) {
   }
 }
 
+// GIVEN an IMU that is silent, or repeats itself, for two seconds of a turn, THEN the covariance of the
+// motion that the tracks alone determine holds.
+TEST(FaultyAxes, TwoSecondsWithTracksAloneLeaveTheCovarianceTrue) {
+  for (const SimFaultKind fault : {SimFaultKind::kImuGap, SimFaultKind::kImuFrozen}) {
+    SimulatorConfig simulation = FaultyMotion(fault, 15, 2);
+    simulation.duration_s = 40;
+    simulation.path_m = 52;
+    for (const std::uint64_t seed : {974u, 975u, 976u, 979u}) {
+      EXPECT_LT(NeesWithFaultyAxes(AlidadeFilter(), simulation, seed), 15) << seed;
+    }
+  }
+}
+
 // GIVEN an IMU, or a gyroscope, all of whose axes repeat themselves, THEN it is reported while it lasts, and
 // covered.
 TEST_P(FaultRunTest, AFrozenImuIsReportedAndCovered) {
