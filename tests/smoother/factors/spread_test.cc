@@ -18,6 +18,7 @@ const Eigen::Vector3d kCamera_B(0.1, -0.2, 0.3);  // NOLINT(cert-err58-cpp): can
 std::vector<NavState> RandomPath(unsigned seed, int count) {
   test::RandomStates random(seed);
   std::vector<NavState> states;
+  states.reserve(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) {
     states.push_back(random.Nav(2));
   }
