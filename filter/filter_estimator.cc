@@ -167,6 +167,7 @@ Status FilterEstimator::EndFrame(TimeNs stamp_ns, bool finite) {
 bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
   const FilterConfig& filter = config_.filter;
   const int views = static_cast<int>(track.views.size());
+  const bool first_window = serial_ - first_serial_ < filter.window;
   if (track.memory.active) {
     return track.last_serial == serial_;
   }
@@ -176,7 +177,7 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
     return ends && filter.flush_lost_tracks && filter.update == UpdateTiming::kImmediate && views >= 3;
   }
   if (due_ == DueTracks::kAll) {
-    return serial_ - first_serial_ < filter.window || views >= kLeastShareOfWindow * filter.window;
+    return first_window || views >= kLeastShareOfWindow * filter.window;
   }
   switch (filter.update) {
     case UpdateTiming::kImmediate:
@@ -186,8 +187,7 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
       break;
   }
   // An uncertain start drifts far in a window's time: the first tracks must not wait for it to fill.
-  if (filter.track_memory != TrackMemoryPolicy::kNone && serial_ - first_serial_ < filter.window &&
-      due_ != DueTracks::kLeaving) {
+  if (filter.track_memory != TrackMemoryPolicy::kNone && first_window && due_ != DueTracks::kLeaving) {
     return true;
   }
   // One that was lost while most tracks still wait is dropped: alone, it would be taken for parallax.
