@@ -54,7 +54,7 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
   visitor.Integer({"update_iterations", "-",
                    "largest number of linearisations of a visual update; more than one only where the "
                    "correction is too large for one"},
-                  &update_iterations, 1, 20);
+                  &update_iterations, 1, 50);
   visitor.Real(
       {"max_direction_deviation", "-",
        "largest relative standard deviation of the direction from the newest camera to the oldest one "

@@ -43,7 +43,8 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
       scale_direction_(state_.covariance().capacity()),
       correction_(state_.covariance().capacity()),
       corrected_(state_.covariance().capacity()),
-      moved_(state_.covariance().capacity()) {
+      moved_(state_.covariance().capacity()),
+      whitened_(state_.covariance().capacity()) {
   appended_.reserve(kUsualTracks);
   degenerate_.reserve(kUsualTracks);
   left_.reserve(kUsualTracks);

@@ -108,6 +108,10 @@ class FilterEstimator : public Estimator {
   /// linearised again; false, with nothing moved, where that changes nothing. `corrected`: less the prior's
   /// mean, as an error of the state.
   bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
+  /// Whether the update that was factored leaves no more of the innovations than noise explains.
+  [[nodiscard]] bool TracksFit() const;
+  /// Moves the state back to the prediction; the due tracks wait.
+  void GiveUp(Eigen::Ref<Eigen::VectorXd> corrected);
   /// Correct(), and what it does to the covariance while the scale is uncertain, and to `errors` likewise.
   void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);
   /// After the last CorrectByTracks: makes up for what carrying the scale's direction did to the IMU's share
@@ -160,6 +164,7 @@ class FilterEstimator : public Estimator {
   Eigen::VectorXd correction_;  ///< see Correction()
   Eigen::VectorXd corrected_;   ///< see MoveByTracks
   Eigen::VectorXd moved_;       ///< sum of an update's corrections so far
+  Eigen::VectorXd whitened_;    ///< `corrected` of an update with all tracks, S times this
   Eigen::MatrixXd rest_rows_;
   Eigen::VectorXd rest_innovation_;
 };

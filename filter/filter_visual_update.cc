@@ -16,17 +16,17 @@ constexpr int kMaxRefusals = 1;
 // larger scale. While the scale is uncertain, a repeated update takes noise for it.
 constexpr double kNegligible = 1e-3;
 constexpr double kNegligibleUncertain = 0.1;
-// Largest relative deviation of a window of known shape, and of a scale that is corrected.
-constexpr double kKnownShape = 0.1;
-// Relative deviation of the scale above which its direction is carried.
-constexpr double kKnownScale = 0.02;
 // Least share of the due tracks that update together while the window's shape is uncertain.
 constexpr double kMostTracks = 0.7;
 // Largest deformation of the window between two linearisations. Gauss-Newton steps that are longer jump
 // between shapes, and end where the scale has vanished.
 constexpr double kLongestStep = 0.3;
-// Degrees of freedom of the direction of a motion.
-constexpr double kDirectionFreedom = 2;
+// Square of the step, in deviations of what the update leaves, that ends the linearisations of an update with
+// all tracks. Along a scale that they hardly see the cost is flat far beyond its deviation.
+constexpr double kLastStep = 0.1;
+// Of the normalised innovation squared of all tracks, in its deviations above its mean: where linearisations
+// have not converged and leave more, they have found no window that the tracks agree on.
+constexpr double kWorstFit = 4;
 
 }  // namespace
 
@@ -89,19 +89,6 @@ int FilterEstimator::AppendDueTracks(int leaving_serial) {
   return landmark_rows;
 }
 
-void FilterEstimator::AppendScaleVolume() {
-  if (!scale_direction_.Take(state_, serial_)) {
-    return;
-  }
-  const FeatureUpdate::Block block = update_.AddBlock(1);
-  update_.jacobian().row(block.first) = std::sqrt(kDirectionFreedom) * scale_direction_.row().transpose();
-  update_.innovation()(block.first) = std::sqrt(kDirectionFreedom);
-}
-
-bool FilterEstimator::ShapeIsKnown() const {
-  return baseline_.along < kKnownShape && baseline_.across < kKnownShape;
-}
-
 int FilterEstimator::ChooseAndAppendTracks(int leaving_serial) {
   due_ = DueTracks::kUsual;
   const double limit = config_.filter.max_direction_deviation;
@@ -129,47 +116,41 @@ void FilterEstimator::CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors) {
   }
 }
 
-bool FilterEstimator::ScaleIsUncertain() const {
-  // While the direction of the motion is not known either, the covariance holds little of tracks yet.
-  const double limit = config_.filter.max_direction_deviation;
-  return limit > 0 && baseline_.along > kKnownScale && baseline_.across < limit && state_.landmarks().empty();
-}
-
-void FilterEstimator::CorrectScale() {
-  // While tracks wait for a better scale, corrections are large, and the gradient of second order in them
-  // says nothing. The prior of the start is no part of the strain: its clones must have left.
-  if (!carry_scale_ || baseline_.along > config_.filter.max_direction_deviation ||
-      !state_.landmarks().empty() || serial_ - first_serial_ <= config_.filter.window) {
-    return;
-  }
-  const double gradient = state_.strain().ScaleGradient();
-  if (gradient == 0) {
-    return;
-  }
-  scale_direction_.Descend(state_.covariance(), gradient, Correction());
-  if (baseline_.along < kKnownShape) {
-    Correct();
-  } else {
-    scale_direction_.Inflate(Correction(), &state_);  // each step would make the next one longer
-  }
-}
-
 bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
-  const double explained = state_.covariance().Solution(Correction());
+  SquareRootCovariance& covariance = state_.covariance();
+  const double explained = covariance.Solution(Correction());
   Correction() -= corrected;
   const double deformation = RelativeDeformation(state_, Correction());
   const double negligible = ShapeIsKnown() ? kNegligible : kNegligibleUncertain;
-  if (!(deformation * deformation * explained > negligible)) {
+  auto whitened = whitened_.head(covariance.dimension());
+  if (!(deformation * deformation * explained > negligible) ||
+      (due_ == DueTracks::kAll && covariance.SquaredStep(whitened) < kLastStep)) {
     return false;
   }
-  if (deformation > kLongestStep) {
-    Correction() *= kLongestStep / deformation;
-  }
+  const double share = deformation > kLongestStep ? kLongestStep / deformation : 1;
+  Correction() *= share;
+  whitened += share * (covariance.WhitenedSolution() - whitened);
   corrected += Correction();
   moved_.head(corrected.size()) += Correction();
   CorrectByTracks(corrected);
   ++statistics_.iterations;
   return true;
+}
+
+bool FilterEstimator::TracksFit() const {
+  const double freedom = statistics_.nis_dof;
+  return statistics_.nis < freedom + kWorstFit * std::sqrt(2 * freedom);
+}
+
+void FilterEstimator::GiveUp(Eigen::Ref<Eigen::VectorXd> corrected) {
+  statistics_.features_waiting += static_cast<int>(appended_.size());
+  statistics_.features_used = 0;
+  statistics_.features_gated = 0;
+  statistics_.nis = 0;
+  statistics_.nis_dof = 0;
+  appended_.clear();
+  Correction() = -moved_.head(corrected.size());
+  CorrectByTracks(corrected);
 }
 
 bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
@@ -178,6 +159,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   corrected.setZero();
   auto moved = moved_.head(covariance.dimension());
   moved.setZero();
+  whitened_.head(covariance.dimension()).setZero();
   state_.strain().Mark();
   carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
   for (int pass = 1;; ++pass) {
@@ -185,8 +167,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
         pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
     if (appended_.empty()) {
       if (pass > 1) {
-        Correction() = -moved;
-        CorrectByTracks(corrected);
+        GiveUp(corrected);
       }
       return true;
     }
@@ -202,7 +183,13 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
     if (!covariance.Factor(rows, &statistics_.nis)) {
       return false;
     }
-    if (pass == config_.filter.update_iterations || !MoveByTracks(corrected)) {
+    const bool last = pass == config_.filter.update_iterations;
+    if (last && due_ == DueTracks::kAll && !TracksFit()) {
+      degenerate_.clear();  // seen from where the cameras are not
+      GiveUp(corrected);
+      return true;
+    }
+    if (last || !MoveByTracks(corrected)) {
       break;
     }
     if (carry_scale_ && state_.strain().ExceedsNoise()) {

@@ -24,6 +24,7 @@ SquareRootCovariance::SquareRootCovariance(int capacity, int max_leading)
       corner_(MatrixXd::Zero(max_leading + 2 * kCore, 2 * kCore)),
       projected_(VectorXd::Zero(capacity)),
       whitened_(VectorXd::Zero(capacity)),
+      step_(VectorXd::Zero(capacity)),
       reflection_(VectorXd::Zero(capacity)) {
   CHECK_GE(capacity, kCore + max_leading);
   UseOneThreadPerBlasCall();

@@ -77,11 +77,16 @@ class SquareRootCovariance {
   bool Apply(const PreparedRows& prepared, Eigen::Ref<Eigen::VectorXd> correction, double* nis,
              double* log_det = nullptr);
 
-  /// The halves of Apply. Factor leaves S as it is; Solution then gives the correction, and the square of the
-  /// norm of H times it; Commit updates S and gives the same correction. Each needs Factor directly before
-  /// it.
+  /// The halves of Apply. Factor leaves S as it is; Solution then gives the correction S w, and the square of
+  /// the norm of H times it; Commit updates S and gives the same correction. Each needs Factor directly
+  /// before it.
   bool Factor(const PreparedRows& prepared, double* nis, double* log_det = nullptr);
   double Solution(Eigen::Ref<Eigen::VectorXd> correction);
+  /// After Solution: w.
+  [[nodiscard]] auto WhitenedSolution() const { return whitened_.head(dimension_); }
+  /// After Solution: the square of the step S (w - from), in deviations of the covariance that Commit would
+  /// leave.
+  double SquaredStep(const Eigen::Ref<const Eigen::VectorXd>& from);
   void Commit(Eigen::Ref<Eigen::VectorXd> correction);
 
   /// Kalman update with unit-noise rows that see the errors [first, first + rows.cols()) alone, as Prepare
@@ -138,7 +143,8 @@ class SquareRootCovariance {
   Eigen::MatrixXd information_;  // scratch of Apply
   Eigen::MatrixXd corner_;       // scratch of Propagate and CloneCore
   Eigen::VectorXd projected_;
-  Eigen::VectorXd whitened_;                     // scratch of Solution and Shear
+  Eigen::VectorXd whitened_;                     // see WhitenedSolution; scratch of Shear
+  Eigen::VectorXd step_;                         // scratch of SquaredStep
   int factored_ = 0;                             // first column of S that Factor's rows see
   std::vector<std::pair<int, double>> entries_;  // scratch of PrepareSparse: column and value
   std::vector<size_t> row_ends_;

@@ -218,16 +218,26 @@ double SquareRootCovariance::Solution(Eigen::Ref<VectorXd> correction) {
   correction.setZero();
   const int active = dimension_ - factored_;
   if (active == 0) {
+    whitened_.head(dimension_).setZero();
     return 0;
   }
   auto b = projected_.head(active);
-  auto w = whitened_.head(active);
+  whitened_.head(factored_).setZero();
+  auto w = whitened_.segment(factored_, active);
   w = b;
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, active, information_.data(), capacity(),
               w.data(), 1);
   correction.noalias() = Part(0, factored_, dimension_, active) * w;
   // A^T A = U^T U - I.
   return b.squaredNorm() - w.squaredNorm();
+}
+
+double SquareRootCovariance::SquaredStep(const Eigen::Ref<const VectorXd>& from) {
+  auto step = step_.head(dimension_);
+  step = whitened_.head(dimension_) - from;
+  cblas_dtrmv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, dimension_ - factored_,
+              information_.data(), capacity(), step.data() + factored_, 1);
+  return step.squaredNorm();
 }
 
 void SquareRootCovariance::Commit(Eigen::Ref<VectorXd> correction) {

@@ -168,6 +168,27 @@ TEST_F(SquareRootCovarianceTest, TheCorrectionIsKnownBeforeTheUpdateIsMade) {
   EXPECT_LT((root_.Covariance() - after).norm(), 1e-9 * after.norm());
 }
 
+// A step S d has the square d^T M d in deviations of the covariance after the update, M = I + A^T A: as much
+// as |d|^2 in those before, and as much as its rows move.
+TEST_F(SquareRootCovarianceTest, AStepIsMeasuredInDeviationsAfterTheUpdate) {
+  Clone();
+  AddLeading();
+  const MatrixXd s = root_.factor().triangularView<Eigen::Upper>();
+  MatrixXd rows = RandomMatrix(&random_, 7, root_.dimension());
+  rows.leftCols(2).setZero();  // columns of S that the rows do not see
+  MatrixXd h = rows;
+  VectorXd innovation = RandomMatrix(&random_, 7, 1);
+  ASSERT_TRUE(root_.Factor(root_.Prepare(h, innovation), nullptr));
+  VectorXd correction(root_.dimension());
+  root_.Solution(correction);
+  EXPECT_LT((s * root_.WhitenedSolution() - correction).norm(), 1e-12 * correction.norm());
+  const VectorXd from = RandomMatrix(&random_, root_.dimension(), 1);
+  const VectorXd step = root_.WhitenedSolution() - from;
+  const double expected = step.squaredNorm() + (rows * s * step).squaredNorm();
+  EXPECT_NEAR(root_.SquaredStep(from), expected, 1e-9 * expected);
+  EXPECT_EQ(root_.SquaredStep(root_.WhitenedSolution()), 0);
+}
+
 TEST_F(SquareRootCovarianceTest, RowsThatAreNotFiniteAreRefusedAndChangeNothing) {
   const MatrixXd before = root_.Covariance();
   MatrixXd h = MatrixXd::Ones(3, root_.dimension());
