@@ -184,7 +184,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       return false;
     }
     const bool last = pass == config_.filter.update_iterations;
-    if (last && due_ == DueTracks::kAll && !TracksFit()) {
+    if (last && pass > 1 && due_ == DueTracks::kAll && !TracksFit()) {
       degenerate_.clear();  // seen from where the cameras are not
       GiveUp(corrected);
       return true;
