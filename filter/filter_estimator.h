@@ -108,9 +108,11 @@ class FilterEstimator : public Estimator {
   /// linearised again; false, with nothing moved, where that changes nothing. `corrected`: less the prior's
   /// mean, as an error of the state.
   bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
+  /// Gates the rows at hand and factors the update with them; false when a number is not finite.
+  bool FactorDueTracks(int landmark_rows);
   /// Whether the update that was factored leaves no more of the innovations than noise explains.
   [[nodiscard]] bool TracksFit() const;
-  /// Moves the state back to the prediction; the due tracks wait.
+  /// Takes the linearisations of this update back: the state is the prediction, and the due tracks wait.
   void GiveUp(Eigen::Ref<Eigen::VectorXd> corrected);
   /// Correct(), and what it does to the covariance while the scale is uncertain, and to `errors` likewise.
   void CorrectByTracks(Eigen::Ref<Eigen::VectorXd> errors);

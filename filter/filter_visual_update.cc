@@ -137,6 +137,15 @@ bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
   return true;
 }
 
+bool FilterEstimator::FactorDueTracks(int landmark_rows) {
+  if (observer_ != nullptr) {
+    observed_ = {update_.jacobian(), update_.innovation(), update_.traces(), RowSource::kVision};
+  }
+  PreparedRows rows = update_.Prepare(landmark_rows, &state_.covariance());
+  GateBlocks(&rows);
+  return state_.covariance().Factor(rows, &statistics_.nis);
+}
+
 bool FilterEstimator::TracksFit() const {
   const double freedom = statistics_.nis_dof;
   return statistics_.nis < freedom + kWorstFit * std::sqrt(2 * freedom);
@@ -157,9 +166,8 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   SquareRootCovariance& covariance = state_.covariance();
   auto corrected = corrected_.head(covariance.dimension());
   corrected.setZero();
-  auto moved = moved_.head(covariance.dimension());
-  moved.setZero();
-  whitened_.head(covariance.dimension()).setZero();
+  moved_.head(corrected.size()).setZero();
+  whitened_.head(corrected.size()).setZero();
   state_.strain().Mark();
   carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
   for (int pass = 1;; ++pass) {
@@ -175,12 +183,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       // The prior is about the prediction, the rows about the state.
       update_.innovation().noalias() += update_.jacobian() * corrected;
     }
-    if (observer_ != nullptr) {
-      observed_ = {update_.jacobian(), update_.innovation(), update_.traces(), RowSource::kVision};
-    }
-    PreparedRows rows = update_.Prepare(landmark_rows, &covariance);
-    GateBlocks(&rows);
-    if (!covariance.Factor(rows, &statistics_.nis)) {
+    if (!FactorDueTracks(landmark_rows)) {
       return false;
     }
     const bool last = pass == config_.filter.update_iterations;
@@ -195,7 +198,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
     if (carry_scale_ && state_.strain().ExceedsNoise()) {
       // The direction carried is no longer one along which the IMU's prior knows the scale.
       scale_direction_.TakeBack(&state_);
-      corrected = moved;
+      corrected = moved_.head(corrected.size());
       carry_scale_ = false;
     }
   }

@@ -12,10 +12,8 @@ double Nees(const std::string& preset, const SimulatorConfig& sim, unsigned seed
   return test::RunPreset(preset, {noise}, dataset, seed, 5).nees_pose;
 }
 
-/// Slow among distant landmarks, with a weak IMU: the scale is known to a quarter only when the first window
-/// is full.
-SimulatorConfig SlowMotion(SimTrajectory trajectory, const Eigen::Vector3d& extent_m, double path_m,
-                           double duration_s) {
+SimulatorConfig Motion(SimTrajectory trajectory, const Eigen::Vector3d& extent_m, double path_m,
+                       double duration_s) {
   SimulatorConfig sim;
   sim.trajectory = trajectory;
   sim.duration_s = duration_s;
@@ -23,6 +21,14 @@ SimulatorConfig SlowMotion(SimTrajectory trajectory, const Eigen::Vector3d& exte
   sim.width_m = extent_m.y();
   sim.height_m = extent_m.z();
   sim.path_m = path_m;
+  return sim;
+}
+
+/// Slow among distant landmarks, with a weak IMU: the scale is known to a quarter only when the first window
+/// is full.
+SimulatorConfig SlowMotion(SimTrajectory trajectory, const Eigen::Vector3d& extent_m, double path_m,
+                           double duration_s) {
+  SimulatorConfig sim = Motion(trajectory, extent_m, path_m, duration_s);
   sim.camera_rate_hz = 20;
   sim.pixel_noise_px = 0.7;
   sim.imu_noise = {9e-4, 3e-3, 9e-5, 6e-4};
@@ -37,12 +43,7 @@ SimulatorConfig SlowMotion(SimTrajectory trajectory, const Eigen::Vector3d& exte
 // half, WHEN the window changes its shape with every correction THEN the filter does not take that for
 // knowledge of the scale. A few runs say little here, so that the mean of many is bounded as well.
 TEST(UncertainScale, CorrectionsDoNotRevealIt) {
-  SimulatorConfig sim;
-  sim.duration_s = 25;
-  sim.length_m = 3;
-  sim.width_m = 1.5;
-  sim.height_m = 0.15;
-  sim.path_m = 2.5;
+  SimulatorConfig sim = Motion(SimTrajectory::kFigureEight, {3, 1.5, 0.15}, 2.5, 25);
   sim.landmark_min_distance_m = 1;
   sim.landmark_max_distance_m = 6;
   sim.pixel_noise_px = 0.7;
@@ -61,13 +62,7 @@ TEST(UncertainScale, CorrectionsDoNotRevealIt) {
 // the camera has moved far less than predicted THEN the filter linearises them until that is found, and has
 // no use for them where no window fits them.
 TEST(UncertainScale, IsFoundThoughTheStartIsAlmostAtRest) {
-  SimulatorConfig sim;
-  sim.trajectory = SimTrajectory::kHover;
-  sim.duration_s = 25;
-  sim.length_m = 0.6;
-  sim.width_m = 0.4;
-  sim.height_m = 0.2;
-  sim.path_m = 0.8;
+  const SimulatorConfig sim = Motion(SimTrajectory::kHover, {0.6, 0.4, 0.2}, 0.8, 25);
   for (const unsigned seed : {68002U, 68003U, 68030U, 68060U}) {
     EXPECT_LT(Nees("alidade_filter", sim, seed), 30) << "seed " << seed;
   }
@@ -76,14 +71,8 @@ TEST(UncertainScale, IsFoundThoughTheStartIsAlmostAtRest) {
 // GIVEN a sideways ellipse of 0.13 m/s, seen so that its first window hardly tells its scale WHEN all tracks
 // are linearised again and again THEN the window does not creep along the scale, which costs next to nothing.
 TEST(UncertainScale, IsNotFollowedWhereTheCostIsFlat) {
-  SimulatorConfig sim;
-  sim.trajectory = SimTrajectory::kEllipse;
+  SimulatorConfig sim = Motion(SimTrajectory::kEllipse, {3, 2, 0.2}, 5.3, 40);
   sim.camera_view = SimCameraView::kSideways;
-  sim.duration_s = 40;
-  sim.length_m = 3;
-  sim.width_m = 2;
-  sim.height_m = 0.2;
-  sim.path_m = 5.3;
   sim.landmark_min_distance_m = 1;
   sim.landmark_max_distance_m = 8;
   sim.max_range_m = 12;
