@@ -28,6 +28,10 @@ void SmootherConfig::Describe(ConfigVisitor& visitor) {
                    "largest number of SLAM features: landmarks in the prior, whose information outlives the "
                    "window; 0: none"},
                   &slam_features, 0, 500);
+  visitor.Boolean({"scale_volume", "-",
+                   "take the scale of the start at the mode of its own density, not of the joint one, which "
+                   "shrinks the window where the start's velocity is not known"},
+                  &scale_volume);
   visitor.Boolean({"first_estimates", "-",
                    "evaluate Jacobians of frames in the prior where the prior was linearised: with so3xrn "
                    "yaw then stays unobservable"},

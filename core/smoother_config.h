@@ -19,6 +19,7 @@ struct SmootherConfig {
   int keyframe_min_tracked = 20;
   int max_landmarks = 150;
   int slam_features = 0;
+  bool scale_volume = false;
   bool first_estimates = false;
   /// Not a key. Solves go on to the minimum itself, undamped: for a comparison with another estimator.
   bool solve_to_rounding = false;

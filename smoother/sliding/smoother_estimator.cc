@@ -73,6 +73,7 @@ Status SmootherEstimator::Begin(const NavEstimate& initial) {
   absolute_.reset();
   newest_update_.Begin(latest_, latest_clock_, Eigen::Matrix<double, 6, 15>::Zero());
   statistics_ = {};
+  start_shape_is_known_ = false;
   initialized_ = true;
   return Status::Ok();
 }
@@ -228,6 +229,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     terms.push_back(std::make_unique<PoseOnlyTerm>(
         window_, std::vector<const WindowTrack*>(tracks->begin(), tracks->end()), solved, kernel_));
   }
+  AppendScaleVolume(&terms);
   const Result<WindowSolveReport> report = SolveWindow(config_.smoother, terms, *tracks, &window_, &solved);
   if (!report.ok()) {
     return Lost(report.message());
@@ -291,6 +293,7 @@ Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {
     calibration_state_covariance_ = std::move(known.calibration_state_covariance);
   }
   window_information_ = std::move(known.window);
+  start_shape_is_known_ = StartShapeIsKnown();
   return Status::Ok();
 }
 

@@ -100,6 +100,11 @@ class SmootherEstimator final : public Estimator {
   /// The prior, first of a window's terms. Returns it where it has landmarks, else null.
   SlamPriorTerm* SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
                               WindowTerms* terms) const;
+  [[nodiscard]] bool StartIsInWindow() const { return prior_.anchors.size() == 1; }
+  /// Where its volume of scales counts: whether the shape of a window with the start is known.
+  [[nodiscard]] bool StartShapeIsKnown() const;
+  /// The volume of the scales that the start allows.
+  void AppendScaleVolume(WindowTerms* terms) const;
   /// Landmarks of the prior at the states just solved for.
   Status TakeLandmarks(const SlamPriorTerm& slam);
   /// SLAM features that have views in the window.
@@ -154,6 +159,7 @@ class SmootherEstimator final : public Estimator {
   NewestUpdate newest_update_;                  ///< where measurements are watched
   std::optional<AbsoluteCorrection> absolute_;  ///< the last one
   WindowInformation window_information_;        ///< at the last solve
+  bool start_shape_is_known_ = false;           ///< likewise
   bool has_frames_ = false;                     ///< a camera has been heard of
   FrameStatistics statistics_;
   std::vector<ImuSample> interval_;

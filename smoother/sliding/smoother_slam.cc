@@ -1,10 +1,12 @@
-// SLAM features of a SmootherEstimator, and what leaves with the oldest frame.
+// SLAM features of a SmootherEstimator, what leaves with the oldest frame, and the scale of the start.
 
 #include <algorithm>
 #include <cmath>
 
+#include "smoother/factors/scale_volume_factor.h"
 #include "smoother/factors/spread.h"
 #include "smoother/sliding/smoother_estimator.h"
+#include "smoother/solve/factor_term.h"
 #include "smoother/solve/marginalization.h"
 #include "smoother/solve/vision_terms.h"
 
@@ -17,6 +19,11 @@ constexpr double kMaxFeatureDepthDeviation = 0.1;
 // Largest deviation of the shape of the window, relative to its size, with which the prior separates shape
 // and scale. Above (rest, rotation in place) the spread is hardly more than the errors of single positions.
 constexpr double kMaxShapeDeviation = 0.1;
+// The same where the volume of the start's scales counts: the first frames determine the shape less well.
+constexpr double kMaxStartShapeDeviation = 0.3;
+// Of the start's velocity. Tracks determine two components of three, but the velocity that is given is longer
+// than the true one already, in the mean, by the same two.
+constexpr double kStartFreedom = 1;
 // Largest relative deviation of the window's scale with which it takes in landmarks.
 constexpr double kMaxScaleDeviation = 0.1;
 constexpr size_t kMinFeatureViews = 3;
@@ -153,6 +160,7 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
     return Lost(status.message());
   }
   terms.insert(terms.begin() + 1, std::move(vision));
+  AppendScaleVolume(&terms);
   Result<LinearPrior> next = MarginalizeOldest(window_, prior_, calibration_, terms, slam);
   if (!next.ok()) {
     return Lost(next.message());
@@ -172,6 +180,26 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   window_.RemoveOldest();
   window_.Prune();
   return Status::Ok();
+}
+
+bool SmootherEstimator::StartShapeIsKnown() const {
+  return config_.smoother.scale_volume && StartIsInWindow() &&
+         DeviationsOf(window_information_, window_, calibration_.mean).shape < kMaxStartShapeDeviation;
+}
+
+void SmootherEstimator::AppendScaleVolume(WindowTerms* terms) const {
+  if (!start_shape_is_known_ || !StartIsInWindow()) {
+    return;
+  }
+  std::vector<TermBlock> blocks;
+  for (int i = 0; i < window_.size(); ++i) {
+    blocks.push_back(NavBlock(window_.frame(i)));
+    blocks.back().width = kPoseColumns;
+  }
+  const Eigen::Vector3d point_B = calibration_.mean.T_BC.translation;
+  const double spread_m = SpreadOf(PointOf(window_, calibration_.mean).states, point_B).metres;
+  terms->push_back(
+      MakeTerm(ScaleVolumeFactor(window_.size(), point_B, spread_m, kStartFreedom), std::move(blocks)));
 }
 
 std::vector<WindowTrack*> SmootherEstimator::FeaturesInSight() {

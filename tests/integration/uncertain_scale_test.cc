@@ -68,6 +68,15 @@ TEST(UncertainScale, IsFoundThoughTheStartIsAlmostAtRest) {
   }
 }
 
+// GIVEN the same hover WHEN the smoother's first window could as well have stood still THEN it does not end
+// there, certain of it.
+TEST(UncertainScale, OfTheSmoothersStartDoesNotVanish) {
+  const SimulatorConfig sim = Motion(SimTrajectory::kHover, {0.6, 0.4, 0.2}, 0.8, 25);
+  for (const unsigned seed : {71002U, 71006U}) {
+    EXPECT_LT(Nees("alidade_smoother", sim, seed), 20) << "seed " << seed;
+  }
+}
+
 // GIVEN a sideways ellipse of 0.13 m/s, seen so that its first window hardly tells its scale WHEN all tracks
 // are linearised again and again THEN the window does not creep along the scale, which costs next to nothing.
 TEST(UncertainScale, IsNotFollowedWhereTheCostIsFlat) {
