@@ -24,6 +24,11 @@ void SmootherConfig::Describe(ConfigVisitor& visitor) {
                   &keyframe_min_tracked, 0, 1000);
   visitor.Integer({"max_landmarks", "-", "largest number of landmarks in the window, longest tracks first"},
                   &max_landmarks, 10, 5000);
+  visitor.Enumeration(
+      {"parallax_gate", "-",
+       "depth at which a track's baselines must show parallax; own: the track's, and where few have any the "
+       "others enter at an assumed one; typical: the window's, and the others wait, except at rest"},
+      &parallax_gate, {{"own", ParallaxGate::kOwn}, {"typical", ParallaxGate::kTypical}});
   visitor.Integer({"slam_features", "-",
                    "largest number of SLAM features: landmarks in the prior, whose information outlives the "
                    "window; 0: none"},

@@ -6,6 +6,7 @@
 namespace alidade {
 
 enum class SmootherLandmark { kPoseOnly, kInverseDepth };
+enum class ParallaxGate { kOwn, kTypical };
 enum class FramePolicy { kKeyframes, kEveryFrame };
 
 /// The sliding-window smoother.
@@ -18,6 +19,7 @@ struct SmootherConfig {
   double keyframe_parallax_px = 10.0;
   int keyframe_min_tracked = 20;
   int max_landmarks = 150;
+  ParallaxGate parallax_gate = ParallaxGate::kOwn;
   int slam_features = 0;
   bool scale_volume = false;
   bool first_estimates = false;

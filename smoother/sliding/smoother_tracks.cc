@@ -11,6 +11,9 @@ namespace {
 // solve linearises again, so a track may enter at this multiple of it: with the shipped 0.1, once its inverse
 // depth is known to its own size. It is still held to that when it is marginalised, linearised for good.
 constexpr double kParallaxSlack = 10;
+// Largest deviation of an inverse depth in typical ones. At its own inverse depth, noise would choose: tracks
+// whose noise looks like parallax of the motion that is estimated would confirm it.
+constexpr double kMaxTypicalDeviation = 0.3;
 // Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
 // as uncertain as it is large.
 constexpr double kUnknownInverseDepth = 0.2;
@@ -19,8 +22,17 @@ constexpr size_t kMinKnownDepths = 10;
 
 }  // namespace
 
+bool SmootherEstimator::BaselinesSuffice(const std::vector<FrameGeometry>& geometry, const WindowTrack& track,
+                                         const Eigen::Vector3d& landmark, double typical) const {
+  if (config_.smoother.parallax_gate == ParallaxGate::kOwn) {
+    return true;
+  }
+  const std::optional<double> deviation = InverseDepthDeviation(track.views, geometry, kernel_, landmark);
+  return deviation && *deviation < kMaxTypicalDeviation * typical;
+}
+
 SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry,
-                                                               WindowTrack* track) const {
+                                                               double typical, WindowTrack* track) const {
   if (track->has_landmark) {
     return Landmark::kReady;
   }
@@ -32,6 +44,9 @@ SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector
   if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &landmark) ||
       !DepthInRange(landmark)) {
     return Landmark::kDegenerate;
+  }
+  if (!BaselinesSuffice(geometry, *track, landmark, typical)) {
+    return Landmark::kWaiting;
   }
   track->landmark = landmark;
   track->has_landmark = true;
@@ -61,21 +76,23 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   const std::vector<FrameGeometry> geometry = Geometry();
   std::vector<WindowTrack*> selected;
   std::vector<WindowTrack*> without_depth;
+  const double typical = TypicalInverseDepth();
   for (auto& [id, track] : window_.tracks()) {
     track.degenerate = false;
     if (track.anchor == nullptr && track.views.size() >= kMinViews) {
-      const Landmark landmark = PrepareLandmark(geometry, &track);
+      const Landmark landmark = PrepareLandmark(geometry, typical, &track);
       statistics_.features_waiting += landmark == Landmark::kWaiting ? 1 : 0;
       track.degenerate = landmark == Landmark::kDegenerate;
       statistics_.features_degenerate += track.degenerate ? 1 : 0;
       (landmark == Landmark::kReady ? selected : without_depth).push_back(&track);
     }
   }
-  const double typical = TypicalInverseDepth();
-  // With enough depths known the others add little, and the assumed one would only bias them: they wait.
-  const bool enough = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked;
+  // With enough depths known the others add little, and the assumed one would only bias them: they wait. Many
+  // assumed depths together pretend to know the scale of a motion.
+  const bool wait = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked ||
+                    (config_.smoother.parallax_gate == ParallaxGate::kTypical && !statistics_.at_rest);
   for (WindowTrack* track : without_depth) {
-    if (enough) {
+    if (wait) {
       track->depth_prior = {};
       continue;
     }

@@ -77,6 +77,17 @@ TEST(UncertainScale, OfTheSmoothersStartDoesNotVanish) {
   }
 }
 
+// GIVEN a rig that drifts by a centimetre a second WHEN noise looks like parallax THEN the smoother does not
+// take the tracks whose noise confirms the estimated motion, nor many assumed depths, for knowledge.
+TEST(UncertainScale, IsNotFoundInNoise) {
+  const SimulatorConfig sim = Motion(SimTrajectory::kHover, {0.6, 0.4, 0.2}, 0.2, 15);
+  double nees = 0;
+  for (const unsigned seed : {71001U, 71004U}) {
+    nees += Nees("alidade_smoother", sim, seed) / 2;
+  }
+  EXPECT_LT(nees, 60);  // 215 where each track's own depth decides
+}
+
 // GIVEN a sideways ellipse of 0.13 m/s, seen so that its first window hardly tells its scale WHEN all tracks
 // are linearised again and again THEN the window does not creep along the scale, which costs next to nothing.
 TEST(UncertainScale, IsNotFollowedWhereTheCostIsFlat) {
