@@ -10,7 +10,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# The first time the positions are those of the program; afterwards they are written without a temporary name.
+# The first time the positions are those of the program; afterwards, under a limit of the size, they are written without a temporary
+# name. Without a limit the file appears whole, so that a kill at a random time never finds it torn before the limit does.
 cat >torn <<END
 #!/usr/bin/env bash
 output=
@@ -23,6 +24,9 @@ elif [[ ! -e $work/rover.pos ]]; then
   "$program" "\$@" && cp "\$output" $work/rover.pos
 else
   mkdir -p "\$(dirname "\$output")"
+  if [[ \$(ulimit -f) == unlimited ]]; then
+    cp $work/rover.pos "$work/\$BASHPID" && exec mv "$work/\$BASHPID" "\$output"
+  fi
   exec cat $work/rover.pos >"\$output"
 fi
 END
