@@ -114,12 +114,11 @@ class SmootherEstimator final : public Estimator {
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   enum class Landmark { kReady, kWaiting, kDegenerate };
-  /// Whether the parallax gate lets a triangulated track pass. typical: TypicalInverseDepth.
+  /// Whether the parallax gate lets a track with this landmark pass.
   [[nodiscard]] bool BaselinesSuffice(const std::vector<FrameGeometry>& geometry, const WindowTrack& track,
-                                      const Eigen::Vector3d& landmark, double typical) const;
+                                      const Eigen::Vector3d& landmark) const;
   /// Triangulates a track that has no landmark yet, once it has the parallax.
-  Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, double typical,
-                           WindowTrack* track) const;
+  Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) const;
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);

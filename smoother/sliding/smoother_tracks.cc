@@ -23,16 +23,16 @@ constexpr size_t kMinKnownDepths = 10;
 }  // namespace
 
 bool SmootherEstimator::BaselinesSuffice(const std::vector<FrameGeometry>& geometry, const WindowTrack& track,
-                                         const Eigen::Vector3d& landmark, double typical) const {
+                                         const Eigen::Vector3d& landmark) const {
   if (config_.smoother.parallax_gate == ParallaxGate::kOwn) {
     return true;
   }
   const std::optional<double> deviation = InverseDepthDeviation(track.views, geometry, kernel_, landmark);
-  return deviation && *deviation < kMaxTypicalDeviation * typical;
+  return deviation && *deviation < kMaxTypicalDeviation * TypicalInverseDepth();
 }
 
 SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry,
-                                                               double typical, WindowTrack* track) const {
+                                                               WindowTrack* track) const {
   if (track->has_landmark) {
     return Landmark::kReady;
   }
@@ -45,7 +45,7 @@ SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector
       !DepthInRange(landmark)) {
     return Landmark::kDegenerate;
   }
-  if (!BaselinesSuffice(geometry, *track, landmark, typical)) {
+  if (!BaselinesSuffice(geometry, *track, landmark)) {
     return Landmark::kWaiting;
   }
   track->landmark = landmark;
@@ -76,17 +76,17 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   const std::vector<FrameGeometry> geometry = Geometry();
   std::vector<WindowTrack*> selected;
   std::vector<WindowTrack*> without_depth;
-  const double typical = TypicalInverseDepth();
   for (auto& [id, track] : window_.tracks()) {
     track.degenerate = false;
     if (track.anchor == nullptr && track.views.size() >= kMinViews) {
-      const Landmark landmark = PrepareLandmark(geometry, typical, &track);
+      const Landmark landmark = PrepareLandmark(geometry, &track);
       statistics_.features_waiting += landmark == Landmark::kWaiting ? 1 : 0;
       track.degenerate = landmark == Landmark::kDegenerate;
       statistics_.features_degenerate += track.degenerate ? 1 : 0;
       (landmark == Landmark::kReady ? selected : without_depth).push_back(&track);
     }
   }
+  const double typical = TypicalInverseDepth();
   // With enough depths known the others add little, and the assumed one would only bias them: they wait. Many
   // assumed depths together pretend to know the scale of a motion.
   const bool wait = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked ||

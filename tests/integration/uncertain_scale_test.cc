@@ -71,9 +71,9 @@ TEST(UncertainScale, IsFoundThoughTheStartIsAlmostAtRest) {
 // GIVEN the same hover WHEN the smoother's first window could as well have stood still THEN it does not end
 // there, certain of it.
 TEST(UncertainScale, OfTheSmoothersStartDoesNotVanish) {
-  const SimulatorConfig sim = Motion(SimTrajectory::kHover, {0.6, 0.4, 0.2}, 0.8, 25);
-  for (const unsigned seed : {71002U, 71006U}) {
-    EXPECT_LT(Nees("alidade_smoother", sim, seed), 20) << "seed " << seed;
+  const SimulatorConfig sim = Motion(SimTrajectory::kHover, {0.6, 0.4, 0.2}, 0.8, 12);
+  for (const unsigned seed : {71009U, 71011U}) {
+    EXPECT_LT(Nees("alidade_smoother", sim, seed), 20) << "seed " << seed;  // without: 348 and 970
   }
 }
 
@@ -82,14 +82,11 @@ TEST(UncertainScale, OfTheSmoothersStartDoesNotVanish) {
 // assumed depths, for knowledge.
 TEST(UncertainScale, IsNotFoundInNoise) {
   const SimulatorConfig sim = Motion(SimTrajectory::kHover, {0.6, 0.4, 0.2}, 0.2, 15);
-  double nees = 0;
-  for (const unsigned seed : {71001U, 71004U}) {
+  for (const unsigned seed : {71006U, 71008U, 71011U}) {
     const Dataset dataset = test::SimulateOrDie(sim, seed);
-    nees +=
-        test::RunPreset("alidade_smoother", {"smoother.parallax_gate=typical"}, dataset, seed, 5).nees_pose /
-        2;
+    const auto run = test::RunPreset("alidade_smoother", {"smoother.parallax_gate=typical"}, dataset, seed, 5);
+    EXPECT_LT(run.nees_pose, 20) << "seed " << seed;  // where each track's own depth decides: 154, 58, 693
   }
-  EXPECT_LT(nees, 60);  // 215 where each track's own depth decides
 }
 
 // GIVEN a sideways ellipse of 0.13 m/s, seen so that its first window hardly tells its scale WHEN all tracks
