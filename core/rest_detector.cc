@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/dense_solvers.h"
 #include "core/gyro_rotation.h"
@@ -139,10 +140,11 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
   // the ends of the window alone would not show it.
   const OrientedFrame* const end = frames_.data() + frame_count_;
   const OrientedFrame* const middle = before + (end - before) / 2;
-  double deviations = 0;
+  RestVerdict flow;
+  flow.speed_per_depth = std::numeric_limits<double>::infinity();
   const auto flow_is_zero = [&](const auto& turn_since) {
     const auto since = [&](const OrientedFrame& old) {
-      return FlowIsZero(old.frame, frame, turn_since(old), pixel_noise_px, &deviations);
+      return FlowIsZero(old.frame, frame, turn_since(old), pixel_noise_px, &flow);
     };
     return since(*before) && (middle + 1 == end || since(*middle)) && (doubted == nullptr || since(*doubted));
   };
@@ -152,17 +154,13 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
   };
   const bool calm_gyro = imu.gyro_std_radps < init_.static_max_gyro_std_radps;
   if (calm_gyro && TurnMayBeBias(imu.mean_gyro, estimate)) {
-    verdict.no_translation = verdict.no_rotation = flow_is_zero(uncompensated);
-    verdict.flow_deviations = deviations;
-    return verdict;
+    flow.no_translation = flow.no_rotation = flow_is_zero(uncompensated);
+    return flow;
   }
-  verdict.no_translation = flow_is_zero(compensated);
-  verdict.flow_deviations = deviations;
-  if (verdict.no_translation && calm_gyro && flow_is_zero(uncompensated)) {
-    verdict.no_rotation = true;
-    verdict.flow_deviations = deviations;
-  }
-  return verdict;
+  flow.no_translation = flow_is_zero(compensated);
+  const RestVerdict turning = flow;
+  flow.no_rotation = flow.no_translation && calm_gyro && flow_is_zero(uncompensated);
+  return flow.no_rotation ? flow : turning;
 }
 
 RestRates RestDetector::Rates() const {
@@ -187,7 +185,7 @@ void RestDetector::FindCommon(const TrackFrame& before, const TrackFrame& now, c
 }
 
 bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, const Matrix3d& R_now_before,
-                              double pixel_noise_px, double* deviations) {
+                              double pixel_noise_px, RestVerdict* verdict) {
   FindCommon(before, now, R_now_before);
   std::vector<CommonTrack>& common = common_;
   if (static_cast<int>(common.size()) < kMinCommonTracks || 2 * common.size() < now.observations.size()) {
@@ -222,8 +220,16 @@ bool RestDetector::FlowIsZero(const TrackFrame& before, const TrackFrame& now, c
     return false;
   }
   // The difference of two observations has twice the variance of one.
-  const Eigen::Array4d variance = 2 * pixel_noise_px * pixel_noise_px * normal.inverse().diagonal().array();
-  *deviations = std::max(*deviations, (flow.array().abs() / variance.sqrt()).maxCoeff());
+  const Eigen::Array4d deviation =
+      std::sqrt(2.0) * pixel_noise_px * normal.inverse().diagonal().array().sqrt();
+  verdict->flow_deviations = std::max(verdict->flow_deviations, (flow.array().abs() / deviation).maxCoeff());
+  // Shift and zoom come from a translation, roll does not. At the image's corner the ray is about as long as
+  // the focal length is. A frame later most of the pair's time is measured again.
+  const double translation_px = (flow.array().abs() + deviation).head<3>().maxCoeff();
+  const double span_s = SecondsBetween(before.stamp_ns, now.stamp_ns);
+  const double new_s = SecondsBetween(frames_[frame_count_ - 2].frame.stamp_ns, now.stamp_ns);
+  verdict->speed_per_depth = std::min(verdict->speed_per_depth,
+                                      translation_px / (camera_.mean_focal_px() * std::sqrt(span_s * new_s)));
   return true;
 }
 

@@ -21,6 +21,9 @@ struct RestVerdict {
   /// The largest part of the flow that was taken for none, in standard deviations of what the tracks' noise
   /// makes of it. At rest nine in ten are below 2.5; more indicates slow motion.
   double flow_deviations = 0;
+  /// Largest speed over depth of the scenery that the flow leaves, with a deviation of the tracks' noise, as
+  /// one of many frames that measure most of the same time [1/s].
+  double speed_per_depth = 0;
 };
 
 /// Measured angular rates, bias included; rad/s, in B.
@@ -43,8 +46,8 @@ struct RestRates {
 /// Far scenery hides a motion that the IMU has measured. While the estimated velocity of the camera
 /// contradicts rest, the flow must have been below the limit for four windows.
 ///
-/// Neglected: motion so slow or scenery so far that it moves tracks by less than the limit in that time, and
-/// a turn that hides a translation.
+/// Motion so slow or scenery so far that it moves tracks by less than the limit in that time is no motion:
+/// MakeRestMeasurement allows for it. Neglected: a turn that hides a translation.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);
@@ -81,11 +84,11 @@ class RestDetector {
   [[nodiscard]] bool DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since);
   /// Carries R_0B_ on to the last sample.
   void Turn(const Eigen::Vector3d& gyro_bias_radps);
-  /// R_now_before: turn of the camera between the frames; identity compensates nothing. deviations: as in
-  /// RestVerdict, raised where it is less.
+  /// R_now_before: turn of the camera between the frames; identity compensates nothing. What the verdict says
+  /// of the flow becomes that of all pairs of frames so far.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
                                 const Eigen::Matrix3d& R_now_before, double pixel_noise_px,
-                                double* deviations);
+                                RestVerdict* verdict);
   /// Fills common_.
   void FindCommon(const TrackFrame& before, const TrackFrame& now, const Eigen::Matrix3d& R_now_before);
 

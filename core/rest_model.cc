@@ -35,12 +35,14 @@ void RestMeasurement::Evaluate(const NavState& state, const ImuBias& bias, Vecto
   }
 }
 
-RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates& rates,
+RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, double scene_depth_m, const RestRates& rates,
                                     const Eigen::Vector3d& p_BC, const VisionConfig& vision) {
   CHECK(verdict.no_translation);
   RestMeasurement measurement{{rates, p_BC}};
   const double factor = std::max(1.0, verdict.flow_deviations / kUsualFlow);
-  measurement.sqrt_information.head<3>().setConstant(1 / (factor * vision.rest_velocity_std_mps));
+  const double velocity_std_mps =
+      std::max(factor * vision.rest_velocity_std_mps, verdict.speed_per_depth * scene_depth_m);
+  measurement.sqrt_information.head<3>().setConstant(1 / velocity_std_mps);
   if (verdict.no_rotation) {
     measurement.model.rates.at_end_radps = rates.mean_radps;  // the same, less its noise
     measurement.sqrt_information.tail<3>().setConstant(1 / (factor * vision.rest_rate_std_radps));

@@ -35,9 +35,13 @@ struct RestMeasurement {
                 RestModel::Jacobian* jacobian) const;
 };
 
-/// The configured deviations, larger where the verdict's flow is more than that of rest: far scenery hides
-/// slow motion. Precondition: verdict.no_translation.
-[[nodiscard]] RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, const RestRates& rates,
-                                                  const Eigen::Vector3d& p_BC, const VisionConfig& vision);
+/// Depth of the scenery where no track has told it yet, or so far: three times that of a room [m].
+inline constexpr double kUnknownSceneDepth = 15;
+
+/// The configured deviations, larger where the verdict's flow is more than that of rest; that of the velocity
+/// also where scenery at scene_depth_m hides so slow a motion. Precondition: verdict.no_translation.
+[[nodiscard]] RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, double scene_depth_m,
+                                                  const RestRates& rates, const Eigen::Vector3d& p_BC,
+                                                  const VisionConfig& vision);
 
 }  // namespace alidade

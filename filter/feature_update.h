@@ -5,6 +5,7 @@
 #include "core/check.h"
 #include "core/filter_config.h"
 #include "core/landmark_solver.h"
+#include "core/scene_depth.h"
 #include "core/vision_config.h"
 #include "filter/filter_state.h"
 #include "filter/track_memory.h"
@@ -75,6 +76,9 @@ class FeatureUpdate {
   /// does not stand still (TrackMemory::Drifts).
   void Remember(const FilterState& state, size_t block, double weight, double nis, Track* track);
   [[nodiscard]] const TrackMemoryKeeper& keeper() const { return keeper_; }
+  /// Of the tracks that all their views define.
+  [[nodiscard]] const SceneDepth& scene_depth() const { return scene_depth_; }
+  void ForgetSceneDepth() { scene_depth_.Clear(); }
   [[nodiscard]] int rows() const { return rows_; }
   /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I). Until Prepare.
   [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> jacobian() {
@@ -130,6 +134,7 @@ class FeatureUpdate {
   bool tracing_ = false;
   std::vector<TracedBlock> traces_;
   TrackMemoryKeeper keeper_;
+  SceneDepth scene_depth_;
   std::vector<TrackMemory> successors_;  ///< of the blocks; grows, never shrinks
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd innovation_;

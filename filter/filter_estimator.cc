@@ -63,6 +63,7 @@ Status FilterEstimator::Initialize(const NavEstimate& initial) {
   aligned_ = false;
   absolute_.reset();
   rest_.Clear();
+  update_.ForgetSceneDepth();
   imu_.StartAt(initial.stamp_ns, read_out_span_s_);
   frame_stamp_ns_ = INT64_MIN;
   statistics_ = {};
@@ -202,7 +203,8 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   }
   Vector6d residual;
   RestModel::Jacobian jacobian;
-  MakeRestMeasurement(rest, rest_.Rates(), state_.calibration().T_BC.translation, config_.vision)
+  MakeRestMeasurement(rest, update_.scene_depth().Median().value_or(kUnknownSceneDepth), rest_.Rates(),
+                      state_.calibration().T_BC.translation, config_.vision)
       .Evaluate(state_.nav(), state_.bias(), &residual, &jacobian);
   const int rows = rest.no_rotation ? RestModel::kRows : 3;
   rest_rows_.setZero(rows, state_.covariance().dimension());

@@ -131,7 +131,8 @@ void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& fra
   if (config_.vision.rest_updates && !frame.repeated) {
     const RestVerdict verdict = rest_.AddFrame(frame, config_.vision.pixel_noise_px, estimate, rig_.T_BC);
     if (verdict.no_translation) {
-      node.rest = MakeRestMeasurement(verdict, rest_.Rates(), rig_.T_BC.translation, config_.vision);
+      node.rest = MakeRestMeasurement(verdict, kUnknownSceneDepth, rest_.Rates(), rig_.T_BC.translation,
+                                      config_.vision);
     }
   }
 }

@@ -199,11 +199,11 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   if (!config_.vision.rest_updates) {
     return;
   }
-  WindowFrame& newest = window_.newest();
   const RestVerdict verdict = rest_.AddFrame(frame, pixel_noise_.px(), latest_, camera().T_BC);
   statistics_.at_rest = verdict.no_translation;
   if (verdict.no_translation) {
-    newest.rest = MakeRestMeasurement(verdict, rest_.Rates(), camera().T_BC.translation, config_.vision);
+    window_.newest().rest = MakeRestMeasurement(verdict, KnownDepth().value_or(kUnknownSceneDepth),
+                                                rest_.Rates(), camera().T_BC.translation, config_.vision);
   }
 }
 

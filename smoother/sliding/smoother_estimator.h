@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -120,6 +121,9 @@ class SmootherEstimator final : public Estimator {
   /// Triangulates a track that has no landmark yet, once it has the parallax.
   Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) const;
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
+  /// Median of the tracks that have a landmark [m]; nullopt while they are few.
+  [[nodiscard]] std::optional<double> KnownDepth() const;
+  /// Its inverse, or one to assume.
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
   [[nodiscard]] bool IsSuspect(size_t refused, size_t tracks) const;

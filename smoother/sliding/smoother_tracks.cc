@@ -16,7 +16,7 @@ constexpr double kParallaxSlack = 10;
 constexpr double kMaxTypicalDeviation = 0.3;
 // Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
 // as uncertain as it is large.
-constexpr double kUnknownInverseDepth = 0.2;
+constexpr double kRoomDepth = 5;  // [m]
 constexpr double kDepthPriorRelative = 1.0;
 constexpr size_t kMinKnownDepths = 10;
 
@@ -58,7 +58,7 @@ bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
   return landmark.z() >= 1 / config_.vision.max_depth_m && landmark.z() <= 1 / config_.vision.min_depth_m;
 }
 
-double SmootherEstimator::TypicalInverseDepth() const {
+std::optional<double> SmootherEstimator::KnownDepth() const {
   std::vector<double> known;
   for (const auto& [id, track] : window_.tracks()) {
     if (track.has_landmark) {
@@ -66,10 +66,14 @@ double SmootherEstimator::TypicalInverseDepth() const {
     }
   }
   if (known.size() < kMinKnownDepths) {
-    return kUnknownInverseDepth;
+    return std::nullopt;
   }
   std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
-  return known[known.size() / 2];
+  return 1 / known[known.size() / 2];
+}
+
+double SmootherEstimator::TypicalInverseDepth() const {
+  return 1 / KnownDepth().value_or(kRoomDepth);
 }
 
 std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {

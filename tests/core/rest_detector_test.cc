@@ -98,10 +98,15 @@ TEST_F(RestDetectorTest, StandingStillIsRest) {
 // GIVEN a motion that moves tracks by less than the limit THEN the verdict is that their flow is more than
 // noise.
 TEST_F(RestDetectorTest, SlowMotionIsDetected) {
-  EXPECT_LT(AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations, 3.5);
+  const RestVerdict still = AfterOneSecond(Vector3d::Zero(), 0, 0.1);
+  EXPECT_LT(still.flow_deviations, 3.5);
   const RestVerdict verdict = AfterOneSecond(Vector3d(0.013, 0, 0), 0, 0.1);
   EXPECT_TRUE(verdict.no_translation);
   EXPECT_GT(verdict.flow_deviations, 3.5);
+  constexpr double kDepth = 4;  // [m]
+  EXPECT_GT(verdict.speed_per_depth * kDepth, 0.013);
+  EXPECT_LT(verdict.speed_per_depth * kDepth, 0.1);
+  EXPECT_LT(still.speed_per_depth, verdict.speed_per_depth);
 }
 
 TEST_F(RestDetectorTest, FlowIsTestedAgainstTheGivenNoise) {

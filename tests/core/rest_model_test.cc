@@ -63,12 +63,12 @@ TEST(RestModelTest, WhitensWithTheConfiguredDeviationsAndLeavesATurningRigItsRat
   const RestRates rates{{0.1, 0.1, 0.1}, bias.gyro};
   Vector6d residual;
   RestModel::Jacobian jacobian;
-  MakeRestMeasurement({true, true}, rates, Eigen::Vector3d::Zero(), vision)
+  MakeRestMeasurement({true, true}, 5, rates, Eigen::Vector3d::Zero(), vision)
       .Evaluate(state, bias, &residual, &jacobian);
   EXPECT_LT((residual - (Vector6d() << 2, 4, 6, 2, 1, 0).finished()).norm(), 1e-12);
   EXPECT_DOUBLE_EQ(jacobian(0, 6), 2);
   EXPECT_DOUBLE_EQ(jacobian(3, 9), 10);
-  MakeRestMeasurement({true, false}, rates, Eigen::Vector3d::Zero(), vision)
+  MakeRestMeasurement({true, false}, 5, rates, Eigen::Vector3d::Zero(), vision)
       .Evaluate(state, bias, &residual, &jacobian);
   EXPECT_EQ(residual.tail<3>().norm(), 0);
   EXPECT_EQ(jacobian.bottomRows<3>().norm(), 0);
@@ -78,11 +78,24 @@ TEST(RestModelTest, WhitensWithTheConfiguredDeviationsAndLeavesATurningRigItsRat
 // deviation.
 TEST(RestModelTest, FlowThatIsMoreThanNoiseMakesTheVelocityLessCertain) {
   const VisionConfig vision;
-  const auto at_rest = MakeRestMeasurement({true, true, 2}, {}, Eigen::Vector3d::Zero(), vision);
-  const auto slow = MakeRestMeasurement({true, true, 10}, {}, Eigen::Vector3d::Zero(), vision);
+  const auto at_rest = MakeRestMeasurement({true, true, 2}, 5, {}, Eigen::Vector3d::Zero(), vision);
+  const auto slow = MakeRestMeasurement({true, true, 10}, 5, {}, Eigen::Vector3d::Zero(), vision);
   EXPECT_DOUBLE_EQ(at_rest.sqrt_information[0] * vision.rest_velocity_std_mps, 1);
   EXPECT_DOUBLE_EQ(at_rest.sqrt_information[0], 4 * slow.sqrt_information[0]);
   EXPECT_DOUBLE_EQ(at_rest.sqrt_information[3], 4 * slow.sqrt_information[3]);
+}
+
+// GIVEN scenery so far that the flow leaves a speed above the configured deviation THEN that is the
+// velocity's deviation, and the rate keeps its own.
+TEST(RestModelTest, FarSceneryHidesASpeed) {
+  const VisionConfig vision;
+  RestVerdict verdict{true, true};
+  verdict.speed_per_depth = 0.002;
+  const auto near = MakeRestMeasurement(verdict, 5, {}, Eigen::Vector3d::Zero(), vision);
+  const auto far = MakeRestMeasurement(verdict, 50, {}, Eigen::Vector3d::Zero(), vision);
+  EXPECT_DOUBLE_EQ(near.sqrt_information[0] * vision.rest_velocity_std_mps, 1);
+  EXPECT_DOUBLE_EQ(far.sqrt_information[0] * 0.1, 1);
+  EXPECT_DOUBLE_EQ(far.sqrt_information[3], near.sqrt_information[3]);
 }
 
 }  // namespace

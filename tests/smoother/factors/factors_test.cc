@@ -136,8 +136,9 @@ TEST(ImuFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions) 
 TEST(RestFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     RandomStates random(seed);
-    const LiftedCost<RestFactor> cost(RestFactor(MakeRestMeasurement(
-        {true, seed % 2 == 0}, {random.Vector(0.1), random.Vector(1)}, random.Vector(0.3), VisionConfig())));
+    const LiftedCost<RestFactor> cost(
+        RestFactor(MakeRestMeasurement({true, seed % 2 == 0}, 5, {random.Vector(0.1), random.Vector(1)},
+                                       random.Vector(0.3), VisionConfig())));
     ExpectJacobianInAllConventions(cost, {Nav(random.Nav(3)), Bias(random.Bias())}, 1e-8);
   }
 }

@@ -95,7 +95,7 @@ DenseSystem FullSystem(const WindowFixture& fixture, const LinearPrior& prior, c
 /// The first two frames stood still, camera and body at one place (deviations 0.02 m/s and 0.005 rad/s).
 void AddRest(WindowFixture* fixture) {
   for (int i = 0; i < 2; ++i) {
-    fixture->window.frame(i).rest = MakeRestMeasurement({true, true}, {{0.01, -0.02, 0.03 * i}, {}},
+    fixture->window.frame(i).rest = MakeRestMeasurement({true, true}, 5, {{0.01, -0.02, 0.03 * i}, {}},
                                                         Eigen::Vector3d::Zero(), VisionConfig());
   }
 }

@@ -43,7 +43,7 @@ TEST(WindowTermTest, RowsOfTheSensorsAreThoseOfCeresAndNumeric) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     GnssFixture fixture(seed);
     fixture.window.frame(1).rest =
-        MakeRestMeasurement({true, true}, {fixture.random.Vector(0.1), fixture.random.Vector(1)},
+        MakeRestMeasurement({true, true}, 5, {fixture.random.Vector(0.1), fixture.random.Vector(1)},
                             fixture.random.Vector(0.3), VisionConfig());
     for (int i = 1; i <= 2; ++i) {  // at the frame, and after it
       WindowFrame& frame = fixture.window.frame(i);
