@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "smoother/sliding/smoother_estimator.h"
+#include "smoother/tracks/track_landmark.h"
+#include "smoother/tracks/track_system.h"
 
 namespace alidade {
 namespace {
