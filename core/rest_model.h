@@ -35,8 +35,8 @@ struct RestMeasurement {
                 RestModel::Jacobian* jacobian) const;
 };
 
-/// Depth of the scenery where no track has told it yet, or so far: three times that of a room [m].
-inline constexpr double kUnknownSceneDepth = 15;
+/// Depth of the scenery where no track has told it yet: that of a room [m].
+inline constexpr double kUnknownSceneDepth = 5;
 
 /// The configured deviations, larger where the verdict's flow is more than that of rest; that of the velocity
 /// also where scenery at scene_depth_m hides so slow a motion. Precondition: verdict.no_translation.
