@@ -21,8 +21,8 @@ struct RestVerdict {
   /// The largest part of the flow that was taken for none, in standard deviations of what the tracks' noise
   /// makes of it. At rest nine in ten are below 2.5; more indicates slow motion.
   double flow_deviations = 0;
-  /// Largest speed over depth of the scenery that the flow leaves, with a deviation of the tracks' noise, as
-  /// one of many frames that measure most of the same time [1/s].
+  /// Speed of the camera over depth of the scenery up to which the flow is explained: the flow plus one
+  /// deviation of the tracks' noise, as the share of one frame of a window that many frames measure [1/s].
   double speed_per_depth = 0;
 };
 
@@ -46,8 +46,8 @@ struct RestRates {
 /// Far scenery hides a motion that the IMU has measured. While the estimated velocity of the camera
 /// contradicts rest, the flow must have been below the limit for four windows.
 ///
-/// Motion so slow or scenery so far that it moves tracks by less than the limit in that time is no motion:
-/// MakeRestMeasurement allows for it. Neglected: a turn that hides a translation.
+/// A motion so slow, or scenery so far, that tracks move by less than the limit in that time is taken for
+/// rest; MakeRestMeasurement allows for it. Neglected: a turn that hides a translation.
 class RestDetector {
  public:
   RestDetector(const VisionConfig& vision, const InitConfig& init, const CameraModel& camera);

@@ -35,9 +35,6 @@ struct RestMeasurement {
                 RestModel::Jacobian* jacobian) const;
 };
 
-/// Depth of the scenery where no track has told it yet: that of a room [m].
-inline constexpr double kUnknownSceneDepth = 5;
-
 /// The configured deviations, larger where the verdict's flow is more than that of rest; that of the velocity
 /// also where scenery at scene_depth_m hides so slow a motion. Precondition: verdict.no_translation.
 [[nodiscard]] RestMeasurement MakeRestMeasurement(const RestVerdict& verdict, double scene_depth_m,

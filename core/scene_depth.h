@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 
 namespace alidade {
 
-/// Median depth of the latest tracks whose depth was determined.
+/// Depth of the scenery while too few tracks tell it: that of a room [m].
+inline constexpr double kRoomDepth = 5;
+
+/// Depth of the scenery: the median of the latest tracks whose depth was determined.
 class SceneDepth {
  public:
+  static constexpr size_t kLeastTracks = 10;
+
   void Add(double depth_m) {
     depths_m_[next_] = depth_m;
     next_ = (next_ + 1) % depths_m_.size();
@@ -17,10 +21,10 @@ class SceneDepth {
   }
   void Clear() { next_ = count_ = 0; }
 
-  /// [m]; nullopt before there are kLeast.
-  [[nodiscard]] std::optional<double> Median() const {
-    if (count_ < kLeast) {
-      return std::nullopt;
+  /// [m]; kRoomDepth before there are kLeastTracks.
+  [[nodiscard]] double Metres() const {
+    if (count_ < kLeastTracks) {
+      return kRoomDepth;
     }
     auto sorted = depths_m_;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
@@ -29,7 +33,6 @@ class SceneDepth {
   }
 
  private:
-  static constexpr size_t kLeast = 10;
   std::array<double, 64> depths_m_{};
   size_t next_ = 0;
   size_t count_ = 0;

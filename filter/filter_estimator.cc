@@ -203,7 +203,7 @@ bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
   }
   Vector6d residual;
   RestModel::Jacobian jacobian;
-  MakeRestMeasurement(rest, update_.scene_depth().Median().value_or(kUnknownSceneDepth), rest_.Rates(),
+  MakeRestMeasurement(rest, update_.scene_depth().Metres(), rest_.Rates(),
                       state_.calibration().T_BC.translation, config_.vision)
       .Evaluate(state_.nav(), state_.bias(), &residual, &jacobian);
   const int rows = rest.no_rotation ? RestModel::kRows : 3;

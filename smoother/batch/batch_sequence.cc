@@ -7,6 +7,7 @@
 #include "core/imu_propagation.h"
 #include "core/observation_plane.h"
 #include "core/pixel_noise.h"
+#include "core/scene_depth.h"
 #include "smoother/factors/imu_factor.h"
 #include "smoother/factors/measurement_factor.h"
 #include "smoother/tracks/track_landmark.h"
@@ -131,8 +132,8 @@ void BatchSequence::AddTracks(const NavEstimate& estimate, const TrackFrame& fra
   if (config_.vision.rest_updates && !frame.repeated) {
     const RestVerdict verdict = rest_.AddFrame(frame, config_.vision.pixel_noise_px, estimate, rig_.T_BC);
     if (verdict.no_translation) {
-      node.rest = MakeRestMeasurement(verdict, kUnknownSceneDepth, rest_.Rates(), rig_.T_BC.translation,
-                                      config_.vision);
+      node.rest =
+          MakeRestMeasurement(verdict, kRoomDepth, rest_.Rates(), rig_.T_BC.translation, config_.vision);
     }
   }
 }

@@ -202,8 +202,8 @@ void SmootherEstimator::DetectRest(const TrackFrame& frame) {
   const RestVerdict verdict = rest_.AddFrame(frame, pixel_noise_.px(), latest_, camera().T_BC);
   statistics_.at_rest = verdict.no_translation;
   if (verdict.no_translation) {
-    window_.newest().rest = MakeRestMeasurement(verdict, KnownDepth().value_or(kUnknownSceneDepth),
-                                                rest_.Rates(), camera().T_BC.translation, config_.vision);
+    window_.newest().rest = MakeRestMeasurement(verdict, 1 / TypicalInverseDepth(), rest_.Rates(),
+                                                camera().T_BC.translation, config_.vision);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -115,15 +114,14 @@ class SmootherEstimator final : public Estimator {
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   enum class Landmark { kReady, kWaiting, kDegenerate };
-  /// Whether the parallax gate lets a track with this landmark pass.
-  [[nodiscard]] bool BaselinesSuffice(const std::vector<FrameGeometry>& geometry, const WindowTrack& track,
-                                      const Eigen::Vector3d& landmark) const;
+  /// Largest deviation of the inverse depth of a track that the parallax gate lets pass; infinite where each
+  /// track's own depth decides.
+  [[nodiscard]] double MaxInverseDepthDeviation() const;
   /// Triangulates a track that has no landmark yet, once it has the parallax.
-  Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, WindowTrack* track) const;
+  Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, double max_inverse_depth_deviation,
+                           WindowTrack* track) const;
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
-  /// Median of the tracks that have a landmark [m]; nullopt while they are few.
-  [[nodiscard]] std::optional<double> KnownDepth() const;
-  /// Its inverse, or one to assume.
+  /// Median of the tracks that have a landmark; that of kRoomDepth while they are few.
   [[nodiscard]] double TypicalInverseDepth() const;
   Status SolveAndGate(std::vector<WindowTrack*>* tracks);
   [[nodiscard]] bool IsSuspect(size_t refused, size_t tracks) const;

@@ -104,9 +104,11 @@ bool SmootherEstimator::DepthIsKnown(const std::vector<FrameGeometry>& geometry,
 std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<FrameGeometry>& geometry,
                                                          size_t free) {
   std::vector<WindowTrack*> candidates;
+  const double max_deviation = MaxInverseDepthDeviation();
   for (auto& [id, track] : window_.tracks()) {
     if (free > 0 && track.anchor == nullptr && track.alive && track.views.size() >= kMinFeatureViews &&
-        track.views.front().frame->index == 0 && PrepareLandmark(geometry, &track) == Landmark::kReady &&
+        track.views.front().frame->index == 0 &&
+        PrepareLandmark(geometry, max_deviation, &track) == Landmark::kReady &&
         SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark) &&
         DepthInRange(track.landmark) && DepthIsKnown(geometry, track)) {
       candidates.push_back(&track);
@@ -126,9 +128,10 @@ std::vector<WindowTrack*> SmootherEstimator::NewFeatures(const std::vector<Frame
 
 std::vector<const WindowTrack*> SmootherEstimator::LeavingTracks(const std::vector<FrameGeometry>& geometry) {
   std::vector<const WindowTrack*> leaving;
+  const double max_deviation = MaxInverseDepthDeviation();
   for (auto& [id, track] : window_.tracks()) {
     if (track.anchor == nullptr && track.views.size() >= kMinViews && track.views.front().frame->index == 0 &&
-        PrepareLandmark(geometry, &track) == Landmark::kReady &&
+        PrepareLandmark(geometry, max_deviation, &track) == Landmark::kReady &&
         SolveLandmark(track.views, geometry, kernel_, kMaxLandmarkIterations, &track.landmark)) {
       leaving.push_back(&track);
     }

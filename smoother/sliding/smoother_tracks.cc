@@ -1,7 +1,11 @@
 // The tracks of a SmootherEstimator: which of them a frame uses, and which it refuses afterwards.
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
+#include "core/scene_depth.h"
 #include "smoother/sliding/smoother_estimator.h"
 #include "smoother/tracks/track_landmark.h"
 #include "smoother/tracks/track_system.h"
@@ -16,24 +20,18 @@ constexpr double kParallaxSlack = 10;
 // Largest deviation of an inverse depth in typical ones. At its own inverse depth, noise would choose: tracks
 // whose noise looks like parallax of the motion that is estimated would confirm it.
 constexpr double kMaxTypicalDeviation = 0.3;
-// Inverse depth assumed for tracks without parallax: the median of those that have it, else that of a room;
-// as uncertain as it is large.
-constexpr double kRoomDepth = 5;  // [m]
+// Tracks without parallax are assumed at the typical inverse depth, as uncertain as it is large.
 constexpr double kDepthPriorRelative = 1.0;
-constexpr size_t kMinKnownDepths = 10;
 
 }  // namespace
 
-bool SmootherEstimator::BaselinesSuffice(const std::vector<FrameGeometry>& geometry, const WindowTrack& track,
-                                         const Eigen::Vector3d& landmark) const {
-  if (config_.smoother.parallax_gate == ParallaxGate::kOwn) {
-    return true;
-  }
-  const std::optional<double> deviation = InverseDepthDeviation(track.views, geometry, kernel_, landmark);
-  return deviation && *deviation < kMaxTypicalDeviation * TypicalInverseDepth();
+double SmootherEstimator::MaxInverseDepthDeviation() const {
+  return config_.smoother.parallax_gate == ParallaxGate::kOwn ? std::numeric_limits<double>::infinity()
+                                                              : kMaxTypicalDeviation * TypicalInverseDepth();
 }
 
 SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector<FrameGeometry>& geometry,
+                                                               double max_inverse_depth_deviation,
                                                                WindowTrack* track) const {
   if (track->has_landmark) {
     return Landmark::kReady;
@@ -47,8 +45,11 @@ SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector
       !DepthInRange(landmark)) {
     return Landmark::kDegenerate;
   }
-  if (!BaselinesSuffice(geometry, *track, landmark)) {
-    return Landmark::kWaiting;
+  if (std::isfinite(max_inverse_depth_deviation)) {
+    const std::optional<double> deviation = InverseDepthDeviation(track->views, geometry, kernel_, landmark);
+    if (!deviation || !(*deviation < max_inverse_depth_deviation)) {
+      return Landmark::kWaiting;
+    }
   }
   track->landmark = landmark;
   track->has_landmark = true;
@@ -60,32 +61,29 @@ bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
   return landmark.z() >= 1 / config_.vision.max_depth_m && landmark.z() <= 1 / config_.vision.min_depth_m;
 }
 
-std::optional<double> SmootherEstimator::KnownDepth() const {
+double SmootherEstimator::TypicalInverseDepth() const {
   std::vector<double> known;
   for (const auto& [id, track] : window_.tracks()) {
     if (track.has_landmark) {
       known.push_back(track.landmark.z());
     }
   }
-  if (known.size() < kMinKnownDepths) {
-    return std::nullopt;
+  if (known.size() < SceneDepth::kLeastTracks) {
+    return 1 / kRoomDepth;
   }
   std::nth_element(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2), known.end());
-  return 1 / known[known.size() / 2];
-}
-
-double SmootherEstimator::TypicalInverseDepth() const {
-  return 1 / KnownDepth().value_or(kRoomDepth);
+  return known[known.size() / 2];
 }
 
 std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   const std::vector<FrameGeometry> geometry = Geometry();
   std::vector<WindowTrack*> selected;
   std::vector<WindowTrack*> without_depth;
+  const double max_deviation = MaxInverseDepthDeviation();
   for (auto& [id, track] : window_.tracks()) {
     track.degenerate = false;
     if (track.anchor == nullptr && track.views.size() >= kMinViews) {
-      const Landmark landmark = PrepareLandmark(geometry, &track);
+      const Landmark landmark = PrepareLandmark(geometry, max_deviation, &track);
       statistics_.features_waiting += landmark == Landmark::kWaiting ? 1 : 0;
       track.degenerate = landmark == Landmark::kDegenerate;
       statistics_.features_degenerate += track.degenerate ? 1 : 0;

@@ -9,16 +9,16 @@ TEST(SceneDepthTest, IsTheMedianOfTheLatestTracks) {
   SceneDepth depth;
   for (int i = 1; i <= 9; ++i) {
     depth.Add(i);
-    EXPECT_FALSE(depth.Median()) << "few tracks are no scenery";
+    EXPECT_EQ(depth.Metres(), kRoomDepth) << "few tracks are no scenery";
   }
   depth.Add(1000);
-  EXPECT_DOUBLE_EQ(depth.Median().value(), 6);
+  EXPECT_DOUBLE_EQ(depth.Metres(), 6);
   for (int i = 0; i < 64; ++i) {
     depth.Add(20);
   }
-  EXPECT_DOUBLE_EQ(depth.Median().value(), 20);
+  EXPECT_DOUBLE_EQ(depth.Metres(), 20);
   depth.Clear();
-  EXPECT_FALSE(depth.Median());
+  EXPECT_EQ(depth.Metres(), kRoomDepth);
 }
 
 }  // namespace
