@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/dense_solvers.h"
 #include "core/gyro_rotation.h"
@@ -50,6 +51,7 @@ void RestDetector::Clear() {
   imu_.clear();
   turned_ns_ = INT64_MIN;
   doubted_since_ns_ = INT64_MAX;
+  anchored_ = false;
 }
 
 void RestDetector::AddImu(std::span<const ImuSample> samples) {
@@ -104,12 +106,20 @@ const RestDetector::OrientedFrame* RestDetector::FrameBefore(double seconds) con
   return found;
 }
 
-bool RestDetector::ContradictsRest(const NavEstimate& estimate, const Vector3d& p_BC) const {
+double RestDetector::SpeedNis(const NavEstimate& estimate, const Vector3d& p_BC, double least_mps) const {
   const Vector3d v_WC = LeverArm{p_BC}.Velocity(estimate.nav, estimate.bias, imu_.back().gyro);
   Matrix3d variance = estimate.covariance.block<3, 3>(6, 6);
-  const double least_mps = kLeastDeviation * vision_.rest_velocity_std_mps;
   variance.diagonal().array() += least_mps * least_mps;
-  return !doubt_.Accepts(v_WC.dot(SolveSymmetric(variance, v_WC)), kVelocityDof);
+  return v_WC.dot(SolveSymmetric(variance, v_WC));
+}
+
+bool RestDetector::TellsMotion(const NavEstimate& estimate, const Vector3d& p_BC) const {
+  return !imu_.empty() && SpeedNis(estimate, p_BC, 0) > kVelocityDof;
+}
+
+bool RestDetector::ContradictsRest(const NavEstimate& estimate, const Vector3d& p_BC) const {
+  const double least_mps = kLeastDeviation * vision_.rest_velocity_std_mps;
+  return !doubt_.Accepts(SpeedNis(estimate, p_BC, least_mps), kVelocityDof);
 }
 
 bool RestDetector::DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since) {
@@ -121,17 +131,17 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
                                    const NavEstimate& estimate, const Pose& T_BC) {
   Turn(estimate.bias.gyro);
   Keep(frame);
-  RestVerdict verdict;
   const OrientedFrame* const before = FrameBefore(vision_.rest_window_s);
+  const bool anchored = std::exchange(anchored_, false);
   const ImuStatistics imu = MeasureImu(imu_);
   if (before == nullptr || imu_.size() < 5 || imu.accel_std_mps2 > vision_.rest_max_accel_std_mps2) {
-    return verdict;
+    return {};
   }
   const OrientedFrame* doubted = nullptr;
   if (ContradictsRest(estimate, T_BC.translation)) {
     doubted = FrameBefore(kWindowsInDoubt * vision_.rest_window_s);
     if (!DoubtHasLasted(frame.stamp_ns, doubted)) {
-      return verdict;
+      return {};
     }
   } else {
     doubted_since_ns_ = INT64_MAX;
@@ -140,27 +150,50 @@ RestVerdict RestDetector::AddFrame(const TrackFrame& frame, double pixel_noise_p
   // the ends of the window alone would not show it.
   const OrientedFrame* const end = frames_.data() + frame_count_;
   const OrientedFrame* const middle = before + (end - before) / 2;
+  const StillSince since{before, middle + 1 == end ? nullptr : middle, doubted,
+                         anchored ? &anchor_ : nullptr};
   RestVerdict flow;
   flow.speed_per_depth = std::numeric_limits<double>::infinity();
-  const auto flow_is_zero = [&](const auto& turn_since) {
-    const auto since = [&](const OrientedFrame& old) {
-      return FlowIsZero(old.frame, frame, turn_since(old), pixel_noise_px, &flow);
-    };
-    return since(*before) && (middle + 1 == end || since(*middle)) && (doubted == nullptr || since(*doubted));
-  };
-  const auto uncompensated = [](const OrientedFrame&) -> Matrix3d { return Matrix3d::Identity(); };
-  const auto compensated = [&](const OrientedFrame& old) -> Matrix3d {
-    return T_BC.rotation.transpose() * R_0B_.transpose() * old.R_0B * T_BC.rotation;
-  };
+  RestVerdict verdict;
   const bool calm_gyro = imu.gyro_std_radps < init_.static_max_gyro_std_radps;
   if (calm_gyro && TurnMayBeBias(imu.mean_gyro, estimate)) {
-    flow.no_translation = flow.no_rotation = flow_is_zero(uncompensated);
-    return flow;
+    flow.no_translation = flow.no_rotation = StoodStill(frame, since, nullptr, pixel_noise_px, &flow);
+    verdict = flow;
+  } else {
+    flow.no_translation = StoodStill(frame, since, &T_BC.rotation, pixel_noise_px, &flow);
+    verdict = flow;
+    flow.no_rotation =
+        flow.no_translation && calm_gyro && StoodStill(frame, since, nullptr, pixel_noise_px, &flow);
+    verdict = flow.no_rotation ? flow : verdict;
   }
-  flow.no_translation = flow_is_zero(compensated);
-  const RestVerdict turning = flow;
-  flow.no_rotation = flow.no_translation && calm_gyro && flow_is_zero(uncompensated);
-  return flow.no_rotation ? flow : turning;
+  if (verdict.no_translation && !anchored_) {
+    anchor_ = *before;
+    anchored_ = true;
+  }
+  return verdict;
+}
+
+bool RestDetector::StoodStill(const TrackFrame& frame, const StillSince& since, const Matrix3d* R_BC,
+                              double pixel_noise_px, RestVerdict* flow) {
+  const auto is_zero = [&](const OrientedFrame& old, RestVerdict* of_pair) {
+    Matrix3d R_now_before = Matrix3d::Identity();
+    if (R_BC != nullptr) {
+      R_now_before = R_BC->transpose() * R_0B_.transpose() * old.R_0B * *R_BC;
+    }
+    return FlowIsZero(old.frame, frame, R_now_before, pixel_noise_px, of_pair);
+  };
+  for (const OrientedFrame* old : {since.before, since.middle, since.doubted}) {
+    if (old != nullptr && !is_zero(*old, flow)) {
+      return false;
+    }
+  }
+  RestVerdict whole;
+  whole.speed_per_depth = flow->speed_per_depth;
+  if (since.anchor != nullptr && is_zero(*since.anchor, &whole)) {
+    flow->speed_per_depth = whole.speed_per_depth;
+    anchored_ = true;
+  }
+  return true;
 }
 
 RestRates RestDetector::Rates() const {

@@ -23,6 +23,7 @@ struct RestVerdict {
   double flow_deviations = 0;
   /// Speed of the camera over depth of the scenery up to which the flow is explained: the flow plus one
   /// deviation of the tracks' noise, as the share of one frame of a window that many frames measure [1/s].
+  /// The longer the rest lasts, the less.
   double speed_per_depth = 0;
 };
 
@@ -61,6 +62,9 @@ class RestDetector {
   RestVerdict AddFrame(const TrackFrame& frame, double pixel_noise_px, const NavEstimate& estimate,
                        const Pose& T_BC);
   void Clear();
+  /// Whether the estimated velocity of the camera, at the last inertial sample, is larger than its error is
+  /// expected to be.
+  [[nodiscard]] bool TellsMotion(const NavEstimate& estimate, const Eigen::Vector3d& p_BC) const;
 
   /// Over the present window.
   [[nodiscard]] RestRates Rates() const;
@@ -70,6 +74,13 @@ class RestDetector {
     TrackFrame frame;
     Eigen::Matrix3d R_0B;  ///< attitude against that of the first sample
   };
+  /// The frames since which the flow is asked for; those that are not are null.
+  struct StillSince {
+    const OrientedFrame* before;
+    const OrientedFrame* middle;
+    const OrientedFrame* doubted;
+    const OrientedFrame* anchor;  ///< need not be still
+  };
   struct CommonTrack {
     Eigen::Vector2d before;
     Eigen::Vector2d flow;
@@ -78,12 +89,19 @@ class RestDetector {
   void Keep(const TrackFrame& frame);
   /// The newest frame that is at least this much older than the newest one; null when none is.
   [[nodiscard]] const OrientedFrame* FrameBefore(double seconds) const;
-  /// Whether the camera moves according to the estimate.
+  /// Squared deviations of the camera's velocity from zero, `least_mps` added to its own in each axis.
+  [[nodiscard]] double SpeedNis(const NavEstimate& estimate, const Eigen::Vector3d& p_BC,
+                                double least_mps) const;
+  /// Whether the camera moves according to the estimate, beyond doubt.
   [[nodiscard]] bool ContradictsRest(const NavEstimate& estimate, const Eigen::Vector3d& p_BC) const;
   /// Whether the estimate has contradicted rest from the frame `since`, if there is one, to the one at hand.
   [[nodiscard]] bool DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since);
   /// Carries R_0B_ on to the last sample.
   void Turn(const Eigen::Vector3d& gyro_bias_radps);
+  /// Whether the flow since these frames is zero. R_BC: attitude of the camera in B; null: the rig's turn
+  /// stays in the flow.
+  [[nodiscard]] bool StoodStill(const TrackFrame& frame, const StillSince& since, const Eigen::Matrix3d* R_BC,
+                                double pixel_noise_px, RestVerdict* flow);
   /// R_now_before: turn of the camera between the frames; identity compensates nothing. What the verdict says
   /// of the flow becomes that of all pairs of frames so far.
   [[nodiscard]] bool FlowIsZero(const TrackFrame& before, const TrackFrame& now,
@@ -101,6 +119,8 @@ class RestDetector {
   std::vector<OrientedFrame> frames_;  ///< the first frame_count_, oldest first; the rest is spare memory
   size_t frame_count_ = 0;
   std::vector<ImuSample> imu_;
+  OrientedFrame anchor_;  ///< the first frame of the rest that lasts, unless tracks or flow since then ended
+  bool anchored_ = false;
   Eigen::Matrix3d R_0B_ = Eigen::Matrix3d::Identity();
   TimeNs turned_ns_ = INT64_MIN;         ///< stamp of the sample up to which R_0B_ was carried
   TimeNs doubted_since_ns_ = INT64_MAX;  ///< stamp of the first frame of those that the estimate contradicts

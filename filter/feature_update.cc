@@ -184,7 +184,9 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
       !keeper_.StateAllows(state, p_W, point_jacobian_.topRows<3>(), dense.topRows(3), clones_)) {
     return TrackOutcome::kWaiting;
   }
-  scene_depth_.Add((p_W - poses_.back().translation).norm());
+  if (learn_scene_depth_) {
+    scene_depth_.Add((p_W - poses_.back().translation).norm());
+  }
   const Block block = AddBlock(static_cast<int>(2 * views - 3));
   for (Index k = 0; k < views; ++k) {
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =

@@ -76,8 +76,9 @@ class FeatureUpdate {
   /// does not stand still (TrackMemory::Drifts).
   void Remember(const FilterState& state, size_t block, double weight, double nis, Track* track);
   [[nodiscard]] const TrackMemoryKeeper& keeper() const { return keeper_; }
-  /// Of the tracks that all their views define.
+  /// Of the tracks that all their views define, while it is learnt.
   [[nodiscard]] const SceneDepth& scene_depth() const { return scene_depth_; }
+  void LearnSceneDepth(bool learn) { learn_scene_depth_ = learn; }
   void ForgetSceneDepth() { scene_depth_.Clear(); }
   [[nodiscard]] int rows() const { return rows_; }
   /// rows() x error dimension; H of y = H xi + n, n ~ N(0, I). Until Prepare.
@@ -135,6 +136,7 @@ class FeatureUpdate {
   std::vector<TracedBlock> traces_;
   TrackMemoryKeeper keeper_;
   SceneDepth scene_depth_;
+  bool learn_scene_depth_ = false;
   std::vector<TrackMemory> successors_;  ///< of the blocks; grows, never shrinks
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd innovation_;

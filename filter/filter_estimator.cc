@@ -127,10 +127,7 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
       tracks_.AddFrame(state_.calibration().camera, pixel_noise_, serial_, frame.observations);
   bool finite = true;
   if (config_.vision.rest_updates) {
-    const RestVerdict rest =
-        rest_.AddFrame(frame, pixel_noise_.px(), state_.Estimate(), state_.calibration().T_BC);
-    statistics_.at_rest = rest.no_translation;
-    finite = UpdateAtRest(rest);
+    finite = UpdateAtRest(frame);
   }
   if (config_.filter.update_iterations > 1 || config_.filter.max_direction_deviation > 0 ||
       config_.filter.clone_policy == ClonePolicy::kSpread) {
@@ -197,14 +194,19 @@ bool FilterEstimator::IsDue(const Track& track, int leaving_serial) const {
   return lost || track.views.front().serial == leaving_serial;
 }
 
-bool FilterEstimator::UpdateAtRest(const RestVerdict& rest) {
+bool FilterEstimator::UpdateAtRest(const TrackFrame& frame) {
+  const NavEstimate estimate = state_.Estimate();
+  const Pose& T_BC = state_.calibration().T_BC;
+  // From a velocity that is all error, still scenery looks far, and ever farther.
+  update_.LearnSceneDepth(rest_.TellsMotion(estimate, T_BC.translation));
+  const RestVerdict rest = rest_.AddFrame(frame, pixel_noise_.px(), estimate, T_BC);
+  statistics_.at_rest = rest.no_translation;
   if (!rest.no_translation) {
     return true;
   }
   Vector6d residual;
   RestModel::Jacobian jacobian;
-  MakeRestMeasurement(rest, update_.scene_depth().Metres(), rest_.Rates(),
-                      state_.calibration().T_BC.translation, config_.vision)
+  MakeRestMeasurement(rest, update_.scene_depth().Metres(), rest_.Rates(), T_BC.translation, config_.vision)
       .Evaluate(state_.nav(), state_.bias(), &residual, &jacobian);
   const int rows = rest.no_rotation ? RestModel::kRows : 3;
   rest_rows_.setZero(rows, state_.covariance().dimension());

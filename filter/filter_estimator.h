@@ -87,7 +87,7 @@ class FilterEstimator : public Estimator {
   /// False as above.
   bool UpdateWithDueTracks(int leaving_serial);
   /// Zero velocity and zero angular rate, where the rest detector finds them. False as above.
-  bool UpdateAtRest(const RestVerdict& rest);
+  bool UpdateAtRest(const TrackFrame& frame);
   /// Normalised innovation squared of every appended track, against the state before the update.
   void MeasureBlocks(const PreparedRows& rows);
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.

@@ -109,6 +109,41 @@ TEST_F(RestDetectorTest, SlowMotionIsDetected) {
   EXPECT_LT(still.speed_per_depth, verdict.speed_per_depth);
 }
 
+// GIVEN rest or slow motion that lasts THEN the flow is compared with that of its beginning, as far as it is
+// none: the speed that it leaves is less and less, but never less than that of the motion.
+TEST_F(RestDetectorTest, ALongRestLeavesLessSpeed) {
+  double short_rest = 0;
+  double long_rest = 0;
+  double long_turn = 0;
+  for (int run = 0; run < 8; ++run) {
+    short_rest += After(1, Vector3d::Zero(), 0, 0.1).speed_per_depth;
+    long_rest += After(16, Vector3d::Zero(), 0, 0.1).speed_per_depth;
+    long_turn += After(16, Vector3d::Zero(), 1e-3, 0.1).speed_per_depth;
+  }
+  EXPECT_LT(long_rest, 0.4 * short_rest);
+  EXPECT_LT(long_turn, short_rest) << "the gyroscope's noise adds to the flow";
+  constexpr double kDepth = 4;  // [m]
+  for (const double speed_mps : {0.001, 0.003, 0.01}) {
+    for (double seconds = 1; seconds < 20; seconds *= 1.3) {
+      const RestVerdict verdict = After(seconds, Vector3d(speed_mps, 0, 0), 0, 0.1);
+      EXPECT_TRUE(verdict.no_translation);
+      EXPECT_GT(verdict.speed_per_depth * kDepth, speed_mps) << seconds << " s";
+    }
+  }
+}
+
+TEST_F(RestDetectorTest, MotionIsToldWhereVelocityExceedsItsDeviation) {
+  RestDetector detector(VisionConfig(), InitConfig(), camera_);
+  SetVelocity(Vector3d(0.2, 0, 0), 0.1);
+  EXPECT_FALSE(detector.TellsMotion(estimate_, Vector3d::Zero())) << "before the first inertial sample";
+  const std::vector<ImuSample> imu = {{0, Vector3d(0.01, 0.01, 1), Vector3d(0, 0, 9.81)}};
+  detector.AddImu(imu);
+  EXPECT_TRUE(detector.TellsMotion(estimate_, Vector3d::Zero()));
+  SetVelocity(Vector3d(0.15, 0, 0), 0.1);
+  EXPECT_FALSE(detector.TellsMotion(estimate_, Vector3d::Zero()));
+  EXPECT_TRUE(detector.TellsMotion(estimate_, Vector3d(0, -0.1, 0))) << "the camera moves on its lever arm";
+}
+
 TEST_F(RestDetectorTest, FlowIsTestedAgainstTheGivenNoise) {
   const RandomStream start = random_;
   const double usual = AfterOneSecond(Vector3d::Zero(), 0, 0.1).flow_deviations;

@@ -112,14 +112,20 @@ TEST(FilterEstimatorTest, StandingStillStays) {
   sim.rest_s = 25;
   sim.duration_s = 27.5;  // it sets off in the last two seconds
   sim.path_m = 1;
-  const Dataset dataset = test::SimulateOrDie(sim, 10);
   EstimatorConfig config = FilterPreset(FilterLandmark::kPoseOnlyMulti, UpdateTiming::kImmediate, 4);
-  const ScenarioResult result = RunFilter(config, dataset, 10);
-  ASSERT_TRUE(result.status.ok());
-  EXPECT_LT(result.max_position_m, 0.05);
-  config.vision.rest_updates = false;
-  EXPECT_GT(RunFilter(config, dataset, 10).max_position_m, 0.1)
-      << "without the rest updates nothing holds it";
+  constexpr unsigned kRuns = 10;
+  double mean_m = 0;
+  for (unsigned seed = 10; seed < 10 + kRuns; ++seed) {
+    const Dataset dataset = test::SimulateOrDie(sim, seed);
+    config.vision.rest_updates = true;
+    const ScenarioResult result = RunFilter(config, dataset, seed);
+    ASSERT_TRUE(result.status.ok());
+    mean_m += result.max_position_m / kRuns;
+    config.vision.rest_updates = false;
+    EXPECT_GT(RunFilter(config, dataset, seed).max_position_m, 0.1)
+        << "without the rest updates nothing holds it, seed " << seed;
+  }
+  EXPECT_LT(mean_m, 0.06);
 }
 
 TEST(FilterEstimatorTest, OutliersAreGated) {
