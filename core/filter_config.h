@@ -14,6 +14,7 @@ enum class BaseReuse {
   kLimit,     ///< at most max_base_rounds rounds a base
   kDisjoint,  ///< never re-used: a new base each round
 };
+enum class UpdatePrecision { kDouble, kSingle };
 enum class ClonePolicy { kOldest, kKeepBases, kAlternate, kSpread };
 /// What an immediate update keeps of the landmark (docs/pose_only.md).
 enum class TrackMemoryPolicy {
@@ -38,6 +39,7 @@ struct FilterConfig {
   ClonePolicy clone_policy = ClonePolicy::kKeepBases;
   int refine_iterations = 5;
   int update_iterations = 1;
+  UpdatePrecision update_precision = UpdatePrecision::kDouble;
   double max_direction_deviation = 0;
   bool first_estimates = false;
   int slam_features = 0;

@@ -28,7 +28,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
              InitialCalibration(config.calibration, GivenCamera(rig_, config.vision),
                                 AntennaToWatch(config, rig)),
              {config.filter.window + 1, config.filter.slam_features, config.gnss.enabled,
-              config.filter.max_direction_deviation > 0}),
+              config.filter.max_direction_deviation > 0, config.filter.update_precision}),
       update_(config.filter, config.vision, config.filter.window + 1, state_.layout().size()),
       slam_(config.filter, config.filter.window + 1),
       tracks_(config.filter.window + 1, config.filter.track_memory != TrackMemoryPolicy::kNone,

@@ -30,7 +30,7 @@ FilterState::FilterState(ErrorConvention convention, bool first_estimates, Calib
       calibration_error_(given_.error),
       covariance_(SquareRootCovariance::kCore + 6 * limits.clones + 3 * limits.landmarks +
                       (limits.clock ? kClockSize : 0) + given_.layout.size(),
-                  3 * limits.landmarks + (limits.clock ? kClockSize : 0)),
+                  3 * limits.landmarks + (limits.clock ? kClockSize : 0), limits.precision),
       strain_(limits.imu_strain ? limits.clones : 0) {
   clones_.reserve(static_cast<size_t>(limits.clones));
   landmarks_.reserve(static_cast<size_t>(limits.landmarks));

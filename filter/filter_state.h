@@ -78,6 +78,7 @@ class FilterState {
     int landmarks = 0;
     bool clock = false;
     bool imu_strain = false;  ///< whether strain() is followed
+    UpdatePrecision precision = UpdatePrecision::kDouble;
   };
 
   FilterState(ErrorConvention convention, bool first_estimates, const Pose& T_BC, Limits limits);

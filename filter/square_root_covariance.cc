@@ -16,7 +16,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-SquareRootCovariance::SquareRootCovariance(int capacity, int max_leading)
+namespace {
+
+// More than the rows that an update usually has; no power of two, whose columns would share cache lines.
+constexpr Index kUsualRows = 520;
+
+}  // namespace
+
+SquareRootCovariance::SquareRootCovariance(int capacity, int max_leading, UpdatePrecision precision)
     : max_leading_(max_leading),
       origin_(max_leading),
       factor_(MatrixXd::Zero(capacity, capacity)),
@@ -25,7 +32,13 @@ SquareRootCovariance::SquareRootCovariance(int capacity, int max_leading)
       projected_(VectorXd::Zero(capacity)),
       whitened_(VectorXd::Zero(capacity)),
       step_(VectorXd::Zero(capacity)),
-      reflection_(VectorXd::Zero(capacity)) {
+      reflection_(VectorXd::Zero(capacity)),
+      precision_(precision) {
+  if (precision == UpdatePrecision::kSingle) {
+    single_factor_.setZero(capacity, capacity);
+    single_information_.setZero(capacity, capacity);
+    single_rows_.resize(kUsualRows, capacity);
+  }
   CHECK_GE(capacity, kCore + max_leading);
   UseOneThreadPerBlasCall();
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "core/filter_config.h"
 #include "core/lie.h"
 #include "core/status.h"
 #include "filter/prepared_rows.h"
@@ -19,8 +21,10 @@ class SquareRootCovariance {
  public:
   static constexpr int kCore = 15;
 
-  /// `capacity`: largest dimension; `max_leading` of it may be leading blocks.
-  explicit SquareRootCovariance(int capacity, int max_leading = 0);
+  /// `capacity`: largest dimension; `max_leading` of it may be leading blocks. precision: of the products and
+  /// factorisations of Prepare, Factor and Commit; what is kept is in double precision.
+  explicit SquareRootCovariance(int capacity, int max_leading = 0,
+                                UpdatePrecision precision = UpdatePrecision::kDouble);
 
   /// Restarts with the core block alone. kInput: not symmetric positive semi-definite to rounding.
   Status Reset(const Matrix15d& covariance);
@@ -125,15 +129,27 @@ class SquareRootCovariance {
                       const Eigen::Matrix<double, kSize, kSize>& noise_root);
   void RemoveLeading(int first, int size);
   void PrepareSparse(Eigen::Ref<Eigen::MatrixXd> rows_in_place);
-  /// The part of A^T A that the columns from `first` on make, in the upper left of information_. Rows before
-  /// `sparse_from` are zero left of first_dense, the others left of first_sparse.
-  void FormInformation(const Eigen::Ref<const Eigen::MatrixXd>& rows, int sparse_from, int first_dense,
-                       int first_sparse);
-  /// S <- S U^-1 for the columns from `first` on; U is information_.
+  /// The first columns of A that are not zero, in the rows before `sparse_from` and in those from there on.
+  struct SeenColumns {
+    int dense;
+    int sparse;
+    int sparse_from;
+    [[nodiscard]] int first() const { return std::min(dense, sparse); }
+  };
+  /// U of I + A^T A over the columns from seen.first() on, in the upper left of `information`. rows: A from
+  /// that column on. False where it is not finite, not positive definite, or the diagonal of A^T A is larger
+  /// than `largest`.
+  template <typename Scalar>
+  bool FactorInformation(const Scalar* rows, int lda, const SeenColumns& seen, int count, Scalar largest,
+                         Eigen::Matrix<Scalar, -1, -1>* information);
+  /// The same in single_information_, and in information_ what it gives.
+  bool FactorInSingle(const Eigen::Ref<const Eigen::MatrixXd>& rows, const SeenColumns& seen);
+  /// The last `active` columns of the rows, and the part of S from row and column `first` on, in single
+  /// precision.
+  Eigen::Ref<Eigen::MatrixXf> SingleRows(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Index active);
+  float* SingleFactor(int first);
+  /// S <- S U^-1 for the columns from `first` on; overwrites U above its diagonal blocks.
   void DivideByInformationRoot(int first);
-  /// The same within rows and columns [first + begin, first + begin + size) of S; overwrites U above its
-  /// diagonal blocks.
-  void DivideTriangle(int first, int begin, int size);
 
   int dimension_ = 0;
   int leading_ = 0;
@@ -149,6 +165,11 @@ class SquareRootCovariance {
   std::vector<std::pair<int, double>> entries_;  // scratch of PrepareSparse: column and value
   std::vector<size_t> row_ends_;
   Eigen::VectorXd reflection_;
+  UpdatePrecision precision_;
+  bool in_single_ = false;  // whether U is in single_information_
+  Eigen::MatrixXf single_factor_;
+  Eigen::MatrixXf single_information_;
+  Eigen::MatrixXf single_rows_;
   Eigen::MatrixXd gate_;  // scratch of NormalizedInnovationSquared
   Eigen::VectorXd gated_;
 };

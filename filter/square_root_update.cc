@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "filter/square_root_covariance.h"
+#include "filter/update_kernels.h"
 
 // The Kalman update of SquareRootCovariance.
 
@@ -16,6 +17,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+// Largest diagonal of A^T A, beside the identity, in single precision: it then holds the identity to 1e-3.
+constexpr float kLargestInSingle = 1e4F;
 
 int LeadingZeroColumns(const Eigen::Ref<const MatrixXd>& matrix) {
   int first = 0;
@@ -34,10 +38,16 @@ PreparedRows SquareRootCovariance::Prepare(Eigen::Ref<MatrixXd> rows, Eigen::Ref
   const int count = static_cast<int>(rows.rows());
   const int dense = sparse_from < 0 ? count : sparse_from;
   const int first = LeadingZeroColumns(rows.topRows(dense));
-  if (first < dimension_) {
-    cblas_dtrmm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, dense, dimension_ - first,
-                1.0, Data(first, first), capacity(), rows.data() + first * rows.outerStride(),
-                static_cast<int>(rows.outerStride()));
+  const int active = dimension_ - first;
+  if (active > 0 && precision_ == UpdatePrecision::kSingle) {
+    auto single = SingleRows(rows.topRows(dense), active);
+    UpdateKernels<float>::TimesUpper(single.data(), static_cast<int>(single.outerStride()), dense,
+                                     SingleFactor(first), capacity(), active);
+    rows.topRows(dense).rightCols(active) = single.cast<double>();
+  } else if (active > 0) {
+    UpdateKernels<double>::TimesUpper(rows.data() + first * rows.outerStride(),
+                                      static_cast<int>(rows.outerStride()), dense, Data(first, first),
+                                      capacity(), active);
   }
   if (dense < count) {
     PrepareSparse(rows.bottomRows(count - dense));
@@ -101,59 +111,88 @@ double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& pre
   return gated_.head(rows).squaredNorm();
 }
 
-void SquareRootCovariance::FormInformation(const Eigen::Ref<const MatrixXd>& rows, int sparse_from,
-                                           int first_dense, int first_sparse) {
-  const int lda = static_cast<int>(rows.outerStride());
-  const int first = std::min(first_dense, first_sparse);
-  const int count = static_cast<int>(rows.rows());
-  const auto accumulate = [&](int row, int end, int from, double beta) {
-    double* m = information_.data() + static_cast<Index>(from - first) * (capacity() + 1);
-    cblas_dsyrk(CblasColMajor, CblasUpper, CblasTrans, dimension_ - from, end - row, 1.0,
-                rows.data() + row + static_cast<Index>(from) * lda, lda, beta, m, capacity());
+template <typename Scalar>
+bool SquareRootCovariance::FactorInformation(const Scalar* rows, int lda, const SeenColumns& seen, int count,
+                                             Scalar largest, Eigen::Matrix<Scalar, -1, -1>* information) {
+  using Kernels = UpdateKernels<Scalar>;
+  const int first = seen.first();
+  const auto accumulate = [&](int row, int end, int from, Scalar beta) {
+    Scalar* m = information->data() + static_cast<Index>(from - first) * (capacity() + 1);
+    Kernels::AddGram(rows + row + static_cast<Index>(from - first) * lda, lda, end - row, beta, m, capacity(),
+                     dimension_ - from);
   };
   // The wider part first: it overwrites.
-  if (first_dense <= first_sparse) {
-    accumulate(0, sparse_from, first_dense, 0.0);
-    accumulate(sparse_from, count, first_sparse, 1.0);
+  if (seen.dense <= seen.sparse) {
+    accumulate(0, seen.sparse_from, seen.dense, 0);
+    accumulate(seen.sparse_from, count, seen.sparse, 1);
   } else {
-    accumulate(sparse_from, count, first_sparse, 0.0);
-    accumulate(0, sparse_from, first_dense, 1.0);
+    accumulate(seen.sparse_from, count, seen.sparse, 0);
+    accumulate(0, seen.sparse_from, seen.dense, 1);
   }
+  const int active = dimension_ - first;
+  auto diagonal = information->diagonal().head(active);
+  if (!diagonal.allFinite() || diagonal.maxCoeff() > largest) {
+    return false;
+  }
+  diagonal.array() += 1;
+  return Kernels::Cholesky(information->data(), capacity(), active);
+}
+
+bool SquareRootCovariance::FactorInSingle(const Eigen::Ref<const MatrixXd>& rows, const SeenColumns& seen) {
+  const Index active = dimension_ - seen.first();
+  const auto single = SingleRows(rows, active);
+  if (!FactorInformation<float>(single.data(), static_cast<int>(single.outerStride()), seen,
+                                static_cast<int>(rows.rows()), kLargestInSingle, &single_information_)) {
+    return false;
+  }
+  for (Index column = 0; column < active; ++column) {
+    information_.col(column).head(column + 1) =
+        single_information_.col(column).head(column + 1).cast<double>();
+  }
+  return true;
+}
+
+Eigen::Ref<Eigen::MatrixXf> SquareRootCovariance::SingleRows(const Eigen::Ref<const MatrixXd>& rows,
+                                                             Index active) {
+  if (single_rows_.rows() < rows.rows()) {
+    single_rows_.resize(std::max(rows.rows(), 2 * single_rows_.rows()), capacity());
+  }
+  auto single = single_rows_.topLeftCorner(rows.rows(), active);
+  single = rows.rightCols(active).cast<float>();
+  return single;
+}
+
+float* SquareRootCovariance::SingleFactor(int first) {
+  for (int column = first; column < dimension_; ++column) {
+    const int rows = column - first + 1;
+    auto single = single_factor_.col(column - first).head(dimension_ - first);
+    single.head(rows) = Part(first, column, rows, 1).cast<float>();
+    single.tail(single.size() - rows).setZero();
+  }
+  return single_factor_.data();
 }
 
 void SquareRootCovariance::DivideByInformationRoot(int first) {
   const int active = dimension_ - first;
-  const double* u = information_.data();
-  if (first > 0) {
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, first, active, 1.0, u,
-                capacity(), Data(0, first), capacity());
-  }
-  DivideTriangle(first, 0, active);
-}
-
-void SquareRootCovariance::DivideTriangle(int first, int begin, int size) {
-  // Dividend, divisor and quotient are upper triangular. By halves,
-  //   [X11 X12; 0 X22] [U11 U12; 0 U22] = [S11 S12; 0 S22],
-  // most of the work skips the zeros. No product of full matrices: OpenBLAS allocates for the small ones.
-  constexpr int kSmall = 48;
-  double* s = Data(first + begin, first + begin);
-  double* u = information_.data() + static_cast<Index>(begin) * (capacity() + 1);
-  if (size <= kSmall) {
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, size, size, 1.0, u,
-                capacity(), s, capacity());
+  const int ld = capacity();
+  if (!in_single_) {
+    using Kernels = UpdateKernels<double>;
+    Kernels::DivideByUpper(Data(0, first), ld, first, information_.data(), ld, active);
+    Kernels::DivideTriangle(Data(first, first), ld, information_.data(), ld, active);
     return;
   }
-  const int head = size / 2;
-  const int tail = size - head;
-  DivideTriangle(first, begin, head);
-  const Index corner = static_cast<Index>(head) * capacity();
-  cblas_dtrmm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit, head, tail, 1.0, s,
-              capacity(), u + corner, capacity());
-  Part(first + begin, first + begin + head, head, tail) -=
-      information_.block(begin, begin + head, head, tail);
-  cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, head, tail, 1.0,
-              u + corner + head, capacity(), s + corner, capacity());
-  DivideTriangle(first, begin + head, tail);
+  using Kernels = UpdateKernels<float>;
+  if (first > 0) {
+    auto above = single_factor_.topLeftCorner(first, active);
+    above = Part(0, first, first, active).cast<float>();
+    Kernels::DivideByUpper(above.data(), ld, first, single_information_.data(), ld, active);
+    Part(0, first, first, active) = above.cast<double>();
+  }
+  Kernels::DivideTriangle(SingleFactor(first), ld, single_information_.data(), ld, active);
+  for (int column = first; column < dimension_; ++column) {
+    const int rows = column - first + 1;
+    Part(first, column, rows, 1) = single_factor_.col(column - first).head(rows).cast<double>();
+  }
 }
 
 bool SquareRootCovariance::Apply(const PreparedRows& prepared, Eigen::Ref<VectorXd> correction, double* nis,
@@ -171,14 +210,14 @@ bool SquareRootCovariance::Factor(const PreparedRows& prepared, double* nis, dou
   const Eigen::Ref<VectorXd>& y = prepared.innovation_;
   const int rows = static_cast<int>(prepared_rows.rows());
   const int lda = static_cast<int>(prepared_rows.outerStride());
-  const int n = dimension_;
   const int dense = prepared.sparse_from_;
   // Where the rows see nothing, the corresponding part of M is the identity.
-  const int first_dense = LeadingZeroColumns(prepared_rows.topRows(dense));
-  const int first_sparse = LeadingZeroColumns(prepared_rows.bottomRows(rows - dense));
-  const int first = std::min(first_dense, first_sparse);
-  const int active = n - first;
+  const SeenColumns seen{LeadingZeroColumns(prepared_rows.topRows(dense)),
+                         LeadingZeroColumns(prepared_rows.bottomRows(rows - dense)), dense};
+  const int first = seen.first();
+  const int active = dimension_ - first;
   factored_ = first;
+  in_single_ = false;
   if (nis != nullptr) {
     *nis = y.squaredNorm();
   }
@@ -188,20 +227,18 @@ bool SquareRootCovariance::Factor(const PreparedRows& prepared, double* nis, dou
   if (active == 0) {
     return true;
   }
+  if (!y.allFinite()) {
+    return false;
+  }
   const double* a = prepared_rows.data() + static_cast<Index>(first) * lda;
+  in_single_ = precision_ == UpdatePrecision::kSingle && FactorInSingle(prepared_rows, seen);
+  if (!in_single_ && !FactorInformation<double>(a, lda, seen, rows, std::numeric_limits<double>::infinity(),
+                                                &information_)) {
+    return false;
+  }
+  const auto diagonal = information_.diagonal().head(active);
   double* m = information_.data();
   const int ldm = capacity();
-  FormInformation(prepared_rows, dense, first_dense, first_sparse);
-  auto diagonal = information_.diagonal().head(active);
-  if (!diagonal.allFinite() || !y.allFinite()) {
-    return false;
-  }
-  diagonal.array() += 1.0;
-  int info = 0;
-  LAPACK_dpotrf("U", &active, m, &ldm, &info);
-  if (info != 0) {
-    return false;
-  }
   if (log_det != nullptr) {
     *log_det = 2 * diagonal.array().log().sum();
   }

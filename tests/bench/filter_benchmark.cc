@@ -28,6 +28,12 @@ EstimatorConfig AlidadeFilter() {
                               {});
 }
 
+EstimatorConfig AlidadeFilterInSingle() {
+  EstimatorConfig config = AlidadeFilter();
+  config.filter.update_precision = UpdatePrecision::kSingle;
+  return config;
+}
+
 /// One iteration is one camera frame of the figure-8 in the steady state: propagation over ten IMU samples,
 /// cloning, update, marginalisation. Arguments: window, tracks.
 void FilterFrame(benchmark::State& state, EstimatorConfig (*preset)()) {
@@ -95,6 +101,11 @@ void GrowthSizes(benchmark::internal::Benchmark* benchmark) {
 }
 
 BENCHMARK_CAPTURE(FilterFrame, alidade_filter, AlidadeFilter)->Apply(GrowthSizes);
+BENCHMARK_CAPTURE(FilterFrame, alidade_filter_single, AlidadeFilterInSingle)
+    ->Args({25, 150})
+    ->Args({50, 150})
+    ->Args({25, 400})
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(FilterFrame, po_multi_immediate, Immediate)->Apply(Sizes);
 BENCHMARK_CAPTURE(FilterFrame, msckf_delayed, DelayedMsckf)->Args({25, 150})->Unit(benchmark::kMillisecond);
 

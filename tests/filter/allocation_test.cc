@@ -2,6 +2,9 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <ostream>
+#include <string>
+#include <vector>
 
 #include "eval/config/config_yaml.h"
 #include "filter/filter_estimator.h"
@@ -47,11 +50,23 @@ void* realloc(void* block, size_t size) {
 namespace alidade {
 namespace {
 
-class SteadyState : public testing::TestWithParam<const char*> {};
+struct Variant {
+  std::string preset;
+  std::vector<std::string> overrides;
+};
+
+void PrintTo(const Variant& variant, std::ostream* out) {
+  *out << variant.preset << (variant.overrides.empty() ? "" : "_in_single_precision");
+}
+
+class SteadyState : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(Presets, SteadyState,
-                         testing::Values("alidade_filter", "invio_l10_all", "invio_l5_at", "po_invio_multi",
-                                         "po_invio_two", "pockf", "openvins_class"),
-                         [](const auto& preset) { return std::string(preset.param); });
+                         testing::Values(Variant{"alidade_filter", {}},
+                                         Variant{"alidade_filter", {"filter.update_precision=single"}},
+                                         Variant{"invio_l10_all", {}}, Variant{"invio_l5_at", {}},
+                                         Variant{"po_invio_multi", {}}, Variant{"po_invio_two", {}},
+                                         Variant{"pockf", {}}, Variant{"openvins_class", {}}),
+                         [](const auto& variant) { return testing::PrintToString(variant.param); });
 
 // GIVEN a filter that has run two rounds of the figure-8 WHEN it runs on THEN neither propagation nor update
 // asks for memory.
@@ -61,7 +76,8 @@ TEST_P(SteadyState, AllocatesNothing) {
   sim.path_m = 78.6;
   const Dataset dataset = test::SimulateOrDie(sim, 1);
   const Result<EstimatorConfig> config = LoadEstimatorConfig(
-      std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/" + GetParam() + ".yaml", {});
+      std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/" + GetParam().preset + ".yaml",
+      GetParam().overrides);
   ASSERT_TRUE(config.ok()) << config.message();
   FilterEstimator filter(*config, dataset.rig);
   ASSERT_TRUE(filter.Initialize(test::DrawInitialState(dataset, 1)).ok());
