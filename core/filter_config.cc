@@ -55,10 +55,12 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
                    "largest number of linearisations of a visual update; more than one only where the "
                    "correction is too large for one"},
                   &update_iterations, 1, 50);
-  visitor.Enumeration(
-      {"update_precision", "-",
-       "of the products and factorisations of a visual update; the covariance is kept in double precision"},
-      &update_precision, {{"double", UpdatePrecision::kDouble}, {"single", UpdatePrecision::kSingle}});
+  visitor.Enumeration({"update_precision", "-",
+                       "of the products and factorisations of a visual update while the window's shape is "
+                       "known; the covariance is "
+                       "kept in double precision"},
+                      &update_precision,
+                      {{"double", UpdatePrecision::kDouble}, {"single", UpdatePrecision::kSingle}});
   visitor.Real(
       {"max_direction_deviation", "-",
        "largest relative standard deviation of the direction from the newest camera to the oldest one "

@@ -130,7 +130,8 @@ Status FilterEstimator::AddFrame(const TrackFrame& frame) {
     finite = UpdateAtRest(frame);
   }
   if (config_.filter.update_iterations > 1 || config_.filter.max_direction_deviation > 0 ||
-      config_.filter.clone_policy == ClonePolicy::kSpread) {
+      config_.filter.clone_policy == ClonePolicy::kSpread ||
+      config_.filter.update_precision == UpdatePrecision::kSingle) {
     baseline_ = MeasureBaseline(state_);
   }
   const int leaving =

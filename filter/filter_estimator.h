@@ -66,6 +66,8 @@ class FilterEstimator : public Estimator {
   Status EndMeasurement(const char* what, TimeNs stamp_ns, const NavEstimate& before, bool finite);
   /// Whether direction and length of the line between newest and oldest camera are known to a tenth.
   [[nodiscard]] bool ShapeIsKnown() const;
+  /// Whether an update in single precision is as good as one in double, with FilterConfig::update_precision.
+  [[nodiscard]] bool SingleSuffices() const;
   /// True when the track's views are to be used in this frame.
   [[nodiscard]] bool IsDue(const Track& track, int leaving_serial) const;
   /// Appends the rows of a track: of its landmark in the state, of its entry there, or of its due views.

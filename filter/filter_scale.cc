@@ -12,6 +12,8 @@ namespace {
 constexpr double kKnownShape = 0.1;
 // Relative deviation of the scale above which its direction is carried.
 constexpr double kKnownScale = 0.02;
+// Largest deviation of a position error in single precision, which then holds it to 1e-5 m.
+constexpr double kMostUncertainPosition_m = 100;
 // Degrees of freedom of the direction of a motion.
 constexpr double kDirectionFreedom = 2;
 
@@ -19,6 +21,14 @@ constexpr double kDirectionFreedom = 2;
 
 bool FilterEstimator::ShapeIsKnown() const {
   return baseline_.along < kKnownShape && baseline_.across < kKnownShape;
+}
+
+bool FilterEstimator::SingleSuffices() const {
+  // While the window's shape is uncertain, the update has weak directions, which a single rounds away. Far
+  // from the origin the attitude's deviation is in the position's error.
+  const int core = state_.CoreOffset();
+  return ShapeIsKnown() && state_.covariance().PoseBlock(core, core).diagonal().tail<3>().maxCoeff() <
+                               kMostUncertainPosition_m * kMostUncertainPosition_m;
 }
 
 void FilterEstimator::AppendScaleVolume() {

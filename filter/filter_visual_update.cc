@@ -214,7 +214,10 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
 
 bool FilterEstimator::UpdateWithDueTracks(int leaving_serial) {
   std::vector<Track>& tracks = tracks_.tracks();
-  if (!CorrectWithDueTracks(leaving_serial)) {
+  state_.covariance().AllowSingle(SingleSuffices());
+  const bool corrected = CorrectWithDueTracks(leaving_serial);
+  state_.covariance().AllowSingle(false);
+  if (!corrected) {
     return false;
   }
   statistics_.features_degenerate += static_cast<int>(degenerate_.size());

@@ -102,6 +102,9 @@ class SquareRootCovariance {
                      const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Ref<Eigen::VectorXd> correction,
                      double* nis, const Eigen::Ref<const Eigen::MatrixXd>& constants = Eigen::MatrixXd());
 
+  /// Whether the updates to come may be in single precision, where that was asked for at the beginning.
+  void AllowSingle(bool allow) { single_allowed_ = allow; }
+
   [[nodiscard]] int dimension() const { return dimension_; }
   /// Rows before the core block.
   [[nodiscard]] int leading() const { return leading_; }
@@ -148,6 +151,7 @@ class SquareRootCovariance {
   /// precision.
   Eigen::Ref<Eigen::MatrixXf> SingleRows(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Index active);
   float* SingleFactor(int first);
+  [[nodiscard]] bool UsesSingle() const { return precision_ == UpdatePrecision::kSingle && single_allowed_; }
   /// S <- S U^-1 for the columns from `first` on; overwrites U above its diagonal blocks.
   void DivideByInformationRoot(int first);
 
@@ -166,6 +170,7 @@ class SquareRootCovariance {
   std::vector<size_t> row_ends_;
   Eigen::VectorXd reflection_;
   UpdatePrecision precision_;
+  bool single_allowed_ = true;
   bool in_single_ = false;  // whether U is in single_information_
   Eigen::MatrixXf single_factor_;
   Eigen::MatrixXf single_information_;

@@ -39,7 +39,7 @@ PreparedRows SquareRootCovariance::Prepare(Eigen::Ref<MatrixXd> rows, Eigen::Ref
   const int dense = sparse_from < 0 ? count : sparse_from;
   const int first = LeadingZeroColumns(rows.topRows(dense));
   const int active = dimension_ - first;
-  if (active > 0 && precision_ == UpdatePrecision::kSingle) {
+  if (active > 0 && UsesSingle()) {
     auto single = SingleRows(rows.topRows(dense), active);
     UpdateKernels<float>::TimesUpper(single.data(), static_cast<int>(single.outerStride()), dense,
                                      SingleFactor(first), capacity(), active);
@@ -231,7 +231,7 @@ bool SquareRootCovariance::Factor(const PreparedRows& prepared, double* nis, dou
     return false;
   }
   const double* a = prepared_rows.data() + static_cast<Index>(first) * lda;
-  in_single_ = precision_ == UpdatePrecision::kSingle && FactorInSingle(prepared_rows, seen);
+  in_single_ = UsesSingle() && FactorInSingle(prepared_rows, seen);
   if (!in_single_ && !FactorInformation<double>(a, lda, seen, rows, std::numeric_limits<double>::infinity(),
                                                 &information_)) {
     return false;

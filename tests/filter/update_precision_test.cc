@@ -3,9 +3,11 @@
 #include <string>
 
 #include "eval/config/config_yaml.h"
+#include "filter/filter_estimator.h"
 #include "filter/square_root_covariance.h"
 #include "tests/filter/square_root_fixture.h"
 #include "tests/support/preset_run.h"
+#include "tests/support/scenario.h"
 
 namespace alidade {
 namespace {
@@ -82,13 +84,37 @@ TEST(UpdatePrecisionRun, TheEstimateIsTheSame) {
   sim.path_m = 39;
   const Dataset dataset = test::SimulateOrDie(sim, 12);
   for (const std::string preset : {"alidade_filter", "openvins_class"}) {
-    const test::ScenarioResult exact = test::RunPreset(preset, {}, dataset, 12);
+    const test::ScenarioResult exact =
+        test::RunPreset(preset, {"filter.update_precision=double"}, dataset, 12);
     const test::ScenarioResult rounded =
         test::RunPreset(preset, {"filter.update_precision=single"}, dataset, 12);
     EXPECT_NE(rounded.rmse_position_m, exact.rmse_position_m) << preset;
     EXPECT_NEAR(rounded.rmse_position_m, exact.rmse_position_m, 0.02 * exact.rmse_position_m) << preset;
     EXPECT_NEAR(rounded.nees_pose, exact.nees_pose, 0.05 * exact.nees_pose) << preset;
   }
+}
+
+// GIVEN a start that is uncertain by so much, or so far from the origin, that a single does not hold its
+// error THEN the update is in double precision.
+TEST(UpdatePrecisionRun, WhereSingleDoesNotSufficeItIsDouble) {
+  SimulatorConfig sim;
+  sim.duration_s = 5;
+  sim.path_m = 6.5;
+  const Dataset dataset = test::SimulateOrDie(sim, 12);
+  NavEstimate start = test::DrawInitialState(dataset, 12);
+  const auto end = [&](const std::string& precision) {
+    const Result<EstimatorConfig> config =
+        LoadEstimatorConfig(ALIDADE_SOURCE_DIR "/configs/estimators/alidade_filter.yaml",
+                            {"filter.update_precision=" + precision});
+    EXPECT_TRUE(config.ok()) << config.message();
+    FilterEstimator filter(*config, dataset.rig);
+    const test::ScenarioResult result = test::RunScenario(dataset, start, &filter);
+    EXPECT_TRUE(result.status.ok()) << result.status.message();
+    return result.last.nav.p_WB;
+  };
+  EXPECT_NE(end("single"), end("double"));
+  start.nav.p_WB += Eigen::Vector3d(1.5e5, 0, 0);
+  EXPECT_EQ(end("single"), end("double"));
 }
 
 }  // namespace
