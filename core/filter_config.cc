@@ -56,9 +56,8 @@ void FilterConfig::Describe(ConfigVisitor& visitor) {
                    "correction is too large for one"},
                   &update_iterations, 1, 50);
   visitor.Enumeration({"update_precision", "-",
-                       "of the products and factorisations of a visual update while the window's shape is "
-                       "known; the covariance is "
-                       "kept in double precision"},
+                       "precision of the products and factorisations of a visual update while the window's "
+                       "shape is known; the covariance is kept in double precision"},
                       &update_precision,
                       {{"double", UpdatePrecision::kDouble}, {"single", UpdatePrecision::kSingle}});
   visitor.Real(

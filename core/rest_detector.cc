@@ -106,7 +106,8 @@ const RestDetector::OrientedFrame* RestDetector::FrameBefore(double seconds) con
   return found;
 }
 
-double RestDetector::SpeedNis(const NavEstimate& estimate, const Vector3d& p_BC, double least_mps) const {
+double RestDetector::NormalizedSpeedSquared(const NavEstimate& estimate, const Vector3d& p_BC,
+                                            double least_mps) const {
   const Vector3d v_WC = LeverArm{p_BC}.Velocity(estimate.nav, estimate.bias, imu_.back().gyro);
   Matrix3d variance = estimate.covariance.block<3, 3>(6, 6);
   variance.diagonal().array() += least_mps * least_mps;
@@ -114,12 +115,12 @@ double RestDetector::SpeedNis(const NavEstimate& estimate, const Vector3d& p_BC,
 }
 
 bool RestDetector::TellsMotion(const NavEstimate& estimate, const Vector3d& p_BC) const {
-  return !imu_.empty() && SpeedNis(estimate, p_BC, 0) > kVelocityDof;
+  return !imu_.empty() && NormalizedSpeedSquared(estimate, p_BC, 0) > kVelocityDof;
 }
 
 bool RestDetector::ContradictsRest(const NavEstimate& estimate, const Vector3d& p_BC) const {
   const double least_mps = kLeastDeviation * vision_.rest_velocity_std_mps;
-  return !doubt_.Accepts(SpeedNis(estimate, p_BC, least_mps), kVelocityDof);
+  return !doubt_.Accepts(NormalizedSpeedSquared(estimate, p_BC, least_mps), kVelocityDof);
 }
 
 bool RestDetector::DoubtHasLasted(TimeNs stamp_ns, const OrientedFrame* since) {

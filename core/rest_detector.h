@@ -90,8 +90,8 @@ class RestDetector {
   /// The newest frame that is at least this much older than the newest one; null when none is.
   [[nodiscard]] const OrientedFrame* FrameBefore(double seconds) const;
   /// Squared deviations of the camera's velocity from zero, `least_mps` added to its own in each axis.
-  [[nodiscard]] double SpeedNis(const NavEstimate& estimate, const Eigen::Vector3d& p_BC,
-                                double least_mps) const;
+  [[nodiscard]] double NormalizedSpeedSquared(const NavEstimate& estimate, const Eigen::Vector3d& p_BC,
+                                              double least_mps) const;
   /// Whether the camera moves according to the estimate, beyond doubt.
   [[nodiscard]] bool ContradictsRest(const NavEstimate& estimate, const Eigen::Vector3d& p_BC) const;
   /// Whether the estimate has contradicted rest from the frame `since`, if there is one, to the one at hand.

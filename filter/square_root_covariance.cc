@@ -18,7 +18,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// More than the rows that an update usually has; no power of two, whose columns would share cache lines.
+// More than the rows that an update usually has; no power of two, with which all columns
+// would share cache sets.
 constexpr Index kUsualRows = 520;
 
 }  // namespace
