@@ -12,6 +12,7 @@
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/vision_terms.h"
+#include "smoother/solve/window_problem.h"
 
 namespace alidade {
 namespace {
@@ -116,17 +117,17 @@ class BatchSolve {
     const std::vector<WindowTrack*> tracks = sequence_.SelectedTracks();
     WindowTerms terms;
     ALIDADE_RETURN_IF_ERROR(AddTerms(kernel, tracks, &terms));
-    ParameterBlocks blocks(config_.smoother.error, sequence_.frames(), tracks, sequence_.calibration());
-    const std::unique_ptr<ceres::Problem> problem = blocks.MakeProblem();
+    WindowProblem problem(config_.smoother.error, sequence_.frames(), tracks, sequence_.calibration());
+    ParameterBlocks& blocks = problem.blocks();
     for (const std::unique_ptr<WindowTerm>& term : terms) {
-      term->AddTo(&blocks, problem.get());
+      term->AddTo(&problem);
     }
     ceres::Solver::Options options = SolverOptions(config_.batch, &blocks);
     UseOneThreadPerBlasCall();  // CHOLMOD's supernodes
     StopCallback callback(stop_);
     options.callbacks.push_back(&callback);
     ceres::Solver::Summary summary;
-    ceres::Solve(options, problem.get(), &summary);
+    ceres::Solve(options, &problem.ceres(), &summary);
     if (summary.termination_type == ceres::FAILURE || !blocks.IsFinite()) {
       return Status::Diverged("batch: solver failed: " + summary.message);
     }

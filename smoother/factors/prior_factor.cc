@@ -165,7 +165,7 @@ LinearPrior WithoutCalibration(const LinearPrior& prior) {
 
 PriorFactor::PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration)
     : prior_(prior), calibration_(calibration), columns_(prior->columns()) {
-  CHECK(prior->landmarks.empty() && !(prior->spread > 0)) << "a prior for SlamPriorFactor";
+  CHECK(prior->landmarks.empty() && !(prior->spread > 0)) << "a prior for SlamPriorCost";
   blocks_ = {BlockKind::kNavState, BlockKind::kBias};
   blocks_.resize(prior->anchors.size() + 1, BlockKind::kNavState);
   if (prior->clock_origin) {

@@ -245,11 +245,8 @@ bool SlamPrior::SolveLandmarks(const WindowPoint& point, VectorXd* landmarks, do
   return Minimize(xi, scene, landmarks, cost);
 }
 
-bool SlamPrior::Reduce(const WindowPoint& point, VectorXd* landmarks, Reduced* reduced) const {
-  return SolveLandmarks(point, landmarks, &reduced->robust_cost) && Linearize(point, *landmarks, reduced);
-}
-
-bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, Reduced* reduced) const {
+bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks,
+                          NormalEquations* equations) const {
   const Scene scene = MakeScene(point);
   const VectorXd xi = Displacement(point, scene);
   Views views;
@@ -268,14 +265,14 @@ bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, R
   const Eigen::RowVectorXd spread = SpreadRow(scene.spread);
   MatrixXd chained = ChainFrames(point, scene, gram_.leftCols(frames));
   chained.noalias() += (gram_.middleCols(frames, size) * along_scale) * spread;
-  reduced->hessian = ChainFrames(point, scene, chained.topRows(frames).transpose()) + views.frame_hessian;
-  reduced->hessian.noalias() += (chained.middleRows(frames, size).transpose() * along_scale) * spread;
-  reduced->gradient =
+  equations->hessian = ChainFrames(point, scene, chained.topRows(frames).transpose()) + views.frame_hessian;
+  equations->hessian.noalias() += (chained.middleRows(frames, size).transpose() * along_scale) * spread;
+  equations->gradient =
       ChainFrames(point, scene, pull.head(frames).transpose()).transpose() + views.frame_gradient;
-  reduced->gradient.noalias() += along_scale.dot(pull.segment(frames, size)) * spread.transpose();
+  equations->gradient.noalias() += along_scale.dot(pull.segment(frames, size)) * spread.transpose();
 
   if (size == 0) {
-    return reduced->hessian.allFinite();
+    return equations->hessian.allFinite();
   }
   MatrixXd hessian = LandmarkHessian(views, scene, 0);
   if (!FactorLower(&hessian)) {
@@ -285,9 +282,9 @@ bool SlamPrior::Linearize(const WindowPoint& point, const VectorXd& landmarks, R
   VectorXd gradient = scene.units.cwiseProduct(pull.segment(frames, size)) + views.landmark_gradient;
   SolveLower(hessian, coupling);
   SolveLower(hessian, gradient);
-  SubtractGram(coupling, &reduced->hessian);
-  reduced->gradient.noalias() -= coupling.transpose() * gradient;
-  return reduced->hessian.allFinite();
+  SubtractGram(coupling, &equations->hessian);
+  equations->gradient.noalias() -= coupling.transpose() * gradient;
+  return equations->hessian.allFinite();
 }
 
 }  // namespace alidade

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "smoother/factors/prior_factor.h"
+#include "smoother/factors/reduced_cost.h"
 #include "smoother/tracks/anchored_landmark.h"
 
 namespace alidade {
@@ -14,35 +15,20 @@ namespace alidade {
 /// prior has information about the landmark.
 [[nodiscard]] std::vector<const WindowTrack*> PriorTracks(const LinearPrior& prior, const Window& window);
 
-/// States of a window at an evaluation.
-struct WindowPoint {
-  std::vector<NavState> states;   ///< of every frame
-  ImuBias bias;                   ///< of the first
-  std::optional<Vector6d> clock;  ///< of the first, in an aligned window
-  CameraCalibration camera;
-};
-[[nodiscard]] WindowPoint PointOf(const Window& window, const CameraCalibration& camera);
-
 /// A LinearPrior together with the views of its landmarks (SLAM features), as a function of the frames alone:
 ///
 ///     F(X) = min_L |r0 + J_x xi(X) + J_l (D(X) L - L0)|^2 + sum over views of rho(|W (pi(X, l) - z)|^2),
 ///
 /// D multiplies inverse depths by the ratio of the spread (LinearPrior::SpreadAt).
 ///
-/// Variable projection as in PoseOnlyFactor, but the prior couples the landmarks, so that they are solved for
-/// together (3L x 3L, damped, re-weighted Gauss-Newton).
+/// Variable projection (ReducedCost). The prior couples the landmarks, so that they are solved for together
+/// (3L x 3L, damped, re-weighted Gauss-Newton).
 class SlamPrior {
  public:
   /// `prior`, `tracks` (PriorTracks), `window` and `calibration` must outlive it.
   SlamPrior(const LinearPrior* prior, std::vector<const WindowTrack*> tracks, const Window& window,
             const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  /// Normal equations over columns(), landmarks eliminated, canonical chart.
-  struct Reduced {
-    Eigen::MatrixXd hessian;  ///< lower triangle
-    Eigen::VectorXd gradient;
-    double robust_cost = 0;
-  };
   /// PriorColumns of all frames of the window, without landmarks.
   [[nodiscard]] const ColumnMap& columns() const { return columns_; }
   [[nodiscard]] const WindowCalibration& calibration() const { return *calibration_; }
@@ -54,10 +40,10 @@ class SlamPrior {
   /// The landmarks (3L; start and result) that minimise F, and its value. False: behind a view, or not
   /// finite.
   bool SolveLandmarks(const WindowPoint& point, Eigen::VectorXd* landmarks, double* cost) const;
-  /// The normal equations at landmarks that SolveLandmarks gave there; false as there.
-  bool Linearize(const WindowPoint& point, const Eigen::VectorXd& landmarks, Reduced* reduced) const;
-  /// Both, one after the other.
-  bool Reduce(const WindowPoint& point, Eigen::VectorXd* landmarks, Reduced* reduced) const;
+  /// Normal equations over columns(), landmarks eliminated, canonical chart, at landmarks that SolveLandmarks
+  /// gave there; false as there.
+  bool Linearize(const WindowPoint& point, const Eigen::VectorXd& landmarks,
+                 NormalEquations* equations) const;
 
  private:
   struct Views;  // information of the views at a point

@@ -10,19 +10,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-WindowPoint PointOf(const Window& window, const CameraCalibration& camera) {
-  WindowPoint point;
-  point.camera = camera;
-  for (const std::unique_ptr<WindowFrame>& frame : window.frames()) {
-    point.states.push_back(frame->nav_state());
-  }
-  point.bias = window.frame(0).imu_bias();
-  if (window.frame(0).clock) {
-    point.clock = window.frame(0).clock_state();
-  }
-  return point;
-}
-
 VectorXd SlamPrior::Displacement(const WindowPoint& point, const Scene& scene) const {
   VectorXd xi(prior_columns_.size() - origins_.size());
   for (size_t i = 0; i < prior_->anchors.size(); ++i) {

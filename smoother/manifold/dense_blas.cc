@@ -17,6 +17,19 @@ int Stride(const Eigen::MatrixXd& matrix) {
   return std::max(1, static_cast<int>(matrix.outerStride()));
 }
 
+/// The last row with an entry in `count` columns from `first` on; -1 where they are zero.
+int LastNonzeroRow(const Eigen::MatrixXd& matrix, int first, int count) {
+  Eigen::Index last = -1;
+  for (Eigen::Index column = first; column < first + count; ++column) {
+    Eigen::Index row = matrix.rows() - 1;
+    while (row > last && matrix(row, column) == 0) {
+      --row;
+    }
+    last = row;
+  }
+  return static_cast<int>(last);
+}
+
 }  // namespace
 
 void FormGram(const Eigen::MatrixXd& rows, Eigen::MatrixXd* gram) {
@@ -63,15 +76,30 @@ void SolveCholesky(const Eigen::MatrixXd& lower, Eigen::VectorXd* right) {
 
 void Triangularize(Eigen::MatrixXd* rows) {
   UseOneThreadPerBlasCall();
-  constexpr int kBlock = 32;
+  constexpr int kPanel = 12;
   const int height = Size(rows->rows());
   const int width = Size(rows->cols());
   const int stride = Stride(*rows);
-  const int work_size = kBlock * width;
-  Eigen::VectorXd tau(width);
-  Eigen::VectorXd work(work_size);
+  Eigen::MatrixXd reflectors(kPanel, kPanel);
+  Eigen::VectorXd tau(kPanel);
+  Eigen::VectorXd work(static_cast<Eigen::Index>(kPanel) * std::max(1, width));
+  int end = 0;  // of the rows that are not zero up to the panel
   int info = 0;
-  LAPACK_dgeqrf(&height, &width, rows->data(), &stride, tau.data(), work.data(), &work_size, &info);
+  for (int column = 0; column < std::min(height, width); column += kPanel) {
+    const int panel = std::min(kPanel, width - column);
+    end = std::max({end, LastNonzeroRow(*rows, column, panel) + 1, std::min(column + panel, height)});
+    const int active = end - column;
+    const int order = std::min(active, panel);
+    double* diagonal = rows->data() + column + static_cast<Eigen::Index>(column) * stride;
+    LAPACK_dgeqr2(&active, &panel, diagonal, &stride, tau.data(), work.data(), &info);
+    const int right = width - column - panel;
+    if (right > 0) {
+      double* beside = diagonal + static_cast<Eigen::Index>(panel) * stride;
+      LAPACK_dlarft("F", "C", &active, &order, diagonal, &stride, tau.data(), reflectors.data(), &kPanel);
+      LAPACK_dlarfb("L", "T", "F", "C", &active, &right, &order, diagonal, &stride, reflectors.data(),
+                    &kPanel, beside, &stride, work.data(), &right);
+    }
+  }
 }
 
 }  // namespace alidade

@@ -20,7 +20,8 @@ void SolveLower(const Eigen::MatrixXd& lower, Eigen::Ref<Eigen::MatrixXd> right)
 void SolveUpperTransposed(const Eigen::MatrixXd& upper, Eigen::Ref<Eigen::MatrixXd> right);
 /// right <- L^-T L^-1 right.
 void SolveCholesky(const Eigen::MatrixXd& lower, Eigen::VectorXd* right);
-/// Householder QR in place: the upper triangle becomes R, what is below it has no meaning.
+/// Householder QR in place: the upper triangle becomes R, what is below it has no meaning. Rows in the order
+/// of their first entries cost the least: what is zero below the last entry of a panel of columns is skipped.
 void Triangularize(Eigen::MatrixXd* rows);
 
 }  // namespace alidade

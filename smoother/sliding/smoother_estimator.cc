@@ -223,16 +223,17 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     return Lost(status.message());
   }
   const size_t without_vision = terms.size();
-  if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
-    AddTrackTerms(window_.frames(), *tracks, solved, kernel_, &terms);
-  } else if (!tracks->empty()) {
-    terms.push_back(std::make_unique<PoseOnlyTerm>(
-        window_, std::vector<const WindowTrack*>(tracks->begin(), tracks->end()), solved, kernel_));
-  }
+  PoseOnlyTerm* pose_only = AddVision(*tracks, solved, &terms);
   AppendScaleVolume(&terms);
   const Result<WindowSolveReport> report = SolveWindow(config_.smoother, terms, *tracks, &window_, &solved);
   if (!report.ok()) {
     return Lost(report.message());
+  }
+  std::unique_ptr<WindowTerm> vision;
+  if (pose_only != nullptr && !watched && !pose_only->SolvedLandmarks().empty()) {
+    vision = std::move(terms[without_vision]);
+  } else {
+    pose_only = nullptr;
   }
   terms.resize(without_vision);
   statistics_.iterations = report->iterations;
@@ -247,7 +248,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   }
   std::vector<WindowTrack*> gated = FeaturesInSight();
   gated.insert(gated.begin(), tracks->begin(), tracks->end());
-  if (GateTracks(Geometry(), gated) && slam != nullptr) {
+  if (GateTracks(Geometry(), gated, pose_only) && slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, &terms)));
   }
   if (gnss_.aligned()) {
@@ -255,19 +256,14 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
       gnss_.Gate(&window_.frame(i), &statistics_);
     }
   }
-  AddGatedVision(*tracks, &terms);
+  if (pose_only == nullptr || statistics_.suspect) {  // suspect: with less information
+    std::unique_ptr<PoseOnlyTerm> gated_vision = GatedVision(*tracks);
+    pose_only = gated_vision.get();
+    vision = std::move(gated_vision);
+  }
+  CountVision(pose_only->system());
+  terms.push_back(std::move(vision));
   return UpdateLatest(terms);
-}
-
-void SmootherEstimator::AddGatedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) {
-  std::vector<const WindowTrack*> used;
-  std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
-               [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
-  auto vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
-  statistics_.features_used = vision->system().tracks + static_cast<int>(FeaturesInSight().size());
-  statistics_.nis = vision->system().chi2;
-  statistics_.nis_dof = vision->system().dof;
-  terms->push_back(std::move(vision));
 }
 
 Status SmootherEstimator::UpdateLatest(const WindowTerms& terms) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,7 @@
 #include "smoother/sliding/newest_update.h"
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
+#include "smoother/solve/vision_terms.h"
 #include "smoother/solve/window_system.h"
 
 namespace alidade {
@@ -109,8 +113,12 @@ class SmootherEstimator final : public Estimator {
   Status TakeLandmarks(const SlamPriorTerm& slam);
   /// SLAM features that have views in the window.
   [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
-  /// Appends the terms of the tracks whose views passed the gates, and counts them.
-  void AddGatedVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms);
+  /// Appends the terms of the tracks for the solver. Returns that of pose-only tracks, null without any.
+  PoseOnlyTerm* AddVision(const std::vector<WindowTrack*>& tracks, const WindowCalibration& calibration,
+                          WindowTerms* terms) const;
+  /// The term of the tracks whose views passed the gates.
+  [[nodiscard]] std::unique_ptr<PoseOnlyTerm> GatedVision(const std::vector<WindowTrack*>& tracks) const;
+  void CountVision(const PoseSystem& system);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   enum class Landmark { kReady, kWaiting, kDegenerate };
@@ -127,8 +135,15 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool IsSuspect(size_t refused, size_t tracks) const;
   /// Of a track that the gate accepts: whether its landmark is one, too; false: a SLAM feature was dropped.
   bool KeepTrack(WindowTrack* track);
-  /// True when a SLAM feature was refused.
-  bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks);
+  /// Solves for the landmark of a track that is none of the prior's, or takes it from `solved`, if it has the
+  /// index. False: there is none.
+  bool SolveOwnLandmark(const std::vector<FrameGeometry>& geometry,
+                        std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
+                        WindowTrack* track) const;
+  /// `solved`: the term of the first tracks whose landmarks go with the present states, from which tracks
+  /// that are refused are removed; null: none. True when a SLAM feature was refused.
+  bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks,
+                  PoseOnlyTerm* solved);
   Status UpdateLatest(const WindowTerms& terms);
   /// Brings newest_update_ to the newest frame, which was made for a measurement.
   Status CarryNewestUpdate();

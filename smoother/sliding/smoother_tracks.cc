@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -136,13 +137,55 @@ bool SmootherEstimator::KeepTrack(WindowTrack* track) {
   return true;
 }
 
+PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& tracks,
+                                           const WindowCalibration& calibration, WindowTerms* terms) const {
+  if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
+    AddTrackTerms(window_.frames(), tracks, calibration, kernel_, terms);
+    return nullptr;
+  }
+  if (tracks.empty()) {
+    return nullptr;
+  }
+  auto vision = std::make_unique<PoseOnlyTerm>(
+      window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), calibration, kernel_);
+  PoseOnlyTerm* const added = vision.get();
+  terms->push_back(std::move(vision));
+  return added;
+}
+
+std::unique_ptr<PoseOnlyTerm> SmootherEstimator::GatedVision(const std::vector<WindowTrack*>& tracks) const {
+  std::vector<const WindowTrack*> used;
+  std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
+               [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
+  return std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
+}
+
+void SmootherEstimator::CountVision(const PoseSystem& system) {
+  statistics_.features_used = system.tracks + static_cast<int>(FeaturesInSight().size());
+  statistics_.nis = system.chi2;
+  statistics_.nis_dof = system.dof;
+}
+
+bool SmootherEstimator::SolveOwnLandmark(const std::vector<FrameGeometry>& geometry,
+                                         std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
+                                         WindowTrack* track) const {
+  if (index >= solved.size()) {
+    return SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark,
+                         track->depth_prior);
+  }
+  track->landmark = solved[index].value_or(track->landmark);
+  return solved[index].has_value();
+}
+
 bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
-                                   const std::vector<WindowTrack*>& tracks) {
+                                   const std::vector<WindowTrack*>& tracks, PoseOnlyTerm* solved) {
   std::vector<std::pair<WindowTrack*, double>> refused;  // with chi-square
   bool feature_refused = false;
-  for (WindowTrack* track : tracks) {
-    if (track->anchor == nullptr && !SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations,
-                                                   &track->landmark, track->depth_prior)) {
+  const std::span<const std::optional<Eigen::Vector3d>> landmarks =
+      solved != nullptr ? solved->SolvedLandmarks() : std::span<const std::optional<Eigen::Vector3d>>();
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    WindowTrack* track = tracks[i];
+    if (track->anchor == nullptr && !SolveOwnLandmark(geometry, landmarks, i, track)) {
       statistics_.features_degenerate += track->degenerate ? 0 : 1;  // it is counted once
       track->Restart();
       continue;
@@ -166,6 +209,12 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
     });
   }
   statistics_.suspect = IsSuspect(refused.size(), tracks.size());
+  if (solved != nullptr && !statistics_.suspect) {
+    std::vector<const WindowTrack*> gone;
+    std::transform(refused.begin(), refused.end(), std::back_inserter(gone),
+                   [](const auto& entry) { return entry.first; });
+    solved->Remove(gone);
+  }
   for (const auto& [track, chi_square] : refused) {
     feature_refused = feature_refused || track->anchor != nullptr;
     if (statistics_.suspect) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/check.h"
+#include "smoother/solve/window_problem.h"
 
 namespace alidade {
 namespace {
@@ -57,12 +58,12 @@ FactorBlocks::FactorBlocks(std::vector<TermBlock> blocks) : blocks_(std::move(bl
   }
 }
 
-void FactorBlocks::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
+void FactorBlocks::AddTo(WindowProblem* problem) {
   std::vector<double*> parameters;
   for (const TermBlock& block : blocks_) {
-    parameters.push_back(blocks->Find(block.kind, block.index));
+    parameters.push_back(problem->blocks().Find(block.kind, block.index));
   }
-  problem->AddResidualBlock(cost(), nullptr, parameters);
+  problem->ceres().AddResidualBlock(cost(), nullptr, parameters);
 }
 
 std::vector<const double*> FactorBlocks::Present() const {

@@ -29,7 +29,7 @@ struct TermBlock {
 /// follows the navigation state of its frame is one part with it.
 class FactorBlocks : public WindowTerm {
  public:
-  void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) override;
+  void AddTo(WindowProblem* problem) override;
 
  protected:
   explicit FactorBlocks(std::vector<TermBlock> blocks);
@@ -52,11 +52,11 @@ class FactorTerm final : public FactorBlocks {
   FactorTerm(Factor factor, std::vector<TermBlock> blocks)
       : FactorBlocks(std::move(blocks)), cost_(std::move(factor)) {}
 
-  [[nodiscard]] int rows() const override { return cost_.factor().rows(); }
   Status Linearize(LinearTerm* linear) const override {
     std::vector<double> tangents;
-    const std::vector<double*> jacobians = Spread(rows(), &tangents);
-    linear->ResizeRows(parts(), rows());
+    const int rows = cost_.factor().rows();
+    const std::vector<double*> jacobians = Spread(rows, &tangents);
+    linear->ResizeRows(parts(), rows);
     if (!cost_.factor().Evaluate(Present().data(), linear->residual.data(), jacobians.data())) {
       return Status::Diverged("smoother: a factor is undefined at the present states");
     }

@@ -2,12 +2,19 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/check.h"
 #include "smoother/manifold/dense_blas.h"
 
 namespace alidade {
+
+namespace {
+
+constexpr double kRegularization = 1e-5;  // of a column's norm
+
+}  // namespace
 
 Matrix6d PosePriorChart(const StateChart& chart, const WindowFrame& frame) {
   if (frame.first) {
@@ -79,12 +86,47 @@ void MarginalStack::Add(LinearTerm* term) {
   stack_.col(columns_.size()).segment(first, count) = term->residual;
 }
 
+void MarginalStack::MakeRegular(const ColumnMap::Range& of) {
+  const Eigen::RowVectorXd norms = stack_.middleCols(of.first, of.size).topRows(rows_).colwise().norm();
+  const Index first = NewRows(of.size);
+  stack_.block(first, of.first, of.size, of.size).diagonal() = kRegularization * norms;
+}
+
+bool MarginalStack::IsEmpty(Index column) const {
+  return stack_.col(column).head(rows_).isZero(0);
+}
+
+Eigen::MatrixXd MarginalStack::Staircase() const {
+  const Index width = columns_.size() + 1;
+  std::vector<Index> order;
+  std::vector<Index> left(static_cast<size_t>(rows_));
+  std::iota(left.begin(), left.end(), 0);
+  for (Index column = 0; column < width && !left.empty(); ++column) {
+    const auto rest =
+        std::stable_partition(left.begin(), left.end(), [&](Index row) { return stack_(row, column) == 0; });
+    for (auto row = rest; row != left.end(); ++row) {
+      auto place = static_cast<Index>(order.size());
+      while (place < column || (place < width && IsEmpty(place))) {
+        order.push_back(-1);
+        ++place;
+      }
+      order.push_back(*row);
+    }
+    left.erase(rest, left.end());
+  }
+  order.resize(std::max(order.size(), static_cast<size_t>(width)), -1);
+  Eigen::MatrixXd rows(static_cast<Index>(order.size()), width);
+  for (Index column = 0; column < width; ++column) {
+    for (size_t i = 0; i < order.size(); ++i) {
+      rows(static_cast<Index>(i), column) = order[i] < 0 ? 0 : stack_(order[i], column);
+    }
+  }
+  return rows;
+}
+
 void MarginalStack::Eliminate(Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual) {
   const Index columns = columns_.size();
-  if (rows_ < columns + 1) {
-    NewRows(columns + 1 - rows_);
-  }
-  Eigen::MatrixXd rows = stack_.topRows(rows_);
+  Eigen::MatrixXd rows = Staircase();
   Triangularize(&rows);
   const Index kept = columns - leaving_;
   *jacobian = rows.block(leaving_, leaving_, kept, kept).triangularView<Eigen::Upper>();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "smoother/factors/prior_factor.h"
 #include "smoother/solve/window_term.h"
@@ -28,12 +29,19 @@ class MarginalStack {
 
   /// The rows of a term; those of a prior as they are: CarriedPrior has them in the chart.
   void Add(LinearTerm* term);
+  /// Adds the least information about coordinates that leave, of which the terms so far may leave some
+  /// undetermined: an undetermined one takes a row of the others along.
+  void MakeRegular(const ColumnMap::Range& of);
   /// The rows that are left, over the columns that stay.
   void Eliminate(Eigen::MatrixXd* jacobian, Eigen::VectorXd* residual);
 
  private:
   /// Zero rows at the end; the first of them.
   Index NewRows(Index count);
+  [[nodiscard]] bool IsEmpty(Index column) const;
+  /// The rows in the order of their first entries, each at the place of that column or later. In the place of
+  /// a column without entries is a zero row: the triangle's row there would take up one that has information.
+  [[nodiscard]] Eigen::MatrixXd Staircase() const;
 
   const Window& window_;
   StateChart chart_;

@@ -25,6 +25,7 @@ struct LeavingColumns {
 
   ColumnMap columns;
   Index leaving = 0;
+  int landmarks = 0;        ///< that leave
   std::vector<int> before;  ///< number of each landmark of SlamChange::before
   std::vector<bool> leaves;
   std::vector<int> after;  ///< of each of SlamChange::after
@@ -36,7 +37,6 @@ LeavingColumns::LeavingColumns(const Window& window, const LinearPrior& prior,
   if (prior.clock_origin) {
     columns.AddClock(0);
   }
-  int landmarks = 0;
   for (const WindowTrack* track : slam.before) {
     const auto stays = std::find(slam.after.begin(), slam.after.end(), track);
     leaves.push_back(track == nullptr || stays == slam.after.end());
@@ -183,6 +183,9 @@ Result<LinearPrior> MarginalizeOldest(const Window& window, const LinearPrior& p
       ALIDADE_RETURN_IF_ERROR(term->Linearize(&linear));
       stack.Add(&linear);
     }
+  }
+  for (int i = 0; i < leaving.landmarks; ++i) {  // a refused track's may have a single view in the prior
+    stack.MakeRegular(leaving.columns.Landmark(i));
   }
   stack.Eliminate(&next.jacobian, &next.residual);
   if (prior.clock_origin) {

@@ -43,12 +43,13 @@ double* ParameterBlocks::Find(BlockKind kind, int index) {
   return Landmark(index);
 }
 
-std::unique_ptr<ceres::Problem> ParameterBlocks::MakeProblem() {
+std::unique_ptr<ceres::Problem> ParameterBlocks::MakeProblem(ceres::EvaluationCallback* callback) {
   ceres::Problem::Options options;
   options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.disable_all_safety_checks = true;
+  options.evaluation_callback = callback;
   auto problem = std::make_unique<ceres::Problem>(options);
   for (const std::unique_ptr<WindowFrame>& frame : frames_) {
     problem->AddParameterBlock(Nav(frame->index), kNavAmbientSize, &manifold_);
@@ -64,6 +65,18 @@ std::unique_ptr<ceres::Problem> ParameterBlocks::MakeProblem() {
   calibration_manifold_ = std::make_unique<ceres::SubsetManifold>(CalibrationLayout::kMaxSize, fixed);
   problem->AddParameterBlock(Calibration(), CalibrationLayout::kMaxSize, calibration_manifold_.get());
   return problem;
+}
+
+bool ParameterBlocks::PointAt(WindowPoint* point) {
+  point->states.clear();
+  for (int i = 0; i < frames(); ++i) {
+    point->states.push_back(UnpackNavState(Nav(i)));
+  }
+  point->bias = UnpackBias(Bias(0));
+  if (has_clocks_) {
+    point->clock = Eigen::Map<const Vector6d>(Clock(0));
+  }
+  return calibration_.At(Calibration(), &point->camera);
 }
 
 bool ParameterBlocks::IsFinite() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ceres/evaluation_callback.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 
@@ -9,6 +10,7 @@
 #include "smoother/manifold/lifted_cost.h"
 #include "smoother/window/window.h"
 #include "smoother/window/window_calibration.h"
+#include "smoother/window/window_point.h"
 
 namespace alidade {
 
@@ -40,8 +42,14 @@ class ParameterBlocks {
   [[nodiscard]] int landmarks() const { return static_cast<int>(tracks_.size()); }
   [[nodiscard]] bool has_clocks() const { return has_clocks_; }
 
+  [[nodiscard]] const WindowCalibration& calibration() const { return calibration_; }
+  /// All parameters.
+  [[nodiscard]] const std::vector<double>& values() const { return parameters_; }
+  /// The states that they stand for. False: the calibration is no camera.
+  bool PointAt(WindowPoint* point);
+
   /// A problem that owns nothing, with the blocks of all frames and of the calibration.
-  [[nodiscard]] std::unique_ptr<ceres::Problem> MakeProblem();
+  [[nodiscard]] std::unique_ptr<ceres::Problem> MakeProblem(ceres::EvaluationCallback* callback);
 
   /// True when every parameter is a finite number.
   [[nodiscard]] bool IsFinite() const;

@@ -1,5 +1,7 @@
 #include "smoother/solve/prior_terms.h"
 
+#include <utility>
+
 #include "smoother/solve/factor_term.h"
 
 namespace alidade {
@@ -26,7 +28,7 @@ SlamPriorTerm::SlamPriorTerm(const LinearPrior& prior, const Window& window,
     : window_(&window),
       calibration_(&calibration),
       slam_(&prior, PriorTracks(prior, window), window, calibration, kernel),
-      cost_(SlamPriorFactor(&slam_, window.size())) {
+      cost_(&slam_) {
   for (int i = 0; i < window.size(); ++i) {
     AddPart({Unknown::Kind::kFrame, i}, slam_.columns().Frame(i).size);
   }
@@ -34,39 +36,18 @@ SlamPriorTerm::SlamPriorTerm(const LinearPrior& prior, const Window& window,
   AddPart({Unknown::Kind::kCalibration, 0}, calibration.size());
 }
 
-const SlamPriorTerm::Solution& SlamPriorTerm::Solve() const {
-  if (!solution_) {
-    solution_ = Solution();
-    solution_->landmarks = slam_.StartingLandmarks();
-    solution_->valid =
-        slam_.Reduce(PointOf(*window_, calibration_->mean), &solution_->landmarks, &solution_->reduced);
-  }
-  return *solution_;
-}
-
 const Eigen::VectorXd* SlamPriorTerm::Landmarks() const {
-  return Solve().valid ? &Solve().landmarks : nullptr;
+  return cost_.LandmarksAt(PointOf(*window_, calibration_->mean));
 }
 
 Status SlamPriorTerm::Linearize(LinearTerm* linear) const {
-  if (!Solve().valid) {
+  NormalEquations equations;
+  if (Landmarks() == nullptr || !cost_.Linearize(&equations)) {
     return Status::Diverged("smoother: landmarks at " + FormatSeconds(window_->newest().stamp_ns) +
                             " s have no solution");
   }
-  linear->SetInformation(parts(), Solve().reduced.hessian, Solve().reduced.gradient);
+  linear->SetInformation(parts(), std::move(equations));
   return Status::Ok();
-}
-
-void SlamPriorTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
-  std::vector<double*> parameters = {blocks->Nav(0), blocks->Bias(0)};
-  for (int i = 1; i < window_->size(); ++i) {
-    parameters.push_back(blocks->Nav(i));
-  }
-  if (slam_.prior().clock_origin) {
-    parameters.push_back(blocks->Clock(0));
-  }
-  parameters.push_back(blocks->Calibration());
-  problem->AddResidualBlock(&cost_, nullptr, parameters);
 }
 
 }  // namespace alidade

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <optional>
-
 #include "smoother/factors/prior_factor.h"
 #include "smoother/factors/slam_prior.h"
-#include "smoother/factors/slam_prior_factor.h"
+#include "smoother/factors/slam_prior_cost.h"
 #include "smoother/solve/window_term.h"
 
 namespace alidade {
@@ -14,34 +12,25 @@ namespace alidade {
                                                         const WindowCalibration& calibration);
 
 /// A prior with landmarks, which it eliminates (SlamPrior).
-class SlamPriorTerm final : public WindowTerm {
+class SlamPriorTerm final : public ReducedTerm {
  public:
   /// All must outlive the term.
   SlamPriorTerm(const LinearPrior& prior, const Window& window, const WindowCalibration& calibration,
                 const ObservationKernel& kernel);
 
-  [[nodiscard]] int rows() const override { return cost_.factor().rows(); }
-  /// At the states of the first call: a term is made anew once they have moved.
   Status Linearize(LinearTerm* linear) const override;
-  void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) override;
 
   /// The landmarks (3 each) that go with the present states. Null: they have no solution.
   [[nodiscard]] const Eigen::VectorXd* Landmarks() const;
   [[nodiscard]] const SlamPrior& slam() const { return slam_; }
 
  private:
-  struct Solution {
-    Eigen::VectorXd landmarks;
-    SlamPrior::Reduced reduced;
-    bool valid = false;
-  };
-  const Solution& Solve() const;
+  [[nodiscard]] ReducedCost* cost() const override { return &cost_; }
 
   const Window* window_;
   const WindowCalibration* calibration_;
   SlamPrior slam_;
-  LiftedCost<SlamPriorFactor> cost_;
-  mutable std::optional<Solution> solution_;
+  mutable SlamPriorCost cost_;
 };
 
 }  // namespace alidade

@@ -50,6 +50,9 @@ std::vector<RowElimination::Index> RowElimination::ActiveRows(Index end) const {
       active.push_back(i);
     }
   }
+  std::stable_sort(active.begin(), active.end(), [&](Index a, Index b) {
+    return lead_[static_cast<size_t>(a)] < lead_[static_cast<size_t>(b)];
+  });
   return active;
 }
 

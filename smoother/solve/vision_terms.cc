@@ -1,9 +1,11 @@
 #include "smoother/solve/vision_terms.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/predicted_observation.h"
+#include "smoother/solve/window_problem.h"
 
 namespace alidade {
 namespace {
@@ -30,30 +32,69 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
 
 PoseOnlyTerm::PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
                            const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : window_(&window), tracks_(std::move(tracks)), calibration_(&calibration), kernel_(kernel) {
+    : window_(&window),
+      tracks_(std::move(tracks)),
+      calibration_(&calibration),
+      kernel_(kernel),
+      cost_(window, tracks_, calibration, kernel) {
   for (int i = 0; i < window.size(); ++i) {
     AddPart({Unknown::Kind::kFrame, i}, kPoseColumns);
   }
   AddPart({Unknown::Kind::kCalibration, 0}, calibration.size());
 }
 
-int PoseOnlyTerm::rows() const {
-  return static_cast<int>(columns()) + 1;  // PoseOnlyFactor
-}
-
 const PoseSystem& PoseOnlyTerm::system() const {
   if (!system_) {
-    system_.emplace(window_->size(), calibration_);
-    const std::vector<FrameGeometry> geometry = MakeGeometry(*window_, calibration_->mean);
-    TrackWorkspace workspace;
-    for (const WindowTrack* track : tracks_) {
-      if (AddTrack(track->views, geometry, kernel_, track->landmark, &workspace, &*system_,
-                   track->depth_prior)) {
-        used_.push_back(track);
-      }
+    if (const PoseSystem* solved = cost_.SystemAt(Present())) {
+      system_ = *solved;
+      used_ = cost_.used();
+    } else {
+      system_ = SystemOf(tracks_, &used_);
     }
   }
   return *system_;
+}
+
+WindowPoint PoseOnlyTerm::Present() const {
+  return PointOf(*window_, calibration_->mean);
+}
+
+PoseSystem PoseOnlyTerm::SystemOf(std::span<const WindowTrack* const> tracks,
+                                  std::vector<const WindowTrack*>* used) const {
+  PoseSystem system(window_->size(), calibration_);
+  const std::vector<FrameGeometry> geometry = MakeGeometry(*window_, calibration_->mean);
+  TrackWorkspace workspace;
+  for (const WindowTrack* track : tracks) {
+    if (AddTrack(track->views, geometry, kernel_, track->landmark, &workspace, &system, track->depth_prior)) {
+      used->push_back(track);
+    }
+  }
+  return system;
+}
+
+std::span<const std::optional<Eigen::Vector3d>> PoseOnlyTerm::SolvedLandmarks() const {
+  return cost_.SystemAt(Present()) != nullptr ? cost_.landmarks()
+                                              : std::span<const std::optional<Eigen::Vector3d>>();
+}
+
+void PoseOnlyTerm::Remove(std::span<const WindowTrack* const> tracks) {
+  (void)system();
+  std::vector<const WindowTrack*> held;
+  std::erase_if(used_, [&](const WindowTrack* track) {
+    const bool removed = std::find(tracks.begin(), tracks.end(), track) != tracks.end();
+    if (removed) {
+      held.push_back(track);
+    }
+    return removed;
+  });
+  std::vector<const WindowTrack*> counted;
+  const PoseSystem gone = SystemOf(held, &counted);
+  system_->hessian -= gone.hessian;
+  system_->gradient -= gone.gradient;
+  system_->robust_cost -= gone.robust_cost;
+  system_->chi2 -= gone.chi2;
+  system_->dof -= gone.dof;
+  system_->tracks -= gone.tracks;
 }
 
 const std::vector<const WindowTrack*>& PoseOnlyTerm::used() const {
@@ -62,19 +103,8 @@ const std::vector<const WindowTrack*>& PoseOnlyTerm::used() const {
 }
 
 Status PoseOnlyTerm::Linearize(LinearTerm* linear) const {
-  linear->SetInformation(parts(), system().hessian, system().gradient);
+  linear->SetInformation(parts(), {system().hessian, system().gradient});
   return Status::Ok();
-}
-
-void PoseOnlyTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
-  cost_.emplace(PoseOnlyFactor(*window_, tracks_, *calibration_, kernel_));
-  std::vector<double*> parameters;
-  parameters.reserve(static_cast<size_t>(window_->size()) + 1);
-  for (int i = 0; i < window_->size(); ++i) {
-    parameters.push_back(blocks->Nav(i));
-  }
-  parameters.push_back(blocks->Calibration());
-  problem->AddResidualBlock(&*cost_, nullptr, parameters);
 }
 
 ViewContext::ViewContext(const WindowFrames& frames, const WindowCalibration& camera,
@@ -121,20 +151,21 @@ Status ViewTerm::Linearize(LinearTerm* linear) const {
   return Status::Ok();
 }
 
-void ViewTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
+void ViewTerm::AddTo(WindowProblem* problem) {
   const WindowView& base = track_->views.front();
   const WindowView& view = track_->views[view_];
   const WindowCalibration* calibration = context_->calibration;
-  std::vector<double*> parameters = {blocks->Landmark(landmark_)};
+  std::vector<double*> parameters = {problem->blocks().Landmark(landmark_)};
   if (view_ == 0) {
     cost_ = std::make_unique<LiftedCost<BaseBearingFactor>>(BaseBearingFactor(&base, calibration));
   } else {
     cost_ = std::make_unique<LiftedCost<InverseDepthFactor>>(InverseDepthFactor(
         base.frame, &view, calibration, track_->plane(), base.observation.row_px, context_->cache.get()));
-    parameters.insert(parameters.begin(), {blocks->Nav(base.frame->index), blocks->Nav(view.frame->index)});
+    parameters.insert(parameters.begin(),
+                      {problem->blocks().Nav(base.frame->index), problem->blocks().Nav(view.frame->index)});
   }
-  parameters.push_back(blocks->Calibration());
-  problem->AddResidualBlock(cost_.get(), context_->loss.get(), parameters);
+  parameters.push_back(problem->blocks().Calibration());
+  problem->ceres().AddResidualBlock(cost_.get(), context_->loss.get(), parameters);
 }
 
 DepthPriorTerm::DepthPriorTerm(std::shared_ptr<const ViewContext> context, const WindowTrack* track,
@@ -154,7 +185,7 @@ Status DepthPriorTerm::Linearize(LinearTerm* linear) const {
   const double* landmark = track_->landmark.data();
   const Eigen::Matrix<double, 1, 6> camera =
       track_->depth_prior.sqrt_information * InverseDepthRow(base, track_->landmark, track_->plane());
-  linear->ResizeRows(parts(), rows());
+  linear->ResizeRows(parts(), DepthPriorFactor::kRows);
   cost_.factor().Evaluate(&landmark, linear->residual.data(), nullptr);
   linear->jacobian.leftCols<kPoseColumns>() = camera * base.camera_from_body;
   linear->jacobian(0, kPoseColumns + 2) = track_->depth_prior.sqrt_information;
@@ -163,8 +194,8 @@ Status DepthPriorTerm::Linearize(LinearTerm* linear) const {
   return Status::Ok();
 }
 
-void DepthPriorTerm::AddTo(ParameterBlocks* blocks, ceres::Problem* problem) {
-  problem->AddResidualBlock(&cost_, nullptr, blocks->Landmark(landmark_));
+void DepthPriorTerm::AddTo(WindowProblem* problem) {
+  problem->ceres().AddResidualBlock(&cost_, nullptr, problem->blocks().Landmark(landmark_));
 }
 
 void AddTrackTerms(const WindowFrames& frames, const std::vector<WindowTrack*>& tracks,

@@ -3,36 +3,47 @@
 #include <ceres/loss_function.h>
 
 #include <optional>
+#include <span>
 
 #include "smoother/factors/inverse_depth_factor.h"
-#include "smoother/factors/pose_only_factor.h"
+#include "smoother/factors/pose_only_cost.h"
 #include "smoother/solve/window_term.h"
 
 namespace alidade {
 
-/// Tracks of a window, all landmarks eliminated (PoseOnlyFactor).
-class PoseOnlyTerm final : public WindowTerm {
+/// Tracks of a window, all landmarks eliminated (PoseOnlyCost).
+class PoseOnlyTerm final : public ReducedTerm {
  public:
   /// `tracks` have landmarks; they, the window and the calibration must outlive the term.
   PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
                const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  [[nodiscard]] int rows() const override;
   /// At the states and landmarks of the first call: a term is made anew once they have moved.
   Status Linearize(LinearTerm* linear) const override;
-  void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) override;
 
   /// What Linearize gives, with its counts.
   [[nodiscard]] const PoseSystem& system() const;
   /// The tracks in system(): all but those behind a view, or whose landmark is not determined.
   [[nodiscard]] const std::vector<const WindowTrack*>& used() const;
 
+  /// The landmarks of each track that go with the present states, none behind a view, if the last solve of
+  /// Ceres left them and the rows there; else empty.
+  [[nodiscard]] std::span<const std::optional<Eigen::Vector3d>> SolvedLandmarks() const;
+  /// Takes tracks out of system(), before their views change.
+  void Remove(std::span<const WindowTrack* const> tracks);
+
  private:
+  [[nodiscard]] ReducedCost* cost() const override { return &cost_; }
+  [[nodiscard]] WindowPoint Present() const;
+  /// Of the tracks at their landmarks and the present states; appends those that it holds to `used`.
+  [[nodiscard]] PoseSystem SystemOf(std::span<const WindowTrack* const> tracks,
+                                    std::vector<const WindowTrack*>* used) const;
+
   const Window* window_;
   std::vector<const WindowTrack*> tracks_;
   const WindowCalibration* calibration_;
   ObservationKernel kernel_;
-  std::optional<LiftedCost<PoseOnlyFactor>> cost_;
+  mutable PoseOnlyCost cost_;
   mutable std::optional<PoseSystem> system_;
   mutable std::vector<const WindowTrack*> used_;
 };
@@ -56,9 +67,8 @@ class ViewTerm final : public WindowTerm {
   /// `landmark`: the track's index among the landmarks of the problem. The track must outlive the term.
   ViewTerm(std::shared_ptr<const ViewContext> context, const WindowTrack* track, int landmark, size_t view);
 
-  [[nodiscard]] int rows() const override { return 2; }
   Status Linearize(LinearTerm* linear) const override;
-  void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) override;
+  void AddTo(WindowProblem* problem) override;
 
  private:
   std::shared_ptr<const ViewContext> context_;
@@ -73,9 +83,8 @@ class DepthPriorTerm final : public WindowTerm {
  public:
   DepthPriorTerm(std::shared_ptr<const ViewContext> context, const WindowTrack* track, int landmark);
 
-  [[nodiscard]] int rows() const override { return DepthPriorFactor::kRows; }
   Status Linearize(LinearTerm* linear) const override;
-  void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) override;
+  void AddTo(WindowProblem* problem) override;
 
  private:
   std::shared_ptr<const ViewContext> context_;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/blas.h"
+#include "smoother/solve/window_problem.h"
 
 namespace alidade {
 namespace {
@@ -109,17 +110,17 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, const ceres::
 Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms,
                                       const std::vector<WindowTrack*>& tracks, Window* window,
                                       WindowCalibration* calibration, double remaining_sigma) {
-  ParameterBlocks blocks(config.error, window->frames(), tracks, *calibration);
-  const std::unique_ptr<ceres::Problem> problem = blocks.MakeProblem();
+  WindowProblem problem(config.error, window->frames(), tracks, *calibration);
+  ParameterBlocks& blocks = problem.blocks();
   for (const std::unique_ptr<WindowTerm>& term : terms) {
-    term->AddTo(&blocks, problem.get());
+    term->AddTo(&problem);
   }
   UseOneThreadPerBlasCall();
   ceres::Solver::Summary summary;
-  ceres::Solver::Options options = SolverOptions(config, *problem, &blocks);
+  ceres::Solver::Options options = SolverOptions(config, problem.ceres(), &blocks);
   AcceptedSteps steps(config.max_iterations, config.solve_to_rounding ? 0 : remaining_sigma);
   options.callbacks.push_back(&steps);
-  ceres::Solve(options, problem.get(), &summary);
+  ceres::Solve(options, &problem.ceres(), &summary);
   if (summary.termination_type == ceres::FAILURE || !blocks.IsFinite()) {
     return Status::Diverged("smoother: solver failed at " + FormatSeconds(window->newest().stamp_ns) +
                             " s: " + summary.message);

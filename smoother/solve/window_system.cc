@@ -1,5 +1,9 @@
 #include "smoother/solve/window_system.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "smoother/manifold/dense_blas.h"
 #include "smoother/solve/row_elimination.h"
 
@@ -15,6 +19,34 @@ void AddOwn(const WindowFrame& frame, ColumnMap* columns) {
     columns->AddClock(frame.index);
   }
   columns->AddState(frame.index);
+}
+
+/// Normal equations of several terms as those of one: the rows of its square root are fewer.
+LinearTerm Sum(const std::vector<LinearTerm>& terms) {
+  LinearTerm sum;
+  ColumnMap columns;
+  for (const LinearTerm& term : terms) {
+    for (const TermPart& part : term.parts) {
+      const auto known = std::find_if(sum.parts.begin(), sum.parts.end(), [&](const TermPart& other) {
+        return other.of.kind == part.of.kind && other.of.index == part.of.index;
+      });
+      if (known == sum.parts.end()) {
+        sum.parts.push_back(part);
+      } else {
+        known->width = std::max(known->width, part.width);
+      }
+    }
+  }
+  for (TermPart& part : sum.parts) {
+    part.first = columns.size();
+    columns.Add(part.of, part.width);
+  }
+  sum.hessian.setZero(columns.size(), columns.size());
+  sum.gradient.setZero(columns.size());
+  for (const LinearTerm& term : terms) {
+    term.AddTo(columns, &sum.hessian, &sum.gradient);
+  }
+  return sum;
 }
 
 Index CalibrationSize(const WindowTerms& terms) {
@@ -55,12 +87,21 @@ bool NewestCovariance(const WindowFrames& frames, const WindowTerms& terms, Newe
   AddOwn(*frames.back(), &columns);
   ends.push_back(columns.size());
   RowElimination elimination(columns, calibration_error);
-  LinearTerm linear;
+  std::vector<LinearTerm> eliminated;
   for (const std::unique_ptr<WindowTerm>& term : terms) {
+    LinearTerm linear;
     if (!term->Linearize(&linear).ok()) {
       return false;
     }
-    elimination.Add(&linear);
+    if (linear.hessian.size() > 0) {
+      eliminated.push_back(std::move(linear));
+    } else {
+      elimination.Add(&linear);
+    }
+  }
+  if (!eliminated.empty()) {
+    LinearTerm sum = Sum(eliminated);
+    elimination.Add(&sum);
   }
   for (const Index end : ends) {
     if (!elimination.EliminateUpTo(end)) {

@@ -1,8 +1,10 @@
 #include "smoother/solve/window_term.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/check.h"
+#include "smoother/solve/window_problem.h"
 #include "smoother/tracks/track_system.h"
 
 namespace alidade {
@@ -25,12 +27,11 @@ void LinearTerm::ResizeRows(const std::vector<TermPart>& of, Index rows) {
   gradient.resize(0);
 }
 
-void LinearTerm::SetInformation(const std::vector<TermPart>& of, const Eigen::MatrixXd& information,
-                                const Eigen::VectorXd& slope) {
+void LinearTerm::SetInformation(const std::vector<TermPart>& of, NormalEquations equations) {
   chart = Chart::kCanonical;
   parts = of;
-  hessian = information;
-  gradient = slope;
+  hessian = std::move(equations.hessian);
+  gradient = std::move(equations.gradient);
 }
 
 void LinearTerm::MakeRows() {
@@ -84,6 +85,10 @@ void InformationTerm::AddPart(const Unknown& of, Index width) {
 
 Index InformationTerm::columns() const {
   return ColumnsOf(parts_);
+}
+
+void ReducedTerm::AddTo(WindowProblem* problem) {
+  problem->AddReduced(cost());
 }
 
 }  // namespace alidade

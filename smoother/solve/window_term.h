@@ -1,16 +1,16 @@
 #pragma once
 
-#include <ceres/problem.h>
-
 #include <Eigen/Core>
 #include <memory>
 #include <vector>
 
 #include "core/status.h"
-#include "smoother/solve/parameter_blocks.h"
+#include "smoother/factors/reduced_cost.h"
 #include "smoother/window/column_map.h"
 
 namespace alidade {
+
+class WindowProblem;
 
 /// The columns of one unknown among those of a term.
 struct TermPart {
@@ -37,8 +37,7 @@ struct LinearTerm {
   /// Rows of these parts, zero, over the canonical chart.
   void ResizeRows(const std::vector<TermPart>& of, Eigen::Index rows);
   /// Normal equations of these parts.
-  void SetInformation(const std::vector<TermPart>& of, const Eigen::MatrixXd& hessian,
-                      const Eigen::VectorXd& gradient);
+  void SetInformation(const std::vector<TermPart>& of, NormalEquations equations);
   /// Replaces normal equations by rows of a square root (SquareRootRows).
   void MakeRows();
   /// Adds its information to normal equations over `columns`, of which lower triangles count. Its entries
@@ -72,10 +71,18 @@ class InformationTerm {
 /// line of AddSensorTerms (smoother/solve/sensor_terms.h) that makes a FactorTerm of it.
 class WindowTerm : public InformationTerm {
  public:
-  /// The number of its rows in Ceres.
-  [[nodiscard]] virtual int rows() const = 0;
   /// Adds its residual block; the term must outlive the problem.
-  virtual void AddTo(ParameterBlocks* blocks, ceres::Problem* problem) = 0;
+  virtual void AddTo(WindowProblem* problem) = 0;
+};
+
+/// A term whose landmarks are eliminated. In Ceres all such terms of a problem are one set of rows
+/// (ReducedRows).
+class ReducedTerm : public WindowTerm {
+ public:
+  void AddTo(WindowProblem* problem) final;
+
+ private:
+  [[nodiscard]] virtual ReducedCost* cost() const = 0;
 };
 
 using WindowTerms = std::vector<std::unique_ptr<WindowTerm>>;

@@ -9,6 +9,7 @@
 #include "smoother/solve/prior_terms.h"
 #include "smoother/solve/sensor_terms.h"
 #include "smoother/solve/vision_terms.h"
+#include "smoother/solve/window_problem.h"
 #include "tests/smoother/batch/batch_fixture.h"
 
 namespace alidade {
@@ -94,12 +95,11 @@ TEST_F(SequenceCovarianceTest, EqualsTheDenseInverseOfCeresNormalEquations) {
   moved.nav[5] += 0.01;  // off the minimum, so that there is a gradient and a decrement
   const size_t frames = sequence().frames().size();
   const WindowTerms terms = MakeTerms(tracks_, frames);
-  ParameterBlocks blocks(config_.smoother.error, sequence().frames(), tracks_, sequence().calibration());
-  const std::unique_ptr<ceres::Problem> problem = blocks.MakeProblem();
+  WindowProblem problem(config_.smoother.error, sequence().frames(), tracks_, sequence().calibration());
   for (const std::unique_ptr<WindowTerm>& term : terms) {
-    term->AddTo(&blocks, problem.get());
+    term->AddTo(&problem);
   }
-  const DenseSystem dense = EvaluateDense(&blocks, frames, tracks_.size(), problem.get());
+  const DenseSystem dense = EvaluateDense(&problem.blocks(), frames, tracks_.size(), &problem.ceres());
   const VectorXd scale = dense.hessian.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<MatrixXd> factor(scale.asDiagonal() * dense.hessian * scale.asDiagonal());
   const MatrixXd inverse =

@@ -5,16 +5,18 @@
 
 #include "smoother/factors/imu_factor.h"
 #include "smoother/factors/inverse_depth_factor.h"
-#include "smoother/factors/pose_only_factor.h"
 #include "smoother/factors/prior_factor.h"
 #include "smoother/factors/rest_factor.h"
 #include "smoother/manifold/lifted_cost.h"
+#include "smoother/solve/vision_terms.h"
+#include "tests/smoother/solve/ceres_view.h"
 #include "tests/smoother/window/window_fixture.h"
 #include "tests/support/jacobian_checker.h"
 
 namespace alidade {
 namespace {
 
+using test::CeresView;
 using test::CompareJacobians;
 using test::kAllConventions;
 using test::RandomStates;
@@ -220,9 +222,9 @@ TEST(PriorFactorTest, JacobianThroughTheManifoldMatchesNumericInThreeConventions
 }
 
 /// Variable projection promises the exact gradient of its cost, not the derivative of its (equivalent) rows.
-class PoseOnlyFactorTest : public testing::TestWithParam<RobustKernel> {};
+class PoseOnlyCostTest : public testing::TestWithParam<RobustKernel> {};
 
-TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
+TEST_P(PoseOnlyCostTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     // Residuals beyond the kernel's scale; fewer for Cauchy, whose landmark cost has several minima in heavy
     // contamination.
@@ -230,32 +232,30 @@ TEST_P(PoseOnlyFactorTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
     for (auto& [id, track] : fixture.window.tracks()) {
       track.depth_prior = {0.15, id % 3 == 0 ? 30.0 : 0.0};
     }
-    const LiftedCost<PoseOnlyFactor> cost(
-        PoseOnlyFactor(fixture.window, fixture.tracks(), fixture.calibration, {GetParam(), 1.5}));
-    Point point;
-    for (const auto& frame : fixture.window.frames()) {
+    for (const std::unique_ptr<WindowFrame>& frame : fixture.window.frames()) {
       Vector9d shift;
       shift << fixture.random.Vector(0.002), fixture.random.Vector(0.005), Eigen::Vector3d::Zero();
-      point.push_back(Nav(Retract(ErrorConvention::kSo3xRn, frame->nav_state(), shift)));
+      PackNavState(Retract(ErrorConvention::kSo3xRn, frame->nav_state(), shift), frame->nav.data());
     }
-    point.push_back(NoError());
+    PoseOnlyTerm term(fixture.window, fixture.tracks(), fixture.calibration, {GetParam(), 1.5});
     for (const ErrorConvention convention : kAllConventions) {
-      const NavStateManifold manifold(convention);
+      CeresView ceres_view(convention, fixture.window.frames(), fixture.calibration);
+      ceres_view.Add(&term);
       Eigen::VectorXd residual;
-      const Eigen::MatrixXd jacobian = TangentJacobian(cost, manifold, point, &residual);
+      const Eigen::MatrixXd jacobian = ceres_view.Jacobian(&residual);
       const auto f = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
-        return Eigen::VectorXd::Constant(1, 0.5 * Residual(cost, Move(manifold, point, xi)).squaredNorm());
+        return Eigen::VectorXd::Constant(1, 0.5 * ceres_view.Moved(xi).squaredNorm());
       };
-      const Eigen::MatrixXd numeric = test::NumericJacobian(f, TangentSizeOf(point), 1e-5);
+      const Eigen::MatrixXd numeric = test::NumericJacobian(f, static_cast<int>(jacobian.cols()), 1e-5);
       EXPECT_EQ(CompareJacobians((jacobian.transpose() * residual).transpose(), numeric, 1e-5), "")
           << ToString(convention) << " seed " << seed;
-      const double cost_alone = Residual(cost, point).squaredNorm();
+      const double cost_alone = 2 * ceres_view.Cost();
       EXPECT_NEAR(residual.squaredNorm(), cost_alone, 1e-9 * cost_alone) << "with and without Jacobians";
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, PoseOnlyFactorTest,
+INSTANTIATE_TEST_SUITE_P(Kernels, PoseOnlyCostTest,
                          testing::Values(RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy));
 
 }  // namespace

@@ -1,9 +1,7 @@
-#include "smoother/factors/slam_prior.h"
-
 #include <gtest/gtest.h>
 
 #include "core/reprojection.h"
-#include "smoother/factors/slam_prior_factor.h"
+#include "smoother/factors/slam_prior_cost.h"
 #include "tests/smoother/factors/slam_fixture.h"
 
 namespace alidade {
@@ -136,12 +134,14 @@ void ExpectGradient(const SlamFixture& fixture, const LinearPrior& prior, const 
     point.bias.gyro += zeta.segment<3>(9);
     point.bias.accel += zeta.segment<3>(12);
     point.camera = fixture.Moved(zeta.tail(fixture.calibration.size()));
-    VectorXd landmarks = slam.StartingLandmarks();
-    SlamPrior::Reduced reduced;
+    SlamPriorCost reduced(&slam);
+    double value = 0;
     for (int k = 0; k < 4; ++k) {  // re-weighting converges linearly
-      EXPECT_TRUE(slam.Reduce(point, &landmarks, &reduced));
+      value = reduced.Solve(point);
     }
-    return reduced;
+    NormalEquations equations;
+    EXPECT_TRUE(reduced.Linearize(&equations));
+    return std::make_pair(value, equations.gradient);
   };
   // A step of the line delay moves the last row by hundreds of it.
   VectorXd unit = VectorXd::Ones(slam.columns().size());
@@ -150,9 +150,9 @@ void ExpectGradient(const SlamFixture& fixture, const LinearPrior& prior, const 
     unit.tail(layout.size())[layout.line_delay()] = 1e-3;
   }
   const auto cost = [&](const VectorXd& steps) -> VectorXd {
-    return VectorXd::Constant(1, reduce(unit.asDiagonal() * steps).robust_cost / 2);
+    return VectorXd::Constant(1, reduce(unit.asDiagonal() * steps).first / 2);
   };
-  const VectorXd gradient = unit.asDiagonal() * reduce(VectorXd::Zero(unit.size())).gradient;
+  const VectorXd gradient = unit.asDiagonal() * reduce(VectorXd::Zero(unit.size())).second;
   const VectorXd numeric = NumericJacobian(cost, static_cast<int>(unit.size()), 1e-4).transpose();
   EXPECT_LT((numeric - gradient).norm(), 1e-3 * gradient.norm());
   // A focal length's own, many orders below a rotation's.
@@ -185,6 +185,42 @@ TEST_P(SlamPriorTest, WithoutLandmarksTheReducedSystemIsThatOfThePrior) {
     SCOPED_TRACE(growth);
     ExpectGradient(fixture, prior, {}, growth);
   }
+}
+
+/// J^T J of the prior once a second frame has left, its last landmark refused if `refused`.
+MatrixXd InformationAfterASecondLeft(SlamFixture* fixture, bool refused) {
+  const LinearPrior prior = fixture->Leave();
+  SlamChange change{PriorTracks(prior, fixture->window), {}, {}, true};
+  if (refused) {
+    change.before.back() = nullptr;
+  }
+  for (const WindowTrack* known : change.before) {
+    if (known != nullptr) {
+      WindowTrack& track = fixture->window.tracks().at(known->id);
+      if (track.anchor->index == 0) {
+        fixture->Anchor(track.anchor, &fixture->window.newest(), &track);
+      }
+      change.after.push_back(&track);
+    }
+  }
+  const LinearPrior next =
+      test::Marginalize(fixture->window, prior, fixture->NoVision(), {fixture->gravity_W}, change);
+  return next.jacobian.transpose() * next.jacobian;
+}
+
+// GIVEN a landmark in the prior with the one view that has left, WHEN its track is refused THEN nothing else
+// is known less or better: a view determines two of its three coordinates, and the third one takes no row
+// along.
+TEST_P(SlamPriorTest, ALandmarkRefusedAfterOneViewTellsNothing) {
+  SlamFixture with = Fixture(7, {2, 4});
+  SlamFixture without = Fixture(7, {2, 4});
+  without.change.after.pop_back();
+  const MatrixXd information = InformationAfterASecondLeft(&with, true);
+  const MatrixXd expected = InformationAfterASecondLeft(&without, false);
+  ASSERT_EQ(information.rows(), expected.rows());
+  const VectorXd unit = expected.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd difference = unit.asDiagonal() * (information - expected) * unit.asDiagonal();
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-6);
 }
 
 // GIVEN a window that fits its data, WHEN the oldest frame leaves and its tracks keep their landmarks, THEN

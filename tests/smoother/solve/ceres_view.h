@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "smoother/solve/window_problem.h"
 #include "smoother/solve/window_term.h"
 #include "tests/smoother/window/window_fixture.h"
 
@@ -21,12 +22,11 @@ class CeresView {
       : convention_(convention),
         frames_(frames),
         tracks_(std::move(tracks)),
-        blocks_(convention, frames, tracks_, calibration),
-        problem_(blocks_.MakeProblem()) {}
+        problem_(convention, frames, tracks_, calibration) {}
 
   /// The term must outlive the view. Its parts become columns.
   void Add(WindowTerm* term) {
-    term->AddTo(&blocks_, problem_.get());
+    term->AddTo(&problem_);
     for (const TermPart& part : term->parts()) {
       AddColumns(part);
     }
@@ -39,6 +39,11 @@ class CeresView {
     }
   }
 
+  /// The error of the calibration, CalibrationLayout::kMaxSize.
+  void SetCalibration(const Eigen::VectorXd& error) {
+    std::copy(error.data(), error.data() + error.size(), problem_.blocks().Calibration());
+  }
+
   /// Rows over the tangents of all blocks of the columns, side by side.
   [[nodiscard]] Eigen::MatrixXd Jacobian(Eigen::VectorXd* residual) {
     ceres::Problem::EvaluateOptions options;
@@ -46,7 +51,7 @@ class CeresView {
     options.apply_loss_function = true;
     std::vector<double> values;
     ceres::CRSMatrix sparse;
-    EXPECT_TRUE(problem_->Evaluate(options, nullptr, &values, nullptr, &sparse));
+    EXPECT_TRUE(problem_.ceres().Evaluate(options, nullptr, &values, nullptr, &sparse));
     *residual = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
     for (int row = 0; row < sparse.num_rows; ++row) {
@@ -60,14 +65,14 @@ class CeresView {
   /// Half the sum of the losses.
   [[nodiscard]] double Cost() {
     double cost = 0;
-    EXPECT_TRUE(problem_->Evaluate({}, &cost, nullptr, nullptr, nullptr));
+    EXPECT_TRUE(problem_.ceres().Evaluate({}, &cost, nullptr, nullptr, nullptr));
     return cost;
   }
   /// Residuals with the blocks moved by `delta`, through the manifolds.
   [[nodiscard]] Eigen::VectorXd Moved(const Eigen::VectorXd& delta) {
     const std::vector<std::vector<double>> before = Move(delta);
     std::vector<double> values;
-    EXPECT_TRUE(problem_->Evaluate({}, nullptr, &values, nullptr, nullptr));
+    EXPECT_TRUE(problem_.ceres().Evaluate({}, nullptr, &values, nullptr, nullptr));
     MoveBack(before);
     return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   }
@@ -106,19 +111,19 @@ class CeresView {
   void AddColumns(const TermPart& part) {
     switch (part.of.kind) {
       case Unknown::Kind::kFrame:
-        order_.push_back(blocks_.Nav(part.of.index));
+        order_.push_back(problem_.blocks().Nav(part.of.index));
         if (part.width > kNavColumns) {
-          order_.push_back(blocks_.Bias(part.of.index));
+          order_.push_back(problem_.blocks().Bias(part.of.index));
         }
         break;
       case Unknown::Kind::kClock:
-        order_.push_back(blocks_.Clock(part.of.index));
+        order_.push_back(problem_.blocks().Clock(part.of.index));
         break;
       case Unknown::Kind::kCalibration:
-        order_.push_back(blocks_.Calibration());
+        order_.push_back(problem_.blocks().Calibration());
         break;
       case Unknown::Kind::kLandmark:
-        order_.push_back(blocks_.Landmark(part.of.index));
+        order_.push_back(problem_.blocks().Landmark(part.of.index));
         break;
     }
   }
@@ -127,11 +132,11 @@ class CeresView {
     std::vector<std::vector<double>> before;
     Eigen::Index at = 0;
     for (double* block : order_) {
-      const int size = problem_->ParameterBlockSize(block);
-      const int tangent = problem_->ParameterBlockTangentSize(block);
+      const int size = problem_.ceres().ParameterBlockSize(block);
+      const int tangent = problem_.ceres().ParameterBlockTangentSize(block);
       before.emplace_back(block, block + size);
       const Eigen::VectorXd step = delta.segment(at, tangent);
-      if (const ceres::Manifold* manifold = problem_->GetManifold(block)) {
+      if (const ceres::Manifold* manifold = problem_.ceres().GetManifold(block)) {
         manifold->Plus(before.back().data(), step.data(), block);
       } else {
         Eigen::Map<Eigen::VectorXd>(block, size) += step;
@@ -149,8 +154,7 @@ class CeresView {
   ErrorConvention convention_;
   const WindowFrames& frames_;
   const std::vector<WindowTrack*> tracks_;
-  ParameterBlocks blocks_;
-  std::unique_ptr<ceres::Problem> problem_;
+  WindowProblem problem_;
   std::vector<double*> order_;
 };
 

@@ -25,12 +25,11 @@ class GivenTerm final : public WindowTerm {
     }
     AddPart({Unknown::Kind::kCalibration, 0}, system.columns.Calibration().size);
   }
-  [[nodiscard]] int rows() const override { return static_cast<int>(system_.gradient.size()); }
   Status Linearize(LinearTerm* linear) const override {
-    linear->SetInformation(parts(), system_.hessian, system_.gradient);
+    linear->SetInformation(parts(), {system_.hessian, system_.gradient});
     return Status::Ok();
   }
-  void AddTo(ParameterBlocks*, ceres::Problem*) override { FAIL() << "a linear problem only"; }
+  void AddTo(WindowProblem*) override { FAIL() << "a linear problem only"; }
 
  private:
   PoseSystem system_;

@@ -19,7 +19,6 @@ void ExpectRowsOfCeres(const WindowTerms& terms, const WindowFrames& frames,
   for (size_t i = 0; i < terms.size(); ++i) {
     LinearTerm linear;
     ASSERT_TRUE(terms[i]->Linearize(&linear).ok());
-    EXPECT_EQ(linear.residual.size(), terms[i]->rows());
     for (const ErrorConvention convention : kAllConventions) {
       CeresView ceres_view(convention, frames, calibration);
       ceres_view.Add(terms[i].get());

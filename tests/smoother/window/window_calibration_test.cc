@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "smoother/factors/inverse_depth_factor.h"
-#include "smoother/factors/pose_only_factor.h"
 #include "smoother/factors/prior_factor.h"
+#include "tests/smoother/solve/ceres_view.h"
 #include "tests/smoother/solve/given_terms.h"
 #include "tests/smoother/window/calibrated_window.h"
 #include "tests/support/jacobian_checker.h"
@@ -21,67 +21,27 @@ using test::SomeCovariance;
 
 constexpr int kBlock = CalibrationLayout::kMaxSize;
 
-/// The gradient J^T r of a factor over poses (canonical chart) and calibration block at a point.
-VectorXd Gradient(const PoseOnlyFactor& factor, const std::vector<VectorXd>& blocks, double* cost) {
-  std::vector<const double*> parameters;
-  std::vector<std::vector<double>> storage;
-  std::vector<double*> jacobians;
-  for (size_t i = 0; i < blocks.size(); ++i) {
-    parameters.push_back(blocks[i].data());
-    storage.emplace_back(static_cast<size_t>(factor.rows()) * (i + 1 < blocks.size() ? 9 : kBlock));
-  }
-  jacobians.reserve(storage.size());
-  for (std::vector<double>& each : storage) {
-    jacobians.push_back(each.data());
-  }
-  VectorXd residual(factor.rows());
-  EXPECT_TRUE(factor.Evaluate(parameters.data(), residual.data(), jacobians.data()));
-  *cost = 0.5 * residual.squaredNorm();
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  VectorXd gradient(0);
-  for (size_t i = 0; i < blocks.size(); ++i) {
-    const Eigen::Index width = i + 1 < blocks.size() ? 9 : kBlock;
-    const Eigen::Map<const RowMatrix> jacobian(storage[i].data(), factor.rows(), width);
-    gradient.conservativeResize(gradient.size() + width);
-    gradient.tail(width) = jacobian.transpose() * residual;
-  }
-  return gradient;
-}
-
 TEST(WindowCalibrationTest, PoseOnlyGradientIsThatOfItsCostOverPosesAndCalibration) {
   CalibratedWindow fixture(11);
-  const PoseOnlyFactor factor(fixture.window, fixture.tracks(), fixture.calibration, {});
+  PoseOnlyTerm term(fixture.window, fixture.tracks(), fixture.calibration, {});
   test::RandomStates random(12);
   for (int trial = 0; trial < 5; ++trial) {
-    std::vector<VectorXd> blocks;
-    for (int i = 0; i < fixture.window.size(); ++i) {
-      VectorXd block(kNavAmbientSize);
-      PackNavState(fixture.window.frame(i).nav_state(), block.data());
-      blocks.push_back(block);
-    }
-    blocks.push_back(VectorXd::Zero(kBlock));
+    test::CeresView ceres_view(ErrorConvention::kSo3xRn, fixture.window.frames(), fixture.calibration);
+    ceres_view.Add(&term);
+    VectorXd error = VectorXd::Zero(kBlock);
     for (int i = 0; trial > 0 && i < fixture.calibration.size(); ++i) {
       // Well away from zero, where the rotation's chart bends.
-      blocks.back()[i] = fixture.estimate.deviations[i] * random.Uniform(-0.5, 0.5);
+      error[i] = fixture.estimate.deviations[i] * random.Uniform(-0.5, 0.5);
     }
-    const auto move = [&](const VectorXd& xi) -> VectorXd {
-      std::vector<VectorXd> moved = blocks;
-      for (int i = 0; i < fixture.window.size(); ++i) {
-        const NavState state =
-            Retract(ErrorConvention::kSo3xRn, UnpackNavState(blocks[static_cast<size_t>(i)].data()),
-                    Vector9d(xi.segment<9>(9 * i)));
-        PackNavState(state, moved[static_cast<size_t>(i)].data());
-      }
-      moved.back() += xi.tail<kBlock>();
-      double cost = 0;
-      Gradient(factor, moved, &cost);
-      return VectorXd::Constant(1, cost);
+    ceres_view.SetCalibration(error);
+    VectorXd residual;
+    const MatrixXd jacobian = ceres_view.Jacobian(&residual);
+    const auto cost = [&](const VectorXd& xi) -> VectorXd {
+      return VectorXd::Constant(1, 0.5 * ceres_view.Moved(xi).squaredNorm());
     };
-    double cost = 0;
-    const VectorXd gradient = Gradient(factor, blocks, &cost);
-    const int size = 9 * fixture.window.size() + kBlock;
-    const MatrixXd numeric = test::NumericJacobian(move, size, 1e-6);
-    EXPECT_EQ(test::CompareJacobians(gradient.transpose(), numeric, 2e-5), "") << "trial " << trial;
+    const MatrixXd numeric = test::NumericJacobian(cost, static_cast<int>(jacobian.cols()), 1e-6);
+    EXPECT_EQ(test::CompareJacobians((jacobian.transpose() * residual).transpose(), numeric, 2e-5), "")
+        << "trial " << trial;
   }
 }
 

@@ -1,0 +1,44 @@
+#include "smoother/factors/slam_prior_cost.h"
+
+#include <utility>
+
+namespace alidade {
+namespace {
+
+// Cost of a point where a landmark lies behind a view, so that the solver refuses the step.
+constexpr double kBehindCost = 1e8;
+
+}  // namespace
+
+SlamPriorCost::SlamPriorCost(const SlamPrior* prior)
+    : prior_(prior), landmarks_(prior->StartingLandmarks()) {}
+
+double SlamPriorCost::Solve(const WindowPoint& point) {
+  point_ = point;
+  linear_ = false;
+  double cost = 0;
+  Eigen::VectorXd landmarks = landmarks_;
+  solved_ = prior_->SolveLandmarks(point_, &landmarks, &cost);
+  if (!solved_) {
+    return kBehindCost;
+  }
+  landmarks_ = std::move(landmarks);
+  return cost;
+}
+
+bool SlamPriorCost::Linearize(NormalEquations* equations) {
+  if (!linear_) {
+    linear_ = solved_ && prior_->Linearize(point_, landmarks_, &equations_);
+  }
+  *equations = equations_;
+  return linear_;
+}
+
+const Eigen::VectorXd* SlamPriorCost::LandmarksAt(const WindowPoint& point) {
+  if (prior_->calibration().size() > 0 || !SameStates(point, point_)) {
+    Solve(point);
+  }
+  return solved_ ? &landmarks_ : nullptr;
+}
+
+}  // namespace alidade
