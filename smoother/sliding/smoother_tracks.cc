@@ -38,6 +38,15 @@ SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector
     return Landmark::kReady;
   }
   Eigen::Vector3d landmark;
+  if (std::isfinite(max_inverse_depth_deviation)) {
+    // At the typical depth: where the baselines determine none, noise decides whether the track's own lies in
+    // front of the camera, and one behind it contradicts nothing.
+    landmark << track->views.front().observation.z, max_inverse_depth_deviation / kMaxTypicalDeviation;
+    const std::optional<double> deviation = InverseDepthDeviation(track->views, geometry, kernel_, landmark);
+    if (deviation && !(*deviation < max_inverse_depth_deviation)) {
+      return Landmark::kWaiting;
+    }
+  }
   if (!InitializeLandmark(track->views, geometry,
                           kParallaxSlack * config_.vision.max_relative_depth_deviation, &landmark)) {
     return Landmark::kWaiting;

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+
 #include "tests/support/preset_run.h"
 
 namespace alidade {
@@ -88,6 +91,47 @@ TEST(UncertainScale, IsNotFoundInNoise) {
         test::RunPreset("alidade_smoother", {"smoother.parallax_gate=typical"}, dataset, seed, 5);
     EXPECT_LT(run.nees_pose, 20) << "seed " << seed;  // where each track's own depth decides: 154, 58, 693
   }
+}
+
+/// Of the frames of a run, the largest share of tracks whose depth was none.
+class DegenerateShare final : public test::ForwardPass {
+ public:
+  using ForwardPass::ForwardPass;
+  Status AddFrame(const TrackFrame& frame) override {
+    const Status status = ForwardPass::AddFrame(frame);
+    const FrameStatistics& statistics = last_statistics();
+    if (statistics.tracks_in > 0) {
+      largest = std::max(largest, static_cast<double>(statistics.features_degenerate) / statistics.tracks_in);
+    }
+    return status;
+  }
+
+  double largest = 0;
+};
+
+// GIVEN a rig that pauses for six seconds, with too much wobble for rest, WHEN noise puts the depth of half of
+// the tracks behind the camera THEN they wait: tracks that contradict the state would end the run.
+TEST(UncertainScale, InAPauseTracksWait) {
+  SimulatorConfig sim = Motion(SimTrajectory::kEllipse, {2.1, 1.8, 0.25}, 6.1, 16);
+  sim.pause_s = 6;
+  sim.pause_period_s = 20;
+  sim.camera_rate_hz = 20;
+  sim.imu_rate_hz = 200;
+  sim.imu_noise = {9e-5, 3e-4, 9e-6, 6e-5};
+  sim.landmark_min_distance_m = 4;
+  sim.landmark_max_distance_m = 16;
+  sim.max_range_m = 25;
+  sim.landmark_count = 1200;
+  const Dataset dataset = test::SimulateOrDie(sim, 75001);
+  const Result<EstimatorConfig> config =
+      LoadEstimatorConfig(ALIDADE_SOURCE_DIR "/configs/estimators/alidade_smoother.yaml", {});
+  ASSERT_TRUE(config.ok()) << config.message();
+  const std::unique_ptr<Estimator> smoother = MakeEstimator(*config, dataset.rig);
+  DegenerateShare share(smoother.get());
+  const auto run = test::RunScenario(dataset, test::DrawInitialState(dataset, 75001), &share);
+  EXPECT_TRUE(run.status.ok()) << run.status.message();
+  EXPECT_LT(share.largest, 0.1);  // 0.19 where their own depth decides
+  EXPECT_LT(run.nees_pose, 15);
 }
 
 // GIVEN a motion of 0.14 m/s that moves tracks of scenery at 20 m by less than a pixel in half a second WHEN

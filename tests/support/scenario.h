@@ -65,7 +65,7 @@ inline NavEstimate DrawInitialState(const Dataset& dataset, unsigned seed, doubl
 }
 
 /// The forward pass of an estimator: what it revises at the end is left to the test.
-class ForwardPass final : public Estimator {
+class ForwardPass : public Estimator {
  public:
   explicit ForwardPass(Estimator* estimator) : estimator_(*estimator) {}
 
