@@ -109,8 +109,8 @@ class DegenerateShare final : public test::ForwardPass {
   double largest = 0;
 };
 
-// GIVEN a rig that pauses for six seconds, with too much wobble for rest, WHEN noise puts the depth of half of
-// the tracks behind the camera THEN they wait: tracks that contradict the state would end the run.
+// GIVEN a rig that pauses for six seconds, with too much wobble for rest, WHEN noise puts the depth of half
+// of the tracks behind the camera THEN they wait: tracks that contradict the state would end the run.
 TEST(UncertainScale, InAPauseTracksWait) {
   SimulatorConfig sim = Motion(SimTrajectory::kEllipse, {2.1, 1.8, 0.25}, 6.1, 16);
   sim.pause_s = 6;
