@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "core/imu_propagation.h"
@@ -229,11 +228,10 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (!report.ok()) {
     return Lost(report.message());
   }
-  std::unique_ptr<WindowTerm> vision;
+  std::unique_ptr<PoseOnlyTerm> vision;
   if (pose_only != nullptr && !watched && !pose_only->SolvedLandmarks().empty()) {
-    vision = std::move(terms[without_vision]);
-  } else {
-    pose_only = nullptr;
+    (void)terms[without_vision].release();
+    vision.reset(pose_only);
   }
   terms.resize(without_vision);
   statistics_.iterations = report->iterations;
@@ -246,23 +244,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
-  std::vector<WindowTrack*> gated = FeaturesInSight();
-  gated.insert(gated.begin(), tracks->begin(), tracks->end());
-  if (GateTracks(Geometry(), gated, pose_only) && slam != nullptr) {
-    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, &terms)));
-  }
-  if (gnss_.aligned()) {
-    for (int i = 0; i < window_.size(); ++i) {
-      gnss_.Gate(&window_.frame(i), &statistics_);
-    }
-  }
-  if (pose_only == nullptr || statistics_.suspect) {  // suspect: with less information
-    std::unique_ptr<PoseOnlyTerm> gated_vision = GatedVision(*tracks);
-    pose_only = gated_vision.get();
-    vision = std::move(gated_vision);
-  }
-  CountVision(pose_only->system());
-  terms.push_back(std::move(vision));
+  ALIDADE_RETURN_IF_ERROR(Gate(*tracks, slam != nullptr, std::move(vision), &terms));
   return UpdateLatest(terms);
 }
 

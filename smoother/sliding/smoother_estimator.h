@@ -116,9 +116,10 @@ class SmootherEstimator final : public Estimator {
   /// Appends the terms of the tracks for the solver. Returns that of pose-only tracks, null without any.
   PoseOnlyTerm* AddVision(const std::vector<WindowTrack*>& tracks, const WindowCalibration& calibration,
                           WindowTerms* terms) const;
-  /// The term of the tracks whose views passed the gates.
-  [[nodiscard]] std::unique_ptr<PoseOnlyTerm> GatedVision(const std::vector<WindowTrack*>& tracks) const;
-  void CountVision(const PoseSystem& system);
+  /// Gates what was solved for, and appends the term of the tracks whose views passed. `vision`: that of
+  /// `tracks`, if it is of the present states.
+  Status Gate(const std::vector<WindowTrack*>& tracks, bool has_features,
+              std::unique_ptr<PoseOnlyTerm> vision, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
   [[nodiscard]] std::vector<WindowTrack*> SelectTracks();
   enum class Landmark { kReady, kWaiting, kDegenerate };
@@ -140,8 +141,8 @@ class SmootherEstimator final : public Estimator {
   bool SolveOwnLandmark(const std::vector<FrameGeometry>& geometry,
                         std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
                         WindowTrack* track) const;
-  /// `solved`: the term of the first tracks whose landmarks go with the present states, from which tracks
-  /// that are refused are removed; null: none. True when a SLAM feature was refused.
+  /// `solved`: the term of the first tracks at the present states, from which those that are refused are
+  /// removed; null: none. True when a SLAM feature was refused.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks,
                   PoseOnlyTerm* solved);
   Status UpdateLatest(const WindowTerms& terms);

@@ -162,17 +162,28 @@ PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& trac
   return added;
 }
 
-std::unique_ptr<PoseOnlyTerm> SmootherEstimator::GatedVision(const std::vector<WindowTrack*>& tracks) const {
-  std::vector<const WindowTrack*> used;
-  std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
-               [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
-  return std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
-}
-
-void SmootherEstimator::CountVision(const PoseSystem& system) {
+Status SmootherEstimator::Gate(const std::vector<WindowTrack*>& tracks, bool has_features,
+                               std::unique_ptr<PoseOnlyTerm> vision, WindowTerms* terms) {
+  std::vector<WindowTrack*> gated = FeaturesInSight();
+  gated.insert(gated.begin(), tracks.begin(), tracks.end());
+  if (GateTracks(Geometry(), gated, vision.get()) && has_features) {
+    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, terms)));
+  }
+  for (int i = 0; gnss_.aligned() && i < window_.size(); ++i) {
+    gnss_.Gate(&window_.frame(i), &statistics_);
+  }
+  if (!vision || statistics_.suspect) {  // suspect: the tracks have less information now
+    std::vector<const WindowTrack*> used;
+    std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
+                 [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
+    vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
+  }
+  const PoseSystem& system = vision->system();
   statistics_.features_used = system.tracks + static_cast<int>(FeaturesInSight().size());
   statistics_.nis = system.chi2;
   statistics_.nis_dof = system.dof;
+  terms->push_back(std::move(vision));
+  return Status::Ok();
 }
 
 bool SmootherEstimator::SolveOwnLandmark(const std::vector<FrameGeometry>& geometry,
