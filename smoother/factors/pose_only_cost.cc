@@ -16,11 +16,7 @@ constexpr double kBehindChiSquare = 1e4;
 
 PoseOnlyCost::PoseOnlyCost(const Window& window, std::vector<const WindowTrack*> tracks,
                            const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : window_(&window),
-      calibration_(&calibration),
-      tracks_(std::move(tracks)),
-      kernel_(kernel),
-      columns_(PoseSystem(window.size(), &calibration).columns) {}
+    : window_(&window), calibration_(&calibration), tracks_(std::move(tracks)), kernel_(kernel) {}
 
 double PoseOnlyCost::Solve(const WindowPoint& point) {
   point_ = point;
@@ -67,7 +63,7 @@ bool PoseOnlyCost::Linearize(NormalEquations* equations) {
 }
 
 const PoseSystem* PoseOnlyCost::SystemAt(const WindowPoint& point) const {
-  return system_ && calibration_->size() == 0 && SameStates(point, point_) ? &*system_ : nullptr;
+  return system_ && point == point_ ? &*system_ : nullptr;
 }
 
 }  // namespace alidade

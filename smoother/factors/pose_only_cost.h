@@ -18,14 +18,12 @@ class PoseOnlyCost final : public ReducedCost {
   PoseOnlyCost(const Window& window, std::vector<const WindowTrack*> tracks,
                const WindowCalibration& calibration, const ObservationKernel& kernel);
 
-  [[nodiscard]] const ColumnMap& columns() const override { return columns_; }
   double Solve(const WindowPoint& point) override;
   [[nodiscard]] bool Linearize(NormalEquations* equations) override;
 
   /// The landmarks of the last Solve, of each track; none behind a view.
   [[nodiscard]] std::span<const std::optional<Eigen::Vector3d>> landmarks() const { return landmarks_; }
-  /// What Linearize gave for the states of `point`, with its counts. Null: none of them, or the camera is
-  /// estimated.
+  /// What Linearize gave at `point`, with its counts. Null: it was elsewhere.
   [[nodiscard]] const PoseSystem* SystemAt(const WindowPoint& point) const;
   /// The tracks in that system: all but those behind a view, or whose landmark is not determined.
   [[nodiscard]] const std::vector<const WindowTrack*>& used() const { return used_; }
@@ -35,7 +33,6 @@ class PoseOnlyCost final : public ReducedCost {
   const WindowCalibration* calibration_;
   std::vector<const WindowTrack*> tracks_;
   ObservationKernel kernel_;
-  ColumnMap columns_;
   WindowPoint point_;
   WindowCalibration camera_;
   std::vector<FrameGeometry> geometry_;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 
-#include "smoother/window/column_map.h"
 #include "smoother/window/window_point.h"
 
 namespace alidade {
@@ -24,6 +23,9 @@ struct NormalEquations {
 /// are therefore those of explicit landmarks; what differs is the path to it.
 class ReducedCost {
  public:
+  /// F where the solver shall refuse a step.
+  static constexpr double kRefused = 1e8;
+
   ReducedCost() = default;
   ReducedCost(const ReducedCost&) = delete;
   ReducedCost& operator=(const ReducedCost&) = delete;
@@ -31,8 +33,6 @@ class ReducedCost {
   ReducedCost& operator=(ReducedCost&&) = delete;
   virtual ~ReducedCost() = default;
 
-  /// What the normal equations are over.
-  [[nodiscard]] virtual const ColumnMap& columns() const = 0;
   /// Solves for the landmarks at a point and returns F, twice what Ceres calls the cost. Where a landmark
   /// lies behind a view it is so large that the solver refuses the step.
   virtual double Solve(const WindowPoint& point) = 0;

@@ -3,12 +3,6 @@
 #include <utility>
 
 namespace alidade {
-namespace {
-
-// Cost of a point where a landmark lies behind a view, so that the solver refuses the step.
-constexpr double kBehindCost = 1e8;
-
-}  // namespace
 
 SlamPriorCost::SlamPriorCost(const SlamPrior* prior)
     : prior_(prior), landmarks_(prior->StartingLandmarks()) {}
@@ -20,7 +14,7 @@ double SlamPriorCost::Solve(const WindowPoint& point) {
   Eigen::VectorXd landmarks = landmarks_;
   solved_ = prior_->SolveLandmarks(point_, &landmarks, &cost);
   if (!solved_) {
-    return kBehindCost;
+    return kRefused;
   }
   landmarks_ = std::move(landmarks);
   return cost;
@@ -35,7 +29,7 @@ bool SlamPriorCost::Linearize(NormalEquations* equations) {
 }
 
 const Eigen::VectorXd* SlamPriorCost::LandmarksAt(const WindowPoint& point) {
-  if (prior_->calibration().size() > 0 || !SameStates(point, point_)) {
+  if (point != point_) {
     Solve(point);
   }
   return solved_ ? &landmarks_ : nullptr;

@@ -11,12 +11,11 @@ class SlamPriorCost final : public ReducedCost {
   /// `prior` must outlive the cost.
   explicit SlamPriorCost(const SlamPrior* prior);
 
-  [[nodiscard]] const ColumnMap& columns() const override { return prior_->columns(); }
   double Solve(const WindowPoint& point) override;
   [[nodiscard]] bool Linearize(NormalEquations* equations) override;
 
-  /// The landmarks (3 each) of the states of `point`, which are solved for unless the last Solve was for them
-  /// and no camera is estimated. Null: they have no solution.
+  /// The landmarks (3 each) at `point`, which are solved for unless the last Solve was there. Null: they have
+  /// no solution.
   [[nodiscard]] const Eigen::VectorXd* LandmarksAt(const WindowPoint& point);
 
  private:

@@ -229,22 +229,23 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     return Lost(report.message());
   }
   std::unique_ptr<PoseOnlyTerm> vision;
-  if (pose_only != nullptr && !watched && !pose_only->SolvedLandmarks().empty()) {
+  if (pose_only != nullptr && !pose_only->SolvedLandmarks().empty()) {
     (void)terms[without_vision].release();
     vision.reset(pose_only);
   }
   terms.resize(without_vision);
   statistics_.iterations = report->iterations;
   window_.Renormalize(solved);
-  if (watched) {  // the same terms over the calibration's columns, too
-    terms.clear();
-    slam = SetPriorTerm(prior_, calibration_, &terms);
-    ALIDADE_RETURN_IF_ERROR(AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), &terms));
-  }
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
-  ALIDADE_RETURN_IF_ERROR(Gate(*tracks, slam != nullptr, std::move(vision), &terms));
+  const bool has_features = slam != nullptr;
+  if (watched) {  // the same terms over the calibration's columns, too
+    terms.clear();
+    SetPriorTerm(prior_, calibration_, &terms);
+    ALIDADE_RETURN_IF_ERROR(AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), &terms));
+  }
+  ALIDADE_RETURN_IF_ERROR(Gate(*tracks, has_features, std::move(vision), &terms));
   return UpdateLatest(terms);
 }
 

@@ -117,7 +117,7 @@ class SmootherEstimator final : public Estimator {
   PoseOnlyTerm* AddVision(const std::vector<WindowTrack*>& tracks, const WindowCalibration& calibration,
                           WindowTerms* terms) const;
   /// Gates what was solved for, and appends the term of the tracks whose views passed. `vision`: that of
-  /// `tracks`, if it is of the present states.
+  /// `tracks` for the solver, if it is of the present states.
   Status Gate(const std::vector<WindowTrack*>& tracks, bool has_features,
               std::unique_ptr<PoseOnlyTerm> vision, WindowTerms* terms);
   void PropagateToNewest(std::unique_ptr<WindowFrame> dropped, TimeNs stamp_ns);
@@ -142,7 +142,7 @@ class SmootherEstimator final : public Estimator {
                         std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
                         WindowTrack* track) const;
   /// `solved`: the term of the first tracks at the present states, from which those that are refused are
-  /// removed; null: none. True when a SLAM feature was refused.
+  /// removed where it is used again; null: none. True when a SLAM feature was refused.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks,
                   PoseOnlyTerm* solved);
   Status UpdateLatest(const WindowTerms& terms);

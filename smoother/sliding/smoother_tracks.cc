@@ -172,7 +172,9 @@ Status SmootherEstimator::Gate(const std::vector<WindowTrack*>& tracks, bool has
   for (int i = 0; gnss_.aligned() && i < window_.size(); ++i) {
     gnss_.Gate(&window_.frame(i), &statistics_);
   }
-  if (!vision || statistics_.suspect) {  // suspect: the tracks have less information now
+  // A watched calibration has columns that the solver had not; tracks of a suspect state have less
+  // information.
+  if (!vision || given_.watched || statistics_.suspect) {
     std::vector<const WindowTrack*> used;
     std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
                  [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
@@ -229,7 +231,7 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
     });
   }
   statistics_.suspect = IsSuspect(refused.size(), tracks.size());
-  if (solved != nullptr && !statistics_.suspect) {
+  if (solved != nullptr && !given_.watched && !statistics_.suspect) {
     std::vector<const WindowTrack*> gone;
     std::transform(refused.begin(), refused.end(), std::back_inserter(gone),
                    [](const auto& entry) { return entry.first; });

@@ -3,7 +3,7 @@
 #include "smoother/factors/prior_factor.h"
 #include "smoother/factors/slam_prior.h"
 #include "smoother/factors/slam_prior_cost.h"
-#include "smoother/solve/window_term.h"
+#include "smoother/solve/reduced_term.h"
 
 namespace alidade {
 

@@ -14,28 +14,6 @@ namespace {
 using Eigen::Index;
 
 constexpr int kFramesOfAGroup = 4;
-// Of a cost that is undefined where it is linearised, so that the solver refuses the step.
-constexpr double kUndefinedCost = 1e8;
-
-/// Adds normal equations to larger ones.
-void AddTo(const ColumnMap& from, const NormalEquations& equations, const ColumnMap& to, int frames,
-           NormalEquations* total) {
-  std::vector<std::pair<ColumnMap::Range, Index>> parts;  // and where each goes
-  for (int i = 0; i < frames; ++i) {
-    parts.emplace_back(from.Frame(i), to.Frame(i).first);
-  }
-  parts.emplace_back(from.Clock(0), to.Clock(0).first);
-  parts.emplace_back(from.Calibration(), to.Calibration().first);
-  for (const auto& [a, a_to] : parts) {
-    total->gradient.segment(a_to, a.size) += equations.gradient.segment(a.first, a.size);
-    for (const auto& [b, b_to] : parts) {
-      if (b.first <= a.first) {
-        total->hessian.block(a_to, b_to, a.size, b.size) +=
-            equations.hessian.block(a.first, b.first, a.size, b.size);
-      }
-    }
-  }
-}
 
 }  // namespace
 
@@ -115,8 +93,8 @@ class ReducedRows::Rows {
 ReducedRows::ReducedRows(ParameterBlocks* blocks) : blocks_(blocks) {}
 ReducedRows::~ReducedRows() = default;
 
-void ReducedRows::Add(ReducedCost* cost, ceres::Problem* problem) {
-  costs_.push_back(cost);
+void ReducedRows::Add(ReducedCost* cost, const std::vector<TermPart>& parts, ceres::Problem* problem) {
+  costs_.push_back({cost, parts});
   parameters_.clear();
   if (rows_.empty()) {
     columns_ = PriorColumns(blocks_->frames(), blocks_->has_clocks(), blocks_->calibration().size());
@@ -154,20 +132,22 @@ void ReducedRows::Solve() {
   valid_ = blocks_->PointAt(&point);
   total_ = 0;
   for (size_t i = 0; valid_ && i < costs_.size(); ++i) {
-    total_ += costs_[i]->Solve(point);
+    total_ += costs_[i].cost->Solve(point);
   }
 }
 
 void ReducedRows::Linearize() {
   NormalEquations all{Eigen::MatrixXd::Zero(columns_.size(), columns_.size()),
                       Eigen::VectorXd::Zero(columns_.size())};
-  NormalEquations own;
   double total = total_;
-  for (ReducedCost* cost : costs_) {
-    if (cost->Linearize(&own)) {
-      AddTo(cost->columns(), own, columns_, blocks_->frames(), &all);
+  for (const Cost& each : costs_) {
+    NormalEquations own;
+    if (each.cost->Linearize(&own)) {
+      LinearTerm linear;
+      linear.SetInformation(each.parts, std::move(own));
+      linear.AddTo(columns_, &all.hessian, &all.gradient);
     } else {
-      total = std::max(total, kUndefinedCost);
+      total = std::max(total, ReducedCost::kRefused);
     }
   }
   Eigen::VectorXd rows;

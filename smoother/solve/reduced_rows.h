@@ -9,6 +9,7 @@
 
 #include "smoother/factors/reduced_cost.h"
 #include "smoother/manifold/lifted_cost.h"
+#include "smoother/solve/window_term.h"
 
 namespace alidade {
 
@@ -32,8 +33,9 @@ class ReducedRows final : public ceres::EvaluationCallback {
   ReducedRows& operator=(ReducedRows&&) = delete;
   ~ReducedRows() override;
 
-  /// The first one adds the residual blocks to the problem. The cost must outlive it.
-  void Add(ReducedCost* cost, ceres::Problem* problem);
+  /// The first one adds the residual blocks to the problem. The cost must outlive it. `parts`: the columns of
+  /// its normal equations.
+  void Add(ReducedCost* cost, const std::vector<TermPart>& parts, ceres::Problem* problem);
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:
@@ -45,7 +47,11 @@ class ReducedRows final : public ceres::EvaluationCallback {
   void Linearize();
 
   ParameterBlocks* blocks_;
-  std::vector<ReducedCost*> costs_;
+  struct Cost {
+    ReducedCost* cost;
+    std::vector<TermPart> parts;
+  };
+  std::vector<Cost> costs_;
   ColumnMap columns_;
   std::vector<std::unique_ptr<LiftedCost<Rows>>> rows_;
   std::vector<double> parameters_;  ///< of the last evaluation

@@ -7,7 +7,7 @@
 
 #include "smoother/factors/inverse_depth_factor.h"
 #include "smoother/factors/pose_only_cost.h"
-#include "smoother/solve/window_term.h"
+#include "smoother/solve/reduced_term.h"
 
 namespace alidade {
 

@@ -27,8 +27,11 @@ class WindowProblem {
 
   [[nodiscard]] ParameterBlocks& blocks() { return blocks_; }
   [[nodiscard]] ceres::Problem& ceres() { return *problem_; }
-  /// Adds a cost with eliminated landmarks, which must outlive the problem.
-  void AddReduced(ReducedCost* cost) { reduced_.Add(cost, problem_.get()); }
+  /// Adds a cost with eliminated landmarks, which must outlive the problem. `parts`: the columns of its
+  /// normal equations.
+  void AddReduced(ReducedCost* cost, const std::vector<TermPart>& parts) {
+    reduced_.Add(cost, parts, problem_.get());
+  }
 
  private:
   ParameterBlocks blocks_;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/check.h"
-#include "smoother/solve/window_problem.h"
 #include "smoother/tracks/track_system.h"
 
 namespace alidade {
@@ -85,10 +84,6 @@ void InformationTerm::AddPart(const Unknown& of, Index width) {
 
 Index InformationTerm::columns() const {
   return ColumnsOf(parts_);
-}
-
-void ReducedTerm::AddTo(WindowProblem* problem) {
-  problem->AddReduced(cost());
 }
 
 }  // namespace alidade

@@ -75,16 +75,6 @@ class WindowTerm : public InformationTerm {
   virtual void AddTo(WindowProblem* problem) = 0;
 };
 
-/// A term whose landmarks are eliminated. In Ceres all such terms of a problem are one set of rows
-/// (ReducedRows).
-class ReducedTerm : public WindowTerm {
- public:
-  void AddTo(WindowProblem* problem) final;
-
- private:
-  [[nodiscard]] virtual ReducedCost* cost() const = 0;
-};
-
 using WindowTerms = std::vector<std::unique_ptr<WindowTerm>>;
 
 }  // namespace alidade

@@ -14,9 +14,9 @@ struct WindowPoint {
   std::optional<Vector6d> clock;  ///< of the first, in an aligned window
   CameraCalibration camera;
 };
-[[nodiscard]] WindowPoint PointOf(const Window& window, const CameraCalibration& camera);
+/// Whether all numbers of two points are the same.
+[[nodiscard]] bool operator==(const WindowPoint& a, const WindowPoint& b);
 
-/// Whether states, bias and clock of two points are the same numbers. The cameras are not compared.
-[[nodiscard]] bool SameStates(const WindowPoint& a, const WindowPoint& b);
+[[nodiscard]] WindowPoint PointOf(const Window& window, const CameraCalibration& camera);
 
 }  // namespace alidade
