@@ -37,6 +37,12 @@ Eigen::Matrix<double, 2, 8> WithLens(const CameraModel& camera, const Vector2d& 
 
 }  // namespace
 
+bool operator==(const CameraCalibration& a, const CameraCalibration& b) {
+  return a.T_BC.rotation == b.T_BC.rotation && a.T_BC.translation == b.T_BC.translation &&
+         a.time_offset_s == b.time_offset_s && a.line_delay_s == b.line_delay_s &&
+         a.camera.intrinsics() == b.camera.intrinsics() && a.camera.coefficients() == b.camera.coefficients();
+}
+
 CameraCalibration GivenCamera(const RigCalibration& rig, const VisionConfig& vision) {
   CameraCalibration given{rig.camera, rig.T_BC, rig.camera_time_offset_s};
   if (rig.line_delay_s != 0 && vision.rolling_shutter) {

@@ -19,6 +19,8 @@ struct CameraCalibration {
   /// Of a rolling shutter (core/rig_calibration.h); empty: all rows are exposed at once.
   std::optional<double> line_delay_s = {};
 };
+/// Whether all numbers are the same; of the camera its intrinsics and coefficients.
+[[nodiscard]] bool operator==(const CameraCalibration& a, const CameraCalibration& b);
 
 /// That of a rig; the line delay only with vision.rolling_shutter.
 [[nodiscard]] CameraCalibration GivenCamera(const RigCalibration& rig, const VisionConfig& vision);
@@ -122,6 +124,16 @@ bool IntrinsicsJacobian(const CameraModel& camera, const Eigen::Vector3d& ray,
 /// d zeta_C / d (phi, dp) of the extrinsics at a fixed body pose: T_WC = T_WB T_BC turns with phi as it is,
 /// and moves by R_WB dp.
 [[nodiscard]] Matrix6d ExtrinsicsToCameraJacobian(const Eigen::Matrix3d& R_WB);
+
+/// Rows of one view over a calibration, and their transpose: their size has a bound, so that products of them
+/// need neither the heap nor a packed copy.
+using CalibrationRowPair =
+    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, CalibrationLayout::kMaxSize>;
+using CalibrationColumnPair =
+    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, CalibrationLayout::kMaxSize, 2>;
+/// Square over a calibration.
+using CalibrationInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                             CalibrationLayout::kMaxSize, CalibrationLayout::kMaxSize>;
 
 /// What the times of a camera's exposure move, each d zeta_C / d one of them; null where the pose itself
 /// carries it, or where nothing moves.

@@ -33,8 +33,8 @@ double PoseOnlyCost::Solve(const WindowPoint& point) {
     const WindowTrack& track = *tracks_[i];
     Eigen::Vector3d landmark = track.landmark;
     double cost = 0;
-    if (SolveLandmark(Renormalized(camera_, track.views, &renormalized), geometry_, kernel_,
-                      kMaxLandmarkIterations, &landmark, track.depth_prior, &cost)) {
+    if (SolveLandmark(Renormalized(camera_, calibration_->mean, track.views, &renormalized), geometry_,
+                      kernel_, kMaxLandmarkIterations, &landmark, track.depth_prior, &cost)) {
       landmarks_[i] = landmark;
     } else {
       cost = kBehindChiSquare;
@@ -52,8 +52,8 @@ bool PoseOnlyCost::Linearize(NormalEquations* equations) {
     for (size_t i = 0; i < tracks_.size(); ++i) {
       // A landmark that its views do not determine gives no rows.
       if (landmarks_[i] &&
-          AddTrack(Renormalized(camera_, tracks_[i]->views, &renormalized), geometry_, kernel_,
-                   *landmarks_[i], &workspace_, &*system_, tracks_[i]->depth_prior)) {
+          AddTrack(Renormalized(camera_, calibration_->mean, tracks_[i]->views, &renormalized), geometry_,
+                   kernel_, *landmarks_[i], &workspace_, &*system_, tracks_[i]->depth_prior)) {
         used_.push_back(tracks_[i]);
       }
     }

@@ -153,16 +153,6 @@ void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior
   prior->calibration_origin = WindowCalibration{estimate.layout, estimate.mean};
 }
 
-LinearPrior WithoutCalibration(const LinearPrior& prior) {
-  LinearPrior next = prior;
-  const ColumnMap::Range gone = prior.columns().Calibration();
-  const Eigen::Index after = prior.jacobian.cols() - gone.first - gone.size;
-  next.jacobian.resize(prior.jacobian.rows(), prior.jacobian.cols() - gone.size);
-  next.jacobian << prior.jacobian.leftCols(gone.first), prior.jacobian.rightCols(after);
-  next.calibration_origin = {{}, prior.calibration_origin.mean};
-  return next;
-}
-
 PriorFactor::PriorFactor(const LinearPrior* prior, const WindowCalibration* calibration)
     : prior_(prior), calibration_(calibration), columns_(prior->columns()) {
   CHECK(prior->landmarks.empty() && !(prior->spread > 0)) << "a prior for SlamPriorCost";

@@ -99,9 +99,6 @@ bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, cons
 /// has its clock already.
 void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior);
 
-/// The prior given that the calibration is its origin.
-[[nodiscard]] LinearPrior WithoutCalibration(const LinearPrior& prior);
-
 /// LinearPrior without landmarks and spread as a factor (with them: smoother/factors/slam_prior_factor.h);
 /// blocks nav and bias of the first frame, nav of the others, clock of the first, calibration.
 class PriorFactor {

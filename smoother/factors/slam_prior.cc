@@ -47,10 +47,9 @@ struct SlamPrior::Views {
     if (size == 0) {
       return;
     }
-    const Eigen::MatrixX2d weighted = rows.weight * rows.calibration.transpose();
-    coupling.block(landmark, at, 3, size).noalias() +=
-        rows.weight * rows.landmark.transpose() * rows.calibration;
-    frame_hessian.block(at, at, size, size).noalias() += weighted * rows.calibration;
+    const CalibrationColumnPair weighted = rows.weight * rows.calibration.transpose();
+    coupling.block(landmark, at, 3, size).noalias() += (weighted * rows.landmark).transpose();
+    frame_hessian.block(at, at, size, size).noalias() += weighted.lazyProduct(rows.calibration);
     frame_gradient.segment(at, size).noalias() += weighted * rows.residual;
   }
   /// And between the calibration and a pose.
@@ -59,7 +58,7 @@ struct SlamPrior::Views {
     if (size == 0) {
       return;
     }
-    const Eigen::MatrixXd both = rows.weight * pose.transpose() * rows.calibration;
+    const CameraFromCalibration both = rows.weight * pose.transpose() * rows.calibration;
     frame_hessian.block(pose_at, at, 6, size) += both;
     frame_hessian.block(at, pose_at, size, 6) += both.transpose();
   }
@@ -99,9 +98,9 @@ SlamPrior::Scene SlamPrior::MakeScene(const WindowPoint& point) const {
   }
   scene.renormalized.resize(tracks_.size());
   for (size_t i = 0; i < tracks_.size(); ++i) {
-    scene.views.push_back(tracks_[i] == nullptr
-                              ? nullptr
-                              : &Renormalized(scene.calibration, tracks_[i]->views, &scene.renormalized[i]));
+    scene.views.push_back(tracks_[i] == nullptr ? nullptr
+                                                : &Renormalized(scene.calibration, calibration_->mean,
+                                                                tracks_[i]->views, &scene.renormalized[i]));
   }
   return scene;
 }

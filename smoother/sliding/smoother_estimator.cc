@@ -211,19 +211,17 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
   window_.UpdateRates();
-  // A watched calibration is none of the solver's unknowns, only of what is known afterwards.
-  const bool watched = given_.watched;
-  WindowCalibration& solved = watched ? fixed_ : calibration_;
-  const LinearPrior conditional = watched ? WithoutCalibration(prior_) : LinearPrior();
   WindowTerms terms;
-  SlamPriorTerm* slam = SetPriorTerm(watched ? conditional : prior_, solved, &terms);
-  if (const Status status = AddSensorTerms(Sensors(solved), window_.frames(), window_.size(), &terms);
+  SlamPriorTerm* slam = SetPriorTerm(&terms);
+  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), window_.size(), &terms);
       !status.ok()) {
     return Lost(status.message());
   }
   const size_t without_vision = terms.size();
-  PoseOnlyTerm* pose_only = AddVision(*tracks, solved, &terms);
+  PoseOnlyTerm* pose_only = AddVision(*tracks, &terms);
   AppendScaleVolume(&terms);
+  // A watched calibration is none of the solver's unknowns, only of what is known afterwards.
+  WindowCalibration& solved = given_.watched ? fixed_ : calibration_;
   const Result<WindowSolveReport> report = SolveWindow(config_.smoother, terms, *tracks, &window_, &solved);
   if (!report.ok()) {
     return Lost(report.message());
@@ -239,13 +237,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   if (slam != nullptr) {
     ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*slam));
   }
-  const bool has_features = slam != nullptr;
-  if (watched) {  // the same terms over the calibration's columns, too
-    terms.clear();
-    SetPriorTerm(prior_, calibration_, &terms);
-    ALIDADE_RETURN_IF_ERROR(AddSensorTerms(Sensors(calibration_), window_.frames(), window_.size(), &terms));
-  }
-  ALIDADE_RETURN_IF_ERROR(Gate(*tracks, has_features, std::move(vision), &terms));
+  ALIDADE_RETURN_IF_ERROR(Gate(*tracks, slam != nullptr, std::move(vision), &terms));
   return UpdateLatest(terms);
 }
 

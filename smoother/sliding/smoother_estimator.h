@@ -98,12 +98,9 @@ class SmootherEstimator final : public Estimator {
                                                       size_t free);
   /// Tracks without an anchor whose views begin in the oldest frame, with their landmarks solved for.
   [[nodiscard]] std::vector<const WindowTrack*> LeavingTracks(const std::vector<FrameGeometry>& geometry);
-  [[nodiscard]] SensorContext Sensors(const WindowCalibration& calibration) const {
-    return {gravity_W_, gnss_.context(), &calibration};
-  }
+  [[nodiscard]] SensorContext Sensors() const { return {gravity_W_, gnss_.context(), &calibration_}; }
   /// The prior, first of a window's terms. Returns it where it has landmarks, else null.
-  SlamPriorTerm* SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
-                              WindowTerms* terms) const;
+  SlamPriorTerm* SetPriorTerm(WindowTerms* terms) const;
   [[nodiscard]] bool StartIsInWindow() const { return prior_.anchors.size() == 1; }
   /// Where its volume of scales counts: whether the shape of a window with the start is known.
   [[nodiscard]] bool StartShapeIsKnown() const;
@@ -114,8 +111,7 @@ class SmootherEstimator final : public Estimator {
   /// SLAM features that have views in the window.
   [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
   /// Appends the terms of the tracks for the solver. Returns that of pose-only tracks, null without any.
-  PoseOnlyTerm* AddVision(const std::vector<WindowTrack*>& tracks, const WindowCalibration& calibration,
-                          WindowTerms* terms) const;
+  PoseOnlyTerm* AddVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) const;
   /// Gates what was solved for, and appends the term of the tracks whose views passed. `vision`: that of
   /// `tracks` for the solver, if it is of the present states.
   Status Gate(const std::vector<WindowTrack*>& tracks, bool has_features,
@@ -142,7 +138,7 @@ class SmootherEstimator final : public Estimator {
                         std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
                         WindowTrack* track) const;
   /// `solved`: the term of the first tracks at the present states, from which those that are refused are
-  /// removed where it is used again; null: none. True when a SLAM feature was refused.
+  /// removed if it is used again; null: none. True when a SLAM feature was refused.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks,
                   PoseOnlyTerm* solved);
   Status UpdateLatest(const WindowTerms& terms);

@@ -64,16 +64,15 @@ bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geome
 
 }  // namespace
 
-SlamPriorTerm* SmootherEstimator::SetPriorTerm(const LinearPrior& prior, const WindowCalibration& calibration,
-                                               WindowTerms* terms) const {
+SlamPriorTerm* SmootherEstimator::SetPriorTerm(WindowTerms* terms) const {
   if (terms->empty()) {
     terms->emplace_back();
   }
-  if (prior.landmarks.empty() && !(prior.spread > 0)) {
-    terms->front() = MakePriorTerm(prior, calibration);
+  if (prior_.landmarks.empty() && !(prior_.spread > 0)) {
+    terms->front() = MakePriorTerm(prior_, calibration_);
     return nullptr;
   }
-  auto slam = std::make_unique<SlamPriorTerm>(prior, window_, calibration, kernel_);
+  auto slam = std::make_unique<SlamPriorTerm>(prior_, window_, calibration_, kernel_);
   SlamPriorTerm* const made = slam.get();
   terms->front() = std::move(slam);
   return made;
@@ -158,8 +157,7 @@ Status SmootherEstimator::MarginalizeOldestFrame() {
   auto vision = std::make_unique<PoseOnlyTerm>(window_, LeavingTracks(geometry), calibration_, kernel_);
   const std::vector<const WindowTrack*> gone = vision->used();
   WindowTerms terms;
-  if (const Status status = AddSensorTerms(Sensors(calibration_), window_.frames(), 2, &terms);
-      !status.ok()) {
+  if (const Status status = AddSensorTerms(Sensors(), window_.frames(), 2, &terms); !status.ok()) {
     return Lost(status.message());
   }
   terms.insert(terms.begin() + 1, std::move(vision));

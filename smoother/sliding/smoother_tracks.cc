@@ -147,16 +147,16 @@ bool SmootherEstimator::KeepTrack(WindowTrack* track) {
 }
 
 PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& tracks,
-                                           const WindowCalibration& calibration, WindowTerms* terms) const {
+                                           WindowTerms* terms) const {
   if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
-    AddTrackTerms(window_.frames(), tracks, calibration, kernel_, terms);
+    AddTrackTerms(window_.frames(), tracks, calibration_, kernel_, terms);
     return nullptr;
   }
   if (tracks.empty()) {
     return nullptr;
   }
   auto vision = std::make_unique<PoseOnlyTerm>(
-      window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), calibration, kernel_);
+      window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), calibration_, kernel_);
   PoseOnlyTerm* const added = vision.get();
   terms->push_back(std::move(vision));
   return added;
@@ -167,14 +167,12 @@ Status SmootherEstimator::Gate(const std::vector<WindowTrack*>& tracks, bool has
   std::vector<WindowTrack*> gated = FeaturesInSight();
   gated.insert(gated.begin(), tracks.begin(), tracks.end());
   if (GateTracks(Geometry(), gated, vision.get()) && has_features) {
-    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(prior_, calibration_, terms)));
+    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(terms)));
   }
   for (int i = 0; gnss_.aligned() && i < window_.size(); ++i) {
     gnss_.Gate(&window_.frame(i), &statistics_);
   }
-  // A watched calibration has columns that the solver had not; tracks of a suspect state have less
-  // information.
-  if (!vision || given_.watched || statistics_.suspect) {
+  if (!vision || statistics_.suspect) {  // suspect: the tracks have less information now
     std::vector<const WindowTrack*> used;
     std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
                  [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
@@ -231,7 +229,7 @@ bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
     });
   }
   statistics_.suspect = IsSuspect(refused.size(), tracks.size());
-  if (solved != nullptr && !given_.watched && !statistics_.suspect) {
+  if (solved != nullptr && !statistics_.suspect) {
     std::vector<const WindowTrack*> gone;
     std::transform(refused.begin(), refused.end(), std::back_inserter(gone),
                    [](const auto& entry) { return entry.first; });

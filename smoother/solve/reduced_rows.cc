@@ -94,12 +94,15 @@ ReducedRows::ReducedRows(ParameterBlocks* blocks) : blocks_(blocks) {}
 ReducedRows::~ReducedRows() = default;
 
 void ReducedRows::Add(ReducedCost* cost, const std::vector<TermPart>& parts, ceres::Problem* problem) {
-  costs_.push_back({cost, parts});
   parameters_.clear();
   if (rows_.empty()) {
     columns_ = PriorColumns(blocks_->frames(), blocks_->has_clocks(), blocks_->calibration().size());
     AddRows(problem);
   }
+  costs_.push_back({cost, parts});
+  std::erase_if(costs_.back().parts, [&](const TermPart& part) {
+    return part.of.kind == Unknown::Kind::kCalibration && columns_.Calibration().size == 0;
+  });
 }
 
 void ReducedRows::AddRows(ceres::Problem* problem) {

@@ -34,7 +34,7 @@ class ReducedRows final : public ceres::EvaluationCallback {
   ~ReducedRows() override;
 
   /// The first one adds the residual blocks to the problem. The cost must outlive it. `parts`: the columns of
-  /// its normal equations.
+  /// its normal equations; those of a calibration that the problem does not estimate are left out.
   void Add(ReducedCost* cost, const std::vector<TermPart>& parts, ceres::Problem* problem);
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 

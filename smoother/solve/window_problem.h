@@ -28,7 +28,7 @@ class WindowProblem {
   [[nodiscard]] ParameterBlocks& blocks() { return blocks_; }
   [[nodiscard]] ceres::Problem& ceres() { return *problem_; }
   /// Adds a cost with eliminated landmarks, which must outlive the problem. `parts`: the columns of its
-  /// normal equations.
+  /// normal equations, see ReducedRows.
   void AddReduced(ReducedCost* cost, const std::vector<TermPart>& parts) {
     reduced_.Add(cost, parts, problem_.get());
   }

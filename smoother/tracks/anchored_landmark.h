@@ -12,7 +12,7 @@ struct AnchoredRows {
   Eigen::Matrix<double, 2, 6> anchor;    ///< over (phi, dp) of the anchor's body
   Eigen::Matrix<double, 2, 6> view;      ///< over (phi, dp) of the view's body
   Eigen::Matrix<double, 2, 3> landmark;  ///< over (x, y, rho)
-  Eigen::Matrix2Xd calibration;          ///< over the camera's calibration
+  CalibrationRowPair calibration;        ///< over the camera's calibration
   Eigen::Vector2d residual;              ///< predicted - measured
   double squared_norm = 0;               ///< of the residual
   double weight = 1;                     ///< of all rows: the kernel's

@@ -69,9 +69,13 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
   const WindowCalibration& calibration = *system->calibration;
   const Eigen::Index size = calibration.size();
   const Eigen::Index first = system->columns.Calibration().first;
-  Eigen::MatrixXd rows(2, size);
-  Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(size, 3);
-  auto own = system->hessian.block(first, first, size, size);
+  if (size == 0) {
+    return;
+  }
+  using Coupling = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, CalibrationLayout::kMaxSize, 3>;
+  CalibrationRowPair rows(2, size);
+  Coupling coupling = Coupling::Zero(size, 3);
+  CalibrationInformation own = CalibrationInformation::Zero(size, size);
   auto gradient = system->gradient.segment(first, size);
   FrameGeometry view_row;
   for (size_t k = 0; k < views.size(); ++k) {
@@ -80,22 +84,23 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
     CalibrationRows(calibration.layout, calibration.mean.camera, frame.R_WB,
                     {&frame.camera_from_time, &frame.camera_from_line_delay}, view.camera,
                     Predicted(views[k].observation, view.residual), rows);
-    coupling.noalias() += view.weight * rows.transpose() * view.landmark;
-    own.noalias() += view.weight * rows.transpose() * rows;
-    gradient.noalias() += view.weight * rows.transpose() * view.residual;
-    system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() +=
-        view.weight * rows.transpose() * view.pose;
+    const CalibrationColumnPair weighted = view.weight * rows.transpose();
+    coupling.noalias() += weighted * view.landmark;
+    own.noalias() += weighted.lazyProduct(rows);
+    gradient.noalias() += weighted * view.residual;
+    system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() += weighted * view.pose;
   }
   if (has_prior) {
     const Eigen::RowVectorXd& row = workspace.prior_calibration;
     coupling.col(2) += row.transpose() * prior.sqrt_information;
-    own.noalias() += row.transpose() * row;
+    own.noalias() += row.transpose().lazyProduct(row);
     gradient += row.transpose() * workspace.prior_residual;
     system->hessian.block(first, workspace.first[0], size, kPoseColumns).noalias() +=
         row.transpose() * workspace.prior_pose;
   }
-  const Eigen::MatrixXd reduced = coupling * landmark_root;
-  own.noalias() -= reduced * reduced.transpose();
+  const Coupling reduced = coupling * landmark_root;
+  own.noalias() -= reduced.lazyProduct(reduced.transpose());
+  system->hessian.block(first, first, size, size) += own;
   gradient.noalias() -= reduced * reduced_gradient;
   for (size_t k = 0; k < views.size(); ++k) {
     system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() -=

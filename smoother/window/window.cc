@@ -76,9 +76,10 @@ WindowView Renormalized(const WindowCalibration& calibration, const WindowView& 
 }
 
 const std::vector<WindowView>& Renormalized(const WindowCalibration& calibration,
+                                            const CameraCalibration& of_views,
                                             const std::vector<WindowView>& views,
                                             std::vector<WindowView>* scratch) {
-  if (calibration.layout.intrinsics() < 0) {
+  if (calibration.layout.intrinsics() < 0 || calibration.mean == of_views) {
     return views;
   }
   scratch->clear();

@@ -145,8 +145,10 @@ class Window {
 /// A view with the ray that its pixel has in the camera of `calibration`, on the plane it had. It stays as it
 /// is where the intrinsics are not estimated, and outside the camera's domain.
 [[nodiscard]] WindowView Renormalized(const WindowCalibration& calibration, const WindowView& view);
-/// Likewise: `views` themselves where the intrinsics are not estimated, else what is computed in `scratch`.
+/// Likewise: `views` themselves where the intrinsics are not estimated, or the camera is the one whose rays
+/// they have; else what is computed in `scratch`.
 [[nodiscard]] const std::vector<WindowView>& Renormalized(const WindowCalibration& calibration,
+                                                          const CameraCalibration& of_views,
                                                           const std::vector<WindowView>& views,
                                                           std::vector<WindowView>* scratch);
 

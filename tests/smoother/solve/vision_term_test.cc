@@ -117,25 +117,31 @@ struct LongWindow : WindowFixture {
 };
 
 // GIVEN two terms with eliminated landmarks THEN in Ceres they are one triangle of rows with the information,
-// the gradient and the cost of both.
+// the gradient and the cost of both, without the columns of a calibration that is not estimated there.
 TEST(VisionTermTest, EliminatedLandmarksOfAllTermsAreOneTriangle) {
-  const LongWindow fixture(false);
+  const LongWindow fixture(true);
+  const WindowCalibration held{{}, fixture.calibration.mean};
   PoseOnlyTerm one(fixture.window, fixture.Half(0), fixture.calibration, {});
   PoseOnlyTerm other(fixture.window, fixture.Half(1), fixture.calibration, {});
   for (const ErrorConvention convention : kAllConventions) {
     SCOPED_TRACE(ToString(convention));
-    CeresView ceres_view(convention, fixture.window.frames(), fixture.calibration);
+    CeresView ceres_view(convention, fixture.window.frames(), held);
     ceres_view.Add(&one);
     ceres_view.Add(&other);
-    ceres_view.SetColumns(one.parts());
+    std::vector<TermPart> parts = one.parts();
+    ASSERT_EQ(parts.back().of.kind, Unknown::Kind::kCalibration);
+    parts.pop_back();
+    ceres_view.SetColumns(parts);
     VectorXd residual;
     const MatrixXd jacobian = ceres_view.Jacobian(&residual);
     EXPECT_EQ(jacobian.rows(), kStateColumns + 5 * kPoseColumns + 1);
-    const MatrixXd chart = ceres_view.Chart(one.parts());
-    const MatrixXd canonical = one.system().hessian + other.system().hessian;
+    const MatrixXd chart = ceres_view.Chart(parts);
+    const Eigen::Index size = chart.rows();
+    ASSERT_LT(size, one.system().hessian.rows());
+    const MatrixXd canonical = (one.system().hessian + other.system().hessian).topLeftCorner(size, size);
     const MatrixXd sum = canonical.selfadjointView<Eigen::Lower>();
     EXPECT_TRUE((jacobian.transpose() * jacobian).isApprox(chart.transpose() * sum * chart, 1e-9));
-    const VectorXd slope = chart.transpose() * (one.system().gradient + other.system().gradient);
+    const VectorXd slope = chart.transpose() * (one.system().gradient + other.system().gradient).head(size);
     EXPECT_TRUE((jacobian.transpose() * residual).isApprox(slope, 1e-9));
     EXPECT_NEAR(2 * ceres_view.Cost(), one.system().robust_cost + other.system().robust_cost, 1e-6);
   }

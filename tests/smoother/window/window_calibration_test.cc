@@ -173,13 +173,15 @@ TEST(WindowCalibrationTest, RaysMoveOnlyWithIntrinsicsThatAreEstimated) {
   CalibratedWindow fixture(1);
   VectorXd error = VectorXd::Zero(fixture.calibration.size());
   error.segment<2>(fixture.calibration.layout.intrinsics()).setConstant(20);
+  const CameraCalibration before = fixture.calibration.mean;
   ASSERT_TRUE(Retract(fixture.calibration.layout, error, &fixture.calibration.mean));
   const std::vector<WindowView> views = fixture.tracks().front()->views;
   std::vector<WindowView> scratch;
   const WindowCalibration fixed{{}, fixture.calibration.mean};
-  EXPECT_EQ(&Renormalized(fixed, views, &scratch), &views);
+  EXPECT_EQ(&Renormalized(fixed, before, views, &scratch), &views);
+  EXPECT_EQ(&Renormalized(fixture.calibration, fixture.calibration.mean, views, &scratch), &views);
   EXPECT_EQ(Renormalized(fixed, views.front()).observation.z, views.front().observation.z);
-  EXPECT_EQ(&Renormalized(fixture.calibration, views, &scratch), &scratch);
+  EXPECT_EQ(&Renormalized(fixture.calibration, before, views, &scratch), &scratch);
   ASSERT_EQ(scratch.size(), views.size());
   EXPECT_GT((scratch.front().observation.z - views.front().observation.z).norm(), 1e-4);
 
