@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include "eval/config/config_yaml.h"
 #include "eval/simulation/simulator_config.h"
 #include "smoother/sliding/smoother.h"
 #include "tests/support/scenario.h"
@@ -8,24 +9,34 @@
 namespace alidade {
 namespace {
 
-/// One iteration is one camera frame of the figure-8 in the steady state: marginalisation or removal of a
-/// frame, prediction, solve, gate, covariance. Arguments: window, tracks. At most 8 solver iterations.
-void SmootherFrame(benchmark::State& state, SmootherLandmark landmark, RobustKernel kernel,
-                   ErrorConvention error, int slam_features) {
-  SimulatorConfig sim = test::ShortFigureEight();
-  sim.max_features = static_cast<int>(state.range(1));
-  sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
-  const Dataset dataset = test::SimulateOrDie(sim, 1);
+/// Defaults with what the named smoothers differ in, at most 8 solver iterations.
+EstimatorConfig Smoother(SmootherLandmark landmark, RobustKernel kernel, ErrorConvention error,
+                         int slam_features) {
   EstimatorConfig config;
   config.backend = Backend::kSmoother;
   config.vision.robust_kernel = kernel;
   config.smoother.error = error;
   config.smoother.landmark = landmark;
-  config.smoother.window = static_cast<int>(state.range(0));
-  config.smoother.max_landmarks = sim.max_features;
   config.smoother.max_iterations = 8;
   config.smoother.slam_features = slam_features;
   config.smoother.frames = slam_features > 0 ? FramePolicy::kEveryFrame : FramePolicy::kKeyframes;
+  return config;
+}
+
+EstimatorConfig Shipped() {
+  return *LoadEstimatorConfig(std::string(ALIDADE_SOURCE_DIR) + "/configs/estimators/alidade_smoother.yaml",
+                              {});
+}
+
+/// One iteration is one camera frame of the figure-8 in the steady state: marginalisation or removal of a
+/// frame, prediction, solve, gate, covariance. Arguments: window, tracks.
+void SmootherFrame(benchmark::State& state, EstimatorConfig config) {
+  SimulatorConfig sim = test::ShortFigureEight();
+  sim.max_features = static_cast<int>(state.range(1));
+  sim.landmark_count = std::max(sim.landmark_count, 6 * sim.max_features);
+  const Dataset dataset = test::SimulateOrDie(sim, 1);
+  config.smoother.window = static_cast<int>(state.range(0));
+  config.smoother.max_landmarks = sim.max_features;
   const NavEstimate initial = test::DrawInitialState(dataset, 1);
   constexpr size_t kWarmUpFrames = 60;
   std::unique_ptr<Estimator> smoother;
@@ -86,17 +97,23 @@ void GrowthSizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Args({10, 800});
 }
 
-BENCHMARK_CAPTURE(SmootherFrame, pose_only, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
-                  ErrorConvention::kRightInvariant, 0)
+BENCHMARK_CAPTURE(SmootherFrame, pose_only,
+                  Smoother(SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
+                           ErrorConvention::kRightInvariant, 0))
     ->Apply(Sizes);
-BENCHMARK_CAPTURE(SmootherFrame, inverse_depth, SmootherLandmark::kInverseDepth, RobustKernel::kHuber,
-                  ErrorConvention::kRightInvariant, 0)
+BENCHMARK_CAPTURE(SmootherFrame, inverse_depth,
+                  Smoother(SmootherLandmark::kInverseDepth, RobustKernel::kHuber,
+                           ErrorConvention::kRightInvariant, 0))
     ->Apply(Sizes);
-BENCHMARK_CAPTURE(SmootherFrame, alidade_smoother, SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
-                  ErrorConvention::kRightInvariant, 30)
+BENCHMARK_CAPTURE(SmootherFrame, alidade_smoother,
+                  Smoother(SmootherLandmark::kPoseOnly, RobustKernel::kHuber,
+                           ErrorConvention::kRightInvariant, 30))
     ->Apply(GrowthSizes);
-BENCHMARK_CAPTURE(SmootherFrame, vins_mono_class, SmootherLandmark::kInverseDepth, RobustKernel::kCauchy,
-                  ErrorConvention::kSo3xRn, 0)
+// All of the preset: 80 landmarks in the prior, a watched calibration.
+BENCHMARK_CAPTURE(SmootherFrame, shipped, Shipped())->Args({20, 150})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SmootherFrame, vins_mono_class,
+                  Smoother(SmootherLandmark::kInverseDepth, RobustKernel::kCauchy, ErrorConvention::kSo3xRn,
+                           0))
     ->Args({10, 150})
     ->Unit(benchmark::kMillisecond);
 
