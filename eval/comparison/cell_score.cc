@@ -179,6 +179,9 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
     cell->status = cell->status == "ok" ? "failed" : cell->status;
     return;
   }
+  if (const std::string remark = RemarkOnWorld(*evaluation); !remark.empty()) {
+    cell->message += (cell->message.empty() ? "" : "; ") + remark;
+  }
   FillFigures(*evaluation, cell);
   CellSeries series = MakeSeries(*evaluation);
   if (run != nullptr) {

@@ -6,10 +6,16 @@
 #include <numbers>
 #include <utility>
 
+#include "core/format.h"
+#include "core/lie.h"
 #include "core/numbers.h"
 
 namespace alidade {
 namespace {
+
+// RemarkOnWorld: square of 30 deviations, and the largest share of the NEES that may be left.
+constexpr double kOtherWorldNees = 900;
+constexpr double kOtherWorldShare = 0.1;
 
 /// The pairs with all rotations the identity: their relative errors are then those of displacements in the
 /// world.
@@ -124,6 +130,25 @@ Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
     evaluation.truth_has_covariance = truth.has_covariance;
   }
   return evaluation;
+}
+
+std::string RemarkOnWorld(const Evaluation& evaluation) {
+  if (!evaluation.nees || evaluation.options.anchor_at_first) {
+    return "";
+  }
+  const std::vector<StatePair> first = {evaluation.pairs.front()};
+  const AlignmentTransform anchor = AnchorAtFirst(first);
+  const double nees = evaluation.nees->pose.front();
+  const double anchored = ComputeNees(ApplyAlignment(first, anchor)).pose.front();
+  if (!(nees > kOtherWorldNees) || anchored > kOtherWorldShare * nees) {
+    return "";
+  }
+  const double distance_m = (first.front().truth.nav.p_WB - first.front().estimate.nav.p_WB).norm();
+  const double yaw_deg = kDegreesPerRadian * so3::Log(anchor.rotation).norm();
+  return Format(
+      "begins %.3g m and %.3g deg of yaw from the truth: RMSE, NEES and silent failures need "
+      "anchor_at_first",
+      distance_m, yaw_deg);
 }
 
 }  // namespace alidade

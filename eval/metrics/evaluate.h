@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "eval/metrics/association.h"
@@ -56,5 +57,11 @@ struct Evaluation {
 /// Associate and of the tool's RPE; kUsage: anchor_at_first or a tool's RPE without orientation.
 Result<Evaluation> Evaluate(const Trajectory& truth, const Trajectory& estimate,
                             const EvaluationOptions& options);
+
+/// That the estimate does not begin in the truth's world, so that "unaligned" errors and NEES are not
+/// meaningful without EvaluationOptions::anchor_at_first; empty if it does, or has no covariance to tell it
+/// by. It does not when yaw and offset of AnchorAtFirst are beyond 30 of the first pose's deviations, and
+/// most of its NEES is gone with them.
+[[nodiscard]] std::string RemarkOnWorld(const Evaluation& evaluation);
 
 }  // namespace alidade

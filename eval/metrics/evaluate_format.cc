@@ -209,6 +209,9 @@ std::string FormatEvaluationText(const Evaluation& evaluation) {
       text += "NEES and 3 sigma are those of P_estimate + P_truth: the truth has a covariance\n";
     }
   }
+  if (const std::string remark = RemarkOnWorld(evaluation); !remark.empty()) {
+    text += "the estimate " + remark + "\n";
+  }
   return text;
 }
 

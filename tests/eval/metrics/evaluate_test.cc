@@ -114,6 +114,29 @@ TEST(Evaluate, AnchorsAnEstimateOfItsOwnWorldAtItsFirstPose) {
     expected += 1e-4 * (pair.truth.nav.p_WB - first.truth.nav.p_WB).squaredNorm();
   }
   EXPECT_NEAR(evaluation->unaligned.pos_m, std::sqrt(expected / 300), 1e-9);
+  EXPECT_EQ(RemarkOnWorld(*evaluation), "");
+}
+
+// GIVEN an estimate whose first pose is far outside its deviations WHEN yaw and offset explain it THEN the
+// evaluation says that the estimate has a world of its own; WHEN a tilt does, or the deviations are large,
+// it does not.
+TEST(Evaluate, TellsAnEstimateOfItsOwnWorld) {
+  const auto remark = [](const Eigen::Vector3d& turn, double deviation) {
+    Trajectory truth = MakeTrajectory(400);
+    Trajectory estimate = truth;
+    for (TrajectoryPoint& point : estimate.points) {
+      point.nav.R_WB = (so3::Exp(turn) * point.nav.R_WB).eval();
+      point.nav.p_WB += Eigen::Vector3d(0, 2, 0);
+      point.covariance = deviation * deviation * Matrix6d::Identity();
+    }
+    estimate.has_covariance = true;
+    return RemarkOnWorld(*Evaluate(truth, estimate, {}));
+  };
+  EXPECT_EQ(
+      remark({0, 0, 0.5}, 0.01),
+      "begins 2 m and 28.6 deg of yaw from the truth: RMSE, NEES and silent failures need anchor_at_first");
+  EXPECT_EQ(remark({0, 0, 0.5}, 0.1), "");
+  EXPECT_EQ(remark({2, 0, 0}, 0.01), "");
 }
 
 TEST(Evaluate, PassesTheAssociationErrorOn) {
