@@ -92,6 +92,8 @@ class FilterEstimator : public Estimator {
   bool UpdateAtRest(const TrackFrame& frame);
   /// Normalised innovation squared of every appended track, against the state before the update.
   void MeasureBlocks(const PreparedRows& rows);
+  /// Squared residuals of every appended track at the state that the passes before have found.
+  void MeasureFit();
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
   bool RefuseBlocks(const PreparedRows& rows);
@@ -162,6 +164,7 @@ class FilterEstimator : public Estimator {
   std::vector<size_t> degenerate_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
+  std::vector<double> block_fit_;   ///< MeasureFit; empty in the first pass
   std::vector<double> weights_;     ///< of the blocks; 0: refused
   std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;

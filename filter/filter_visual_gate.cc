@@ -5,6 +5,14 @@
 // Which tracks of a visual update of FilterEstimator pass the gate, and with which weight.
 
 namespace alidade {
+namespace {
+
+// The innovation's covariance is that of the state before the update. Where it is large, as after a start,
+// tracks that contradict the others pass; at the state that an earlier pass has found they do not fit. That
+// state may not be the last one yet, therefore by how much the squared residuals may exceed the gate.
+constexpr double kWorstTrackFit = 2;
+
+}  // namespace
 
 void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
   block_nis_.clear();
@@ -14,16 +22,30 @@ void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
   }
 }
 
+void FilterEstimator::MeasureFit() {
+  block_fit_.clear();
+  for (size_t i = 0; i < appended_.size(); ++i) {
+    const FeatureUpdate::Block& block = update_.blocks()[i];
+    block_fit_.push_back(update_.innovation().segment(block.first, block.rows).squaredNorm());
+  }
+}
+
 bool FilterEstimator::RefuseBlocks(const PreparedRows& rows) {
   MeasureBlocks(rows);
-  accepted_.assign(appended_.size(), true);
-  int refused = 0;
-  for (size_t i = 0; i < appended_.size(); ++i) {
-    accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows);
-    refused += accepted_[i] ? 0 : 1;
-  }
-  return StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
-                        kLeastRefusedTracks);
+  const auto refuse = [&](bool with_fit) {
+    accepted_.assign(appended_.size(), true);
+    int refused = 0;
+    for (size_t i = 0; i < appended_.size(); ++i) {
+      const int dof = update_.blocks()[i].rows;
+      accepted_[i] =
+          std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], dof) &&
+          (!with_fit || gate_.Accepts(block_fit_[i] / (kWorstTrackFit * gate_noise_.variance()), dof));
+      refused += accepted_[i] ? 0 : 1;
+    }
+    return StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
+                          kLeastRefusedTracks);
+  };
+  return (block_fit_.empty() || refuse(true)) && refuse(false);
 }
 
 void FilterEstimator::GateBlocks(PreparedRows* rows) {

@@ -179,7 +179,9 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       }
       return true;
     }
+    block_fit_.clear();
     if (pass > 1) {
+      MeasureFit();
       // The prior is about the prediction, the rows about the state.
       update_.innovation().noalias() += update_.jacobian() * corrected;
     }
