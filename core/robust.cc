@@ -41,6 +41,8 @@ double RobustCost(RobustKernel kernel, double scale_sigma, double squared_norm) 
       return squared_norm <= k2 ? squared_norm : 2 * scale_sigma * std::sqrt(squared_norm) - k2;
     case RobustKernel::kCauchy:
       return k2 * std::log1p(squared_norm / k2);
+    case RobustKernel::kLogTail:
+      return squared_norm <= k2 ? squared_norm : k2 * (1 + std::log(squared_norm / k2));
     case RobustKernel::kNone:
       break;
   }
@@ -53,6 +55,8 @@ double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm
       return std::min(1.0, scale_sigma / std::sqrt(std::max(squared_norm, 1e-300)));
     case RobustKernel::kCauchy:
       return 1.0 / (1.0 + squared_norm / (scale_sigma * scale_sigma));
+    case RobustKernel::kLogTail:
+      return std::min(1.0, scale_sigma * scale_sigma / std::max(squared_norm, 1e-300));
     case RobustKernel::kNone:
       break;
   }
@@ -67,6 +71,8 @@ double ObservationKernel::SecondDerivative(double s) const {
       return s > k2 ? -weight / (2 * s) : 0;
     case RobustKernel::kCauchy:
       return -weight * weight / k2;
+    case RobustKernel::kLogTail:
+      return s > k2 ? -weight / s : 0;
     case RobustKernel::kNone:
       break;
   }
@@ -80,6 +86,8 @@ double ObservationKernel::RadialCurvature(double s) const {
       return s > k2 ? 0 : 1;
     case RobustKernel::kCauchy:
       return Weight(s) * ((k2 - s) / (k2 + s));
+    case RobustKernel::kLogTail:
+      return s > k2 ? -Weight(s) : 1;
     case RobustKernel::kNone:
       break;
   }
@@ -106,6 +114,13 @@ RobustResidual Robustify(RobustKernel kernel, double scale_sigma, double residua
       }
       const double root = k * std::sqrt(std::log1p(ratio * ratio));
       return {sign * root, size / ((1 + ratio * ratio) * root)};
+    }
+    case RobustKernel::kLogTail: {
+      if (size <= k) {
+        break;
+      }
+      const double root = k * std::sqrt(1 + 2 * std::log(size / k));
+      return {sign * root, k * k / (size * root)};
     }
     case RobustKernel::kNone:
       break;

@@ -23,11 +23,12 @@ class ChiSquareGate {
 };
 
 /// Cost rho(s) of a whitened residual with squared norm s, whose slope is RobustWeight:
-/// Huber s up to k^2, then 2 k |r| - k^2; Cauchy k^2 log(1 + s / k^2).
+/// Huber s up to k^2, then 2 k |r| - k^2; Cauchy k^2 log(1 + s / k^2); log tail s up to k^2, then k^2 (1 +
+/// log(s / k^2)).
 [[nodiscard]] double RobustCost(RobustKernel kernel, double scale_sigma, double squared_norm);
 
 /// IRLS weight in (0, 1] of a whitened residual with squared norm s:
-/// Huber min(1, k / |r|), Cauchy 1 / (1 + s / k^2).
+/// Huber min(1, k / |r|), Cauchy 1 / (1 + s / k^2), log tail min(1, k^2 / s).
 [[nodiscard]] double RobustWeight(RobustKernel kernel, double scale_sigma, double squared_norm);
 
 /// The robust kernel of one observation, rho(s) of its whitened squared residual s, with rho'(0) = 1.
@@ -45,7 +46,8 @@ struct ObservationKernel {
 };
 
 /// A scalar whitened residual whose square is the kernel's cost rho(r^2), with rho' = RobustWeight:
-/// Huber r^2 up to k, then 2 k |r| - k^2; Cauchy k^2 log(1 + r^2 / k^2).
+/// Huber r^2 up to k, then 2 k |r| - k^2; Cauchy k^2 log(1 + r^2 / k^2); log tail r^2 up to k, then k^2 (1 +
+/// 2 log(|r| / k)).
 struct RobustResidual {
   double value = 0;  ///< sign(r) sqrt(rho(r^2))
   double slope = 1;  ///< d value / d r

@@ -3,6 +3,6 @@
 namespace alidade {
 
 /// What down-weights large residuals; see RobustWeight in core/robust.h.
-enum class RobustKernel { kNone, kHuber, kCauchy };
+enum class RobustKernel { kNone, kHuber, kCauchy, kLogTail };
 
 }  // namespace alidade

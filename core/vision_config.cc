@@ -48,9 +48,12 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Real(
       {"max_depth_m", "m", "landmarks farther than this are rejected; they do not constrain translation"},
       &max_depth_m, 1, 1e5);
-  visitor.Enumeration(
-      {"robust_kernel", "-", "robust kernel for measurements that pass the gate"}, &robust_kernel,
-      {{"none", RobustKernel::kNone}, {"huber", RobustKernel::kHuber}, {"cauchy", RobustKernel::kCauchy}});
+  visitor.Enumeration({"robust_kernel", "-", "robust kernel for measurements that pass the gate"},
+                      &robust_kernel,
+                      {{"none", RobustKernel::kNone},
+                       {"huber", RobustKernel::kHuber},
+                       {"cauchy", RobustKernel::kCauchy},
+                       {"log_tail", RobustKernel::kLogTail}});
   visitor.Real({"robust_scale_sigma", "sigma",
                 "norm of the whitened residual above which the kernel reduces the weight"},
                &robust_scale_sigma, 0.1, 1e3);

@@ -50,7 +50,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
   left_.reserve(kUsualTracks);
   accepted_.reserve(kUsualTracks);
   block_nis_.reserve(kUsualTracks);
-  block_fit_.reserve(kUsualTracks);
+  misfits_.reserve(kUsualTracks);
   weights_.reserve(kUsualTracks);
 }
 

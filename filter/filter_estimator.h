@@ -92,8 +92,11 @@ class FilterEstimator : public Estimator {
   bool UpdateAtRest(const TrackFrame& frame);
   /// Normalised innovation squared of every appended track, against the state before the update.
   void MeasureBlocks(const PreparedRows& rows);
-  /// Squared residuals of every appended track at the state that the passes before have found.
-  void MeasureFit();
+  /// Adds to misfits_ the appended tracks that do not fit the state which the passes before have found,
+  /// unless so many do not that it is suspect. The innovation's covariance is that of the state before the
+  /// update: where it is large, as after a start, tracks that contradict the others pass the gate.
+  void FindMisfits();
+  [[nodiscard]] bool IsMisfit(size_t track) const;
   /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
   bool RefuseBlocks(const PreparedRows& rows);
@@ -164,7 +167,7 @@ class FilterEstimator : public Estimator {
   std::vector<size_t> degenerate_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
-  std::vector<double> block_fit_;   ///< MeasureFit; empty in the first pass
+  std::vector<size_t> misfits_;     ///< tracks that the passes of the present update refuse from now on
   std::vector<double> weights_;     ///< of the blocks; 0: refused
   std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "filter/filter_estimator.h"
@@ -7,10 +8,8 @@
 namespace alidade {
 namespace {
 
-// The innovation's covariance is that of the state before the update. Where it is large, as after a start,
-// tracks that contradict the others pass; at the state that an earlier pass has found they do not fit. That
-// state may not be the last one yet, therefore by how much the squared residuals may exceed the gate.
-constexpr double kWorstTrackFit = 2;
+// Of a misfit, how far its squared residuals exceed the gate: the state is not quite the last one.
+constexpr double kMisfit = 2;
 
 }  // namespace
 
@@ -22,30 +21,37 @@ void FilterEstimator::MeasureBlocks(const PreparedRows& rows) {
   }
 }
 
-void FilterEstimator::MeasureFit() {
-  block_fit_.clear();
+void FilterEstimator::FindMisfits() {
+  const size_t before = misfits_.size();
   for (size_t i = 0; i < appended_.size(); ++i) {
     const FeatureUpdate::Block& block = update_.blocks()[i];
-    block_fit_.push_back(update_.innovation().segment(block.first, block.rows).squaredNorm());
+    const double chi_square = update_.innovation().segment(block.first, block.rows).squaredNorm();
+    if (!gate_.Accepts(chi_square / (kMisfit * gate_noise_.variance()), block.rows) &&
+        !IsMisfit(appended_[i])) {
+      misfits_.push_back(appended_[i]);
+    }
   }
+  if (StateIsSuspect(static_cast<int>(misfits_.size()), static_cast<int>(appended_.size()),
+                     config_.vision.max_gated_share, kLeastRefusedTracks)) {
+    misfits_.resize(before);
+  }
+}
+
+bool FilterEstimator::IsMisfit(size_t track) const {
+  return std::find(misfits_.begin(), misfits_.end(), track) != misfits_.end();
 }
 
 bool FilterEstimator::RefuseBlocks(const PreparedRows& rows) {
   MeasureBlocks(rows);
-  const auto refuse = [&](bool with_fit) {
-    accepted_.assign(appended_.size(), true);
-    int refused = 0;
-    for (size_t i = 0; i < appended_.size(); ++i) {
-      const int dof = update_.blocks()[i].rows;
-      accepted_[i] =
-          std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], dof) &&
-          (!with_fit || gate_.Accepts(block_fit_[i] / (kWorstTrackFit * gate_noise_.variance()), dof));
-      refused += accepted_[i] ? 0 : 1;
-    }
-    return StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
-                          kLeastRefusedTracks);
-  };
-  return (block_fit_.empty() || refuse(true)) && refuse(false);
+  accepted_.assign(appended_.size(), true);
+  int refused = 0;
+  for (size_t i = 0; i < appended_.size(); ++i) {
+    accepted_[i] = std::isfinite(block_nis_[i]) && gate_.Accepts(block_nis_[i], update_.blocks()[i].rows) &&
+                   !IsMisfit(appended_[i]);
+    refused += accepted_[i] ? 0 : 1;
+  }
+  return StateIsSuspect(refused, static_cast<int>(appended_.size()), config_.vision.max_gated_share,
+                        kLeastRefusedTracks);
 }
 
 void FilterEstimator::GateBlocks(PreparedRows* rows) {

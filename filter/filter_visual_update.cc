@@ -168,8 +168,10 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   corrected.setZero();
   moved_.head(corrected.size()).setZero();
   whitened_.head(corrected.size()).setZero();
+  misfits_.clear();
   state_.strain().Mark();
   carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
+  bool settled = false;
   for (int pass = 1;; ++pass) {
     const int landmark_rows =
         pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
@@ -179,9 +181,10 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       }
       return true;
     }
-    block_fit_.clear();
     if (pass > 1) {
-      MeasureFit();
+      if (settled) {
+        FindMisfits();
+      }
       // The prior is about the prediction, the rows about the state.
       update_.innovation().noalias() += update_.jacobian() * corrected;
     }
@@ -194,9 +197,11 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       GiveUp(corrected);
       return true;
     }
-    if (last || !MoveByTracks(corrected)) {
+    const bool moved = !last && MoveByTracks(corrected);
+    if (!moved && (last || settled || pass == 1)) {
       break;
     }
+    settled = !moved;  // then one more pass, without the tracks that do not fit here
     if (carry_scale_ && state_.strain().ExceedsNoise()) {
       // The direction carried is no longer one along which the IMU's prior knows the scale.
       scale_direction_.TakeBack(&state_);

@@ -80,7 +80,8 @@ TEST(LandmarkSolverTest, RefinementReachesTheMinimum) {
 
 TEST(LandmarkSolverTest, NoStepFromTheSolutionLowersARobustCost) {
   RandomStates random(73);
-  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+  for (const RobustKernel kernel :
+       {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kLogTail}) {
     for (int trial = 0; trial < 20; ++trial) {
       const Views views(&random, 6, 2);
       LandmarkOptions options;

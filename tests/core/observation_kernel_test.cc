@@ -5,7 +5,8 @@
 namespace alidade {
 namespace {
 
-constexpr RobustKernel kKernels[] = {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy};
+constexpr RobustKernel kKernels[] = {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy,
+                                     RobustKernel::kLogTail};
 
 TEST(ObservationKernelTest, RhoIsTheIntegralOfTheSharedWeight) {
   for (const RobustKernel kernel : kKernels) {

@@ -18,17 +18,21 @@ TEST(RobustTest, GateKeepsItsProbability) {
 }
 
 TEST(RobustTest, KernelsDescendFromOne) {
-  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+  for (const RobustKernel kernel :
+       {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kLogTail}) {
     EXPECT_NEAR(RobustWeight(kernel, 2, 1e-12), 1, 1e-9);
   }
   EXPECT_EQ(RobustWeight(RobustKernel::kHuber, 2, 3.9), 1);
   EXPECT_NEAR(RobustWeight(RobustKernel::kHuber, 2, 16), 0.5, 1e-15);
   EXPECT_NEAR(RobustWeight(RobustKernel::kCauchy, 2, 4), 0.5, 1e-15);
+  EXPECT_EQ(RobustWeight(RobustKernel::kLogTail, 2, 3.9), 1);
+  EXPECT_NEAR(RobustWeight(RobustKernel::kLogTail, 2, 16), 0.25, 1e-15);
 }
 
 TEST(RobustTest, GIVEN_a_robust_residual_THEN_it_derives_from_the_kernels_weight) {
   constexpr double kScale = 1.7;
-  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+  for (const RobustKernel kernel :
+       {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kLogTail}) {
     for (const double r : {-40.0, -1.9, -1.5, -1e-3, 0.0, 1e-6, 0.4, 1.6, 1.8, 25.0}) {
       // d rho / d s of rho = value^2 and s = r^2.
       constexpr double kStep = 1e-6;
@@ -42,6 +46,7 @@ TEST(RobustTest, GIVEN_a_robust_residual_THEN_it_derives_from_the_kernels_weight
   EXPECT_EQ(Robustify(RobustKernel::kHuber, 2, -1.5).value, -1.5);
   EXPECT_NEAR(std::pow(Robustify(RobustKernel::kHuber, 2, -10).value, 2), 2 * 2 * 10 - 4, 1e-12);
   EXPECT_NEAR(std::pow(Robustify(RobustKernel::kCauchy, 2, 4).value, 2), 4 * std::log(5), 1e-12);
+  EXPECT_NEAR(std::pow(Robustify(RobustKernel::kLogTail, 2, -4).value, 2), 4 * (1 + std::log(4)), 1e-12);
 }
 
 TEST(ConsensusTest, GIVEN_many_refusals_THEN_the_state_is_suspect_and_few_are_the_measurements_fault) {

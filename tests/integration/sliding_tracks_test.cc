@@ -11,8 +11,10 @@ namespace {
 
 double NeesOf(const Dataset& dataset, unsigned seed, const std::string& preset,
               const std::string& gate_noise) {
-  return test::RunPreset(preset, {"vision.pixel_noise_px=0.5", "vision.gate_noise=" + gate_noise}, dataset,
-                         seed)
+  return test::RunPreset(
+             preset,
+             {"vision.pixel_noise_px=0.5", "vision.robust_kernel=huber", "vision.gate_noise=" + gate_noise},
+             dataset, seed)
       .nees_pose;
 }
 

@@ -8,11 +8,14 @@
 namespace alidade {
 namespace {
 
+// The seeds of these tests are those of the worst runs of both presets with this kernel.
+const char* const kHuber = "vision.robust_kernel=huber";
+
 /// Of the pose.
 double Nees(const std::string& preset, const SimulatorConfig& sim, unsigned seed) {
   const Dataset dataset = test::SimulateOrDie(sim, seed);
   const std::string noise = "vision.pixel_noise_px=" + std::to_string(sim.pixel_noise_px);
-  return test::RunPreset(preset, {noise}, dataset, seed, 5).nees_pose;
+  return test::RunPreset(preset, {noise, kHuber}, dataset, seed, 5).nees_pose;
 }
 
 SimulatorConfig Motion(SimTrajectory trajectory, const Eigen::Vector3d& extent_m, double path_m,
@@ -88,7 +91,7 @@ TEST(UncertainScale, IsNotFoundInNoise) {
   for (const unsigned seed : {71006U, 71008U, 71011U}) {
     const Dataset dataset = test::SimulateOrDie(sim, seed);
     const auto run =
-        test::RunPreset("alidade_smoother", {"smoother.parallax_gate=typical"}, dataset, seed, 5);
+        test::RunPreset("alidade_smoother", {"smoother.parallax_gate=typical", kHuber}, dataset, seed, 5);
     EXPECT_LT(run.nees_pose, 20) << "seed " << seed;  // where each track's own depth decides: 154, 58, 693
   }
 }

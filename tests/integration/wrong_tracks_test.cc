@@ -36,17 +36,17 @@ double MeanNees(const std::string& preset, const std::vector<std::string>& overr
 // decreases leaves them without effect there, and one whose slope stays does not.
 TEST(WrongTracks, DoNotBendTheStartOfTheSmoother) {
   for (const std::string kind : {"swap", "moving", "uniform"}) {
-    const double cauchy = MeanNees("alidade_smoother", {}, kind, 5, 61, 4);
-    EXPECT_LT(cauchy, 8.5) << kind;
-    EXPECT_GT(MeanNees("alidade_smoother", {"vision.robust_kernel=huber"}, kind, 5, 61, 4), 1.5 * cauchy)
+    const double log_tail = MeanNees("alidade_smoother", {}, kind, 5, 61, 4);
+    EXPECT_LT(log_tail, 8.5) << kind;
+    EXPECT_GT(MeanNees("alidade_smoother", {"vision.robust_kernel=huber"}, kind, 5, 61, 4), 1.5 * log_tail)
         << kind;
   }
 }
 
 // GIVEN landmarks that move WHEN the start's velocity is uncertain, so that the gate lets their tracks pass
-// THEN they are refused by what they leave over at the state that an update has found.
+// THEN they are refused because they do not fit the state that an update has found.
 TEST(WrongTracks, DoNotBendTheStartOfTheFilter) {
-  EXPECT_LT(MeanNees("alidade_filter", {}, "moving", 20, 97, 10), 40);
+  EXPECT_LT(MeanNees("alidade_filter", {}, "moving", 20, 97, 10), 100);  // 1636 where they are not
 }
 
 }  // namespace

@@ -256,7 +256,8 @@ TEST_P(PoseOnlyCostTest, GradientIsThatOfTheCostWithLandmarksSolvedInside) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, PoseOnlyCostTest,
-                         testing::Values(RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy));
+                         testing::Values(RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy,
+                                         RobustKernel::kLogTail));
 
 }  // namespace
 }  // namespace alidade

@@ -164,7 +164,8 @@ void ExpectGradient(const SlamFixture& fixture, const LinearPrior& prior, const 
 // The factor's cost is the minimum over the landmarks, so its gradient is that of the cost: no derivative of
 // the landmarks is missing. So it is where the window has grown since the prior was made.
 TEST_P(SlamPriorTest, ReducedSystemIsThatOfTheMinimumOverTheLandmarks) {
-  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+  for (const RobustKernel kernel :
+       {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kLogTail}) {
     for (const double growth : {1.0, 1.1}) {
       SCOPED_TRACE(testing::Message() << "kernel " << static_cast<int>(kernel) << ", growth " << growth);
       SlamFixture fixture = Fixture(7, {2, 4});

@@ -283,7 +283,7 @@ TEST(VisionTermTest, ViewsInCeresAreUnderTheSharedKernel) {
     for (std::size_t view = 1; view < track.views.size(); ++view) {
       const ViewInCeres plain(&fixture, &track, view, {});
       const double s = plain.residual.squaredNorm();
-      for (const RobustKernel kind : {RobustKernel::kHuber, RobustKernel::kCauchy}) {
+      for (const RobustKernel kind : {RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kLogTail}) {
         for (const double bend : {0.5, 2.0}) {  // of the residual's length
           const ObservationKernel kernel{kind, bend * std::sqrt(s)};
           (kernel.Weight(s) < 1 ? beyond : within) += 1;

@@ -56,7 +56,8 @@ TEST(TrackSystemTest, AddTrackGivesTheNormalEquationsOfEliminateLandmark) {
 }
 
 TEST(TrackSystemTest, SolveLandmarkFindsTheMinimumOfTheRobustCost) {
-  for (const RobustKernel kernel : {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy}) {
+  for (const RobustKernel kernel :
+       {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kLogTail}) {
     WindowFixture fixture(4, 5, 6, 2.0);
     const std::vector<FrameGeometry> geometry = MakeGeometry(fixture.window, fixture.T_BC);
     const ObservationKernel robust{kernel, 1.0};
