@@ -79,7 +79,7 @@ void FilterEstimator::GateBlocks(PreparedRows* rows) {
                             2 * block_nis_[i] / block.rows);
     } else if (state_is_suspect && std::isfinite(block_nis_[i])) {
       accepted_[i] = true;
-      weight = gate_.Threshold(block.rows) / block_nis_[i];
+      weight = std::min(1.0, gate_.Threshold(block.rows) / block_nis_[i]);
     }
     weights_[i] = weight;
     ++(accepted_[i] ? statistics_.features_used : statistics_.features_gated);
