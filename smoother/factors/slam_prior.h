@@ -31,7 +31,6 @@ class SlamPrior {
 
   /// PriorColumns of all frames of the window, without landmarks.
   [[nodiscard]] const ColumnMap& columns() const { return columns_; }
-  [[nodiscard]] const WindowCalibration& calibration() const { return *calibration_; }
   [[nodiscard]] const LinearPrior& prior() const { return *prior_; }
   [[nodiscard]] std::span<const WindowTrack* const> tracks() const { return tracks_; }
 
