@@ -86,6 +86,8 @@ class FilterEstimator : public Estimator {
   /// where they move the state far; what is left to correct the state by is then in Correction(). Nothing is
   /// left when appended_ is empty. False when a number is not finite; the state is then lost.
   bool CorrectWithDueTracks(int leaving_serial);
+  /// The last pass of it. `corrected`: by the passes before.
+  void CommitDueTracks(const Eigen::Ref<const Eigen::VectorXd>& corrected);
   /// False as above.
   bool UpdateWithDueTracks(int leaving_serial);
   /// Zero velocity and zero angular rate, where the rest detector finds them. False as above.
@@ -97,9 +99,9 @@ class FilterEstimator : public Estimator {
   /// update: where it is large, as after a start, tracks that contradict the others pass the gate.
   void FindMisfits();
   [[nodiscard]] bool IsMisfit(size_t track) const;
-  /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
   bool RefuseBlocks(const PreparedRows& rows);
+  /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
   void GateBlocks(PreparedRows* rows);
   /// Appends the rows of a track's views, or those its newest view adds to its memory.
   TrackOutcome AppendViews(const Track& track, int leaving_serial);

@@ -10,6 +10,9 @@ namespace {
 
 // Of a misfit, how far its squared residuals exceed the gate: the state is not quite the last one.
 constexpr double kMisfit = 2;
+// Of the normalised innovation squared of all tracks, in its deviations above its mean: where linearisations
+// have not converged and leave more, they have found no window that the tracks agree on.
+constexpr double kWorstFit = 4;
 
 }  // namespace
 
@@ -39,6 +42,11 @@ void FilterEstimator::FindMisfits() {
 
 bool FilterEstimator::IsMisfit(size_t track) const {
   return std::find(misfits_.begin(), misfits_.end(), track) != misfits_.end();
+}
+
+bool FilterEstimator::TracksFit() const {
+  const double freedom = statistics_.nis_dof;
+  return statistics_.nis < freedom + kWorstFit * std::sqrt(2 * freedom);
 }
 
 bool FilterEstimator::RefuseBlocks(const PreparedRows& rows) {

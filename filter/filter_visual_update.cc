@@ -24,9 +24,6 @@ constexpr double kLongestStep = 0.3;
 // Square of the step, in deviations of what the update leaves, that ends the linearisations of an update with
 // all tracks. Along a scale that they hardly see the cost is flat far beyond its deviation.
 constexpr double kLastStep = 0.1;
-// Of the normalised innovation squared of all tracks, in its deviations above its mean: where linearisations
-// have not converged and leave more, they have found no window that the tracks agree on.
-constexpr double kWorstFit = 4;
 
 }  // namespace
 
@@ -146,11 +143,6 @@ bool FilterEstimator::FactorDueTracks(int landmark_rows) {
   return state_.covariance().Factor(rows, &statistics_.nis);
 }
 
-bool FilterEstimator::TracksFit() const {
-  const double freedom = statistics_.nis_dof;
-  return statistics_.nis < freedom + kWorstFit * std::sqrt(2 * freedom);
-}
-
 void FilterEstimator::GiveUp(Eigen::Ref<Eigen::VectorXd> corrected) {
   statistics_.features_waiting += static_cast<int>(appended_.size());
   statistics_.features_used = 0;
@@ -162,9 +154,18 @@ void FilterEstimator::GiveUp(Eigen::Ref<Eigen::VectorXd> corrected) {
   CorrectByTracks(corrected);
 }
 
+void FilterEstimator::CommitDueTracks(const Eigen::Ref<const Eigen::VectorXd>& corrected) {
+  if (observer_ != nullptr) {
+    observer_->OnUpdate(state_, observed_);
+  }
+  state_.covariance().Commit(Correction());
+  Correction() -= corrected;
+  updated_serial_ = serial_;
+  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
+}
+
 bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
-  SquareRootCovariance& covariance = state_.covariance();
-  auto corrected = corrected_.head(covariance.dimension());
+  auto corrected = corrected_.head(state_.covariance().dimension());
   corrected.setZero();
   moved_.head(corrected.size()).setZero();
   whitened_.head(corrected.size()).setZero();
@@ -209,13 +210,7 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       carry_scale_ = false;
     }
   }
-  if (observer_ != nullptr) {
-    observer_->OnUpdate(state_, observed_);
-  }
-  covariance.Commit(Correction());
-  Correction() -= corrected;
-  updated_serial_ = serial_;
-  carry_scale_ = ScaleIsUncertain() && scale_direction_.Take(state_, updated_serial_);
+  CommitDueTracks(corrected);
   return true;
 }
 

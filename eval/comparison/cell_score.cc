@@ -161,6 +161,10 @@ void FillPredicted(const RunResult& run, CellResult* cell) {
   cell->filtering_sigma_pos_m = Known(std::sqrt(filtering_pos / count));
 }
 
+void AddMessage(const std::string& text, CellResult* cell) {
+  cell->message += (cell->message.empty() || text.empty() ? "" : "; ") + text;
+}
+
 void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult* run,
            const EvaluationOptions& options, CellResult* cell) {
   cell->align = std::string(ToString(options.alignment)) +
@@ -170,18 +174,16 @@ void Score(const Trajectory* truth, const Trajectory& estimate, const RunResult*
     return;
   }
   if (truth == nullptr) {
-    cell->message += (cell->message.empty() ? "" : "; ") + std::string("no ground truth to score against");
+    AddMessage("no ground truth to score against", cell);
     return;
   }
   const Result<Evaluation> evaluation = Evaluate(*truth, estimate, options);
   if (!evaluation.ok()) {
-    cell->message += (cell->message.empty() ? "" : "; ") + evaluation.message();
+    AddMessage(evaluation.message(), cell);
     cell->status = cell->status == "ok" ? "failed" : cell->status;
     return;
   }
-  if (const std::string remark = RemarkOnWorld(*evaluation); !remark.empty()) {
-    cell->message += (cell->message.empty() ? "" : "; ") + remark;
-  }
+  AddMessage(RemarkOnWorld(*evaluation), cell);
   FillFigures(*evaluation, cell);
   CellSeries series = MakeSeries(*evaluation);
   if (run != nullptr) {

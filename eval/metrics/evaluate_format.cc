@@ -241,6 +241,9 @@ std::string FormatEvaluationJson(const Evaluation& evaluation) {
   }
   object["nees"] =
       evaluation.nees ? NeesJson(*evaluation.nees, evaluation.truth_has_covariance) : Json(nullptr);
+  if (const std::string remark = RemarkOnWorld(evaluation); !remark.empty()) {
+    object["remark"] = remark;
+  }
   return object.dump(2) + "\n";
 }
 

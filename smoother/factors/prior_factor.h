@@ -99,7 +99,7 @@ bool MakeInitialPrior(ErrorConvention convention, const WindowFrame& frame, cons
 /// has its clock already.
 void AddCalibrationPrior(const CalibrationEstimate& estimate, LinearPrior* prior);
 
-/// LinearPrior without landmarks and spread as a factor (with them: smoother/factors/slam_prior_factor.h);
+/// LinearPrior without landmarks and spread as a factor (with them: smoother/factors/slam_prior.h);
 /// blocks nav and bias of the first frame, nav of the others, clock of the first, calibration.
 class PriorFactor {
  public:

@@ -130,7 +130,12 @@ TEST(Evaluate, TellsAnEstimateOfItsOwnWorld) {
       point.covariance = deviation * deviation * Matrix6d::Identity();
     }
     estimate.has_covariance = true;
-    return RemarkOnWorld(*Evaluate(truth, estimate, {}));
+    const Evaluation evaluation = *Evaluate(truth, estimate, {});
+    const std::string text = RemarkOnWorld(evaluation);
+    const nlohmann::json json = nlohmann::json::parse(FormatEvaluationJson(evaluation));
+    EXPECT_EQ(json.value("remark", ""), text);
+    EXPECT_THAT(FormatEvaluationText(evaluation), HasSubstr(text));
+    return text;
   };
   EXPECT_EQ(
       remark({0, 0, 0.5}, 0.01),
