@@ -21,8 +21,11 @@ constexpr double kParallaxSlack = 10;
 // Largest deviation of an inverse depth in typical ones. At its own inverse depth, noise would choose: tracks
 // whose noise looks like parallax of the motion that is estimated would confirm it.
 constexpr double kMaxTypicalDeviation = 0.3;
-// Tracks without parallax are assumed at the typical inverse depth, as uncertain as it is large.
+// Tracks without parallax are assumed at the typical inverse depth, as uncertain as it is large. At rest the
+// depth has no effect where the camera is; uncertain ones would fit their noise to a motion of it, and the
+// joint minimum would lie there.
 constexpr double kDepthPriorRelative = 1.0;
+constexpr double kDepthPriorRelativeAtRest = 0.1;
 
 }  // namespace
 
@@ -101,6 +104,7 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
     }
   }
   const double typical = TypicalInverseDepth();
+  const double relative = statistics_.at_rest ? kDepthPriorRelativeAtRest : kDepthPriorRelative;
   // With enough depths known the others add little, and the assumed one would only bias them: they wait. Many
   // assumed depths together pretend to know the scale of a motion.
   const bool wait = static_cast<int>(selected.size()) >= config_.smoother.keyframe_min_tracked ||
@@ -114,7 +118,7 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
     if (track->depth_prior.sqrt_information == 0) {
       track->landmark << track->views.front().observation.z, typical;
     }
-    track->depth_prior = {typical, 1 / (kDepthPriorRelative * typical)};
+    track->depth_prior = {typical, 1 / (relative * typical)};
     selected.push_back(track);
   }
   const size_t limit = static_cast<size_t>(config_.smoother.max_landmarks);
