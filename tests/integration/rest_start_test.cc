@@ -66,10 +66,10 @@ TEST(RestStart, FarSceneryDoesNotHideTheBeginningOfMotion) {
 // GIVEN a rig that stops and turns about its camera, so that the tracks in view have no parallax, THEN their
 // noise is not taken for a motion of the camera.
 TEST(RestStart, ATurnAboutTheCameraDoesNotMoveIt) {
-  const Result<SimulatorConfig> sim = LoadSimulatorConfig(
-      ALIDADE_SOURCE_DIR "/configs/datasets/figure8.yaml",
-      {"trajectory=ellipse", "duration_s=30", "length_m=12", "width_m=8", "path_m=20", "path_point=camera",
-       "pause_s=10", "pause_period_s=15", "pause_turn_rad=3.14"});
+  const Result<SimulatorConfig> sim =
+      LoadSimulatorConfig(ALIDADE_SOURCE_DIR "/configs/datasets/figure8.yaml",
+                          {"trajectory=ellipse", "duration_s=30", "length_m=12", "width_m=8", "path_m=20",
+                           "path_point=camera", "pause_s=10", "pause_period_s=15", "pause_turn_rad=3.14"});
   ASSERT_TRUE(sim.ok()) << sim.message();
   double sum = 0;
   for (const unsigned seed : {431U, 432U, 433U, 434U}) {
