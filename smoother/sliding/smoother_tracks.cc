@@ -21,9 +21,9 @@ constexpr double kParallaxSlack = 10;
 // Largest deviation of an inverse depth in typical ones. At its own inverse depth, noise would choose: tracks
 // whose noise looks like parallax of the motion that is estimated would confirm it.
 constexpr double kMaxTypicalDeviation = 0.3;
-// Tracks without parallax are assumed at the typical inverse depth, as uncertain as it is large. At rest the
-// depth has no effect where the camera is; uncertain ones would fit their noise to a motion of it, and the
-// joint minimum would lie there.
+// Tracks without parallax are assumed at the typical inverse depth, as uncertain as it is large. At rest,
+// uncertain depths would fit the noise of their tracks to a motion of the camera, and the joint minimum would
+// lie there; a wrong depth has no effect, since the camera does not move.
 constexpr double kDepthPriorRelative = 1.0;
 constexpr double kDepthPriorRelativeAtRest = 0.1;
 
