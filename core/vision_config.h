@@ -17,6 +17,12 @@ enum class GateNoiseModel {
   kAdaptive,  ///< less, where most tracks show less (core/gate_noise.h)
 };
 
+/// What the gate of tracks refuses.
+enum class GateUnit {
+  kTrack,        ///< a track whole
+  kObservation,  ///< of a refused track the observations that contradict the others, where that suffices
+};
+
 /// On which plane the observations of a track are (core/bearing_plane.h).
 enum class PlaneChoice {
   kLens,        ///< that of the lens: CameraModel::plane
@@ -34,6 +40,7 @@ struct VisionConfig {
   bool rolling_shutter = true;
   double gate_probability = 0.99;
   GateNoiseModel gate_noise = GateNoiseModel::kGiven;
+  GateUnit gate_unit = GateUnit::kTrack;
   double max_gated_share = 0.5;
   double max_relative_depth_deviation = 0.1;
   double min_depth_m = 0.1;

@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/landmark_reduction.h"
+#include "core/outlying_observations.h"
 #include "core/robust.h"
 #include "filter/landmark_view.h"
 
@@ -47,6 +48,7 @@ FeatureUpdate::FeatureUpdate(const FilterConfig& filter, const VisionConfig& vis
         3, filter.track_memory != TrackMemoryPolicy::kNone ? 6 * max_clones + calibration_ : 0);
   }
   blocks_.reserve(kUsualTracks);
+  points_.reserve(kUsualTracks);
 }
 
 void FeatureUpdate::Begin(const FilterState& state) {
@@ -54,6 +56,7 @@ void FeatureUpdate::Begin(const FilterState& state) {
   prepared_ = false;
   dimension_ = state.covariance().dimension();
   blocks_.clear();
+  points_.clear();
   traces_.clear();
   if (jacobian_.cols() < state.covariance().capacity()) {
     jacobian_.resize(jacobian_.rows(), state.covariance().capacity());
@@ -188,6 +191,7 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
     scene_depth_.Add((p_W - poses_.back().translation).norm());
   }
   const Block block = AddBlock(static_cast<int>(2 * views - 3));
+  points_.back() = p_W;
   for (Index k = 0; k < views; ++k) {
     jacobian_.block(block.first, offsets_[static_cast<size_t>(k)], block.rows, 6) =
         dense.block(3, 6 * k, block.rows, 6);
@@ -204,6 +208,20 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
     Trace(track, dense.bottomRightCorner(block.rows, 2 * views));
   }
   return TrackOutcome::kReady;
+}
+
+bool FeatureUpdate::FindOutliers(const FilterState& state, const Track& track, std::vector<int>* outlying) {
+  return GatherViews(state, track) && FindOutliersOfConsensus(poses_, observations_, outlying);
+}
+
+Eigen::Ref<Eigen::MatrixXd> FeatureUpdate::NoiseMaps(const FilterState& state, const Track& track,
+                                                     size_t block) {
+  CHECK(GatherViews(state, track) && Linearize(state, points_[block])) << "the block is not of these views";
+  const Index rows = 2 * static_cast<Index>(clones_.size());
+  auto maps = track_jacobian_.topLeftCorner(rows, rows);
+  maps.setIdentity();
+  EliminateLandmark(point_jacobian_.topRows(rows), maps, residual_.head(rows));
+  return maps.bottomRows(rows - 3);
 }
 
 void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
@@ -259,6 +277,7 @@ FeatureUpdate::Block FeatureUpdate::AddBlock(int rows) {
   const Block block{rows_, rows};
   jacobian_.block(rows_, 0, rows, dimension_).setZero();
   blocks_.push_back(block);
+  points_.emplace_back(Eigen::Vector3d::Zero());
   rows_ += rows;
   if (successors_.size() < blocks_.size()) {
     successors_.emplace_back();

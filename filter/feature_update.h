@@ -51,6 +51,12 @@ class FeatureUpdate {
                         .to_remember = filter_.track_memory != TrackMemoryPolicy::kNone,
                         .landmark_rows = landmark_rows});
   }
+  /// Of a track whose outcome was kDegenerate: FindOutliersOfConsensus.
+  bool FindOutliers(const FilterState& state, const Track& track, std::vector<int>* outlying);
+  /// How the noise of the observations enters the rows of a block that all views of `track` defined: 2N - 3 x
+  /// 2N, over the whitened observations. Valid until the next track is linearised.
+  [[nodiscard]] Eigen::Ref<Eigen::MatrixXd> NoiseMaps(const FilterState& state, const Track& track,
+                                                      size_t block);
   /// Appends the two rows that the newest view of a remembered track adds.
   TrackOutcome AppendRemembered(const FilterState& state, const Track& track);
 
@@ -138,6 +144,7 @@ class FeatureUpdate {
   SceneDepth scene_depth_;
   bool learn_scene_depth_ = false;
   std::vector<TrackMemory> successors_;  ///< of the blocks; grows, never shrinks
+  std::vector<Eigen::Vector3d> points_;  ///< of the blocks: landmark of the linearisation
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd innovation_;
   // Scratch of one track.

@@ -52,6 +52,12 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
   block_nis_.reserve(kUsualTracks);
   misfits_.reserve(kUsualTracks);
   weights_.reserve(kUsualTracks);
+  outliers_.reserve(kUsualTracks);
+  const auto clones = static_cast<size_t>(config.filter.window) + 1;
+  outlying_.reserve(clones);
+  seen_at_.reserve(clones);
+  outlying_at_.reserve(clones);
+  snooped_.resize(2 * config.filter.window + 2);
 }
 
 Status FilterEstimator::Initialize(const NavEstimate& initial) {

@@ -101,8 +101,21 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] bool IsMisfit(size_t track) const;
   /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
   bool RefuseBlocks(const PreparedRows& rows);
-  /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed.
-  void GateBlocks(PreparedRows* rows);
+  /// Of the tracks that the gate refuses: the observations that contradict the others of their track, where
+  /// the rest passes, in outliers_; and for each clone how many of its observations are, and how many there
+  /// are.
+  void FindOutliers(const PreparedRows& rows);
+  /// With GateUnit::kObservation, of tracks that are due with all their views.
+  [[nodiscard]] bool MayTakeOutliersOut(const Track& track) const;
+  /// Takes these observations out of their tracks. Whether there were any; the
+  /// rows are then of views that are gone. None where so many of one clone's are outlying that its pose is
+  /// suspect.
+  bool TakeOutliersOut(const PreparedRows& rows);
+  /// The same of a track that has no landmark; whether there were any.
+  bool TakeOutliersOut(Track* track);
+  /// Gates every appended track and weighs the accepted ones; a refused one has its rows zeroed. False where
+  /// the tracks have lost observations: they must be appended again.
+  bool GateBlocks(PreparedRows* rows);
   /// Appends the rows of a track's views, or those its newest view adds to its memory.
   TrackOutcome AppendViews(const Track& track, int leaving_serial);
   /// The part of correction_ that the present error dimension uses.
@@ -117,8 +130,10 @@ class FilterEstimator : public Estimator {
   /// linearised again; false, with nothing moved, where that changes nothing. `corrected`: less the prior's
   /// mean, as an error of the state.
   bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
-  /// Gates the rows at hand and factors the update with them; false when a number is not finite.
-  bool FactorDueTracks(int landmark_rows);
+  /// Gates the rows at hand and factors the update with them; false when a number is not finite. `corrected`:
+  /// by the passes before.
+  bool FactorDueTracks(int landmark_rows, int leaving_serial,
+                       const Eigen::Ref<const Eigen::VectorXd>& corrected);
   /// Whether the update that was factored leaves no more of the innovations than noise explains.
   [[nodiscard]] bool TracksFit() const;
   /// Takes the linearisations of this update back: the state is the prediction, and the due tracks wait.
@@ -171,6 +186,16 @@ class FilterEstimator : public Estimator {
   std::vector<double> block_nis_;
   std::vector<size_t> misfits_;     ///< tracks that the passes of the present update refuse from now on
   std::vector<double> weights_;     ///< of the blocks; 0: refused
+  /// An observation to take out: index of its track, serial of its clone.
+  struct Outlier {
+    size_t track = 0;
+    int serial = 0;
+  };
+  std::vector<Outlier> outliers_;
+  std::vector<int> outlying_;  ///< of one track
+  std::vector<int> seen_at_;   ///< of each clone: observations, and those that are outlying
+  std::vector<int> outlying_at_;
+  Eigen::VectorXd snooped_;  ///< innovation of one track, whitened
   std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;
   Eigen::VectorXd correction_;  ///< see Correction()

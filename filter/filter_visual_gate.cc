@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/outlying_observations.h"
 #include "filter/filter_estimator.h"
 
 // Which tracks of a visual update of FilterEstimator pass the gate, and with which weight.
@@ -10,6 +11,9 @@ namespace {
 
 // Of a misfit, how far its squared residuals exceed the gate: the state is not quite the last one.
 constexpr double kMisfit = 2;
+// Views of a track that may lose outlying ones while the window's shape is uncertain: tracks of few pass then
+// without them even if all are wrong.
+constexpr size_t kLeastViewsInDoubt = 12;
 // Of the normalised innovation squared of all tracks, in its deviations above its mean: where linearisations
 // have not converged and leave more, they have found no window that the tracks agree on.
 constexpr double kWorstFit = 4;
@@ -62,11 +66,76 @@ bool FilterEstimator::RefuseBlocks(const PreparedRows& rows) {
                         kLeastRefusedTracks);
 }
 
-void FilterEstimator::GateBlocks(PreparedRows* rows) {
+bool FilterEstimator::MayTakeOutliersOut(const Track& track) const {
+  return config_.vision.gate_unit == GateUnit::kObservation && !track.in_state && !track.memory.active &&
+         (ShapeIsKnown() || track.views.size() >= kLeastViewsInDoubt);
+}
+
+void FilterEstimator::FindOutliers(const PreparedRows& rows) {
+  outliers_.clear();
+  seen_at_.assign(state_.clones().size(), 0);
+  outlying_at_.assign(state_.clones().size(), 0);
+  for (size_t i = 0; i < appended_.size(); ++i) {
+    const Track& track = tracks_.tracks()[appended_[i]];
+    if (track.in_state || track.memory.active) {
+      continue;
+    }
+    for (const TrackView& view : track.views) {
+      ++seen_at_[static_cast<size_t>(state_.FindClone(view.serial))];
+    }
+    const FeatureUpdate::Block& block = update_.blocks()[i];
+    if (accepted_[i] || IsMisfit(appended_[i]) || !MayTakeOutliersOut(track)) {
+      continue;
+    }
+    Eigen::Ref<Eigen::MatrixXd> maps = update_.NoiseMaps(state_, track, i);
+    auto innovation = snooped_.head(block.rows);
+    if (state_.covariance().Whiten(rows, block.first, block.rows, gate_noise_.variance(), maps, innovation) &&
+        FindOutlyingObservations(gate_, maps, innovation, &outlying_)) {
+      for (const int view : outlying_) {
+        const int serial = track.views[static_cast<size_t>(view)].serial;
+        ++outlying_at_[static_cast<size_t>(state_.FindClone(serial))];
+        outliers_.push_back({appended_[i], serial});
+      }
+    }
+  }
+}
+
+bool FilterEstimator::TakeOutliersOut(const PreparedRows& rows) {
+  if (config_.vision.gate_unit != GateUnit::kObservation) {
+    return false;
+  }
+  FindOutliers(rows);
+  for (size_t clone = 0; clone < seen_at_.size(); ++clone) {
+    if (StateIsSuspect(outlying_at_[clone], seen_at_[clone], config_.vision.max_gated_share,
+                       kLeastRefusedTracks)) {
+      return false;
+    }
+  }
+  for (const Outlier& outlier : outliers_) {
+    std::vector<TrackView>& views = tracks_.tracks()[outlier.track].views;
+    std::erase_if(views, [&](const TrackView& view) { return view.serial == outlier.serial; });
+  }
+  return !outliers_.empty();
+}
+
+bool FilterEstimator::TakeOutliersOut(Track* track) {
+  if (!MayTakeOutliersOut(*track) || !update_.FindOutliers(state_, *track, &outlying_)) {
+    return false;
+  }
+  for (auto view = outlying_.rbegin(); view != outlying_.rend(); ++view) {
+    track->views.erase(track->views.begin() + *view);
+  }
+  return true;
+}
+
+bool FilterEstimator::GateBlocks(PreparedRows* rows) {
   bool state_is_suspect = RefuseBlocks(*rows);
   if (state_is_suspect && gate_noise_.lowered()) {
     gate_noise_.Reset();
     state_is_suspect = RefuseBlocks(*rows);
+  }
+  if (TakeOutliersOut(*rows)) {
+    return false;
   }
   weights_.assign(appended_.size(), 0);
   // Of the last linearisation alone.
@@ -104,6 +173,7 @@ void FilterEstimator::GateBlocks(PreparedRows* rows) {
       }
     }
   }
+  return true;
 }
 
 }  // namespace alidade

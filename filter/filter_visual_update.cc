@@ -57,7 +57,11 @@ void FilterEstimator::AppendTrack(size_t index, int leaving_serial) {
       ++statistics_.features_waiting;
       break;
     case TrackOutcome::kDegenerate:
-      degenerate_.push_back(index);
+      if (TakeOutliersOut(&track)) {
+        AppendTrack(index, leaving_serial);
+      } else {
+        degenerate_.push_back(index);
+      }
       break;
   }
 }
@@ -134,12 +138,19 @@ bool FilterEstimator::MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected) {
   return true;
 }
 
-bool FilterEstimator::FactorDueTracks(int landmark_rows) {
+bool FilterEstimator::FactorDueTracks(int landmark_rows, int leaving_serial,
+                                      const Eigen::Ref<const Eigen::VectorXd>& corrected) {
+  if (!corrected.isZero(0)) {
+    // The prior is about the prediction, the rows about the state.
+    update_.innovation().noalias() += update_.jacobian() * corrected;
+  }
   if (observer_ != nullptr) {
     observed_ = {update_.jacobian(), update_.innovation(), update_.traces(), RowSource::kVision};
   }
   PreparedRows rows = update_.Prepare(landmark_rows, &state_.covariance());
-  GateBlocks(&rows);
+  if (!GateBlocks(&rows)) {
+    return FactorDueTracks(AppendDueTracks(leaving_serial), leaving_serial, corrected);
+  }
   return state_.covariance().Factor(rows, &statistics_.nis);
 }
 
@@ -182,14 +193,10 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
       }
       return true;
     }
-    if (pass > 1) {
-      if (settled) {
-        FindMisfits();
-      }
-      // The prior is about the prediction, the rows about the state.
-      update_.innovation().noalias() += update_.jacobian() * corrected;
+    if (settled) {
+      FindMisfits();
     }
-    if (!FactorDueTracks(landmark_rows)) {
+    if (!FactorDueTracks(landmark_rows, leaving_serial, corrected)) {
       return false;
     }
     const bool last = pass == config_.filter.update_iterations;

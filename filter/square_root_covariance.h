@@ -74,6 +74,10 @@ class SquareRootCovariance {
   /// y^T (A A^T + I)^-1 y of the rows [first, first + count) alone; NaN when one is not finite.
   [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count,
                                                    double noise_variance = 1);
+  /// With A A^T + noise_variance I = L L^T of the same rows: maps <- L^-1 maps, innovation = L^-1 y. False, with
+  /// nothing written, when a number is not finite.
+  [[nodiscard]] bool Whiten(const PreparedRows& prepared, int first, int count, double noise_variance,
+                            Eigen::Ref<Eigen::MatrixXd> maps, Eigen::Ref<Eigen::VectorXd> innovation);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1
   /// y, the normalised innovation squared. log_det (nullptr skips): log det(A A^T + I) = log det M, so that
   /// -(nis + log_det + rows log 2 pi) / 2 is the rows' log-likelihood. False, with nothing changed, when a
@@ -121,6 +125,8 @@ class SquareRootCovariance {
   [[nodiscard]] bool AllFinite() const;
 
  private:
+  /// L of Whiten in gate_, L^-1 y in gated_.
+  bool FactorInnovation(const PreparedRows& prepared, int first, int count, double noise_variance);
   [[nodiscard]] auto Part(Eigen::Index row, Eigen::Index col, Eigen::Index rows, Eigen::Index cols) {
     return factor_.block(origin_ + row, origin_ + col, rows, cols);
   }
@@ -175,7 +181,7 @@ class SquareRootCovariance {
   Eigen::MatrixXf single_factor_;
   Eigen::MatrixXf single_information_;
   Eigen::MatrixXf single_rows_;
-  Eigen::MatrixXd gate_;  // scratch of NormalizedInnovationSquared
+  Eigen::MatrixXd gate_;  // scratch of FactorInnovation
   Eigen::VectorXd gated_;
 };
 

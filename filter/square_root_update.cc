@@ -82,7 +82,6 @@ void SquareRootCovariance::PrepareSparse(Eigen::Ref<MatrixXd> rows_in_place) {
 
 double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count,
                                                          double noise_variance) {
-  const auto a = prepared.rows_.middleRows(first, count);
   const auto y = prepared.innovation_.segment(first, count);
   const Index rows = count;
   if (rows == 2) {  // a remembered track or a landmark of the state: too small for BLAS
@@ -92,23 +91,43 @@ double SquareRootCovariance::NormalizedInnovationSquared(const PreparedRows& pre
     const Eigen::Vector2d innovation = y;
     return innovation.dot(variance.inverse() * innovation);
   }
-  if (gate_.rows() < rows) {
-    gate_.resize(rows, rows);
-    gated_.resize(rows);
-  }
-  const int n = static_cast<int>(rows);
-  const int ld = static_cast<int>(gate_.rows());
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, dimension_, 1.0, a.data(),
-              static_cast<int>(a.outerStride()), 0.0, gate_.data(), ld);
-  gate_.diagonal().head(rows).array() += noise_variance;
-  gated_.head(rows) = y;
-  int info = 0;
-  LAPACK_dpotrf("L", &n, gate_.data(), &ld, &info);
-  if (info != 0) {
+  if (!FactorInnovation(prepared, first, count, noise_variance)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, gate_.data(), ld, gated_.data(), 1);
   return gated_.head(rows).squaredNorm();
+}
+
+bool SquareRootCovariance::FactorInnovation(const PreparedRows& prepared, int first, int count,
+                                            double noise_variance) {
+  const auto a = prepared.rows_.middleRows(first, count);
+  if (gate_.rows() < count) {
+    gate_.resize(count, count);
+    gated_.resize(count);
+  }
+  const int ld = static_cast<int>(gate_.rows());
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, count, dimension_, 1.0, a.data(),
+              static_cast<int>(a.outerStride()), 0.0, gate_.data(), ld);
+  gate_.diagonal().head(count).array() += noise_variance;
+  gated_.head(count) = prepared.innovation_.segment(first, count);
+  int info = 0;
+  LAPACK_dpotrf("L", &count, gate_.data(), &ld, &info);
+  if (info != 0) {
+    return false;
+  }
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, count, gate_.data(), ld, gated_.data(), 1);
+  return true;
+}
+
+bool SquareRootCovariance::Whiten(const PreparedRows& prepared, int first, int count, double noise_variance,
+                                  Eigen::Ref<Eigen::MatrixXd> maps, Eigen::Ref<Eigen::VectorXd> innovation) {
+  if (!FactorInnovation(prepared, first, count, noise_variance)) {
+    return false;
+  }
+  innovation = gated_.head(count);
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, count,
+              static_cast<int>(maps.cols()), 1.0, gate_.data(), static_cast<int>(gate_.rows()), maps.data(),
+              static_cast<int>(maps.outerStride()));
+  return true;
 }
 
 template <typename Scalar>

@@ -211,6 +211,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
     UpdatePreintegration(window_.frame(i - 1), noise_, &window_.frame(i));
   }
   window_.UpdateRates();
+  DropViewsFromBehind();
   WindowTerms terms;
   SlamPriorTerm* slam = SetPriorTerm(&terms);
   if (const Status status = AddSensorTerms(Sensors(), window_.frames(), window_.size(), &terms);

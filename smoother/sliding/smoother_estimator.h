@@ -106,6 +106,9 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool StartShapeIsKnown() const;
   /// The volume of the scales that the start allows.
   void AppendScaleVolume(WindowTerms* terms) const;
+  /// Takes out the observations of SLAM features that have the landmark behind them at the present states: the
+  /// prior's landmarks have a solution only where every one of their views can see them.
+  void DropViewsFromBehind();
   /// Landmarks of the prior at the states just solved for.
   Status TakeLandmarks(const SlamPriorTerm& slam);
   /// SLAM features that have views in the window.
@@ -125,6 +128,8 @@ class SmootherEstimator final : public Estimator {
   /// Triangulates a track that has no landmark yet, once it has the parallax.
   Landmark PrepareLandmark(const std::vector<FrameGeometry>& geometry, double max_inverse_depth_deviation,
                            WindowTrack* track) const;
+  /// With GateUnit::kObservation takes the views that leave a track no landmark out; whether there were any.
+  bool TakeOutliersOut(const std::vector<FrameGeometry>& geometry, WindowTrack* track) const;
   [[nodiscard]] bool DepthInRange(const Eigen::Vector3d& landmark) const;
   /// Median of the tracks that have a landmark; that of kRoomDepth while they are few.
   [[nodiscard]] double TypicalInverseDepth() const;
@@ -137,8 +142,26 @@ class SmootherEstimator final : public Estimator {
   bool SolveOwnLandmark(const std::vector<FrameGeometry>& geometry,
                         std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
                         WindowTrack* track) const;
+  /// A track that the gate refuses.
+  struct RefusedTrack {
+    WindowTrack* track = nullptr;
+    double chi_square = 0;
+    std::vector<int> outlying;  ///< its views that contradict the others
+  };
+  /// The tracks beyond the gate. `landmarks`: of the first ones, solved for. *feature_refused becomes true
+  /// when the landmark of a SLAM feature that passes is none.
+  std::vector<RefusedTrack> RefuseTracks(const std::vector<FrameGeometry>& geometry,
+                                         const std::vector<WindowTrack*>& tracks,
+                                         std::span<const std::optional<Eigen::Vector3d>> landmarks,
+                                         bool* feature_refused);
+  /// With GateUnit::kObservation takes those out of `refused` that pass without their outlying views. None where
+  /// so many of one frame's are outlying that its pose is suspect.
+  std::vector<RefusedTrack> FindOutliers(const std::vector<FrameGeometry>& geometry,
+                                         const std::vector<WindowTrack*>& tracks,
+                                         std::vector<RefusedTrack>* refused) const;
   /// `solved`: the term of the first tracks at the present states, from which those that are refused are
-  /// removed if it is used again; null: none. True when a SLAM feature was refused.
+  /// removed if it is used again, and those that lose views; null: none. True when a SLAM feature was refused
+  /// or has lost views.
   bool GateTracks(const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks,
                   PoseOnlyTerm* solved);
   Status UpdateLatest(const WindowTerms& terms);

@@ -64,6 +64,23 @@ bool AnchorIn(const WindowFrame& newest, const std::vector<FrameGeometry>& geome
 
 }  // namespace
 
+void SmootherEstimator::DropViewsFromBehind() {
+  const std::vector<WindowTrack*> features = FeaturesInSight();
+  if (features.empty()) {
+    return;
+  }
+  const std::vector<FrameGeometry> geometry = Geometry();
+  AnchoredRows rows;
+  for (WindowTrack* feature : features) {
+    const size_t before = feature->views.size();
+    std::erase_if(feature->views, [&](const WindowView& view) {
+      return !LinearizeAnchoredView(*feature, view, geometry, {}, feature->landmark, &rows, false,
+                                    NotCalibrated());
+    });
+    statistics_.features_degenerate += feature->views.size() < before ? 1 : 0;
+  }
+}
+
 SlamPriorTerm* SmootherEstimator::SetPriorTerm(WindowTerms* terms) const {
   if (terms->empty()) {
     terms->emplace_back();

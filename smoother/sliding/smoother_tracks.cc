@@ -1,4 +1,4 @@
-// The tracks of a SmootherEstimator: which of them a frame uses, and which it refuses afterwards.
+// The tracks of a SmootherEstimator: which of them a frame uses.
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "core/scene_depth.h"
 #include "smoother/sliding/smoother_estimator.h"
+#include "smoother/tracks/outlying_views.h"
 #include "smoother/tracks/track_landmark.h"
 #include "smoother/tracks/track_system.h"
 
@@ -56,7 +57,8 @@ SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector
   }
   if (!SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &landmark) ||
       !DepthInRange(landmark)) {
-    return Landmark::kDegenerate;
+    return TakeOutliersOut(geometry, track) ? PrepareLandmark(geometry, max_inverse_depth_deviation, track)
+                                            : Landmark::kDegenerate;
   }
   if (std::isfinite(max_inverse_depth_deviation)) {
     const std::optional<double> deviation = InverseDepthDeviation(track->views, geometry, kernel_, landmark);
@@ -68,6 +70,17 @@ SmootherEstimator::Landmark SmootherEstimator::PrepareLandmark(const std::vector
   track->has_landmark = true;
   track->depth_prior = {};
   return Landmark::kReady;
+}
+
+bool SmootherEstimator::TakeOutliersOut(const std::vector<FrameGeometry>& geometry,
+                                        WindowTrack* track) const {
+  std::vector<int> outlying;
+  if (config_.vision.gate_unit != GateUnit::kObservation ||
+      !FindOutliersOfConsensus(*track, geometry, &outlying)) {
+    return false;
+  }
+  track->RemoveViews(outlying);
+  return true;
 }
 
 bool SmootherEstimator::DepthInRange(const Eigen::Vector3d& landmark) const {
@@ -131,25 +144,6 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
   return selected;
 }
 
-bool SmootherEstimator::IsSuspect(size_t refused, size_t tracks) const {
-  return StateIsSuspect(static_cast<int>(refused), static_cast<int>(tracks), config_.vision.max_gated_share,
-                        kLeastRefusedTracks);
-}
-
-bool SmootherEstimator::KeepTrack(WindowTrack* track) {
-  if (track->anchor != nullptr && !DepthInRange(track->landmark)) {
-    ++statistics_.features_degenerate;
-    track->Restart();
-    return false;
-  }
-  if (track->has_landmark && !DepthInRange(track->landmark)) {
-    // It fits, but its depth was none: it falls back on an assumed one.
-    ++statistics_.features_degenerate;
-    track->has_landmark = false;
-  }
-  return true;
-}
-
 PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& tracks,
                                            WindowTerms* terms) const {
   if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
@@ -164,91 +158,6 @@ PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& trac
   PoseOnlyTerm* const added = vision.get();
   terms->push_back(std::move(vision));
   return added;
-}
-
-Status SmootherEstimator::Gate(const std::vector<WindowTrack*>& tracks, bool has_features,
-                               std::unique_ptr<PoseOnlyTerm> vision, WindowTerms* terms) {
-  std::vector<WindowTrack*> gated = FeaturesInSight();
-  gated.insert(gated.begin(), tracks.begin(), tracks.end());
-  if (GateTracks(Geometry(), gated, vision.get()) && has_features) {
-    ALIDADE_RETURN_IF_ERROR(TakeLandmarks(*SetPriorTerm(terms)));
-  }
-  for (int i = 0; gnss_.aligned() && i < window_.size(); ++i) {
-    gnss_.Gate(&window_.frame(i), &statistics_);
-  }
-  if (!vision || statistics_.suspect) {  // suspect: the tracks have less information now
-    std::vector<const WindowTrack*> used;
-    std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(used),
-                 [](const WindowTrack* track) { return track->views.size() >= kMinViews; });
-    vision = std::make_unique<PoseOnlyTerm>(window_, std::move(used), calibration_, kernel_);
-  }
-  const PoseSystem& system = vision->system();
-  statistics_.features_used = system.tracks + static_cast<int>(FeaturesInSight().size());
-  statistics_.nis = system.chi2;
-  statistics_.nis_dof = system.dof;
-  terms->push_back(std::move(vision));
-  return Status::Ok();
-}
-
-bool SmootherEstimator::SolveOwnLandmark(const std::vector<FrameGeometry>& geometry,
-                                         std::span<const std::optional<Eigen::Vector3d>> solved, size_t index,
-                                         WindowTrack* track) const {
-  if (index >= solved.size()) {
-    return SolveLandmark(track->views, geometry, kernel_, kMaxLandmarkIterations, &track->landmark,
-                         track->depth_prior);
-  }
-  track->landmark = solved[index].value_or(track->landmark);
-  return solved[index].has_value();
-}
-
-bool SmootherEstimator::GateTracks(const std::vector<FrameGeometry>& geometry,
-                                   const std::vector<WindowTrack*>& tracks, PoseOnlyTerm* solved) {
-  std::vector<std::pair<WindowTrack*, double>> refused;  // with chi-square
-  bool feature_refused = false;
-  const std::span<const std::optional<Eigen::Vector3d>> landmarks =
-      solved != nullptr ? solved->SolvedLandmarks() : std::span<const std::optional<Eigen::Vector3d>>();
-  for (size_t i = 0; i < tracks.size(); ++i) {
-    WindowTrack* track = tracks[i];
-    if (track->anchor == nullptr && !SolveOwnLandmark(geometry, landmarks, i, track)) {
-      statistics_.features_degenerate += track->degenerate ? 0 : 1;  // it is counted once
-      track->Restart();
-      continue;
-    }
-    const double chi_square = TrackChiSquare(*track, geometry);
-    const double at_gate = chi_square / gate_noise_.variance();
-    gate_noise_.AddTrack(at_gate, track->dof());
-    if (gate_.Accepts(at_gate, track->dof())) {
-      pixel_noise_.AddTrack(chi_square, track->dof());
-      feature_refused = !KeepTrack(track) || feature_refused;
-    } else {
-      refused.emplace_back(track, chi_square);
-    }
-  }
-  if (IsSuspect(refused.size(), tracks.size()) && gate_noise_.lowered()) {
-    gate_noise_.Reset();
-    std::erase_if(refused, [&](const auto& entry) {
-      const bool fits = gate_.Accepts(entry.second, entry.first->dof());
-      feature_refused = (fits && !KeepTrack(entry.first)) || feature_refused;
-      return fits;
-    });
-  }
-  statistics_.suspect = IsSuspect(refused.size(), tracks.size());
-  if (solved != nullptr && !statistics_.suspect) {
-    std::vector<const WindowTrack*> gone;
-    std::transform(refused.begin(), refused.end(), std::back_inserter(gone),
-                   [](const auto& entry) { return entry.first; });
-    solved->Remove(gone);
-  }
-  for (const auto& [track, chi_square] : refused) {
-    feature_refused = feature_refused || track->anchor != nullptr;
-    if (statistics_.suspect) {
-      track->ScaleInformation(gate_.Threshold(track->dof()) / chi_square);
-    } else {
-      statistics_.features_gated += track->degenerate ? 0 : 1;
-      track->Restart();
-    }
-  }
-  return feature_refused;
 }
 
 }  // namespace alidade

@@ -1,27 +1,17 @@
 #include "smoother/tracks/track_landmark.h"
 
 #include <cmath>
-#include <vector>
 
 namespace alidade {
-namespace {
-
-/// A track's views as core/landmark_solver.h takes them.
-struct CameraViews {
-  CameraViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry) {
-    T_WC.reserve(views.size());
-    observations.reserve(views.size());
-    FrameGeometry scratch;
-    for (const WindowView& view : views) {
-      T_WC.push_back(AtRow(geometry, view, &scratch).T_WC);
-      observations.push_back(view.observation);
-    }
+CameraViews::CameraViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry) {
+  T_WC.reserve(views.size());
+  observations.reserve(views.size());
+  FrameGeometry scratch;
+  for (const WindowView& view : views) {
+    T_WC.push_back(AtRow(geometry, view, &scratch).T_WC);
+    observations.push_back(view.observation);
   }
-  std::vector<Pose> T_WC;
-  std::vector<NormalizedObservation> observations;
-};
-
-}  // namespace
+}
 
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                    const ObservationKernel& kernel, int max_iterations, Eigen::Vector3d* landmark,

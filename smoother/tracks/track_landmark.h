@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "core/landmark_solver.h"
 #include "core/robust.h"
@@ -10,6 +11,13 @@
 namespace alidade {
 
 // The landmark of a track, the poses held fixed.
+
+/// A track's views as core/landmark_solver.h takes them.
+struct CameraViews {
+  CameraViews(std::span<const WindowView> views, std::span<const FrameGeometry> geometry);
+  std::vector<Pose> T_WC;
+  std::vector<NormalizedObservation> observations;
+};
 
 /// Landmark of the track with the poses held fixed (core/landmark_solver.h), and its cost.
 bool SolveLandmark(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,

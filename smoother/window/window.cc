@@ -1,5 +1,6 @@
 #include "smoother/window/window.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,16 @@ void WindowTrack::ScaleInformation(double factor) {
   for (WindowView& view : views) {
     view.observation.sqrt_information *= std::sqrt(factor);
     view.root_weight_per_px *= std::sqrt(factor);
+  }
+}
+
+void WindowTrack::RemoveViews(std::vector<int> indices) {
+  std::sort(indices.rbegin(), indices.rend());
+  for (const int index : indices) {
+    views.erase(views.begin() + index);
+  }
+  if (anchor == nullptr && !indices.empty() && indices.back() == 0) {
+    LoseBase();
   }
 }
 
@@ -128,8 +139,7 @@ void Window::RemoveOldest() {
     if (!track.views.empty() && track.views.front().frame == oldest) {
       track.views.erase(track.views.begin());
       if (track.anchor == nullptr) {
-        track.has_landmark = false;  // its coordinates were those of the base
-        track.depth_prior = {};
+        track.LoseBase();
       }
     }
   }

@@ -94,6 +94,13 @@ struct WindowTrack {
   }
   /// Multiplies the information of all observations so far.
   void ScaleInformation(double factor);
+  /// Forgets the observations of these indices.
+  void RemoveViews(std::vector<int> indices);
+  /// The landmark's coordinates were those of a view that is gone.
+  void LoseBase() {
+    has_landmark = false;
+    depth_prior = {};
+  }
   /// Forgets all observations; the next one starts the track anew.
   void Restart() {
     views.clear();

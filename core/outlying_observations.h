@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/navigation_state.h"
+#include "core/robust.h"
+#include "core/visual_observation.h"
+
+namespace alidade {
+
+/// Finds the observations of a track that contradict the others, by data snooping (Baarda 1968).
+///
+/// A track of N observations has R whitened rows without its landmark, y ~ N(0, I). An error d_k of the
+/// observation k adds W_k d_k to y, W_k the columns 2k and 2k + 1 of `maps` (R x 2N). Its best estimate lowers
+/// |y|^2 by
+///
+///     T_k = y^T W_k (W_k^T W_k)^-1 W_k^T y,   chi-square with two degrees of freedom without an error.
+///
+/// The observation with the largest T_k is taken out, until what is left passes the gate. An observation is
+/// taken out only where T_k exceeds the gate's quantile, its error probability shared by the N observations.
+///
+/// True when what is left passes; `outlying` then holds indices in the order they were taken out, at most a
+/// third of N: a track most of whose observations contradict its landmark is not of one point. `maps` and `rows` are
+/// destroyed.
+bool FindOutlyingObservations(const ChiSquareGate& gate, Eigen::Ref<Eigen::MatrixXd> maps,
+                              Eigen::Ref<Eigen::VectorXd> rows, std::vector<int>* outlying);
+
+/// For a track whose observations have no landmark in front of all of its views: those that are far from the
+/// landmark which most agree on, of the landmarks of all pairs of views. The poses are held fixed.
+/// False where fewer than two thirds agree, or all do.
+bool FindOutliersOfConsensus(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
+                             std::vector<int>* outlying);
+
+}  // namespace alidade
