@@ -1,7 +1,7 @@
 #include "core/outlying_observations.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index;
 
-// Of the observations of a track, those that may be outlying.
-constexpr int kShareOutlying = 3;
+// At most one observation in so many is outlying.
+constexpr int kOutlyingOneIn = 3;
 // Least degrees of freedom before an observation is taken out, those of four views: of fewer, it is not
 // determined which one is wrong.
 constexpr int kLeastFreedom = 5;
@@ -65,7 +65,7 @@ bool FindOutlyingObservations(const ChiSquareGate& gate, Eigen::Ref<Eigen::Matri
   DCHECK_EQ(maps.rows(), rows.size());
   outlying->clear();
   const int observations = static_cast<int>(maps.cols() / 2);
-  const int most = observations / kShareOutlying;
+  const int most = observations / kOutlyingOneIn;
   // The quantile 1 - e of two degrees of freedom is -2 log e.
   const double least = gate.Threshold(2) + 2 * std::log(static_cast<double>(observations));
   int dof = static_cast<int>(rows.size());
@@ -93,10 +93,20 @@ bool FindOutlyingObservations(const ChiSquareGate& gate, Eigen::Ref<Eigen::Matri
   return true;
 }
 
+void FrameOutliers::Begin(size_t frames) {
+  counts_.assign(frames, {});
+}
+
+bool FrameOutliers::AnySuspect(double max_share) const {
+  return std::any_of(counts_.begin(), counts_.end(), [&](const Count& count) {
+    return StateIsSuspect(count.outlying, count.seen, max_share, kLeastRefusedTracks);
+  });
+}
+
 bool FindOutliersOfConsensus(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
                              std::vector<int>* outlying) {
   const size_t views = T_WC.size();
-  const size_t needed = views - views / kShareOutlying;
+  const size_t needed = views - views / kOutlyingOneIn;
   size_t most = needed - 1;
   Eigen::Vector3d landmark;
   for (size_t i = 0; i < views; ++i) {

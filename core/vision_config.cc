@@ -38,8 +38,7 @@ void VisionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Enumeration({"gate_unit", "-",
                        "what the gate refuses: a track whole, or `observation`: of a track that it refuses, "
                        "the observations that contradict the others, where the rest then passes"},
-                      &gate_unit,
-                      {{"track", GateUnit::kTrack}, {"observation", GateUnit::kObservation}});
+                      &gate_unit, {{"track", GateUnit::kTrack}, {"observation", GateUnit::kObservation}});
   visitor.Real({"max_gated_share", "-",
                 "consensus gate: when the gate rejects a larger share of the tracks, the state is suspect "
                 "and all are used, with weights reduced to the gate"},

@@ -55,8 +55,7 @@ FilterEstimator::FilterEstimator(const EstimatorConfig& config, const RigCalibra
   outliers_.reserve(kUsualTracks);
   const auto clones = static_cast<size_t>(config.filter.window) + 1;
   outlying_.reserve(clones);
-  seen_at_.reserve(clones);
-  outlying_at_.reserve(clones);
+  clone_outliers_.Reserve(clones);
   snooped_.resize(2 * config.filter.window + 2);
 }
 

@@ -6,6 +6,7 @@
 #include "core/estimator_config.h"
 #include "core/gate_noise.h"
 #include "core/imu_buffer.h"
+#include "core/outlying_observations.h"
 #include "core/pixel_noise.h"
 #include "core/rest_detector.h"
 #include "core/rig_calibration.h"
@@ -102,8 +103,7 @@ class FilterEstimator : public Estimator {
   /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
   bool RefuseBlocks(const PreparedRows& rows);
   /// Of the tracks that the gate refuses: the observations that contradict the others of their track, where
-  /// the rest passes, in outliers_; and for each clone how many of its observations are, and how many there
-  /// are.
+  /// the rest passes, in outliers_, and how many each clone has in clone_outliers_.
   void FindOutliers(const PreparedRows& rows);
   /// With GateUnit::kObservation, of tracks that are due with all their views.
   [[nodiscard]] bool MayTakeOutliersOut(const Track& track) const;
@@ -130,8 +130,8 @@ class FilterEstimator : public Estimator {
   /// linearised again; false, with nothing moved, where that changes nothing. `corrected`: less the prior's
   /// mean, as an error of the state.
   bool MoveByTracks(Eigen::Ref<Eigen::VectorXd> corrected);
-  /// Gates the rows at hand and factors the update with them; false when a number is not finite. `corrected`:
-  /// by the passes before.
+  /// Gates the rows at hand and factors the update with them, unless none is left in appended_; false when a
+  /// number is not finite. `corrected`: by the passes before.
   bool FactorDueTracks(int landmark_rows, int leaving_serial,
                        const Eigen::Ref<const Eigen::VectorXd>& corrected);
   /// Whether the update that was factored leaves no more of the innovations than noise explains.
@@ -184,8 +184,8 @@ class FilterEstimator : public Estimator {
   std::vector<size_t> degenerate_;
   std::vector<bool> accepted_;
   std::vector<double> block_nis_;
-  std::vector<size_t> misfits_;     ///< tracks that the passes of the present update refuse from now on
-  std::vector<double> weights_;     ///< of the blocks; 0: refused
+  std::vector<size_t> misfits_;  ///< tracks that the passes of the present update refuse from now on
+  std::vector<double> weights_;  ///< of the blocks; 0: refused
   /// An observation to take out: index of its track, serial of its clone.
   struct Outlier {
     size_t track = 0;
@@ -193,9 +193,8 @@ class FilterEstimator : public Estimator {
   };
   std::vector<Outlier> outliers_;
   std::vector<int> outlying_;  ///< of one track
-  std::vector<int> seen_at_;   ///< of each clone: observations, and those that are outlying
-  std::vector<int> outlying_at_;
-  Eigen::VectorXd snooped_;  ///< innovation of one track, whitened
+  FrameOutliers clone_outliers_;
+  Eigen::VectorXd snooped_;         ///< innovation of one track, whitened
   std::vector<TrackMemory*> left_;  ///< memories that a leaving clone is part of
   CloneConditional conditional_;
   Eigen::VectorXd correction_;  ///< see Correction()

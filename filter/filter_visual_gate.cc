@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/outlying_observations.h"
 #include "filter/filter_estimator.h"
 
 // Which tracks of a visual update of FilterEstimator pass the gate, and with which weight.
@@ -73,15 +72,14 @@ bool FilterEstimator::MayTakeOutliersOut(const Track& track) const {
 
 void FilterEstimator::FindOutliers(const PreparedRows& rows) {
   outliers_.clear();
-  seen_at_.assign(state_.clones().size(), 0);
-  outlying_at_.assign(state_.clones().size(), 0);
+  clone_outliers_.Begin(state_.clones().size());
   for (size_t i = 0; i < appended_.size(); ++i) {
     const Track& track = tracks_.tracks()[appended_[i]];
     if (track.in_state || track.memory.active) {
       continue;
     }
     for (const TrackView& view : track.views) {
-      ++seen_at_[static_cast<size_t>(state_.FindClone(view.serial))];
+      clone_outliers_.AddSeen(state_.FindClone(view.serial));
     }
     const FeatureUpdate::Block& block = update_.blocks()[i];
     if (accepted_[i] || IsMisfit(appended_[i]) || !MayTakeOutliersOut(track)) {
@@ -93,7 +91,7 @@ void FilterEstimator::FindOutliers(const PreparedRows& rows) {
         FindOutlyingObservations(gate_, maps, innovation, &outlying_)) {
       for (const int view : outlying_) {
         const int serial = track.views[static_cast<size_t>(view)].serial;
-        ++outlying_at_[static_cast<size_t>(state_.FindClone(serial))];
+        clone_outliers_.AddOutlying(state_.FindClone(serial));
         outliers_.push_back({appended_[i], serial});
       }
     }
@@ -105,11 +103,8 @@ bool FilterEstimator::TakeOutliersOut(const PreparedRows& rows) {
     return false;
   }
   FindOutliers(rows);
-  for (size_t clone = 0; clone < seen_at_.size(); ++clone) {
-    if (StateIsSuspect(outlying_at_[clone], seen_at_[clone], config_.vision.max_gated_share,
-                       kLeastRefusedTracks)) {
-      return false;
-    }
+  if (clone_outliers_.AnySuspect(config_.vision.max_gated_share)) {
+    return false;
   }
   for (const Outlier& outlier : outliers_) {
     std::vector<TrackView>& views = tracks_.tracks()[outlier.track].views;

@@ -149,7 +149,8 @@ bool FilterEstimator::FactorDueTracks(int landmark_rows, int leaving_serial,
   }
   PreparedRows rows = update_.Prepare(landmark_rows, &state_.covariance());
   if (!GateBlocks(&rows)) {
-    return FactorDueTracks(AppendDueTracks(leaving_serial), leaving_serial, corrected);
+    const int landmark_rows_left = AppendDueTracks(leaving_serial);
+    return appended_.empty() || FactorDueTracks(landmark_rows_left, leaving_serial, corrected);
   }
   return state_.covariance().Factor(rows, &statistics_.nis);
 }
@@ -187,17 +188,17 @@ bool FilterEstimator::CorrectWithDueTracks(int leaving_serial) {
   for (int pass = 1;; ++pass) {
     const int landmark_rows =
         pass == 1 ? ChooseAndAppendTracks(leaving_serial) : AppendDueTracks(leaving_serial);
+    if (settled) {
+      FindMisfits();
+    }
+    if (!appended_.empty() && !FactorDueTracks(landmark_rows, leaving_serial, corrected)) {
+      return false;
+    }
     if (appended_.empty()) {
       if (pass > 1) {
         GiveUp(corrected);
       }
       return true;
-    }
-    if (settled) {
-      FindMisfits();
-    }
-    if (!FactorDueTracks(landmark_rows, leaving_serial, corrected)) {
-      return false;
     }
     const bool last = pass == config_.filter.update_iterations;
     if (last && pass > 1 && due_ == DueTracks::kAll && !TracksFit()) {

@@ -74,8 +74,8 @@ class SquareRootCovariance {
   /// y^T (A A^T + I)^-1 y of the rows [first, first + count) alone; NaN when one is not finite.
   [[nodiscard]] double NormalizedInnovationSquared(const PreparedRows& prepared, int first, int count,
                                                    double noise_variance = 1);
-  /// With A A^T + noise_variance I = L L^T of the same rows: maps <- L^-1 maps, innovation = L^-1 y. False, with
-  /// nothing written, when a number is not finite.
+  /// With A A^T + noise_variance I = L L^T of the same rows: maps <- L^-1 maps, innovation = L^-1 y. False,
+  /// with nothing written, when a number is not finite.
   [[nodiscard]] bool Whiten(const PreparedRows& prepared, int first, int count, double noise_variance,
                             Eigen::Ref<Eigen::MatrixXd> maps, Eigen::Ref<Eigen::VectorXd> innovation);
   /// M = I + A^T A = U^T U; S <- S U^-1; correction = S U^-T A^T y. nis (nullptr skips): y^T (A A^T + I)^-1

@@ -114,7 +114,8 @@ bool SquareRootCovariance::FactorInnovation(const PreparedRows& prepared, int fi
   if (info != 0) {
     return false;
   }
-  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, count, gate_.data(), ld, gated_.data(), 1);
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, count, gate_.data(), ld, gated_.data(),
+              1);
   return true;
 }
 

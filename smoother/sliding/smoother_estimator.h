@@ -106,8 +106,8 @@ class SmootherEstimator final : public Estimator {
   [[nodiscard]] bool StartShapeIsKnown() const;
   /// The volume of the scales that the start allows.
   void AppendScaleVolume(WindowTerms* terms) const;
-  /// Takes out the observations of SLAM features that have the landmark behind them at the present states: the
-  /// prior's landmarks have a solution only where every one of their views can see them.
+  /// Takes out the observations of SLAM features that have the landmark behind them at the present states:
+  /// the prior's landmarks have a solution only where every one of their views can see them.
   void DropViewsFromBehind();
   /// Landmarks of the prior at the states just solved for.
   Status TakeLandmarks(const SlamPriorTerm& slam);
@@ -154,8 +154,8 @@ class SmootherEstimator final : public Estimator {
                                          const std::vector<WindowTrack*>& tracks,
                                          std::span<const std::optional<Eigen::Vector3d>> landmarks,
                                          bool* feature_refused);
-  /// With GateUnit::kObservation takes those out of `refused` that pass without their outlying views. None where
-  /// so many of one frame's are outlying that its pose is suspect.
+  /// With GateUnit::kObservation takes those out of `refused` that pass without their outlying views. None
+  /// where so many of one frame's are outlying that its pose is suspect.
   std::vector<RefusedTrack> FindOutliers(const std::vector<FrameGeometry>& geometry,
                                          const std::vector<WindowTrack*>& tracks,
                                          std::vector<RefusedTrack>* refused) const;

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/outlying_observations.h"
 #include "smoother/sliding/smoother_estimator.h"
 #include "smoother/tracks/anchored_landmark.h"
 #include "smoother/tracks/outlying_views.h"
@@ -72,28 +73,23 @@ std::vector<SmootherEstimator::RefusedTrack> SmootherEstimator::FindOutliers(
   if (config_.vision.gate_unit != GateUnit::kObservation) {
     return mended;
   }
-  std::vector<int> seen(geometry.size(), 0);
-  std::vector<int> outlying(geometry.size(), 0);
-  const auto frame_of = [](const WindowTrack& track, size_t view) {
-    return static_cast<size_t>(track.views[view].frame->index);
-  };
+  FrameOutliers frames;
+  frames.Begin(geometry.size());
   for (const WindowTrack* track : tracks) {
-    for (size_t view = 0; view < track->views.size(); ++view) {
-      ++seen[frame_of(*track, view)];
+    for (const WindowView& view : track->views) {
+      frames.AddSeen(view.frame->index);
     }
   }
   for (RefusedTrack& entry : *refused) {
     if (FindOutlyingViews(*entry.track, geometry, gate_, gate_noise_.variance(), &entry.outlying)) {
       for (const int view : entry.outlying) {
-        ++outlying[frame_of(*entry.track, static_cast<size_t>(view))];
+        frames.AddOutlying(entry.track->views[static_cast<size_t>(view)].frame->index);
       }
       mended.push_back(entry);
     }
   }
-  for (size_t frame = 0; frame < seen.size(); ++frame) {
-    if (IsSuspect(static_cast<size_t>(outlying[frame]), static_cast<size_t>(seen[frame]))) {
-      return {};
-    }
+  if (frames.AnySuspect(config_.vision.max_gated_share)) {
+    return {};
   }
   std::erase_if(*refused, [&](const RefusedTrack& entry) {
     return std::any_of(mended.begin(), mended.end(),

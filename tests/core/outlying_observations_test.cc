@@ -29,10 +29,13 @@ struct Views {
       const double half_width = std::sqrt(3.0) * kSigma;
       const Vector2d noise(random->Uniform(-half_width, half_width),
                            random->Uniform(-half_width, half_width));
-      observations.push_back({(view.Inverse() * point).hnormalized() + noise, Eigen::Matrix2d::Identity() / kSigma});
+      observations.push_back(
+          {(view.Inverse() * point).hnormalized() + noise, Eigen::Matrix2d::Identity() / kSigma});
     }
   }
-  void Disturb(int view, const Vector2d& sigmas) { observations[static_cast<size_t>(view)].z += kSigma * sigmas; }
+  void Disturb(int view, const Vector2d& sigmas) {
+    observations[static_cast<size_t>(view)].z += kSigma * sigmas;
+  }
   /// The views without those of the indices.
   [[nodiscard]] Views Without(const std::vector<int>& indices) const {
     Views rest = *this;
@@ -67,7 +70,8 @@ struct Rows {
     EliminateLandmark(track.point_jacobian, dense, track.residual);
     const MatrixXd rows = dense.bottomRows(count - 3);
     const MatrixXd poses = rows.leftCols(3 * count);
-    const Eigen::LLT<MatrixXd> covariance(poses * poses.transpose() + MatrixXd::Identity(count - 3, count - 3));
+    const Eigen::LLT<MatrixXd> covariance(poses * poses.transpose() +
+                                          MatrixXd::Identity(count - 3, count - 3));
     innovation = covariance.matrixL().solve(track.residual.tail(count - 3));
     maps = covariance.matrixL().solve(rows.rightCols(count));
   }
@@ -93,8 +97,8 @@ TEST(OutlyingObservationsTest, WrongObservationsAreTakenOut) {
   }
 }
 
-// GIVEN rows at one landmark WHEN observations are projected out THEN what is left is the normalised innovation
-// squared of a track that never had them.
+// GIVEN rows at one landmark WHEN observations are projected out THEN what is left is the normalised
+// innovation squared of a track that never had them.
 TEST(OutlyingObservationsTest, WhatIsLeftIsTheTrackWithoutThem) {
   RandomStates random(82);
   for (int trial = 0; trial < 20; ++trial) {
@@ -118,7 +122,8 @@ TEST(OutlyingObservationsTest, ATrackThatPassesLosesNone) {
   EXPECT_TRUE(outlying.empty());
 }
 
-// GIVEN a landmark that moves WHEN every view contradicts the others a little THEN no third of them explains it.
+// GIVEN a landmark that moves WHEN every view contradicts the others a little THEN no third of them explains
+// it.
 TEST(OutlyingObservationsTest, AMovingPointIsRefusedWhole) {
   RandomStates random(84);
   for (int trial = 0; trial < 20; ++trial) {
@@ -161,6 +166,32 @@ TEST(OutlyingObservationsTest, AConsensusNeedsNoLandmarkOfAll) {
     views.Disturb(k, {random.Uniform(100, 300), random.Uniform(-300, -100)});
   }
   EXPECT_FALSE(FindOutliersOfConsensus(views.T_WC, views.observations, &outlying)) << "too few agree";
+}
+
+// GIVEN outliers spread over the frames THEN none is suspect; GIVEN most of one frame's observations outlying
+// THEN that frame is, unless they are few.
+TEST(FrameOutliersTest, MostOfOneFrameMakeItSuspect) {
+  FrameOutliers frames;
+  frames.Begin(3);
+  for (int i = 0; i < 20; ++i) {
+    for (int frame = 0; frame < 3; ++frame) {
+      frames.AddSeen(frame);
+    }
+    frames.AddOutlying(i % 3);
+  }
+  EXPECT_FALSE(frames.AnySuspect(0.5));
+  for (int i = 0; i < 4; ++i) {
+    frames.AddOutlying(2);
+  }
+  EXPECT_FALSE(frames.AnySuspect(0.5)) << "ten of twenty";
+  frames.AddOutlying(2);
+  EXPECT_TRUE(frames.AnySuspect(0.5));
+  frames.Begin(1);
+  for (int i = 0; i < kLeastRefusedTracks - 1; ++i) {
+    frames.AddSeen(0);
+    frames.AddOutlying(0);
+  }
+  EXPECT_FALSE(frames.AnySuspect(0.5));
 }
 
 }  // namespace

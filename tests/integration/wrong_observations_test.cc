@@ -11,7 +11,8 @@ namespace {
 constexpr unsigned kSeed = 35;
 
 /// Figure-8 at 1.3 m/s; of the observations, not of the tracks, a share is wrong.
-Dataset WithWrongObservations(const std::string& kind, double share, std::vector<std::string> overrides = {}) {
+Dataset WithWrongObservations(const std::string& kind, double share,
+                              std::vector<std::string> overrides = {}) {
   overrides.insert(overrides.end(), {"duration_s=20", "path_m=26", "outlier_unit=observation",
                                      "outlier_kind=" + kind, "outlier_rate=" + std::to_string(share)});
   const Result<SimulatorConfig> sim =
@@ -30,7 +31,8 @@ TEST(WrongObservations, CostTheirTracksNothing) {
       const test::ScenarioResult by_observation = test::RunPreset(preset, {}, dataset, kSeed);
       EXPECT_LT(by_observation.rmse_position_m, 1.4 * clean.rmse_position_m) << preset << " " << kind;
       EXPECT_LT(by_observation.nees_pose, 12) << preset << " " << kind;
-      const test::ScenarioResult by_track = test::RunPreset(preset, {"vision.gate_unit=track"}, dataset, kSeed);
+      const test::ScenarioResult by_track =
+          test::RunPreset(preset, {"vision.gate_unit=track"}, dataset, kSeed);
       EXPECT_GT(by_track.rmse_position_m, 1.5 * by_observation.rmse_position_m) << preset << " " << kind;
     }
   }
@@ -42,9 +44,8 @@ TEST(WrongObservations, ALandmarkBehindOneDoesNotEndTheRun) {
   const std::vector<std::string> wide = {"focal_px=260", "distortion=equidistant", "distortion_1=-0.01",
                                          "camera_view=sideways", "max_features=80"};
   for (const std::string unit : {"observation", "track"}) {
-    const test::ScenarioResult result =
-        test::RunPreset("alidade_smoother", {"vision.gate_unit=" + unit},
-                        WithWrongObservations("uniform", 0.1, wide), kSeed);
+    const test::ScenarioResult result = test::RunPreset("alidade_smoother", {"vision.gate_unit=" + unit},
+                                                        WithWrongObservations("uniform", 0.1, wide), kSeed);
     EXPECT_EQ(result.frames, 201) << unit;
   }
 }
