@@ -6,7 +6,6 @@
 
 #include "core/check.h"
 #include "core/landmark_reduction.h"
-#include "core/outlying_observations.h"
 #include "core/robust.h"
 #include "filter/landmark_view.h"
 
@@ -208,20 +207,6 @@ TrackOutcome FeatureUpdate::AppendViews(const FilterState& state, const Track& t
     Trace(track, dense.bottomRightCorner(block.rows, 2 * views));
   }
   return TrackOutcome::kReady;
-}
-
-bool FeatureUpdate::FindOutliers(const FilterState& state, const Track& track, std::vector<int>* outlying) {
-  return GatherViews(state, track) && FindOutliersOfConsensus(poses_, observations_, outlying);
-}
-
-Eigen::Ref<Eigen::MatrixXd> FeatureUpdate::NoiseMaps(const FilterState& state, const Track& track,
-                                                     size_t block) {
-  CHECK(GatherViews(state, track) && Linearize(state, points_[block])) << "the block is not of these views";
-  const Index rows = 2 * static_cast<Index>(clones_.size());
-  auto maps = track_jacobian_.topLeftCorner(rows, rows);
-  maps.setIdentity();
-  EliminateLandmark(point_jacobian_.topRows(rows), maps, residual_.head(rows));
-  return maps.bottomRows(rows - 3);
 }
 
 void FeatureUpdate::StartMemory(const FilterState& state, const Eigen::Ref<const Eigen::MatrixXd>& clone_rows,
