@@ -102,14 +102,15 @@ class FilterEstimator : public Estimator {
   [[nodiscard]] bool IsMisfit(size_t track) const;
   /// Marks the blocks that the gate accepts; whether so many are refused that the state is suspect.
   bool RefuseBlocks(const PreparedRows& rows);
-  /// Of the tracks that the gate refuses: the observations that contradict the others of their track, where
-  /// the rest passes, in outliers_, and how many each clone has in clone_outliers_.
-  void FindOutliers(const PreparedRows& rows);
   /// With GateUnit::kObservation, of tracks that are due with all their views.
   [[nodiscard]] bool MayTakeOutliersOut(const Track& track) const;
-  /// Takes these observations out of their tracks. Whether there were any; the
-  /// rows are then of views that are gone. None where so many of one clone's are outlying that its pose is
-  /// suspect.
+  /// Of the tracks that the gate refuses: the observations that contradict the others of their track, where
+  /// the rest passes, in outliers_.
+  void FindOutliers(const PreparedRows& rows);
+  /// Whether outliers_ are most of the observations of one clone, so that its pose is suspect.
+  bool OutliersMakeACloneSuspect();
+  /// Takes the outliers out of their tracks, unless a clone is suspect. Whether there were any: the rows are
+  /// then of views that are gone.
   bool TakeOutliersOut(const PreparedRows& rows);
   /// The same of a track that has no landmark; whether there were any.
   bool TakeOutliersOut(Track* track);

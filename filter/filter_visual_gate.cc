@@ -72,45 +72,50 @@ bool FilterEstimator::MayTakeOutliersOut(const Track& track) const {
 
 void FilterEstimator::FindOutliers(const PreparedRows& rows) {
   outliers_.clear();
-  clone_outliers_.Begin(state_.clones().size());
   for (size_t i = 0; i < appended_.size(); ++i) {
     const Track& track = tracks_.tracks()[appended_[i]];
+    if (accepted_[i] || IsMisfit(appended_[i]) || !MayTakeOutliersOut(track)) {
+      continue;
+    }
+    const FeatureUpdate::Block& block = update_.blocks()[i];
+    Eigen::Ref<Eigen::MatrixXd> maps = update_.NoiseMaps(state_, track, i);
+    auto innovation = snooped_.head(block.rows);
+    if (state_.covariance().Whiten(rows, block.first, block.rows, gate_noise_.variance(), maps, innovation) &&
+        FindOutlyingObservations(gate_, maps, innovation, &outlying_)) {
+      for (const int view : outlying_) {
+        outliers_.push_back({appended_[i], track.views[static_cast<size_t>(view)].serial});
+      }
+    }
+  }
+}
+
+bool FilterEstimator::OutliersMakeACloneSuspect() {
+  clone_outliers_.Begin(state_.clones().size());
+  for (const size_t index : appended_) {
+    const Track& track = tracks_.tracks()[index];
     if (track.in_state || track.memory.active) {
       continue;
     }
     for (const TrackView& view : track.views) {
       clone_outliers_.AddSeen(state_.FindClone(view.serial));
     }
-    const FeatureUpdate::Block& block = update_.blocks()[i];
-    if (accepted_[i] || IsMisfit(appended_[i]) || !MayTakeOutliersOut(track)) {
-      continue;
-    }
-    Eigen::Ref<Eigen::MatrixXd> maps = update_.NoiseMaps(state_, track, i);
-    auto innovation = snooped_.head(block.rows);
-    if (state_.covariance().Whiten(rows, block.first, block.rows, gate_noise_.variance(), maps, innovation) &&
-        FindOutlyingObservations(gate_, maps, innovation, &outlying_)) {
-      for (const int view : outlying_) {
-        const int serial = track.views[static_cast<size_t>(view)].serial;
-        clone_outliers_.AddOutlying(state_.FindClone(serial));
-        outliers_.push_back({appended_[i], serial});
-      }
-    }
   }
+  for (const Outlier& outlier : outliers_) {
+    clone_outliers_.AddOutlying(state_.FindClone(outlier.serial));
+  }
+  return clone_outliers_.AnySuspect(config_.vision.max_gated_share);
 }
 
 bool FilterEstimator::TakeOutliersOut(const PreparedRows& rows) {
-  if (config_.vision.gate_unit != GateUnit::kObservation) {
-    return false;
-  }
   FindOutliers(rows);
-  if (clone_outliers_.AnySuspect(config_.vision.max_gated_share)) {
+  if (outliers_.empty() || OutliersMakeACloneSuspect()) {
     return false;
   }
   for (const Outlier& outlier : outliers_) {
     std::vector<TrackView>& views = tracks_.tracks()[outlier.track].views;
     std::erase_if(views, [&](const TrackView& view) { return view.serial == outlier.serial; });
   }
-  return !outliers_.empty();
+  return true;
 }
 
 bool FilterEstimator::TakeOutliersOut(Track* track) {

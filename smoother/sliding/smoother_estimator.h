@@ -147,6 +147,7 @@ class SmootherEstimator final : public Estimator {
     WindowTrack* track = nullptr;
     double chi_square = 0;
     std::vector<int> outlying;  ///< its views that contradict the others
+    bool passes = false;        ///< without these; none where it does at its landmark of least squares
   };
   /// The tracks beyond the gate. `landmarks`: of the first ones, solved for. *feature_refused becomes true
   /// when the landmark of a SLAM feature that passes is none.

@@ -69,9 +69,8 @@ bool SmootherEstimator::SolveOwnLandmark(const std::vector<FrameGeometry>& geome
 std::vector<SmootherEstimator::RefusedTrack> SmootherEstimator::FindOutliers(
     const std::vector<FrameGeometry>& geometry, const std::vector<WindowTrack*>& tracks,
     std::vector<RefusedTrack>* refused) const {
-  std::vector<RefusedTrack> mended;
-  if (config_.vision.gate_unit != GateUnit::kObservation) {
-    return mended;
+  if (config_.vision.gate_unit != GateUnit::kObservation || refused->empty()) {
+    return {};
   }
   FrameOutliers frames;
   frames.Begin(geometry.size());
@@ -81,21 +80,19 @@ std::vector<SmootherEstimator::RefusedTrack> SmootherEstimator::FindOutliers(
     }
   }
   for (RefusedTrack& entry : *refused) {
-    if (FindOutlyingViews(*entry.track, geometry, gate_, gate_noise_.variance(), &entry.outlying)) {
-      for (const int view : entry.outlying) {
-        frames.AddOutlying(entry.track->views[static_cast<size_t>(view)].frame->index);
-      }
-      mended.push_back(entry);
+    entry.passes = FindOutlyingViews(*entry.track, geometry, gate_, gate_noise_.variance(), &entry.outlying);
+    for (size_t i = 0; entry.passes && i < entry.outlying.size(); ++i) {
+      frames.AddOutlying(entry.track->views[static_cast<size_t>(entry.outlying[i])].frame->index);
     }
   }
   if (frames.AnySuspect(config_.vision.max_gated_share)) {
     return {};
   }
-  std::erase_if(*refused, [&](const RefusedTrack& entry) {
-    return std::any_of(mended.begin(), mended.end(),
-                       [&](const RefusedTrack& other) { return other.track == entry.track; });
-  });
-  return mended;
+  const auto mended = std::stable_partition(refused->begin(), refused->end(),
+                                            [](const RefusedTrack& entry) { return !entry.passes; });
+  std::vector<RefusedTrack> taken(mended, refused->end());
+  refused->erase(mended, refused->end());
+  return taken;
 }
 
 std::vector<SmootherEstimator::RefusedTrack> SmootherEstimator::RefuseTracks(
@@ -116,7 +113,7 @@ std::vector<SmootherEstimator::RefusedTrack> SmootherEstimator::RefuseTracks(
       pixel_noise_.AddTrack(chi_square, track->dof());
       *feature_refused = !KeepTrack(track) || *feature_refused;
     } else {
-      refused.push_back({track, chi_square, {}});
+      refused.push_back({track, chi_square, {}, false});
     }
   }
   if (IsSuspect(refused.size(), tracks.size()) && gate_noise_.lowered()) {
