@@ -99,7 +99,7 @@ void FrameOutliers::Begin(size_t frames) {
 
 bool FrameOutliers::AnySuspect(double max_share) const {
   return std::any_of(counts_.begin(), counts_.end(), [&](const Count& count) {
-    return StateIsSuspect(count.outlying, count.seen, max_share, kLeastRefusedTracks);
+    return StateIsSuspect(count.outlying, count.seen, max_share, kLeastOutlyingOfFrame);
   });
 }
 

@@ -33,6 +33,10 @@ bool FindOutlyingObservations(const ChiSquareGate& gate, Eigen::Ref<Eigen::Matri
 bool FindOutliersOfConsensus(std::span<const Pose> T_WC, std::span<const NormalizedObservation> observations,
                              std::vector<int>* outlying);
 
+/// As kLeastRefusedTracks, for the outlying observations of one frame: q = 0.2. Each frame is tested, and an
+/// error of it costs the frame's outliers alone.
+inline constexpr int kLeastOutlyingOfFrame = 4;
+
 /// Counts the outlying observations of each frame. Where most of one frame's are outlying, they are right and
 /// its pose is wrong.
 class FrameOutliers {

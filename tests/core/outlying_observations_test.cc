@@ -187,7 +187,7 @@ TEST(FrameOutliersTest, MostOfOneFrameMakeItSuspect) {
   frames.AddOutlying(2);
   EXPECT_TRUE(frames.AnySuspect(0.5));
   frames.Begin(1);
-  for (int i = 0; i < kLeastRefusedTracks - 1; ++i) {
+  for (int i = 0; i < kLeastOutlyingOfFrame - 1; ++i) {
     frames.AddSeen(0);
     frames.AddOutlying(0);
   }
