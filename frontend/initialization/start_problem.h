@@ -37,9 +37,9 @@ class StartProblem {
   /// False when singular. After Linearize.
   bool NewestCovariance(double variance_factor, Matrix15d* covariance) const;
   /// After Linearize; false when the information is singular. `relative_scale_std`: deviation of s in
-  /// p_i - p_newest -> (1 + s) (p_i - p_newest). `inertial_chi2`: of the preintegrations' residuals, a degree
-  /// of freedom that the fit leaves them: their rows less the trace of their share in the information, most
-  /// of which the states take up.
+  /// c_i - c_newest -> (1 + s) (c_i - c_newest), c the cameras' positions. `inertial_chi2`: of the
+  /// preintegrations' residuals, a degree of freedom that the fit leaves them: their rows less the trace of
+  /// their share in the information, most of which the states take up.
   bool Assess(double* relative_scale_std, double* inertial_chi2) const;
   [[nodiscard]] double ReprojectionChi2() const;
 

@@ -36,13 +36,24 @@ bool StartProblem::Assess(double* relative_scale_std, double* inertial_chi2) con
          InertialChi2(factor, inertial_chi2);
 }
 
+// Of the cameras' positions: those of the body are known to the lever arm's share of them where the body only
+// turns, whatever the scale of the scene.
 bool StartProblem::RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& factor, double* deviation) const {
   Eigen::VectorXd functional = Eigen::VectorXd::Zero(information_.rows());
+  const auto camera = [&](const NavState& state) -> Vector3d {
+    return state.p_WB + state.R_WB * settings_.T_BC.translation;
+  };
+  const auto add = [&](size_t k, const Vector3d& arm) {
+    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
+    functional.segment<3>(at) += settings_.T_BC.translation.cross(current_.states[k].R_WB.transpose() * arm);
+    functional.segment<3>(at + 3) += arm;
+  };
+  const size_t newest = current_.states.size() - 1;
   double extent = 0;
-  for (size_t k = 0; k + 1 < current_.states.size(); ++k) {
-    const Vector3d arm = current_.states[k].p_WB - current_.states.back().p_WB;
-    functional.segment<3>(15 * static_cast<Eigen::Index>(k) + 3) = arm;
-    functional.tail<12>().head<3>() -= arm;
+  for (size_t k = 0; k < newest; ++k) {
+    const Vector3d arm = camera(current_.states[k]) - camera(current_.states[newest]);
+    add(k, arm);
+    add(newest, -arm);
     extent += arm.squaredNorm();
   }
   if (!(extent > 1e-12)) {
