@@ -12,6 +12,9 @@ namespace {
 constexpr double kKnownShape = 0.1;
 // Relative deviation of the scale above which its direction is carried.
 constexpr double kKnownScale = 0.02;
+// Largest step that corrects the scale, in deviations of the scale. The gradient is of second order in the
+// corrections: a larger one is of their neglected terms.
+constexpr double kLongestScaleStep = 0.2;
 // Largest deviation of a position error in single precision, which then holds it to 1e-5 m.
 constexpr double kMostUncertainPosition_m = 100;
 // Degrees of freedom of the direction of a motion.
@@ -59,7 +62,9 @@ void FilterEstimator::CorrectScale() {
   }
   scale_direction_.Descend(state_.covariance(), gradient, Correction());
   if (baseline_.along < kKnownShape) {
-    Correct();
+    if (std::abs(gradient) * baseline_.along < kLongestScaleStep) {
+      Correct();
+    }
   } else {
     scale_direction_.Inflate(Correction(), &state_);  // each step would make the next one longer
   }
