@@ -11,7 +11,7 @@ namespace alidade {
 struct RefinedStart {
   NavEstimate newest;             ///< yaw 0 and position 0 at this state; covariance with the gauge prior
   std::vector<NavState> states;   ///< of the window, in the world of `newest`
-  double relative_scale_std = 0;  ///< standard deviation of the window's size over its size
+  double relative_scale_std = 0;  ///< of the cameras' distances from the newest one
   double reprojection_chi2 =
       0;                     ///< a degree of freedom of the accepted tracks; 1 when the pixel noise is right
   double inertial_chi2 = 0;  ///< a degree of freedom left by the fit
