@@ -26,12 +26,7 @@ auto OverPosition(const Clone& clone) {
 }  // namespace
 
 ScaleDirection::ScaleDirection(int capacity)
-    : row_(capacity),
-      places_(capacity / 6, 3),
-      change_(capacity),
-      carried_(capacity),
-      whitened_(capacity),
-      correlated_(capacity) {}
+    : row_(capacity), places_(capacity / 6, 3), change_(capacity), carried_(capacity) {}
 
 bool ScaleDirection::Take(const FilterState& state, int last_serial) {
   const std::vector<Clone>& clones = state.clones();
@@ -93,45 +88,14 @@ void ScaleDirection::Carry(FilterState* state, Eigen::Ref<VectorXd> errors) {
     return;
   }
   const auto row = row_.head(change.size());
-  const double growth = row.dot(change) / scale;
   scale_ = scale + row.dot(change);
   change /= scale;
-  CarryForce(*state, growth);
   state->Shear(change, row);
   auto carried = carried_.head(change.size());
   carried += (1 + row.dot(carried)) * change;
   if (errors.size() > 0) {
     errors += row.dot(errors) * change;
   }
-}
-
-void ScaleDirection::CarryForce(const FilterState& state, double growth) {
-  const double variance = VarianceOfRow(state.covariance());
-  if (!(variance > 0)) {
-    return;
-  }
-  const NavState& nav = state.nav();
-  const Matrix15d to_chart = ImuChartJacobian(state.convention(), nav);
-  const Matrix15d from_chart = InverseImuChartJacobian(state.convention(), nav);
-  auto correlated = correlated_.head(state.covariance().dimension());
-  correlated.noalias() =
-      state.covariance().factor().triangularView<Eigen::Upper>() * whitened_.head(correlated.size());
-  const Vector15d core = to_chart * correlated.segment<15>(state.CoreOffset()) * (growth / variance);
-  Vector3d turn = nav.R_WB * core.head<3>();
-  turn.z() = 0;  // yaw and gravity make no force
-  // The whole window turns about its oldest camera: the rows of tracks do not see that.
-  const std::vector<Clone>& clones = state.clones();
-  for (size_t i = 0; i < clones.size(); ++i) {
-    Vector6d of_camera;
-    of_camera << clones[i].T_WC.rotation.transpose() * turn, turn.cross(FromOldest(state, i));
-    change_.segment<6>(state.CloneOffset(i)) += clones[i].camera_from_error.inverse() * of_camera;
-  }
-  Vector15d of_core = Vector15d::Zero();
-  of_core.segment<3>(0) = nav.R_WB.transpose() * turn;
-  of_core.segment<3>(3) = turn.cross(nav.p_WB - clones.front().T_WC.translation);
-  of_core.segment<3>(6) = turn.cross(nav.v_WB);
-  of_core.tail<6>() = core.tail<6>();
-  change_.segment<15>(state.CoreOffset()) += from_chart * of_core;
 }
 
 void ScaleDirection::TakeBack(FilterState* state) {
@@ -144,7 +108,7 @@ void ScaleDirection::TakeBack(FilterState* state) {
 
 double ScaleDirection::VarianceOfRow(const SquareRootCovariance& covariance) {
   const auto factor = covariance.factor().triangularView<Eigen::Upper>();
-  auto whitened = whitened_.head(covariance.dimension());
+  auto whitened = change_.head(covariance.dimension());
   whitened.noalias() = factor.transpose() * row_.head(whitened.size());
   return whitened.squaredNorm();
 }
@@ -152,8 +116,7 @@ double ScaleDirection::VarianceOfRow(const SquareRootCovariance& covariance) {
 void ScaleDirection::Descend(const SquareRootCovariance& covariance, double gradient,
                              Eigen::Ref<VectorXd> correction) {
   const double variance = VarianceOfRow(covariance) / (scale_ * scale_);
-  correction.noalias() =
-      covariance.factor().triangularView<Eigen::Upper>() * whitened_.head(correction.size());
+  correction.noalias() = covariance.factor().triangularView<Eigen::Upper>() * change_.head(correction.size());
   correction *= -gradient / (scale_ * (1 + variance * std::abs(gradient)));
 }
 

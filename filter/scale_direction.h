@@ -38,12 +38,7 @@ class ScaleDirection {
   void Inflate(const Eigen::Ref<const Eigen::VectorXd>& step, FilterState* state);
 
  private:
-  /// Adds to change_ what keeps the IMU's knowledge of the scale when that has grown by `growth` of itself.
-  /// The IMU knows the scale by forces: of an error of scale, what passes for the window's acceleration is an
-  /// error of tilt and of biases. These are proportional to the acceleration, that is, to the scale. So with
-  /// d = P l / (l P l) of the errors, the parts of d that are tilt and biases grow by `growth`, too.
-  void CarryForce(const FilterState& state, double growth);
-  /// l P l; whitened_ becomes S^T l, P = S S^T.
+  /// l P l; change_ becomes S^T l, P = S S^T.
   double VarianceOfRow(const SquareRootCovariance& covariance);
 
   size_t determined_ = 0;  ///< number of clones that `last_serial` closes
@@ -53,8 +48,6 @@ class ScaleDirection {
   Eigen::MatrixX3d places_;  ///< of these cameras, seen from the oldest one
   Eigen::VectorXd change_;
   Eigen::VectorXd carried_;  ///< errors are x + carried l.x since Take
-  Eigen::VectorXd whitened_;
-  Eigen::VectorXd correlated_;  ///< P l
 };
 
 }  // namespace alidade
