@@ -19,10 +19,10 @@ class ScaleDirection {
   /// Takes the direction at the present state, n, over the clones up to `last_serial`, whose shape the tracks
   /// have determined. False when they are fewer than two, or at one place: nothing is to be carried then.
   bool Take(const FilterState& state, int last_serial);
-  /// After a correction: with n' the direction now, errors x become x + (n' - n + f) l.x, l.x being the
-  /// relative error of scale in x, l.n = 1, and f what CarryForce adds. So what did not see n does not see
-  /// n'. The state after those clones follows with their velocity. Applied to the covariance and to `errors`
-  /// (of the whole error's size, or empty).
+  /// After a correction: with n' the direction now, errors x become x + (n' - n) l.x, l.x being the relative
+  /// error of scale in x, l.n = 1. So what did not see n does not see n'. The state after those clones
+  /// follows with their velocity. Applied to the covariance and to `errors` (of the whole error's size, or
+  /// empty).
   void Carry(FilterState* state, Eigen::Ref<Eigen::VectorXd> errors);
   /// Takes what Carry has done to the covariance since Take back.
   void TakeBack(FilterState* state);

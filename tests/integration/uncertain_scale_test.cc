@@ -244,10 +244,10 @@ NavEstimate OwnStart(const EstimatorConfig& config, Dataset* dataset) {
   return initial;
 }
 
-// GIVEN an ellipse at 15 m/s, where the scale is known to a tenth at the start because its force could be a
-// bias of the accelerometer, WHEN corrections change the scale by as much THEN the filter's scale comes with
-// the bias that belongs to it, and no step of second order moves it by several deviations.
-TEST(UncertainScale, OnAConstantTurnBelongsToTheBias) {
+// GIVEN an own start on an ellipse at 15 m/s, which knows the scale to a tenth because its force could be a
+// bias of the accelerometer, WHEN corrections change the scale by as much THEN no step of second order in
+// them moves it by several deviations.
+TEST(UncertainScale, IsNotMovedByLargeStepsOnAConstantTurn) {
   SimulatorConfig sim = Motion(SimTrajectory::kEllipse, {300, 150, 4}, 600, 40);
   sim.camera_view = SimCameraView::kSideways;
   sim.camera_rate_hz = 20;
@@ -269,7 +269,7 @@ TEST(UncertainScale, OnAConstantTurnBelongsToTheBias) {
     std::cout << "  seed " << seed << ": " << nees << "\n";
     mean += nees / kRuns;
   }
-  EXPECT_LT(mean, 16);  // 12; without the limit of the step 30, with tilt and biases as they were 22
+  EXPECT_LT(mean, 16);  // 14; without the limit of the step 22
 }
 
 }  // namespace
