@@ -36,8 +36,8 @@ bool StartProblem::Assess(double* relative_scale_std, double* inertial_chi2) con
          InertialChi2(factor, inertial_chi2);
 }
 
-// Of the cameras' positions: those of the body are known to the lever arm's share of them where the body only
-// turns, whatever the scale of the scene.
+// Of the cameras' positions: where the body only turns about its camera, the lever arm gives the body's,
+// whatever the scale of the scene.
 bool StartProblem::RelativeScaleStd(const Eigen::LLT<Eigen::MatrixXd>& factor, double* deviation) const {
   Eigen::VectorXd functional = Eigen::VectorXd::Zero(information_.rows());
   const auto camera = [&](const NavState& state) -> Vector3d {
