@@ -33,6 +33,17 @@ if [[ $failed -eq 0 && ( $code -ne 0 || $total -eq 0 ) ]]; then
   failed=1  # ctest itself did not come to its tests
 fi
 
+# Once more what the failed tests printed: of a long log only the end may be kept.
+if [[ $failed -gt 0 ]]; then
+  grep -vE ' (Passed|Start) |\*\*\*(Skipped|Not Run)' <<<"$results" | sed -E 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+).*/\1/' | while read -r name; do
+    echo "== $name"
+    awk -v name="$name" '
+      $0 ~ /^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / { of_test = index($0, ": " name " ") > 0; next }
+      /^ +Start +[0-9]+: / { next }
+      of_test' "$log" | tail -n 40
+  done
+fi
+
 line="$passed passed, $failed failed"
 [[ $skipped -gt 0 ]] && line="$line, $skipped skipped"
 echo "$line"
