@@ -1,7 +1,9 @@
 #include "smoother/factors/pose_only_cost.h"
 
+#include <limits>
 #include <utility>
 
+#include "core/reprojection.h"
 #include "smoother/tracks/track_landmark.h"
 
 namespace alidade {
@@ -11,12 +13,84 @@ constexpr int kMaxLandmarkIterations = 30;
 // Squared whitened residual of a track whose landmark falls behind a view, so that the solver refuses such a
 // step. Not larger: the tolerance of the solver is relative to the whole cost.
 constexpr double kBehindChiSquare = 1e4;
+// A landmark that a joint step puts this much further off its views, in squared deviations, is solved for:
+// the trust region, which would shorten the step, does not hold the landmarks.
+constexpr double kLargestRise = 1;
+
+/// A point of the world in its coordinates in the base as that has moved. False: no longer in front of it.
+bool FollowBase(const Pose& before, const Pose& now, const BearingPlane& plane, Eigen::Vector3d* landmark) {
+  const Eigen::Vector3d q = plane.InAxes(AnchoredPointInCamera(before, now, *landmark, plane).q);
+  Eigen::Vector2d bearing;
+  if (!ProjectToPlane(q, kMinScaledDepth, &bearing)) {
+    return false;
+  }
+  *landmark << bearing, landmark->z() / q.z();
+  return true;
+}
 
 }  // namespace
 
 PoseOnlyCost::PoseOnlyCost(const Window& window, std::vector<const WindowTrack*> tracks,
-                           const WindowCalibration& calibration, const ObservationKernel& kernel)
-    : window_(&window), calibration_(&calibration), tracks_(std::move(tracks)), kernel_(kernel) {}
+                           const WindowCalibration& calibration, const ObservationKernel& kernel,
+                           SmootherLandmark landmark)
+    : window_(&window),
+      calibration_(&calibration),
+      tracks_(std::move(tracks)),
+      kernel_(kernel),
+      landmark_(landmark) {}
+
+PoseOnlyCost::Step PoseOnlyCost::StepFromLinearization() const {
+  Step step;
+  if (linear_.tracks.empty()) {
+    return step;
+  }
+  for (size_t i = 0; i < point_.states.size(); ++i) {
+    step.poses.push_back(
+        Local(ErrorConvention::kSo3xRn, linear_.point.states[i].T_WB(), point_.states[i].T_WB()));
+  }
+  step.calibration = Local(calibration_->layout, linear_.point.camera, point_.camera);
+  return step;
+}
+
+Eigen::Vector3d PoseOnlyCost::JointStep(const EliminatedLandmark& landmark, std::span<const WindowView> views,
+                                        const Step& step) {
+  Eigen::Vector3d sum = landmark.gradient;
+  for (size_t k = 0; k < views.size(); ++k) {
+    sum.noalias() += landmark.poses[k].transpose() * step.poses[static_cast<size_t>(views[k].frame->index)];
+  }
+  sum.noalias() += landmark.calibration.transpose() * step.calibration;
+  return -landmark.root * sum;
+}
+
+bool PoseOnlyCost::SolveTrack(size_t track, std::span<const WindowView> views, Eigen::Vector3d* landmark,
+                              double* cost) const {
+  return SolveLandmark(views, geometry_, kernel_, kMaxLandmarkIterations, landmark,
+                       tracks_[track]->depth_prior, cost);
+}
+
+bool PoseOnlyCost::MoveTrack(size_t track, std::span<const WindowView> views, const Step& step,
+                             Eigen::Vector3d* landmark, double* cost) const {
+  double most = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d moved = *landmark;
+  if (!linear_.tracks.empty() && linear_.tracks[track]) {
+    const LinearTrack& linear = *linear_.tracks[track];
+    *landmark = linear.landmark;
+    moved = linear.landmark + JointStep(linear.eliminated, views, step);
+    FrameGeometry before;
+    FrameGeometry now;
+    if (!FollowBase(AtRow(linear_.geometry, views.front(), &before).T_WC,
+                    AtRow(geometry_, views.front(), &now).T_WC, views.front().observation.plane, &moved)) {
+      return SolveTrack(track, views, landmark, cost);
+    }
+    most = linear.cost + kLargestRise;
+  }
+  if (!SolveLandmark(views, geometry_, kernel_, 1, &moved, tracks_[track]->depth_prior, cost) ||
+      *cost > most) {
+    return SolveTrack(track, views, landmark, cost);
+  }
+  *landmark = moved;
+  return true;
+}
 
 double PoseOnlyCost::Solve(const WindowPoint& point) {
   point_ = point;
@@ -27,14 +101,16 @@ double PoseOnlyCost::Solve(const WindowPoint& point) {
     geometry_.push_back(MakeGeometry(window_->frame(static_cast<int>(i)), point.states[i], point.camera));
   }
   landmarks_.assign(tracks_.size(), std::nullopt);
+  const bool joint = landmark_ == SmootherLandmark::kInverseDepth;
+  const Step step = StepFromLinearization();
   double total = 0;
   std::vector<WindowView> renormalized;
   for (size_t i = 0; i < tracks_.size(); ++i) {
-    const WindowTrack& track = *tracks_[i];
-    Eigen::Vector3d landmark = track.landmark;
+    const std::span<const WindowView> views =
+        Renormalized(camera_, calibration_->mean, tracks_[i]->views, &renormalized);
+    Eigen::Vector3d landmark = tracks_[i]->landmark;
     double cost = 0;
-    if (SolveLandmark(Renormalized(camera_, calibration_->mean, track.views, &renormalized), geometry_,
-                      kernel_, kMaxLandmarkIterations, &landmark, track.depth_prior, &cost)) {
+    if (joint ? MoveTrack(i, views, step, &landmark, &cost) : SolveTrack(i, views, &landmark, &cost)) {
       landmarks_[i] = landmark;
     } else {
       cost = kBehindChiSquare;
@@ -48,13 +124,26 @@ bool PoseOnlyCost::Linearize(NormalEquations* equations) {
   if (!system_) {
     system_.emplace(window_->size(), &camera_);
     used_.clear();
+    const bool joint = landmark_ == SmootherLandmark::kInverseDepth;
+    if (joint) {
+      linear_.point = point_;
+      linear_.geometry = geometry_;
+      linear_.tracks.resize(tracks_.size());
+    }
     std::vector<WindowView> renormalized;
     for (size_t i = 0; i < tracks_.size(); ++i) {
       // A landmark that its views do not determine gives no rows.
-      if (landmarks_[i] &&
+      const bool rows =
+          landmarks_[i] &&
           AddTrack(Renormalized(camera_, calibration_->mean, tracks_[i]->views, &renormalized), geometry_,
-                   kernel_, *landmarks_[i], &workspace_, &*system_, tracks_[i]->depth_prior)) {
+                   kernel_, *landmarks_[i], &workspace_, &*system_, tracks_[i]->depth_prior);
+      if (rows) {
         used_.push_back(tracks_[i]);
+      }
+      if (joint && rows) {
+        linear_.tracks[i] = {*landmarks_[i], workspace_.robust_cost, workspace_.eliminated};
+      } else if (joint) {
+        linear_.tracks[i].reset();
       }
     }
   }

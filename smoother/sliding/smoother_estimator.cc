@@ -223,7 +223,7 @@ Status SmootherEstimator::SolveAndGate(std::vector<WindowTrack*>* tracks) {
   AppendScaleVolume(&terms);
   // A watched calibration is none of the solver's unknowns, only of what is known afterwards.
   WindowCalibration& solved = given_.watched ? fixed_ : calibration_;
-  const Result<WindowSolveReport> report = SolveWindow(config_.smoother, terms, *tracks, &window_, &solved);
+  const Result<WindowSolveReport> report = SolveWindow(config_.smoother, terms, &window_, &solved);
   if (!report.ok()) {
     return Lost(report.message());
   }

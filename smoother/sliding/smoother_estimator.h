@@ -113,7 +113,7 @@ class SmootherEstimator final : public Estimator {
   Status TakeLandmarks(const SlamPriorTerm& slam);
   /// SLAM features that have views in the window.
   [[nodiscard]] std::vector<WindowTrack*> FeaturesInSight();
-  /// Appends the terms of the tracks for the solver. Returns that of pose-only tracks, null without any.
+  /// Appends the term of the tracks for the solver. Null without any.
   PoseOnlyTerm* AddVision(const std::vector<WindowTrack*>& tracks, WindowTerms* terms) const;
   /// Gates what was solved for, and appends the term of the tracks whose views passed. `vision`: that of
   /// `tracks` for the solver, if it is of the present states.

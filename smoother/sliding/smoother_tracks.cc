@@ -146,15 +146,12 @@ std::vector<WindowTrack*> SmootherEstimator::SelectTracks() {
 
 PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& tracks,
                                            WindowTerms* terms) const {
-  if (config_.smoother.landmark == SmootherLandmark::kInverseDepth) {
-    AddTrackTerms(window_.frames(), tracks, calibration_, kernel_, terms);
-    return nullptr;
-  }
   if (tracks.empty()) {
     return nullptr;
   }
-  auto vision = std::make_unique<PoseOnlyTerm>(
-      window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), calibration_, kernel_);
+  auto vision =
+      std::make_unique<PoseOnlyTerm>(window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()),
+                                     calibration_, kernel_, config_.smoother.landmark);
   PoseOnlyTerm* const added = vision.get();
   terms->push_back(std::move(vision));
   return added;

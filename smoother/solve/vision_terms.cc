@@ -31,12 +31,13 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
 }  // namespace
 
 PoseOnlyTerm::PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
-                           const WindowCalibration& calibration, const ObservationKernel& kernel)
+                           const WindowCalibration& calibration, const ObservationKernel& kernel,
+                           SmootherLandmark landmark)
     : window_(&window),
       tracks_(std::move(tracks)),
       calibration_(&calibration),
       kernel_(kernel),
-      cost_(window, tracks_, calibration, kernel) {
+      cost_(window, tracks_, calibration, kernel, landmark) {
   for (int i = 0; i < window.size(); ++i) {
     AddPart({Unknown::Kind::kFrame, i}, kPoseColumns);
   }

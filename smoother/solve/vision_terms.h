@@ -14,9 +14,11 @@ namespace alidade {
 /// Tracks of a window, all landmarks eliminated (PoseOnlyCost).
 class PoseOnlyTerm final : public ReducedTerm {
  public:
-  /// `tracks` have landmarks; they, the window and the calibration must outlive the term.
+  /// `tracks` have landmarks; they, the window and the calibration must outlive the term. `landmark`: how
+  /// those move in a solve (PoseOnlyCost).
   PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
-               const WindowCalibration& calibration, const ObservationKernel& kernel);
+               const WindowCalibration& calibration, const ObservationKernel& kernel,
+               SmootherLandmark landmark = SmootherLandmark::kPoseOnly);
 
   /// At the states and landmarks of the first call: a term is made anew once they have moved.
   Status Linearize(LinearTerm* linear) const override;

@@ -62,8 +62,7 @@ class AcceptedSteps final : public ceres::IterationCallback {
   int accepted_ = 0;
 };
 
-ceres::Solver::Options SolverOptions(const SmootherConfig& config, const ceres::Problem& problem,
-                                     ParameterBlocks* blocks) {
+ceres::Solver::Options SolverOptions(const SmootherConfig& config, ParameterBlocks* blocks) {
   ceres::Solver::Options solver;
   solver.max_num_iterations = (1 + kRejectedSteps) * config.max_iterations;
   solver.num_threads = 1;
@@ -85,18 +84,13 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, const ceres::
   }
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.dense_linear_algebra_library_type = ceres::LAPACK;
-  // First group: blocks no factor couples with one another. Landmarks where they are explicit; else every
-  // second bias, which makes Ceres form the normal equations block by block and leaves the dense
-  // factorisation fewer columns. Not the first one: the prior couples it with every frame.
-  const bool explicit_landmarks = blocks->landmarks() > 0 && problem.HasParameterBlock(blocks->Landmark(0));
+  // First group: every second bias. No factor couples them with one another, which makes Ceres form the
+  // normal equations block by block and leaves the dense factorisation fewer columns. Not the first one: the
+  // prior couples it with every frame.
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (int i = 0; explicit_landmarks && i < blocks->landmarks(); ++i) {
-    solver.linear_solver_ordering->AddElementToGroup(blocks->Landmark(i), 0);
-  }
   for (int i = 0; i < blocks->frames(); ++i) {
     solver.linear_solver_ordering->AddElementToGroup(blocks->Nav(i), 1);
-    solver.linear_solver_ordering->AddElementToGroup(blocks->Bias(i),
-                                                     !explicit_landmarks && i % 2 == 1 ? 0 : 1);
+    solver.linear_solver_ordering->AddElementToGroup(blocks->Bias(i), i % 2 == 1 ? 0 : 1);
     if (blocks->has_clocks()) {
       solver.linear_solver_ordering->AddElementToGroup(blocks->Clock(i), 1);
     }
@@ -107,17 +101,17 @@ ceres::Solver::Options SolverOptions(const SmootherConfig& config, const ceres::
 
 }  // namespace
 
-Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms,
-                                      const std::vector<WindowTrack*>& tracks, Window* window,
+Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms, Window* window,
                                       WindowCalibration* calibration, double remaining_sigma) {
-  WindowProblem problem(config.error, window->frames(), tracks, *calibration);
+  const std::vector<WindowTrack*> no_tracks;
+  WindowProblem problem(config.error, window->frames(), no_tracks, *calibration);
   ParameterBlocks& blocks = problem.blocks();
   for (const std::unique_ptr<WindowTerm>& term : terms) {
     term->AddTo(&problem);
   }
   UseOneThreadPerBlasCall();
   ceres::Solver::Summary summary;
-  ceres::Solver::Options options = SolverOptions(config, problem.ceres(), &blocks);
+  ceres::Solver::Options options = SolverOptions(config, &blocks);
   AcceptedSteps steps(config.max_iterations, config.solve_to_rounding ? 0 : remaining_sigma);
   options.callbacks.push_back(&steps);
   ceres::Solve(options, &problem.ceres(), &summary);

@@ -19,13 +19,11 @@ struct WindowSolveReport {
 /// deviations.
 inline constexpr double kRemainingSigma = 0.1;
 
-/// Least squares over all frames of the window with Ceres: `terms`, the landmarks of `tracks` among their
-/// unknowns, and the calibration. All are updated in place; with pose-only landmarks those of the tracks are
-/// left for SolveLandmark. `remaining_sigma`: see kRemainingSigma; 0 goes on until the cost stands still. One
-/// thread and no time limit: equal input, equal bits. Errors (kDiverged): the solver failed, or a state is
-/// not finite; the window is then as before.
-Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms,
-                                      const std::vector<WindowTrack*>& tracks, Window* window,
+/// Least squares of `terms` over all frames of the window and the calibration with Ceres; both are updated in
+/// place. The landmarks of tracks are eliminated (PoseOnlyTerm::SolvedLandmarks). `remaining_sigma`: see
+/// kRemainingSigma; 0 goes on until the cost stands still. One thread and no time limit: equal input, equal
+/// bits. Errors (kDiverged): the solver failed, or a state is not finite; the window is then as before.
+Result<WindowSolveReport> SolveWindow(const SmootherConfig& config, const WindowTerms& terms, Window* window,
                                       WindowCalibration* calibration,
                                       double remaining_sigma = kRemainingSigma);
 

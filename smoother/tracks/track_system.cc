@@ -41,7 +41,7 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   const FrameGeometry& base = AtRow(geometry, views.front(), &base_row);
   workspace->rows.resize(views.size());
   workspace->coupling.resize(views.size());
-  workspace->reduced.resize(views.size());
+  workspace->eliminated.poses.resize(views.size());
   workspace->landmark_hessian.setZero();
   workspace->landmark_gradient.setZero();
   workspace->robust_cost = 0;
@@ -61,25 +61,24 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   return true;
 }
 
-/// The calibration's part of AddTrack, once the poses' is done: `landmark_root` is L^-T of the scaled
-/// landmark Hessian.
+/// The calibration's part of AddTrack, once the poses' is done.
 void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
-                    const Matrix3d& landmark_root, const Vector3d& reduced_gradient, bool has_prior,
-                    const DepthPrior& prior, const TrackWorkspace& workspace, PoseSystem* system) {
+                    const DepthPrior& prior, TrackWorkspace* workspace, PoseSystem* system) {
   const WindowCalibration& calibration = *system->calibration;
   const Eigen::Index size = calibration.size();
   const Eigen::Index first = system->columns.Calibration().first;
+  EliminatedLandmark& eliminated = workspace->eliminated;
+  eliminated.calibration.resize(size, 3);
   if (size == 0) {
     return;
   }
-  using Coupling = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, CalibrationLayout::kMaxSize, 3>;
   CalibrationRowPair rows(2, size);
-  Coupling coupling = Coupling::Zero(size, 3);
+  EliminatedLandmark::Calibration coupling = EliminatedLandmark::Calibration::Zero(size, 3);
   CalibrationInformation own = CalibrationInformation::Zero(size, size);
   auto gradient = system->gradient.segment(first, size);
   FrameGeometry view_row;
   for (size_t k = 0; k < views.size(); ++k) {
-    const ViewRows& view = workspace.rows[k];
+    const ViewRows& view = workspace->rows[k];
     const FrameGeometry& frame = AtRow(geometry, views[k], &view_row);
     CalibrationRows(calibration.layout, calibration.mean.camera, frame.R_WB,
                     {&frame.camera_from_time, &frame.camera_from_line_delay}, view.camera,
@@ -88,23 +87,23 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
     coupling.noalias() += weighted * view.landmark;
     own.noalias() += weighted.lazyProduct(rows);
     gradient.noalias() += weighted * view.residual;
-    system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() += weighted * view.pose;
+    system->hessian.block(first, workspace->first[k], size, kPoseColumns).noalias() += weighted * view.pose;
   }
-  if (has_prior) {
-    const Eigen::RowVectorXd& row = workspace.prior_calibration;
+  if (prior.sqrt_information > 0) {
+    const Eigen::RowVectorXd& row = workspace->prior_calibration;
     coupling.col(2) += row.transpose() * prior.sqrt_information;
     own.noalias() += row.transpose().lazyProduct(row);
-    gradient += row.transpose() * workspace.prior_residual;
-    system->hessian.block(first, workspace.first[0], size, kPoseColumns).noalias() +=
-        row.transpose() * workspace.prior_pose;
+    gradient += row.transpose() * workspace->prior_residual;
+    system->hessian.block(first, workspace->first[0], size, kPoseColumns).noalias() +=
+        row.transpose() * workspace->prior_pose;
   }
-  const Coupling reduced = coupling * landmark_root;
+  const auto& reduced = eliminated.calibration = coupling * eliminated.root;
   own.noalias() -= reduced.lazyProduct(reduced.transpose());
   system->hessian.block(first, first, size, size) += own;
-  gradient.noalias() -= reduced * reduced_gradient;
+  gradient.noalias() -= reduced * eliminated.gradient;
   for (size_t k = 0; k < views.size(); ++k) {
-    system->hessian.block(first, workspace.first[k], size, kPoseColumns).noalias() -=
-        reduced * workspace.reduced[k].transpose();
+    system->hessian.block(first, workspace->first[k], size, kPoseColumns).noalias() -=
+        reduced * eliminated.poses[k].transpose();
   }
 }
 
@@ -176,9 +175,10 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
       !(factor.matrixLLT().diagonal().minCoeff() > 1e-7)) {
     return false;
   }
-  const Vector3d reduced_gradient = factor.matrixL().solve(scale.asDiagonal() * workspace->landmark_gradient);
+  EliminatedLandmark& eliminated = workspace->eliminated;
+  eliminated.gradient = factor.matrixL().solve(scale.asDiagonal() * workspace->landmark_gradient);
   const Matrix3d scaled = scale.asDiagonal();
-  const Matrix3d inverse_transposed = factor.matrixL().solve(scaled).transpose();
+  eliminated.root = factor.matrixL().solve(scaled).transpose();
   workspace->first.resize(views.size());
   for (size_t k = 0; k < views.size(); ++k) {
     workspace->first[k] = system->columns.Frame(views[k].frame->index).first;
@@ -189,17 +189,16 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
   for (size_t k = 0; k < views.size(); ++k) {
     const Eigen::Index row = workspace->first[k];
     const ViewRows& rows = workspace->rows[k];
-    workspace->reduced[k].noalias() = workspace->coupling[k] * inverse_transposed;
+    eliminated.poses[k].noalias() = workspace->coupling[k] * eliminated.root;
     system->hessian.block<6, 6>(row, row).noalias() += rows.weight * rows.pose.transpose() * rows.pose;
     system->gradient.segment<6>(row).noalias() += rows.weight * rows.pose.transpose() * rows.residual;
-    system->gradient.segment<6>(row).noalias() -= workspace->reduced[k] * reduced_gradient;
+    system->gradient.segment<6>(row).noalias() -= eliminated.poses[k] * eliminated.gradient;
     for (size_t l = 0; l <= k; ++l) {
       system->hessian.block<6, 6>(row, workspace->first[l]).noalias() -=
-          workspace->reduced[k] * workspace->reduced[l].transpose();
+          eliminated.poses[k] * eliminated.poses[l].transpose();
     }
   }
-  AddCalibration(views, geometry, inverse_transposed, reduced_gradient, prior.sqrt_information > 0, prior,
-                 *workspace, system);
+  AddCalibration(views, geometry, prior, workspace, system);
   system->robust_cost += workspace->robust_cost;
   system->chi2 += workspace->chi2;
   system->dof += 2 * static_cast<int>(views.size()) - 3;

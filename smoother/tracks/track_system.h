@@ -54,6 +54,22 @@ bool LinearizeView(const FrameGeometry& base, const FrameGeometry& frame,
                                                           const Eigen::Vector3d& landmark,
                                                           const BearingPlane& base_plane = kNormalizedPlane);
 
+/// A landmark as AddTrack eliminates it. Its step in the joint Gauss-Newton step with states and calibration
+/// is
+///
+///     df = -T (T^T g + sum over the views of (B_k^T A_k T)^T dx_k + C^T dc),   T T^T = (A^T A)^-1,
+///
+/// A_k, B_k, r_k the whitened rows and residual of a view times the root of the kernel's weight, g = A^T r.
+struct EliminatedLandmark {
+  using Calibration =
+      Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, CalibrationLayout::kMaxSize, 3>;
+
+  Eigen::Matrix3d root;                            ///< T
+  Eigen::Vector3d gradient;                        ///< T^T g
+  std::vector<Eigen::Matrix<double, 6, 3>> poses;  ///< B_k^T A_k T, over (phi, dp) of each view's body
+  Calibration calibration;                         ///< C, over the layout's coordinates
+};
+
 /// Scratch space of AddTrack, reused from track to track.
 struct TrackWorkspace {
   std::vector<Eigen::Index> first;  ///< column of the system where each view's pose begins
@@ -68,7 +84,7 @@ struct TrackWorkspace {
   double prior_residual = 0;
   double robust_cost = 0;
   double chi2 = 0;
-  std::vector<Eigen::Matrix<double, 6, 3>> reduced;  ///< coupling times L^-T, so that H -= reduced reduced^T
+  EliminatedLandmark eliminated;
 };
 
 /// Adds one track, linearised at its landmark (x, y, rho), to the system; a landmark that is not at its

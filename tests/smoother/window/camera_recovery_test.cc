@@ -60,15 +60,15 @@ class CameraRecoveryTest : public testing::Test {
     SmootherConfig config;
     config.landmark = landmark;
     config.max_iterations = 50;
-    std::vector<WindowTrack*> tracks;
-    for (auto& [id, track] : fixture_.window.tracks()) {
+    std::vector<const WindowTrack*> tracks;
+    for (const auto& [id, track] : fixture_.window.tracks()) {
       if (track.anchor == nullptr) {
         tracks.push_back(&track);
       }
     }
     const WindowTerms terms = Terms(landmark, tracks);
     const auto solve = [&](double remaining_sigma) {
-      return SolveWindow(config, terms, tracks, &fixture_.window, &fixture_.calibration, remaining_sigma);
+      return SolveWindow(config, terms, &fixture_.window, &fixture_.calibration, remaining_sigma);
     };
     const Result<WindowSolveReport> near = solve(kRemainingSigma);
     ASSERT_TRUE(near.ok()) << near.message();
@@ -94,7 +94,7 @@ class CameraRecoveryTest : public testing::Test {
     }
   }
 
-  WindowTerms Terms(SmootherLandmark landmark, const std::vector<WindowTrack*>& tracks) {
+  WindowTerms Terms(SmootherLandmark landmark, const std::vector<const WindowTrack*>& tracks) {
     WindowTerms terms;
     if (prior_.landmarks.empty()) {
       terms.push_back(MakePriorTerm(prior_, fixture_.calibration));
@@ -106,13 +106,8 @@ class CameraRecoveryTest : public testing::Test {
         AddSensorTerms({fixture_.gravity_W}, fixture_.window.frames(), fixture_.window.size(), &terms).ok());
     const VisionConfig vision;
     const ObservationKernel kernel{vision.robust_kernel, vision.robust_scale_sigma};
-    if (landmark == SmootherLandmark::kInverseDepth) {
-      AddTrackTerms(fixture_.window.frames(), tracks, fixture_.calibration, kernel, &terms);
-    } else {
-      terms.push_back(std::make_unique<PoseOnlyTerm>(
-          fixture_.window, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()),
-          fixture_.calibration, kernel));
-    }
+    terms.push_back(
+        std::make_unique<PoseOnlyTerm>(fixture_.window, tracks, fixture_.calibration, kernel, landmark));
     return terms;
   }
 
