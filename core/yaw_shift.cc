@@ -20,6 +20,16 @@ Pose YawShift::operator*(const Pose& T_WB) const {
   return {R_NW * T_WB.rotation, R_NW * T_WB.translation + p_NW};
 }
 
+NavEstimate YawShift::operator*(const NavEstimate& estimate_W) const {
+  NavEstimate estimate_N = estimate_W;
+  estimate_N.nav = *this * estimate_W.nav;
+  Matrix15d chart = Matrix15d::Identity();
+  chart.topLeftCorner<9, 9>() = StateJacobian();
+  const Matrix15d covariance = chart * estimate_W.covariance * chart.transpose();
+  estimate_N.covariance = 0.5 * (covariance + covariance.transpose());
+  return estimate_N;
+}
+
 Eigen::Matrix<double, 9, 4> YawShift::ParameterJacobian(const NavState& state_N) const {
   Eigen::Matrix<double, 9, 4> jacobian = Eigen::Matrix<double, 9, 4>::Zero();
   jacobian.block<3, 1>(0, 0) = state_N.R_WB.transpose() * Vector3d::UnitZ();

@@ -16,6 +16,8 @@ struct YawShift {
   [[nodiscard]] Eigen::Matrix3d Rotation() const;  ///< R_NW
   [[nodiscard]] NavState operator*(const NavState& state_W) const;
   [[nodiscard]] Pose operator*(const Pose& T_WB) const;
+  /// Covariance included; biases stay.
+  [[nodiscard]] NavEstimate operator*(const NavEstimate& estimate_W) const;
 
   /// d zeta_N / d (yaw, p_NW), 9x4: canonical chart (phi, dp, dv) of the transformed state `state_N`
   /// against the four parameters,

@@ -73,20 +73,15 @@ NavEstimate ContinueFrom(const NavEstimate& sound, const NavEstimate& reckoned, 
   YawShift onto;
   onto.yaw_rad = so3::NearestYaw(base.nav.R_WB * start.nav.R_WB.transpose());
   onto.p_NW = base.nav.p_WB - onto.Rotation() * start.nav.p_WB;
-  NavEstimate moved = start;
-  moved.nav = onto * start.nav;
+  NavEstimate moved = onto * start;
   Eigen::Matrix<double, 4, 15> of_gauge = Eigen::Matrix<double, 4, 15>::Zero();
   of_gauge.block<1, 3>(0, 0) = base.nav.R_WB.row(2);
   of_gauge.block<3, 3>(1, 3).setIdentity();
   Eigen::Matrix4d gauge = of_gauge * base.covariance * of_gauge.transpose();
   gauge(0, 0) += turn_std * turn_std;
   gauge.diagonal().tail<3>().array() += slip * slip * away_s * away_s;
-  // dp and dv of the start are along its own axes of W.
-  Matrix15d frame = Matrix15d::Identity();
-  frame.topLeftCorner<9, 9>() = onto.StateJacobian();
   const Eigen::Matrix<double, 15, 4> directions = GaugeDirections(moved.nav);
-  moved.covariance =
-      frame * start.covariance * frame.transpose() + directions * gauge * directions.transpose();
+  moved.covariance += directions * gauge * directions.transpose();
   moved.covariance = (0.5 * (moved.covariance + moved.covariance.transpose())).eval();
   return moved;
 }

@@ -65,18 +65,12 @@ void ApplyGauge(RefinedStart* refined) {
   const double yaw = std::atan2(R(1, 0), R(0, 0));
   YawShift gauge{-yaw};
   gauge.p_NW = -(gauge.Rotation() * refined->newest.nav.p_WB);
-  const auto move = [&](NavState* state) {
-    *state = gauge * *state;
-    state->R_WB = so3::Normalize(state->R_WB);
-  };
   for (NavState& state : refined->states) {
-    move(&state);
+    state = gauge * state;
+    state.R_WB = so3::Normalize(state.R_WB);
   }
-  move(&refined->newest.nav);
-  Matrix15d chart = Matrix15d::Identity();
-  chart.topLeftCorner<9, 9>() = gauge.StateJacobian();
-  const Matrix15d covariance = chart * refined->newest.covariance * chart.transpose();
-  refined->newest.covariance = 0.5 * (covariance + covariance.transpose());
+  refined->newest = gauge * refined->newest;
+  refined->newest.nav.R_WB = so3::Normalize(refined->newest.nav.R_WB);
 }
 
 }  // namespace

@@ -35,15 +35,11 @@ GnssAlignment AlreadyAligned(GnssAlignment alignment, TimeNs stamp_ns) {
 
 NavEstimate TurnIntoEnu(const GnssAlignment& alignment, const NavEstimate& estimate) {
   const YawShift transform = alignment.Transform();
-  NavEstimate turned = estimate;
-  turned.nav = transform * estimate.nav;
-  Matrix15d turn = Matrix15d::Identity();
-  turn.topLeftCorner<9, 9>() = transform.StateJacobian();
+  NavEstimate turned = transform * estimate;
   Eigen::Matrix<double, 15, 4> spread = Eigen::Matrix<double, 15, 4>::Zero();
   spread.topRows<9>() = transform.ParameterJacobian(turned.nav);
-  const Matrix15d covariance =
-      turn * estimate.covariance * turn.transpose() + spread * alignment.covariance * spread.transpose();
-  turned.covariance = 0.5 * (covariance + covariance.transpose());
+  turned.covariance += spread * alignment.covariance * spread.transpose();
+  turned.covariance = (0.5 * (turned.covariance + turned.covariance.transpose())).eval();
   return turned;
 }
 

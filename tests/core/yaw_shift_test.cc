@@ -33,6 +33,29 @@ TEST(YawShiftTest, GIVEN_a_state_THEN_its_pose_is_transformed_alike) {
   EXPECT_EQ(pose_N.translation, (transform * state).p_WB);
 }
 
+TEST(YawShiftTest, GIVEN_an_estimate_THEN_errors_along_the_axes_turn_and_those_of_the_body_stay) {
+  const YawShift quarter{M_PI / 2, Vector3d(10, 20, 30)};
+  RandomStates random(3);
+  NavEstimate estimate{7, random.Nav(50), random.Bias(), Matrix15d::Zero()};
+  // Variances of dp along x and of dv along y, of roll and of a bias; dp with roll.
+  estimate.covariance(3, 3) = 4;
+  estimate.covariance(7, 7) = 9;
+  estimate.covariance(0, 0) = 1;
+  estimate.covariance(10, 10) = 2;
+  estimate.covariance(3, 0) = estimate.covariance(0, 3) = 0.5;
+  const NavEstimate moved = quarter * estimate;
+  EXPECT_EQ(moved.stamp_ns, 7);
+  EXPECT_EQ(moved.nav.p_WB, (quarter * estimate.nav).p_WB);
+  EXPECT_EQ(moved.bias.gyro, estimate.bias.gyro);
+  Matrix15d expected = Matrix15d::Zero();
+  expected(4, 4) = 4;
+  expected(6, 6) = 9;
+  expected(0, 0) = 1;
+  expected(10, 10) = 2;
+  expected(4, 0) = expected(0, 4) = 0.5;
+  EXPECT_TRUE(moved.covariance.isApprox(expected, 1e-14)) << moved.covariance;
+}
+
 TEST(YawShiftTest, GIVEN_random_states_THEN_the_parameter_jacobian_is_that_of_central_differences) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     RandomStates random(seed);
