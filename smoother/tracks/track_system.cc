@@ -97,7 +97,8 @@ void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeom
     system->hessian.block(first, workspace->first[0], size, kPoseColumns).noalias() +=
         row.transpose() * workspace->prior_pose;
   }
-  const auto& reduced = eliminated.calibration = coupling * eliminated.root;
+  eliminated.calibration = coupling * eliminated.root;
+  const EliminatedLandmark::Calibration& reduced = eliminated.calibration;
   own.noalias() -= reduced.lazyProduct(reduced.transpose());
   system->hessian.block(first, first, size, size) += own;
   gradient.noalias() -= reduced * eliminated.gradient;
