@@ -32,12 +32,12 @@ bool FollowBase(const Pose& before, const Pose& now, const BearingPlane& plane, 
 
 PoseOnlyCost::PoseOnlyCost(const Window& window, std::vector<const WindowTrack*> tracks,
                            const WindowCalibration& calibration, const ObservationKernel& kernel,
-                           SmootherLandmark landmark)
+                           LandmarkMotion motion)
     : window_(&window),
       calibration_(&calibration),
       tracks_(std::move(tracks)),
       kernel_(kernel),
-      landmark_(landmark) {}
+      motion_(motion) {}
 
 PoseOnlyCost::Step PoseOnlyCost::StepFromLinearization() const {
   Step step;
@@ -101,7 +101,7 @@ double PoseOnlyCost::Solve(const WindowPoint& point) {
     geometry_.push_back(MakeGeometry(window_->frame(static_cast<int>(i)), point.states[i], point.camera));
   }
   landmarks_.assign(tracks_.size(), std::nullopt);
-  const bool joint = landmark_ == SmootherLandmark::kInverseDepth;
+  const bool joint = motion_ == LandmarkMotion::kJointStep;
   const Step step = StepFromLinearization();
   double total = 0;
   std::vector<WindowView> renormalized;
@@ -124,7 +124,7 @@ bool PoseOnlyCost::Linearize(NormalEquations* equations) {
   if (!system_) {
     system_.emplace(window_->size(), &camera_);
     used_.clear();
-    const bool joint = landmark_ == SmootherLandmark::kInverseDepth;
+    const bool joint = motion_ == LandmarkMotion::kJointStep;
     if (joint) {
       linear_.point = point_;
       linear_.geometry = geometry_;

@@ -4,26 +4,30 @@
 #include <span>
 #include <vector>
 
-#include "core/smoother_config.h"
 #include "smoother/factors/reduced_cost.h"
 #include "smoother/tracks/track_system.h"
 
 namespace alidade {
 
+/// How the landmarks of a PoseOnlyCost follow the states.
+///
+/// kSolved: to where their cost is least. kJointStep: as explicit unknowns, from the tracks' landmarks on.
+/// Each takes its part of the joint Gauss-Newton step from the last linearisation, then one Newton step of
+/// its own: the kernel's curvature, which the joint step neglects, would take three times as many steps of
+/// all. Both have the same minimum.
+enum class LandmarkMotion { kSolved, kJointStep };
+
 /// All tracks of a window as one cost over the frames' poses and the calibration, the landmarks eliminated:
 ///
 ///     F(X) = sum over tracks and views of rho(|W (pi(X, f) - z)|^2),
 ///
-/// at landmarks f(X) by SmootherLandmark. kPoseOnly: those of least cost. kInverseDepth: explicit unknowns,
-/// from the tracks' on. Each takes its part of the joint Gauss-Newton step from the last linearisation, then
-/// one Newton step of its own: the kernel's curvature, which the joint step neglects, would take three times
-/// as many steps of all. Both have the same minimum.
+/// at landmarks f(X) by LandmarkMotion.
 class PoseOnlyCost final : public ReducedCost {
  public:
   /// `tracks` have landmarks to start from; they, the window and the calibration must outlive the cost.
   PoseOnlyCost(const Window& window, std::vector<const WindowTrack*> tracks,
                const WindowCalibration& calibration, const ObservationKernel& kernel,
-               SmootherLandmark landmark = SmootherLandmark::kPoseOnly);
+               LandmarkMotion motion = LandmarkMotion::kSolved);
 
   double Solve(const WindowPoint& point) override;
   [[nodiscard]] bool Linearize(NormalEquations* equations) override;
@@ -59,7 +63,7 @@ class PoseOnlyCost final : public ReducedCost {
                   double* cost) const;
   static Eigen::Vector3d JointStep(const EliminatedLandmark& landmark, std::span<const WindowView> views,
                                    const Step& step);
-  /// That of kInverseDepth, likewise.
+  /// That of kJointStep, likewise.
   bool MoveTrack(size_t track, std::span<const WindowView> views, const Step& step, Eigen::Vector3d* landmark,
                  double* cost) const;
 
@@ -67,14 +71,14 @@ class PoseOnlyCost final : public ReducedCost {
   const WindowCalibration* calibration_;
   std::vector<const WindowTrack*> tracks_;
   ObservationKernel kernel_;
-  SmootherLandmark landmark_;
+  LandmarkMotion motion_;
   WindowPoint point_;
   WindowCalibration camera_;
   std::vector<FrameGeometry> geometry_;
   std::vector<std::optional<Eigen::Vector3d>> landmarks_;
   std::optional<PoseSystem> system_;
   std::vector<const WindowTrack*> used_;
-  Linearization linear_;  ///< kInverseDepth; no tracks before the first
+  Linearization linear_;  ///< kJointStep; no tracks before the first
   TrackWorkspace workspace_;
 };
 

@@ -149,9 +149,11 @@ PoseOnlyTerm* SmootherEstimator::AddVision(const std::vector<WindowTrack*>& trac
   if (tracks.empty()) {
     return nullptr;
   }
-  auto vision =
-      std::make_unique<PoseOnlyTerm>(window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()),
-                                     calibration_, kernel_, config_.smoother.landmark);
+  const LandmarkMotion motion = config_.smoother.landmark == SmootherLandmark::kInverseDepth
+                                    ? LandmarkMotion::kJointStep
+                                    : LandmarkMotion::kSolved;
+  auto vision = std::make_unique<PoseOnlyTerm>(
+      window_, std::vector<const WindowTrack*>(tracks.begin(), tracks.end()), calibration_, kernel_, motion);
   PoseOnlyTerm* const added = vision.get();
   terms->push_back(std::move(vision));
   return added;

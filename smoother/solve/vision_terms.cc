@@ -32,12 +32,12 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(const ObservationKernel& kernel) {
 
 PoseOnlyTerm::PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
                            const WindowCalibration& calibration, const ObservationKernel& kernel,
-                           SmootherLandmark landmark)
+                           LandmarkMotion motion)
     : window_(&window),
       tracks_(std::move(tracks)),
       calibration_(&calibration),
       kernel_(kernel),
-      cost_(window, tracks_, calibration, kernel, landmark) {
+      cost_(window, tracks_, calibration, kernel, motion) {
   for (int i = 0; i < window.size(); ++i) {
     AddPart({Unknown::Kind::kFrame, i}, kPoseColumns);
   }

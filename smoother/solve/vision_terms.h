@@ -14,11 +14,11 @@ namespace alidade {
 /// Tracks of a window, all landmarks eliminated (PoseOnlyCost).
 class PoseOnlyTerm final : public ReducedTerm {
  public:
-  /// `tracks` have landmarks; they, the window and the calibration must outlive the term. `landmark`: how
-  /// those move in a solve (PoseOnlyCost).
+  /// `tracks` have landmarks; they, the window and the calibration must outlive the term. `motion`: that
+  /// of the landmarks in a solve.
   PoseOnlyTerm(const Window& window, std::vector<const WindowTrack*> tracks,
                const WindowCalibration& calibration, const ObservationKernel& kernel,
-               SmootherLandmark landmark = SmootherLandmark::kPoseOnly);
+               LandmarkMotion motion = LandmarkMotion::kSolved);
 
   /// At the states and landmarks of the first call: a term is made anew once they have moved.
   Status Linearize(LinearTerm* linear) const override;

@@ -52,16 +52,16 @@ TEST(JointLandmarkTest, FollowsTheStatesToItsLeastCost) {
         track.depth_prior = {0.15, id % 3 == 0 ? 30.0 : 0.0};
         ASSERT_TRUE(SolveLandmark(track.views, geometry, {}, 30, &track.landmark, track.depth_prior));
       }
-      const auto cost = [&](SmootherLandmark landmark) {
-        return PoseOnlyCost(fixture.window, fixture.tracks(), fixture.calibration, {}, landmark);
+      const auto cost = [&](LandmarkMotion motion) {
+        return PoseOnlyCost(fixture.window, fixture.tracks(), fixture.calibration, {}, motion);
       };
-      auto joint = cost(SmootherLandmark::kInverseDepth);
+      auto joint = cost(LandmarkMotion::kJointStep);
       (void)joint.Solve(PointOf(fixture.window, fixture.calibration.mean));
       NormalEquations equations;
       ASSERT_TRUE(joint.Linearize(&equations));
       const WindowPoint point = Shifted(&fixture);
-      auto least = cost(SmootherLandmark::kPoseOnly);
-      auto alone = cost(SmootherLandmark::kInverseDepth);
+      auto least = cost(LandmarkMotion::kSolved);
+      auto alone = cost(LandmarkMotion::kJointStep);
       const double least_cost = least.Solve(point);
       EXPECT_NEAR(joint.Solve(point), least_cost, 1e-9 * least_cost);
       (void)alone.Solve(point);

@@ -53,12 +53,11 @@ class CameraRecoveryTest : public testing::Test {
     ASSERT_GT(prior_.landmarks.size(), 10u);
   }
 
-  void ExpectRecovery(SmootherLandmark landmark) {
+  void ExpectRecovery(LandmarkMotion motion) {
     VectorXd wrong(7);
     wrong << 0.02, -0.02, 0.02, 0.01, -0.01, 0.015, 0.01;
     ASSERT_TRUE(Retract(fixture_.calibration.layout, wrong, &fixture_.calibration.mean));
     SmootherConfig config;
-    config.landmark = landmark;
     config.max_iterations = 50;
     std::vector<const WindowTrack*> tracks;
     for (const auto& [id, track] : fixture_.window.tracks()) {
@@ -66,7 +65,7 @@ class CameraRecoveryTest : public testing::Test {
         tracks.push_back(&track);
       }
     }
-    const WindowTerms terms = Terms(landmark, tracks);
+    const WindowTerms terms = Terms(motion, tracks);
     const auto solve = [&](double remaining_sigma) {
       return SolveWindow(config, terms, &fixture_.window, &fixture_.calibration, remaining_sigma);
     };
@@ -94,7 +93,7 @@ class CameraRecoveryTest : public testing::Test {
     }
   }
 
-  WindowTerms Terms(SmootherLandmark landmark, const std::vector<const WindowTrack*>& tracks) {
+  WindowTerms Terms(LandmarkMotion motion, const std::vector<const WindowTrack*>& tracks) {
     WindowTerms terms;
     if (prior_.landmarks.empty()) {
       terms.push_back(MakePriorTerm(prior_, fixture_.calibration));
@@ -107,7 +106,7 @@ class CameraRecoveryTest : public testing::Test {
     const VisionConfig vision;
     const ObservationKernel kernel{vision.robust_kernel, vision.robust_scale_sigma};
     terms.push_back(
-        std::make_unique<PoseOnlyTerm>(fixture_.window, tracks, fixture_.calibration, kernel, landmark));
+        std::make_unique<PoseOnlyTerm>(fixture_.window, tracks, fixture_.calibration, kernel, motion));
     return terms;
   }
 
@@ -118,14 +117,14 @@ class CameraRecoveryTest : public testing::Test {
 };
 
 TEST_F(CameraRecoveryTest, PoseOnlyLandmarksRecoverTheCamera) {
-  ExpectRecovery(SmootherLandmark::kPoseOnly);
+  ExpectRecovery(LandmarkMotion::kSolved);
 }
 TEST_F(CameraRecoveryTest, InverseDepthsRecoverTheCamera) {
-  ExpectRecovery(SmootherLandmark::kInverseDepth);
+  ExpectRecovery(LandmarkMotion::kJointStep);
 }
 TEST_F(CameraRecoveryTest, FeaturesOfThePriorRecoverTheCamera) {
   MakeFeatures();
-  ExpectRecovery(SmootherLandmark::kPoseOnly);
+  ExpectRecovery(LandmarkMotion::kSolved);
 }
 
 }  // namespace
