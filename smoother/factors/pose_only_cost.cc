@@ -13,8 +13,8 @@ constexpr int kMaxLandmarkIterations = 30;
 // Squared whitened residual of a track whose landmark falls behind a view, so that the solver refuses such a
 // step. Not larger: the tolerance of the solver is relative to the whole cost.
 constexpr double kBehindChiSquare = 1e4;
-// A landmark that a joint step puts this much further off its views, in squared deviations, is solved for:
-// the trust region, which would shorten the step, does not hold the landmarks.
+// By how much a joint step may raise the cost of a track before its landmark is solved for: the solver's
+// trust region, which shortens the steps of the states, does not hold those of the landmarks.
 constexpr double kLargestRise = 1;
 
 /// A point of the world in its coordinates in the base as that has moved. False: no longer in front of it.

@@ -61,6 +61,19 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   return true;
 }
 
+/// Cholesky factor of diag(scale) H diag(scale), H the Hessian of a landmark. The unit of the inverse depth is
+/// arbitrary: H is scaled to a unit diagonal before its pivots are tested.
+struct LandmarkFactor {
+  explicit LandmarkFactor(const Matrix3d& hessian)
+      : scale(hessian.diagonal().cwiseSqrt().cwiseInverse()),
+        factor(scale.asDiagonal() * hessian * scale.asDiagonal()) {}
+
+  [[nodiscard]] bool ok() const { return scale.allFinite() && factor.info() == Eigen::Success; }
+
+  Vector3d scale;
+  Eigen::LLT<Matrix3d> factor;
+};
+
 /// The calibration's part of AddTrack, once the poses' is done.
 void AddCalibration(std::span<const WindowView> views, std::span<const FrameGeometry> geometry,
                     const DepthPrior& prior, TrackWorkspace* workspace, PoseSystem* system) {
@@ -169,17 +182,14 @@ bool AddTrack(std::span<const WindowView> views, std::span<const FrameGeometry> 
     AddDepthPrior(prior, AtRow(geometry, views.front(), &row), views.front().observation.plane, landmark,
                   system->calibration->layout, workspace);
   }
-  // The inverse depth's unit is arbitrary: scaled to a unit diagonal before its pivots are tested.
-  const Vector3d scale = workspace->landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Matrix3d> factor(scale.asDiagonal() * workspace->landmark_hessian * scale.asDiagonal());
-  if (!scale.allFinite() || factor.info() != Eigen::Success ||
-      !(factor.matrixLLT().diagonal().minCoeff() > 1e-7)) {
+  const LandmarkFactor own(workspace->landmark_hessian);
+  if (!own.ok() || !(own.factor.matrixLLT().diagonal().minCoeff() > 1e-7)) {
     return false;
   }
   EliminatedLandmark& eliminated = workspace->eliminated;
-  eliminated.gradient = factor.matrixL().solve(scale.asDiagonal() * workspace->landmark_gradient);
-  const Matrix3d scaled = scale.asDiagonal();
-  eliminated.root = factor.matrixL().solve(scaled).transpose();
+  eliminated.gradient = own.factor.matrixL().solve(own.scale.asDiagonal() * workspace->landmark_gradient);
+  const Matrix3d scaled = own.scale.asDiagonal();
+  eliminated.root = own.factor.matrixL().solve(scaled).transpose();
   workspace->first.resize(views.size());
   for (size_t k = 0; k < views.size(); ++k) {
     workspace->first[k] = system->columns.Frame(views[k].frame->index).first;
@@ -214,12 +224,11 @@ std::optional<double> InverseDepthDeviation(std::span<const WindowView> views,
   if (!LinearizeViews(views, geometry, kernel, landmark, &workspace)) {
     return std::nullopt;
   }
-  const Vector3d scale = workspace.landmark_hessian.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Matrix3d> factor(scale.asDiagonal() * workspace.landmark_hessian * scale.asDiagonal());
-  if (!scale.allFinite() || factor.info() != Eigen::Success) {
+  const LandmarkFactor own(workspace.landmark_hessian);
+  if (!own.ok()) {
     return std::nullopt;
   }
-  return scale.z() * std::sqrt(factor.solve(Vector3d::UnitZ()).z());
+  return own.scale.z() * std::sqrt(own.factor.solve(Vector3d::UnitZ()).z());
 }
 
 void SquareRootRows(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
