@@ -61,8 +61,8 @@ bool LinearizeViews(std::span<const WindowView> views, std::span<const FrameGeom
   return true;
 }
 
-/// Cholesky factor of diag(scale) H diag(scale), H the Hessian of a landmark. The unit of the inverse depth is
-/// arbitrary: H is scaled to a unit diagonal before its pivots are tested.
+/// Cholesky factor of diag(scale) H diag(scale), H the Hessian of a landmark. The unit of the inverse depth
+/// is arbitrary: H is scaled to a unit diagonal before its pivots are tested.
 struct LandmarkFactor {
   explicit LandmarkFactor(const Matrix3d& hessian)
       : scale(hessian.diagonal().cwiseSqrt().cwiseInverse()),
